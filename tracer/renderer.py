@@ -218,17 +218,18 @@ class Renderer:
         self._unfinished, self._done = None, frame
         return frame.finished()
 
-    def work_on(self, frame: Frame) -> FrameInProgress:
-        """How the last frame was made, as long as no other has begun.
+    def work_on(self, frame: Frame, in_part: bool = False) -> FrameInProgress:
+        """How the last frame was made, as long as no other has begun; `in_part` also one that is shaded in part so far.
 
         Raises
         ------
         LookupError
             If this is not the last frame, or not all of it.
         """
-        if self._done is None or frame.primitive is not self._done.buffers.primitive:
-            raise LookupError("another frame has begun: what became of the rays of this one is no longer known")
-        return self._done
+        for work in (self._done, self._unfinished if in_part else None):
+            if work is not None and frame.primitive is work.buffers.primitive:
+                return work
+        raise LookupError("another frame has begun: what became of the rays of this one is no longer known")
 
     def _fitted(self, settings: Settings) -> Settings:
         """Let world and settings have the same accelerator."""
@@ -288,6 +289,16 @@ class Renderer:
             A renderer of the same world, whose next picture has not begun yet.
         """
         self.scene, self._turn = other.scene, other._turn
+
+    def take_modes(self, other: Renderer) -> None:
+        """Begin the next frame with the modes that another renderer of the same world knows now.
+
+        Parameters
+        ----------
+        other : Renderer
+            A renderer none of whose frames is under way. It is left as it is.
+        """
+        self.state.take_modes(other.state)
 
     def take_turn(self, time: float) -> None:
         """Place the world once more as the frame that this renderer has begun needs it.

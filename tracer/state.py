@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
+from copy import copy
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +63,11 @@ class State:
         self.histories.clear()
         for method in self._methods.values():
             method.forget()
+
+    def take_modes(self, other: State) -> None:
+        """Know the modes, and what rests, as another state of the same world knows them now."""
+        self.histories = {key: history.copied() for key, history in other.histories.items()}
+        self.rest = copy(other.rest)
 
     def method(self, name: str) -> ShadowMethod:
         """The base of this name, with all that it has learnt."""

@@ -22,7 +22,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Cancelled
 from tracer.told_rays import TRACED, RayKind, RayTree
-from viewer.state.verdicts import WHY_TRACED
+from tracer.why import WHY_TRACED
 
 WIDTH, HEIGHT = 16, 12
 METHODS = ("none", "paper", "cells", "certified", "paper+cache", "auto")

@@ -6,6 +6,7 @@ A pixel count means nothing at another resolution, so each resolution has a hist
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 
 import numpy as np
 
@@ -38,6 +39,14 @@ class ModeHistory:
         self.light_positions: np.ndarray | None = None
         self._lamps: LampTable | None = None
         self._object_of, self._resting = object_of, nothing_rests(0)
+
+    def copied(self) -> ModeHistory:
+        """The same, for another renderer of the same world: what either learns from here on, it knows alone."""
+        copied = copy(self)
+        for name, value in vars(self).items():
+            if isinstance(value, np.ndarray):
+                setattr(copied, name, value.copy())
+        return copied
 
     def make_room(self, workers: int) -> None:
         """For what so many workers gain."""

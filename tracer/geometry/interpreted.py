@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from tracer import simd
+from tracer.geometry.memory import data_pointer
 
 
 def _fma(a: Any, b: Any, c: Any) -> Any:
@@ -32,6 +33,7 @@ _PLAIN: dict[int, Any] = {
     id(simd.select): np.where,
     id(simd.fma): _fma,
     id(simd.square_root): np.sqrt,
+    id(data_pointer): np.ravel,
 }
 
 

@@ -1,22 +1,27 @@
-"""The command `explain`: what became of the rays of one pixel."""
+"""The command `explain`: why the shadow rays of one pixel were culled or traced, and what became of all its rays."""
 
 from __future__ import annotations
 
 import json
 from argparse import Namespace
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
-from tracer.method import DEFAULT_METHOD
-from tracer.ray_tree import ray_tree
+from tracer.frame import Frame
+from tracer.method import DEFAULT_METHOD, Method
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from tracer.told_rays import RayTree
+from tracer.why import Why, why
 from viewer.cli.console import working
 from viewer.cli.edit_options import edited_scene, light_index
 from viewer.cli.mesh_arguments import mesh_options
@@ -25,14 +30,17 @@ from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output.legend_parts import named_light
 from viewer.output.ray_json import ray_data
 from viewer.output.ray_rows import RayRows, Row, totals
+from viewer.output.why_lines import why_data, why_lines
+from viewer.services.teachers import Answers, Teacher, answers_at, can_be_asked, with_teachers
 from viewer.state.earlier import Earlier
+from viewer.state.teaching import Ledger
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
 
 
 def explain(path: Path, options: Namespace) -> None:
-    """Trace a frame, and print the tree of a pixel's rays; raises SceneError and ValueError in one line, or
-    Cancelled."""
+    """Trace a frame, and print the reasons and the tree of a pixel's rays; raises SceneError and ValueError in one
+    line, or Cancelled."""
     check_scene_file(path)
     settings = replace(tracing_settings(options), method=options.method or DEFAULT_METHOD)
     x, y = options.pixel
@@ -48,17 +56,24 @@ def explain(path: Path, options: Namespace) -> None:
         times = times_before(scene, time, options.warmup, work)
         times += [time] * _repeats(options)
         before = [*options.before, *(Earlier(then, options.camera) for then in times)]
+        ledger, moves = Ledger(len(scene.lights)), _Moves(scene)
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
-            renderer.render(earlier.time, earlier.camera, work.cancelled)
+            modes = renderer.render(earlier.time, earlier.camera, work.cancelled).modes
+            ledger.add(done, modes, moves.since(earlier.time))
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, options.camera, work.cancelled)
-        tree = ray_tree(renderer, frame, x, y, work.cancelled)
+        found = why(renderer, frame, x, y, work.cancelled)
+        if not options.json:
+            work.count("asking which frames have taught it", len(before), len(before) + 1)
+            found = _with_teachers(found, renderer, frame, ledger, before)
+    tree = found.tree
+    assert tree is not None
     if options.json:
-        print(json.dumps(ray_data(tree, scene), indent=2))
+        print(json.dumps(ray_data(tree, scene) | {"why": why_data(found, scene)}, indent=2))
         return
     title = f"{path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
-    _print(tree, scene, Filter(Shown(options.only), light), title)
+    _print(found, tree, scene, Filter(Shown(options.only), light), title)
 
 
 def _repeats(options: Namespace) -> int:
@@ -69,11 +84,51 @@ def _repeats(options: Namespace) -> int:
     return 0 if options.warmup or options.before else 1
 
 
-def _print(tree: RayTree, scene: Scene, shown: Filter, title: str) -> None:
+class _Moves:
+    """Which lights are elsewhere than they were in the frame before."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._before: NDArray[np.float64] | None = None
+
+    def since(self, time: float) -> NDArray[np.bool_] | None:
+        """(lights,) bool, None in the first frame."""
+        before, self._before = self._before, self._scene.light_positions(time)
+        return None if before is None else (before != self._before).any(axis=1)
+
+
+def _with_teachers(found: Why, renderer: Renderer, frame: Frame, ledger: Ledger, before: Sequence[Earlier]) -> Why:
+    """The same with the frames, and the pixels of these, that gave the primitive its modes."""
+    unit = int(frame.cell[found.y, found.x])
+    taught = ledger.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
+    if taught is None:
+        return found
+
+    def name(number: int) -> str:
+        return f"frame {number + 1} of the {len(before)} before"
+
+    @cache
+    def answers(number: int) -> Answers | None:
+        if not can_be_asked(frame.settings, frame.lights):
+            return None
+        then, uses_cells = before[number], Method.parse(frame.settings.method).uses_cells
+        return answers_at(renderer, then.time, then.camera, frame.settings, unit, uses_cells)
+
+    def teacher(number: int, light: int, lit: bool) -> Teacher | None:
+        known = answers(number)
+        return None if known is None else known.get((light, lit), Teacher(0, None))
+
+    return with_teachers(found, taught, teacher, name)
+
+
+def _print(found: Why, tree: RayTree, scene: Scene, shown: Filter, title: str) -> None:
     console = Console()
     if not console.is_terminal:
         console = Console(width=100_000, soft_wrap=True)  # a line for each row, whatever reads it
-    said = [printable(title), totals(tree)]
+    console.print(Text(printable(title), "bold"))
+    for line in why_lines(found, scene, shown.light):
+        console.print(Text(printable(line)))
+    said = [totals(tree)]
     if shown != Filter():
         of = "" if shown.light is None else f" of {named_light(scene.lights, shown.light)}"
         said.append(f"shadow rays shown: {shown.shown.value}{of}")

@@ -235,10 +235,14 @@ class Comparing:
             self.state.second = self._other_method()
         self._follow_second()
 
+    @property
+    def measures(self) -> str:
+        """The second method, while frames are traced by it as well."""
+        return self.state.second if self.state.on and self.state.source is Source.METHOD else ""
+
     def _follow_second(self) -> None:
         """Have frames traced by a second method while that is to be seen."""
-        state = self.state
-        self._tracing.second = state.second if state.on and state.source is Source.METHOD else ""
+        self._tracing.second = self.measures
 
     def blinks(self) -> bool:
         """Whether the window must be drawn again and again."""

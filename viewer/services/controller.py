@@ -16,6 +16,7 @@ from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
 from tracer.zoom import Step
+from viewer.services.baseline import Baseline
 from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
@@ -78,9 +79,8 @@ class Controller:
             session, self.selection, renderer, preferences, notices, self.captures, awaken,
             lambda: self.editing.under_way,
         )  # fmt: skip
-        self.tracing = Tracing(
-            session, preferences, renderer, self.runs.refuses, awaken, forgotten=lambda: self.editing.forget_modes()
-        )
+        self.tracing = Tracing(session, preferences, renderer, self.runs.refuses, awaken, forgotten=self._forget_modes)
+        self.baseline = Baseline(renderer)
         self.settings = SettingsController(session, preferences, notices, self.runs.refuses)
         self.motion = Motion(session, preferences, notices, self.runs.refuses)
         self.comparing = Comparing(session, self.tracing, self.settings, notices)
@@ -178,7 +178,20 @@ class Controller:
         if not motion.lively:
             self._keep_preferences()
         self.teachers.follow(self.traced if run is None and not motion.lively else None)
+        self._follow_baseline()
         return frame
+
+    def _follow_baseline(self) -> None:
+        """Measure in spare time what the picture that is shown takes, while that is to be seen."""
+        tracing, compared = self.tracing, self.comparing.measures
+        wanted = self.preferences.savings or bool(compared)
+        busy = self.renderer.busy or tracing.awaits or tracing.adds_samples or tracing.refines_lamps
+        busy = busy or self.loader.busy or self.runs.current is not None or self.editing.at_work or not wanted
+        self.baseline.follow(self.traced, compared, self.motion.lively, busy)
+
+    def _forget_modes(self) -> None:
+        self.editing.forget_modes()
+        self.baseline.forget()
 
     def _keep_preferences(self) -> None:
         """Save them soon after a change."""
@@ -284,6 +297,7 @@ class Controller:
         self.before_edits.forget()
         self.record.forget()
         self.tracing.forget()
+        self.baseline.forget()
         self.selection.clear()
         self.motion.enter(info.get("bounds"))
         self.preferences.remember_scene(Path(scene.path).absolute())
@@ -297,6 +311,7 @@ class Controller:
         self.renderer.use(renderer, fresh=False)
         self.record.follow_edits()
         self.tracing.follow_edits(same)
+        self.baseline.forget()
         if not same:
             self.selection.follow_edits(before, now)
             self.reloaded = True

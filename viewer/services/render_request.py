@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 from tracer.renderer import Frame, Settings
 from tracer.scene.model import Camera
@@ -17,7 +17,13 @@ class Traces(Paired, Protocol):
 
     def reset_modes(self) -> None: ...
 
+    def render(
+        self, time: float = ..., camera: Camera | None = ..., cancel: Callable[[], bool] | None = ...
+    ) -> Frame: ...
+
     def beside(self) -> Traces: ...
+
+    def take_modes(self, other: Any) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -78,6 +84,14 @@ class Task(Protocol):
     """Long work with the renderer's world.  It ends soon after `cancelled()` turns true, and raises nothing."""
 
     def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None: ...
+
+
+class Spare(Protocol):
+    """Work for when nothing else is wanted, which leaves the renderer itself as it is.  A step takes no longer than a
+    frame, returns whether more are to come, and ends soon after `cancelled()` turns true, by raising Cancelled: the
+    same step is then asked for again."""
+
+    def step(self, renderer: Traces, cancelled: Callable[[], bool]) -> bool: ...
 
 
 class Question(Protocol):

@@ -9,7 +9,8 @@ moves, the next request comes before the last picture is ready, and cancelling e
 
 An experiment is a `Task`: it has the thread, and with it the scene's world, to itself until it is
 done; the newest request of that time waits for its end.  A `Question` takes a moment: it is answered
-between two frames, while the world still stands as it did in the frame that it is about.
+between two frames, while the world still stands as it did in the frame that it is about.  `Spare` work is done a step
+at a time while nothing else is wanted, and anything that is wanted ends a step.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from tracer.renderer import Frame
 from tracer.scene.model import Cancelled
 from viewer.services.jobs import TRACER, step_back
 from viewer.services.pair import Asked, Pair
-from viewer.services.render_request import Question, RenderRequest, Task, Traced, Traces
+from viewer.services.render_request import Question, RenderRequest, Spare, Task, Traced, Traces
 from viewer.util.failures import Failure, failure
 
 MOST_WHOLE = 16
@@ -46,6 +47,7 @@ class RenderThread:
         self._shown = self._whole = False  # whether a part of what is running, or all of it, has been
         self._task: tuple[Traces, Task] | None = None
         self._questions: dict[type[Question], Question] = {}  # the newest of each kind
+        self._spare: Spare | None = None
         self._placed_at: float | None = None  # the time of what was traced last
         self._performing = False
         self._cancel = False
@@ -68,6 +70,7 @@ class RenderThread:
             self._became_whole.clear()
             self._fresh = fresh
             self._questions.clear()
+            self._spare = None
             self._cancel = True
             self._changed.notify_all()
 
@@ -107,6 +110,12 @@ class RenderThread:
         """Answer this before the next frame; of each kind the newest only, and none about a time that was left."""
         with self._changed:
             self._questions[type(question)] = question
+            self._changed.notify_all()
+
+    def in_spare_time(self, work: Spare | None) -> None:
+        """Do this, and nothing else of its kind, while nothing is wanted; None for nothing."""
+        with self._changed:
+            self._spare = work
             self._changed.notify_all()
 
     def reset_modes(self) -> None:
@@ -189,9 +198,17 @@ class RenderThread:
                     self._shown = self._whole = False
                     self._placed_at = request.time
                     return partial(self._trace, self._renderer, request, reset)
+                elif self._renderer is not None and self._spares:
+                    assert self._spare is not None and self._placed_at is not None
+                    return partial(self._spend, self._renderer, self._spare, self._placed_at)
                 else:
                     self._changed.wait()
             return None
+
+    @property
+    def _spares(self) -> bool:
+        """Whether there is spare work, and the world stands in a frame's time, to which it can be put back."""
+        return self._spare is not None and self._placed_at is not None and not self._reset
 
     def _forget(self, renderer: Traces) -> None:
         """Forget all modes, as was asked."""
@@ -207,6 +224,28 @@ class RenderThread:
         finally:
             with self._changed:
                 self._performing = False
+            self._wake()
+
+    def _spend(self, renderer: Traces, work: Spare, time: float) -> None:
+        """One step of spare work; the world stands as it did before when it ends."""
+
+        def wanted() -> bool:
+            others = self._task, self._waiting, self._questions or None
+            return self._closing or self._reset or self._spare is not work or any(one is not None for one in others)
+
+        more = False
+        try:
+            more = work.step(renderer, wanted)
+        except Cancelled:
+            more = True
+        except Exception as problem:
+            with self._changed:
+                self._failure = failure(problem, "not measured", _KNOWN)
+        finally:
+            renderer.take_turn(time)
+        if not more:
+            with self._changed:
+                self._spare = None if self._spare is work else self._spare
             self._wake()
 
     def _answer(self, renderer: Traces, question: Question) -> None:

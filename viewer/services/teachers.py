@@ -7,6 +7,7 @@ them can have set was taught by reflected or refracted rays."""
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol, cast
 
@@ -16,6 +17,9 @@ from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, shadow_mode
 from tracer.explanation import explain
 from tracer.frame import Frame
 from tracer.renderer import Renderer
+from tracer.scene.model import Camera
+from tracer.settings import Settings
+from tracer.why import TaughtBy, Why
 from viewer.services.record import Record
 from viewer.services.render_request import Question, Traced, Traces
 from viewer.services.selection import Selection
@@ -23,7 +27,7 @@ from viewer.state.moments import Moment
 from viewer.state.picking import Pick
 from viewer.state.readings import can_record_lights
 from viewer.state.session import Session
-from viewer.state.teaching import NEVER
+from viewer.state.teaching import NEVER, Taught
 
 _LOOKED_INTO = 6  # pixels in shadow of which one may be in that of something static
 MOST_PIXELS = 1 << 22
@@ -57,26 +61,61 @@ class TeacherQuestion:
         return self._time
 
     def answer(self, renderer: Traces) -> None:
-        real, moment = cast(Renderer, renderer), self.moment
-        settings = replace(
-            moment.settings, method="cells" if self.pick.in_cells else "paper", depth=0, samples=1, verify=False,
-            modes=False, record_lights=True, record_work=False, certificate_seconds=math.inf,
-        )  # fmt: skip
+        real, moment, pick = cast(Renderer, renderer), self.moment, self.pick
         try:
-            alone = Renderer(real.scene, settings, world=real.world)
-            frame = alone.render(moment.time, moment.camera)
-            self.found = answers_in(alone, frame, self.pick)
+            self.found = answers_at(real, moment.time, moment.camera, moment.settings, pick.unit, pick.in_cells)
         finally:
             real.world.place(self._time, real.state.rest.now.since > 0)
 
 
-def answers_in(renderer: Renderer, frame: Frame, pick: Pick) -> Answers:
+def answers_at(
+    renderer: Renderer, time: float, camera: Camera | None, settings: Settings, unit: int, in_cells: bool
+) -> Answers:
+    """Trace a frame once more, in the world of a renderer, and return what the pixels of a unit met in it."""
+    settings = replace(
+        settings, method="cells" if in_cells else "paper", depth=0, samples=1, verify=False, modes=False,
+        record_lights=True, record_work=False, certificate_seconds=math.inf,
+    )  # fmt: skip
+    alone = Renderer(renderer.scene, settings, world=renderer.world)
+    return answers_in(alone, alone.render(time, camera), unit)
+
+
+def can_be_asked(settings: Settings, lights: int) -> bool:
+    """Whether a frame is small enough to be traced once more with what reaches each pixel."""
+    pixels = settings.width * settings.height
+    return pixels <= MOST_PIXELS and can_record_lights(pixels, lights)
+
+
+def with_teachers(
+    found: Why, taught: Taught, of: Callable[[int, int, bool], Teacher | None], name: Callable[[int], str]
+) -> Why:
+    """Return reasons that say which frames gave the modes, and which pixels of these as far as `of` knows them, by the
+    frame's number, the light, and whether it was seen lit; `name` names a frame."""
+    coverage = found.coverage
+    if coverage is not None and taught.whole != NEVER:
+        coverage = replace(coverage, taught=TaughtBy(taught.whole, name(taught.whole)))
+    reasons = []
+    for one in found.reasons:
+        by = []
+        if one.light < len(taught.lights):
+            lesson = taught.lights[one.light]
+            for lit, number in ((False, lesson.blocked), (True, lesson.lit)):
+                if number != NEVER:
+                    teacher = of(number, one.light, lit)
+                    pixel = None if teacher is None else teacher.pixel
+                    by.append(TaughtBy(number, name(number), pixel, lit, teacher is not None))
+        instead = None if one.instead is None else replace(one.instead, taught=tuple(by))
+        reasons.append(replace(one, taught=tuple(by), instead=instead))
+    return replace(found, coverage=coverage, reasons=tuple(reasons))
+
+
+def answers_in(renderer: Renderer, frame: Frame, unit: int) -> Answers:
     """What the pixels of a unit met in a frame that was traced without knowing anything before."""
     assert frame.asked is not None and frame.reached is not None
-    here, found = frame.cell == pick.unit, Answers()
+    here, found = frame.cell == unit, Answers()
     moves = renderer.world.placed.has_dynamic
     for light in range(frame.lights):
-        mode = int(shadow_mode(frame.modes[pick.unit], light))
+        mode = int(shadow_mode(frame.modes[unit], light))
         for lit, bit in ((False, FULL_SHADOW), (True, NON_SHADOW)):
             if not mode & bit:
                 continue
@@ -144,8 +183,6 @@ class Teachers:
             return None
         for number in sorted({n for lesson in taught.lights for n in lesson if n != NEVER} - self._known.keys()):
             moment = self._record.moments.get(number)
-            pixels = 0 if moment is None else moment.settings.width * moment.settings.height
-            fits = pixels <= MOST_PIXELS and can_record_lights(pixels, len(pick.shadows))
-            if moment is not None and fits:
+            if moment is not None and can_be_asked(moment.settings, len(pick.shadows)):
                 return moment
         return None

@@ -10,7 +10,8 @@ import numpy as np
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.renderer import Frame
-from tracer.scene.model import CONE, Camera, Material, Scene
+from tracer.scene.model import Camera, Material, Scene
+from tracer.why_in_words import kind_of
 from viewer.state.navigation import Vector, ray
 from viewer.state.projection import HIDDEN, place
 from viewer.state.readings import has_modes_of_cells, units_of
@@ -88,15 +89,6 @@ def _wrong_at(frame: Frame, x: int, y: int) -> int | None:
 
 def _seen(frame: Frame) -> tuple[float, Camera, int, int]:
     return frame.time, frame.camera, frame.width, frame.height
-
-
-def kind_of(scene: Scene, primitive: int) -> str:
-    """Triangle, sphere or cone."""
-    if primitive < scene.triangle_count:
-        return "triangle"
-    index = scene.object_of(primitive)
-    kind = scene.objects[index].quadrics.kind[primitive - scene.quadric_offsets[index]]
-    return "cone" if kind == CONE else "sphere"
 
 
 def primitive_in_words(scene: Scene, primitive: int) -> str:

@@ -70,10 +70,11 @@ class Preferences:
     own pace, 1 by default; `method` is the one to cull by while `culling` is on, `certificate_share` the part of a
     frame's time in motion that may go into certificates; `samples` is how many a pixel gets at idle; `lamp_samples` how
     many each lamp has, 0 for as many as the scene says (the radius of lamps is measured in units of the scene, and not
-    kept); `legend_x` and `legend_y` say where in the room that the picture leaves to its legend this lies, 0 to 1 from
-    left and top; `tour` says that the tour has not been shown yet, `last` is the snapshot, as JSON, to start from where
-    that is asked for; `habits` names the program that the viewer is steered like, `keys` are those that the user has
-    chosen, by the names of commands, and `used` what the command palette ran last, newest first."""
+    kept); `savings` says that what culling saves is shown above the picture; `legend_x` and `legend_y` say where in the
+    room that the picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the tour has not
+    been shown yet, `last` is the snapshot, as JSON, to start from where that is asked for; `habits` names the program
+    that the viewer is steered like, `keys` are those that the user has chosen, by the names of commands, and `used`
+    what the command palette ran last, newest first."""
 
     format: int = FORMAT
     target_fps: float = 15.0
@@ -104,6 +105,7 @@ class Preferences:
     mark_wrong: bool = True
     beneath: float = BENEATH
     work_shares: bool = False
+    savings: bool = True
     legend: bool = True
     legend_x: float = 0.0
     legend_y: float = 1.0

@@ -12,9 +12,10 @@ from tracer.frame import Frame
 from tracer.scene.deformation import deformed
 from tracer.scene.edits import Edited
 from tracer.scene.model import CONE, Camera, Scene
+from tracer.why_in_words import kind_of
 from viewer.state import navigation
 from viewer.state.parts import parts_of
-from viewer.state.picking import Pick, kind_of, pick, shadow_mode_of
+from viewer.state.picking import Pick, pick, shadow_mode_of
 from viewer.state.readings import has_modes_of_cells
 
 _BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)

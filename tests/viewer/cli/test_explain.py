@@ -31,13 +31,40 @@ def test_the_tree_names_what_became_of_each_ray(capfd: pytest.CaptureFixture[str
     code, out, _ = explained(capfd, *seen)
     lines = out.splitlines()
     assert code == 0 and lines[0].startswith("room.aff, 4.000 s, pixel 24,26 of 48 × 32, method paper")
-    assert "shadow rays that are due" in lines[1]
-    assert lines[2].startswith("└── primary ray: triangle ") and "reflected ray: " in out
-    assert sum("light 0" in line for line in lines) == out.count(" ray: ") - out.count("leaves the scene")
-    assert "steps" in out
+    (top,) = (i for i, line in enumerate(lines) if "shadow rays that are due" in line)
+    assert lines[top + 1].startswith("└── primary ray: triangle ") and "reflected ray: " in out
+    tree = "\n".join(lines[top:])
+    assert tree.count("light 0") == tree.count(" ray: ") - tree.count("leaves the scene")
+    assert "steps" in tree
     _, traced, _ = explained(capfd, *seen, "--only", "traced", "--light", 1)
-    assert "shadow rays shown: traced of light 1" in traced and "light 0" not in traced.splitlines()[4:]
-    assert all("traced" in line for line in traced.splitlines()[3:] if "light 1:" in line)
+    assert "shadow rays shown: traced of light 1" in traced and "light 0" not in traced
+    assert all("traced" in line for line in traced.splitlines()[top:] if "light 1:" in line)
+
+
+def test_the_reasons_come_first(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+    seen = (room, "--frame", 4, "--warmup", 3, "--method", "paper")
+    _, out, _ = explained(capfd, *seen, "--pixel", "24,26")
+    first, second, covers, left, above = out.splitlines()[1:6]
+    clipped = "clipped by the screen's edge at pixel (24, 31) (§2.3)"
+    assert first == f"light 0: Traced: {clipped}, so its shadow mode is not trusted (§2.4). Lit."
+    assert second.startswith(f"light 1: Traced although nothing static has blocked it so far: {clipped}, so its")
+    assert covers == f"Covers 282 pixels. Not fully rendered: {clipped}."
+    assert left == "The pixel on its left sees the same: no test." and above.startswith("The pixel above it")
+    _, out, _ = explained(capfd, *seen, "--pixel", "24,16")
+    both = "light 0, light 1: Asks the dynamic object only: nothing static has ever blocked it (§2.4). Lit."
+    assert out.splitlines()[1] == both
+    assert "Fully rendered since frame 1 of the 3 before." in out.splitlines()[2]
+    _, out, _ = explained(capfd, *seen, "--pixel", "24,26", "--json")
+    told = json.loads(out)["why"]
+    assert [one["light"] for one in told] == list(range(len(told))) and {one["section"] for one in told} - {None}
+
+
+def test_who_taught_a_shadow_mode_is_named(capfd: pytest.CaptureFixture[str]) -> None:
+    seen = ("default", "--frame", 40, "--warmup", 2, "--method", "paper", "--pixel", "19,50", "--size", "96x64")
+    code, out, _ = run(capfd, "explain", *seen)
+    assert code == 0
+    found = re.search(r"PARTIAL_SHADOW since frame 1 of the 2 before: pixel \((\d+), (\d+)\) (saw|was)", out)
+    assert found is not None, out
 
 
 def test_culling_has_seen_a_frame_before_unless_none_is_asked_for(

@@ -22,6 +22,7 @@ from tests.viewer.scenarios.previewing import previewing
 from tests.viewer.scenarios.rays import rays
 from tests.viewer.scenarios.reviving import reviving
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
+from tests.viewer.scenarios.savings import savings
 from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
 from tests.viewer.scenarios.trees import trees
@@ -30,8 +31,8 @@ from tests.viewer.scenarios.what_if import what_if
 SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
-        views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, certifying, explaining, rays,
-        flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
+        views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, savings, certifying, explaining,
+        rays, flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
         zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
         reviving, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,
         previewing,

@@ -10,11 +10,11 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from tracer.explanation import Explanation
 from tracer.frame import Frame
 from tracer.ray_reasons import unused
+from tracer.why import WHY_TRACED
 from viewer.services.frame_answers import WrongAnswers, WrongLight
 from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, nearest_first, others_named
 from viewer.state.picking import kind_of, primitive_in_words
 from viewer.state.projection import place
-from viewer.state.verdicts import WHY_TRACED
 from viewer.state.views import (
     ARRIVAL_COLORS,
     CERTIFICATE_COLORS,

@@ -32,6 +32,7 @@ from viewer.window.panels import (
     missing,
     preview,
     ray_overlay,
+    savings,
     sides,
     slicing,
     timeline,
@@ -57,10 +58,17 @@ NOTCHES_PER_HEIGHT = 20.0
 
 
 def show(ui: Ui) -> None:
-    """The window's content: the picture, the tour's strip and the timeline under it."""
+    """The window's content: what culling saves, the picture under it, the tour's strip and the timeline."""
     c, room = ui.controller, imgui.get_content_region_avail()
     bar = timeline.height() if c.session.animated else 0.0
     room = ImVec2(room.x, room.y - bar)
+    above = savings.height(ui, room)
+    if above > 0.0:
+        start = imgui.get_cursor_pos()
+        ui.guard.panel("What culling saves", lambda: savings.show(ui, room.x))
+        imgui.set_cursor_pos(start)
+        imgui.dummy(ImVec2(room.x, above - imgui.get_style().item_spacing.y))
+        room = ImVec2(room.x, room.y - above)
     strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
     room = ImVec2(room.x, room.y - strip)
     scale = imgui.get_io().display_framebuffer_scale

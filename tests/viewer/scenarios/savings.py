@@ -1,0 +1,76 @@
+"""What culling saves, above the picture: the sentence, the bar, and the key that hides both."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from tests.viewer.driver import Driver
+from viewer.state.savings import bar_of, in_words, sentence
+from viewer.util.numbers import percent
+from viewer.util.resources import default_scene
+from viewer.window.command import chord
+from viewer.window.panels.savings import standing
+
+KEY = imgui.Key
+
+
+def said(d: Driver) -> str:
+    return in_words(sentence(d.c.frame, standing(d.c)))
+
+
+def savings(d: Driver) -> None:
+    """In the scene that the program opens, at rest: the sentence tells what the counters say, and how the paper's
+    method compares with none; the picture stays where it is, whatever is said above it."""
+    d.settle()
+    d.c.settings.change(method="paper")
+    d.fix_resolution(320, 240)
+    d.c.loader.open(default_scene())
+    d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path.stem == "default", "the scene")
+    d.settle()
+    d.wait(lambda: "fast as none" in said(d), "a comparison with none", 120.0)
+    shadow, words = d.c.frame.statistics.shadow, said(d)
+    assert shadow.saved > 0.1 * shadow.due and shadow.saved == shadow.culled + shadow.dynamic_only
+    assert words.startswith(f"paper: {percent(shadow.saved, shadow.due)} of shadow rays saved, "), words
+    assert " fewer steps, not verified, " in words, words
+    d.wait(lambda: d.c.baseline.measured.settled, "the comparison to end", 120.0)
+    bar = {part.fate.name: part.rays for part in bar_of(d.c.frame).parts}
+    assert bar == {"CULLED": shadow.culled, "DYNAMIC_ONLY": shadow.dynamic_only, "TRACED": shadow.traced}
+    traced, modes, edges = d.c.history.frames, d.c.frame.modes, d.picture_edges()
+    d.frames(10)
+    assert d.c.history.frames == traced, "measuring has shown a picture"
+    for size in d.sizes():
+        _is_whole(d, size)
+    edges = d.picture_edges()
+    d.press(KEY.v)
+    d.settle()
+    assert " wrong" in said(d) and "not verified" not in said(d) and "fast as none" in said(d), said(d)
+    assert (d.c.frame.modes == modes).all(), "nothing was learnt meanwhile"
+    d.press(KEY.v)
+    d.press(KEY.c)
+    d.settle()
+    assert said(d).startswith("none: every shadow ray is traced; paper would save "), said(d)
+    would = bar_of(d.c.frame)
+    assert would.would and would.parts[0].rays == d.c.frame.statistics.by_modes_in_all.full_shadow > 0
+    assert d.picture_edges() == edges, "the picture has moved"
+    d.press(KEY.c)
+    d.settle()
+    assert "fast as none" in said(d), "what was measured of this picture is known still"
+    d.context.key_down(KEY.d)
+    d.frames(5)
+    assert said(d).endswith("speed not measurable while moving"), said(d)
+    assert d.picture_edges() == edges
+    d.context.key_up(KEY.d)
+    d.settle()
+    d.press(chord("Shift+B"))
+    assert not d.c.preferences.savings and d.picture_edges()[1] < edges[1], "the picture has the room"
+    d.press(chord("Shift+B"))
+    d.settle()
+    assert d.picture_edges() == edges
+
+
+def _is_whole(d: Driver, size: tuple[int, int]) -> None:
+    """The sentence and the bar are beside the picture, and nothing of them is cut off."""
+    window = imgui.internal.find_window_by_name("Picture")
+    bar = d.context.item_info("//Picture/traced##savings").rect_full
+    assert window.pos.y < bar.min.y and bar.max.y <= d.picture_edges()[1], f"over the picture at {size}"
+    assert bar.max.x <= window.pos.x + window.size.x, f"cut off at {size}"

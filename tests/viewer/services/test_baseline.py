@@ -1,0 +1,287 @@
+"""What a picture takes by two methods in turn: what is traced for it, when, and what becomes of the numbers."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from threading import Event
+
+import numpy as np
+import pytest
+
+from tests.viewer.fakes import FakeRenderer, make_frame
+from tracer.frame import Frame, Settings
+from tracer.renderer import Renderer
+from tracer.scene.load import load_scene
+from tracer.scene.model import Camera, Cancelled
+from tracer.statistics import FrameStatistics
+from viewer.services.baseline import FIRST, MOST, STILL, Baseline, Rounds, Subject, subject_of
+from viewer.services.render_request import RenderRequest, Traced
+from viewer.services.render_thread import RenderThread
+from viewer.state.in_turn import LEAST, InTurn, Spread
+
+CAMERA = Camera((0, 0, 5), (0, 0, -1))
+SIZE = Settings(width=16, height=8)
+
+
+class Timed:
+    """A renderer whose frames take, in turn, the seconds that were given for the method; `made` are certificates."""
+
+    def __init__(self, seconds: dict[str, list[float]], made: dict[str, list[int]] | None = None) -> None:
+        self.seconds, self.made, self.settings = seconds, made or {}, SIZE
+        self.order: list[str] = []
+        self.taught: list[object] = []
+        self.asked: list[Settings] = []
+
+    def beside(self) -> Timed:
+        other = Timed(self.seconds, self.made)
+        other.order, other.asked, other.taught = self.order, self.asked, self.taught
+        return other
+
+    def take_modes(self, other: object) -> None:
+        self.taught.append(other)
+
+    def render(self, time=0.0, camera=None, cancel=None) -> Frame:
+        if cancel is not None and cancel():
+            raise Cancelled()
+        method = self.settings.method
+        number = self.order.count(method)
+        self.order.append(method)
+        self.asked.append(self.settings)
+        frame = make_frame(self.settings, time, camera)
+        times, made = self.seconds[method], self.made.get(method, [])
+        frame.statistics.seconds = times[number % len(times)]
+        frame.statistics.certificates = made[number] if number < len(made) else 0
+        return frame
+
+
+def subject(*methods: str) -> Subject:
+    return Subject(1.0, CAMERA, replace(SIZE, method="none"), methods)
+
+
+def run(rounds: Rounds, renderer: Timed) -> int:
+    steps = 1
+    while rounds.step(renderer, lambda: False):
+        steps += 1
+    return steps
+
+
+def test_medians_quartiles_and_the_margin():
+    spread = Spread.of([1.0, 9.0, 2.0, 3.0, 4.0])
+    assert (spread.low, spread.median, spread.high, spread.count) == (2.0, 3.0, 4.0, 5)
+    assert spread.margin == pytest.approx(1.57 * 2.0 / 5**0.5)
+    assert Spread(1.03, 0.9, 1.1, 4).is_one and not Spread(1.03, 1.025, 1.035, 16).is_one
+    assert Spread(1.004, 1.004, 1.004, 40).is_one, "written as 1.00"
+
+
+def test_one_slow_frame_changes_nothing():
+    ratio = [0.1] * LEAST
+    ratio[3] = 5.0
+
+    def took(seconds):
+        return FrameStatistics(seconds=seconds)
+
+    turns = InTurn(("none", "paper"), tuple((took(0.11), took(one)) for one in ratio))
+    assert turns.speed("paper", "none").median == pytest.approx(1.1)
+    assert turns.seconds("none").median == pytest.approx(0.11)
+    assert turns.seconds("paper", "shading") is None
+
+
+def test_methods_take_turns_after_frames_that_do_not_count_and_stop_once_it_is_known():
+    renderer = Timed({"none": [9.0] * FIRST + [0.2], "paper": [9.0] * FIRST + [0.1]})
+    renderer.seconds = {name: times[:FIRST] + times[FIRST:] * 60 for name, times in renderer.seconds.items()}
+    rounds = Rounds(subject("none", "paper"))
+    assert run(rounds, renderer) == 2 * (FIRST + LEAST)
+    assert renderer.order[: 2 * FIRST] == ["none"] * FIRST + ["paper"] * FIRST
+    counted = renderer.order[2 * FIRST :]
+    assert counted == ["none", "paper", "paper", "none"] * (LEAST // 2), "who is first changes"
+    found = rounds.so_far
+    assert found.settled and found.speed("paper", "none").median == pytest.approx(2.0)
+    assert renderer.taught == [renderer] * 2, "each begins with the modes that the window has"
+    assert not rounds.step(renderer, lambda: False) and len(renderer.order) == 2 * (FIRST + LEAST)
+
+
+def test_where_the_numbers_go_up_and_down_it_ends_after_so_many_rounds():
+    renderer = Timed({"none": [0.1, 0.3, 0.2], "paper": [0.25, 0.1, 0.15, 0.3]})
+    rounds = Rounds(subject("none", "paper"))
+    run(rounds, renderer)
+    assert rounds.so_far.count == MOST and rounds.so_far.settled
+
+
+def test_nothing_counts_before_the_method_has_made_what_it_makes():
+    renderer = Timed({"none": [0.1], "certified": [0.1]}, {"certified": [90, 50, 20, 3]})
+    rounds = Rounds(subject("none", "certified"))
+    for _ in range(FIRST + 5):
+        assert rounds.so_far.prepares
+        rounds.step(renderer, lambda: False)
+    rounds.step(renderer, lambda: False)
+    rounds.step(renderer, lambda: False)
+    assert not rounds.so_far.prepares and rounds.so_far.count == 1
+
+
+def test_a_frame_that_is_cut_short_is_traced_again():
+    renderer = Timed({"none": [0.1], "paper": [0.1]})
+    rounds = Rounds(subject("none", "paper"))
+    for _ in range(3):
+        with pytest.raises(Cancelled):
+            rounds.step(renderer, lambda: True)
+    assert run(rounds, renderer) == 2 * (FIRST + LEAST)
+
+
+def traced(method: str = "paper", at: float = 1.0, **more) -> Traced:
+    settings = replace(SIZE, method=method, modes=True, **more)
+    frame = make_frame(settings, at, CAMERA)
+    return Traced(RenderRequest(at, CAMERA, settings), frame, frame.statistics)
+
+
+def test_none_keeps_no_modes_and_nobody_records_or_verifies():
+    found = subject_of(traced(verify=True, record_work=True, record_lights=True))
+    assert found is not None and found.methods == ("none", "paper")
+    s = found.settings
+    assert not any((s.verify, s.record_work, s.record_lights, s.modes)) and s.samples == 1
+    assert not s.keeps_modes and replace(s, method="paper").keeps_modes
+    assert subject_of(traced("none")) is None
+    assert subject_of(traced("none"), "certified").methods == ("none", "certified")
+    assert subject_of(traced("paper"), "none").methods == ("none", "paper")
+
+
+class Thread:
+    def __init__(self) -> None:
+        self.works: list[Rounds | None] = []
+
+    def in_spare_time(self, work) -> None:
+        self.works.append(work)
+
+
+def test_it_begins_at_rest_stops_at_once_and_goes_on_where_it_stopped():
+    now, thread, paper = [0.0], Thread(), traced("paper")
+    baseline = Baseline(thread, lambda: now[0])
+
+    def follow(newest=paper, moving=False, busy=False):
+        baseline.follow(newest, "", moving, busy)
+
+    follow()
+    assert not thread.works and baseline.measured is None
+    now[0] = 2.0 * STILL
+    follow()
+    first = thread.works[-1]
+    assert first.subject.methods == ("none", "paper") and baseline.measured is first.so_far
+    follow(busy=True)
+    assert thread.works == [first, None] and baseline.measured is first.so_far, "what is known stays"
+    follow()
+    now[0] = 4.0 * STILL
+    follow()
+    assert thread.works[-1] is first
+    follow(moving=True)
+    assert thread.works[-1] is None and baseline.measured is None and baseline.moving
+    other = traced("certified")
+    for at in (6.0, 8.0):
+        now[0] = at * STILL
+        follow(other)
+    second = thread.works[-1]
+    assert second is not first and second.subject.methods == ("none", "certified")
+    follow(paper)
+    assert thread.works[-1] is first, "of the same picture, what is known of another method is known still"
+    elsewhere = traced("paper", at=2.0)
+    follow(elsewhere)
+    assert thread.works[-1] not in (first, second)
+    follow(paper)
+    assert thread.works[-1] not in (first, second), "of another picture it is not"
+    baseline.forget()
+    assert thread.works[-1] is None and baseline.measured is None
+
+
+def test_no_tree_is_built_for_a_figure():
+    thread = Thread()
+    baseline = Baseline(thread, lambda: 1e9)
+    for _ in range(2):
+        baseline.follow(traced(accelerator="kdtree-lazy"), "", False, False)
+    assert not thread.works and "built" in baseline.why_not
+
+
+class Work:
+    """Steps that last until they are cancelled."""
+
+    def __init__(self) -> None:
+        self.begun = self.ended = 0
+
+    def step(self, renderer, cancelled) -> bool:
+        self.begun += 1
+        while not cancelled():
+            time.sleep(0.001)
+        self.ended += 1
+        raise Cancelled()
+
+
+def until(happens) -> None:
+    end = time.monotonic() + 5.0
+    while not happens():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.001)
+
+
+def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back():
+    thread, renderer, work, came = RenderThread(), FakeRenderer(), Work(), []
+
+    def is_there(at: float) -> bool:
+        came.extend(filter(None, [thread.take()]))
+        return bool(came) and came[-1].frame.time == at
+
+    thread.use(renderer)
+    thread.in_spare_time(work)
+    for number, at in enumerate((1.0, 2.0)):
+        assert work.begun == number, "not before a picture is there"
+        thread.submit(RenderRequest(at, CAMERA, SIZE))
+        until(lambda at=at: is_there(at))
+        until(lambda number=number: work.begun == number + 1)
+        assert not thread.busy and len(renderer.turns) == number, "put back after a step"
+
+    class Asked:
+        time, answered = 2.0, Event()
+
+        def answer(self, renderer) -> None:
+            self.answered.set()
+
+    asked = Asked()
+    thread.ask(asked)
+    assert asked.answered.wait(5.0)
+    until(lambda: work.begun == 3)
+    thread.in_spare_time(None)
+    until(lambda: work.ended == 3 and len(renderer.turns) == 3)
+    thread.in_spare_time(work)
+    until(lambda: work.begun == 4)
+    assert thread.close(5.0), "the thread hangs"
+
+
+def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
+    (tmp_path / "scene.aff").write_text(SCENE)
+    scene = load_scene(tmp_path / "scene.aff")
+    settings = Settings(width=48, height=32, threads=1, method="paper+rest")
+    window, alone = Renderer(scene, settings), Renderer(scene, settings)
+    for at in (0.0, 1.0, 1.0):
+        window.render(at), alone.render(at)
+    known = window.render(1.0)
+    alone.render(1.0)
+    rounds = Rounds(Subject(1.0, scene.camera_at(1.0), replace(settings, method="none"), ("none", "paper+rest")))
+    for _ in range(2 * FIRST + 2):
+        rounds.step(window, lambda: False)
+        window.take_turn(1.0)
+    found = rounds.so_far.rounds[0]
+    assert found[1].shadow.saved == known.statistics.shadow.saved > 0
+    assert found[0].shadow.rays > found[1].shadow.rays and found[0].occlusion_tests == 0
+    after, expected = window.render(1.0), alone.render(1.0)
+    assert np.array_equal(after.modes, expected.modes) and after.statistics.shadow == expected.statistics.shadow
+
+
+SCENE = """\
+v from 0 1 4 at 0 0 0 up 0 1 0 angle 50 hither 1 resolution 32 32
+a 0 9 10
+l 2 4 3 1 1 1
+l -3 4 2 0.5 0.5 0.5
+f 0.8 0.6 0.4 0.9 0.1 10 0.3 1
+p 4 -1 -0.5 -1 -1 -0.5 1 1 -0.5 1 1 -0.5 -1
+f 0.3 0.5 0.8 0.9 0.1 10 0 1
+s 0 0 0 0.5
+x flyer { p 3 -0.2 0.8 0 0.2 0.8 0 0 1.1 0 }
+k flyer { transl 4 -1 0 0 0 0 0 0  0 0 0 0 0 0 0  9 1 0 0 0 0 0  10 1 0 0 0 0 0 }
+"""

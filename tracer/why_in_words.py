@@ -1,0 +1,319 @@
+"""The reasons of `tracer.why` as sentences, whose links lead to what is named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from tracer.culling.fate import Fate
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.method import Method
+from tracer.occluded_by import OccludedBy, Pixel, Reference
+from tracer.scene.model import CONE, Scene
+from tracer.why import MEANING, WHY_TRACED, Coverage, Reason, Rule, TaughtBy, Why
+
+MOST_NAMED = 3  # primitives of an answer that are named
+
+
+@dataclass(frozen=True)
+class Link:
+    """Words that stand for something: a primitive, a pixel, a frame that taught, or a section of the paper."""
+
+    text: str
+    primitive: int | None = None
+    pixel: Pixel | None = None
+    frame: int | None = None
+    section: str = ""
+
+
+Sentence = tuple[str | Link, ...]
+"""Words and links, in order; spaces are in the words."""
+
+
+def plain(sentence: Iterable[str | Link]) -> str:
+    """Return a sentence as text."""
+    return "".join(part if isinstance(part, str) else part.text for part in sentence)
+
+
+def kind_of(scene: Scene, primitive: int) -> str:
+    """Return what a primitive is: triangle, sphere or cone."""
+    if primitive < scene.triangle_count:
+        return "triangle"
+    index = scene.object_of(primitive)
+    kind = scene.objects[index].quadrics.kind[primitive - scene.quadric_offsets[index]]
+    return "cone" if kind == CONE else "sphere"
+
+
+def named(scene: Scene, primitive: int) -> str:
+    """Return a primitive by its object, its kind and its number."""
+    if not 0 <= primitive < scene.primitive_count:
+        return f"primitive {primitive}"
+    return f"{scene.name_of(primitive)} ({kind_of(scene, primitive)} {primitive})"
+
+
+class Words:
+    """Writes the sentences about a pixel of a scene."""
+
+    def __init__(self, scene: Scene, found: Why) -> None:
+        self._scene, self._found = scene, found
+
+    def reason(self, reason: Reason) -> Sentence:
+        """Say in one sentence why the shadow rays to a light were culled or traced."""
+        said = [*_HEADS[reason.rule](self, reason)]
+        if reason.rays < reason.samples and reason.rule is not Rule.FACES_AWAY:
+            said.append(f" So are {reason.rays} of its {reason.samples} samples.")
+        return tuple(said)
+
+    def answer(self, reason: Reason) -> Sentence:
+        """Say whether the light gets there, what is in its way, and whether the frame's answer is wrong."""
+        if reason.fate is Fate.FACES_AWAY:
+            return ()
+        blocked = reason.lit < reason.rays
+        if reason.wrong:
+            truth = (
+                (self.primitive(reason.blocker), " is in its way")
+                if reason.blocker >= 0
+                else ("nothing is in its way",)
+            )
+            return (f"{'In shadow' if blocked else 'Lit'} in the picture, which is wrong: ", *truth, ".")
+        if not blocked:
+            return ("Lit.",)
+        if reason.lit:
+            return (f"In the penumbra: {reason.lit} of {reason.rays} samples reach it.",)
+        if reason.blocker < 0:
+            return ("In shadow.",)
+        if reason.blocker == self._found.primitive:
+            return ("In shadow: its own surface is in the way, as the light grazes it.",)
+        return ("In shadow: blocked by ", self.primitive(reason.blocker), ".")
+
+    def coverage(self, unit: Coverage) -> Sentence:
+        """Say what keeps a unit from being fully rendered, or how far it is from being examined anew."""
+        covers = f"{'Its cell covers' if unit.in_cells else 'Covers'} {_pixels(unit.pixels)}"
+        if unit.after is OcclusionMode.DYNAMIC:
+            return (f"{covers}. Dynamic: it has no modes ", *_section("2.2"), ".")
+        if unit.after is OcclusionMode.PARTIALLY_OCCLUDED:
+            return (covers, ". Not fully rendered: ", *self._occluded(unit.occluded), ".")
+        if unit.after is OcclusionMode.INIT and unit.before is OcclusionMode.FULLY_RENDERED:
+            return (
+                f"{covers}, more than {unit.zoom_factor:g} times as many as when it was last examined: it is examined "
+                "anew ", *_section("2.6"), ".",
+            )  # fmt: skip
+        if unit.after is OcclusionMode.INIT:
+            return (f"{covers}. Not fully rendered: no frame has seen it whole yet ", *_section("2.6"), ".")
+        since: Sentence = (" since ", _frame(unit.taught)) if unit.taught is not None else ()
+        if unit.before is not OcclusionMode.FULLY_RENDERED:
+            return (covers, ". Fully rendered from this frame on: nothing hides any of it ", *_section("2.6"), ".")
+        times = f"{unit.pixels / max(unit.highest, 1):.2g} of the {unit.zoom_factor:g} times"
+        examined = f"{covers}, {unit.highest:,} when it was last examined: {times} at which it is examined anew "
+        return (examined, *_section("2.6"), ". Fully rendered", *since, ".")
+
+    def reference(self, one: Reference) -> Sentence:
+        """Say what became of the occlusion test against a reference pixel (Figure 3)."""
+        said: Sentence = ("The ", Link(self._beside(one.pixel) or "reference pixel", pixel=one.pixel))
+        if one.primitive < 0:
+            return (*said, " sees nothing: no test.")
+        if not one.tested:
+            return (*said, " sees the same: no test.")
+        met = "is met: it goes on behind this pixel" if one.occluded else "is not met"
+        return (*said, " sees ", self.primitive(one.primitive), f", which {met}.")
+
+    # --- parts of sentences ----------------------------------------------------------------------
+
+    def primitive(self, number: int) -> Link:
+        """Name a primitive."""
+        return Link(named(self._scene, number), primitive=number)
+
+    def _beside(self, pixel: Pixel) -> str:
+        return {
+            (-1, 0): "pixel on its left",
+            (1, 0): "pixel on its right",
+            (0, -1): "pixel above it",
+            (0, 1): "pixel below it",
+        }.get((pixel[0] - self._found.x, pixel[1] - self._found.y), "")
+
+    def _at(self, pixel: Pixel) -> Sentence:
+        beside = self._beside(pixel)
+        if pixel == (self._found.x, self._found.y):
+            return (" at ", Link("this pixel", pixel=pixel))
+        return (" at ", Link(f"the {beside}" if beside else f"pixel ({pixel[0]}, {pixel[1]})", pixel=pixel))
+
+    def _occluded(self, by: OccludedBy | None) -> Sentence:
+        """What hides it, and where."""
+        if by is None:
+            return ("partly occluded ", *_section("2.3"))
+        at, section = self._at(by.pixel), _section("2.3")
+        if by.at_edge:
+            return ("clipped by the screen's edge", *at, " ", *section)
+        if by.primitive < 0:
+            return ("its outline goes on", *at, ", which sees nothing: that is rounding ", *section)
+        return ("partly occluded by ", self.primitive(by.primitive), *at, " ", *section)
+
+    def _traced(self, reason: Reason) -> str:
+        """How a sentence begins about a ray that was traced because its modes are not trusted."""
+        although = {
+            ShadowMode.FULL_SHADOW: " although it has been dark so far",
+            ShadowMode.NON_SHADOW: " although nothing static has blocked it so far",
+        }
+        return f"Traced{although.get(reason.shadow, '')}: "
+
+    def _partly_occluded(self, reason: Reason) -> Sentence:
+        return (self._traced(reason), *self._partly(reason), ".")
+
+    def _partly(self, reason: Reason) -> Sentence:
+        trusted = (", so its shadow mode is not trusted ", *_section("2.4"))
+        if reason.occluded is not None:
+            return (*self._occluded(reason.occluded), *trusted)
+        return ("partly occluded in the frame before ", *_section("2.3"), *trusted, "; this frame sees it whole")
+
+    def _not_seen_whole(self, reason: Reason) -> Sentence:
+        return (self._traced(reason), *self._not_whole(reason), ".")
+
+    def _not_whole(self, reason: Reason) -> Sentence:
+        said: Sentence = ("not seen whole before this frame ", *_section("2.6"))
+        if reason.occluded is not None:
+            return (*said, ", and now ", *self._occluded(reason.occluded))
+        if reason.occlusion_after is OcclusionMode.FULLY_RENDERED:
+            return (*said, ", which sees it so: its shadow mode counts from the next one on ", *_section("2.4"))
+        return said
+
+    def _partial_shadow(self, reason: Reason) -> Sentence:
+        return ("Traced: ", *self._partial(reason), ".")
+
+    def _partial(self, reason: Reason) -> Sentence:
+        section = _section("2.5")
+        if not reason.taught:
+            return ("PARTIAL_SHADOW, as some of its shadow rays were blocked and others were not ", *section)
+        newest = max(one.frame for one in reason.taught)
+        last = [one for one in reason.taught if one.frame == newest]
+        if not all(one.known for one in last):
+            did = "saw the light" if last[-1].lit else "was in shadow"
+            return ("PARTIAL_SHADOW since ", _frame(last[0]), f", in which some of it {did} ", *section)
+        said: list[str | Link] = ["PARTIAL_SHADOW since ", _frame(last[0]), ": "]
+        for number, one in enumerate(last):
+            said += [" and "] * (number > 0) + [*_met(one)]
+        return (*said, " ", *section)
+
+    def _known(self, reason: Reason) -> Sentence:
+        assert reason.verdict is not None
+        meaning = MEANING[reason.verdict]
+        culled = reason.fate is Fate.CULLED
+        said: list[str | Link] = [f"Culled: {meaning[0].lower()}{meaning[1:]}" if culled else meaning]
+        if reason.told:
+            said.append(f" {reason.told}")
+        if reason.named:
+            said.append(" It names ")
+            for number, primitive in enumerate(reason.named[:MOST_NAMED]):
+                said += [", "] * (number > 0) + [self.primitive(primitive)]
+            more = len(reason.named) - MOST_NAMED
+            said.append(f" and {more} more." if more > 0 else ".")
+        return tuple(said)
+
+    def _off(self, reason: Reason) -> Sentence:
+        if reason.instead is None:
+            return ("Traced: culling is off.",)
+        return ("Traced: culling is off. The paper's method would have ", *self._instead(reason.instead, " it: "), ".")
+
+    def _not_shaded(self, reason: Reason) -> Sentence:
+        if reason.instead is None:
+            return ("This picture is shaded in part so far: what became of the ray is said of whole pictures.",)
+        return ("This picture is shaded in part so far. A ray from here is ", *self._instead(reason.instead, ": "), ".")
+
+    def _instead(self, reason: Reason, then: str) -> Sentence:
+        """What the paper's method makes of the modes, after "would have" or "is"."""
+        if reason.rule is Rule.FULL_SHADOW:
+            return (f"culled{then}", *_dark())
+        if reason.rule is Rule.NON_SHADOW:
+            return (f"tested{then.rstrip(': ')} against dynamic objects only: ", *_never_blocked())
+        clauses: dict[Rule, Callable[[Reason], Sentence]] = {
+            Rule.PARTLY_OCCLUDED: self._partly,
+            Rule.NOT_SEEN_WHOLE: self._not_whole,
+            Rule.PARTIAL_SHADOW: self._partial,
+            Rule.DYNAMIC: lambda _: _dynamic(),
+            Rule.NO_SHADOW_MODE: lambda _: _nothing_learnt(),
+            Rule.NO_ROOM: _no_room,
+        }
+        return (f"traced{then}", *clauses[reason.rule](reason))
+
+
+# --- clauses that name nothing of the scene ------------------------------------------------------
+
+
+def _section(number: str) -> Sentence:
+    return ("(", Link(f"§{number}", section=number), ")")
+
+
+def _frame(taught: TaughtBy) -> Link:
+    return Link(taught.name, frame=taught.frame, pixel=taught.pixel)
+
+
+def _met(taught: TaughtBy) -> Sentence:
+    """What a frame has taught, and which pixel of it."""
+    did = "saw the light" if taught.lit else "was in shadow"
+    if taught.pixel is None:
+        return (f"a reflected or refracted ray {did}",)
+    return (Link(f"pixel ({taught.pixel[0]}, {taught.pixel[1]})", pixel=taught.pixel, frame=taught.frame), f" {did}")
+
+
+def _pixels(number: int) -> str:
+    return f"{number:,} {'pixel' if number == 1 else 'pixels'}"
+
+
+def _movers(number: int) -> str:
+    return "the dynamic object" if number == 1 else f"the {number:,} dynamic objects"
+
+
+def _dark() -> Sentence:
+    return ("fully rendered, and every shadow ray so far was blocked ", *_section("2.4"))
+
+
+def _never_blocked() -> Sentence:
+    return ("nothing static has ever blocked it ", *_section("2.4"))
+
+
+def _dynamic() -> Sentence:
+    return ("dynamic, never culled ", *_section("2.2"))
+
+
+def _nothing_learnt() -> Sentence:
+    return ("fully rendered, but none of its shadow rays has asked this light before ", *_section("2.5"))
+
+
+def _no_room(reason: Reason) -> Sentence:
+    if Method.parse(reason.method).uses_modes or not Method.parse(reason.method).culls:
+        return (f"modes have room for {reason.limit} lights, and this one is past them ", *_section("2.2"))
+    return (f"the method {reason.method} answers rays to the first {reason.limit} lights only",)
+
+
+def _dynamic_only(reason: Reason) -> Sentence:
+    if not reason.dynamic_objects:
+        return ("Asks nothing, as nothing moves: ", *_never_blocked(), ".")
+    return (f"Asks {_movers(reason.dynamic_objects)} only: ", *_never_blocked(), ".")
+
+
+def _unknown(reason: Reason) -> Sentence:
+    if reason.told in WHY_TRACED:
+        return (WHY_TRACED[reason.told],)
+    if reason.told:
+        return (f"Traced. {reason.told}",)
+    return (f"Traced: the method {reason.method} knows nothing of this light here.",)
+
+
+_HEADS: dict[Rule, Callable[[Words, Reason], Sequence[str | Link]]] = {
+    Rule.FACES_AWAY: lambda _, reason: ("Faces away from this light.",),
+    Rule.FULL_SHADOW: lambda _, reason: ("Culled: ", *_dark(), "."),
+    Rule.NON_SHADOW: lambda _, reason: _dynamic_only(reason),
+    Rule.KNOWN: Words._known,
+    Rule.DYNAMIC: lambda _, reason: ("Traced: ", *_dynamic(), "."),
+    Rule.PARTLY_OCCLUDED: Words._partly_occluded,
+    Rule.NOT_SEEN_WHOLE: Words._not_seen_whole,
+    Rule.PARTIAL_SHADOW: Words._partial_shadow,
+    Rule.NO_SHADOW_MODE: lambda _, reason: ("Traced: ", *_nothing_learnt(), "."),
+    Rule.NO_ROOM: lambda _, reason: ("Traced: ", *_no_room(reason), "."),
+    Rule.NOT_ANSWERED: lambda _, reason: (
+        f"Traced: the method {reason.method} knows nothing of lamps of several samples.",
+    ),
+    Rule.UNKNOWN: lambda _, reason: _unknown(reason),
+    Rule.OFF: Words._off,
+    Rule.NOT_SHADED: Words._not_shaded,
+    Rule.CLUSTERS: lambda _, reason: ("Shaded by clusters of lights: no light is asked by itself.",),
+}

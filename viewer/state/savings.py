@@ -1,0 +1,232 @@
+"""What culling saves of the newest frame, in one sentence and as parts of a bar.
+
+The sentence's figures come from two places.  What became of the shadow rays are the frame's own counters.  Steps and
+time, which need a frame by `none` to be compared with, come from frames that were traced in turn
+(`viewer.services.baseline`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+from tracer.culling.fate import Fate
+from tracer.frame import Frame
+from tracer.geometry.accelerators import BVH8
+from tracer.method import Method
+from tracer.statistics import ShadowCounts
+from viewer.state import terms, verified
+from viewer.state.in_turn import InTurn, Spread
+from viewer.state.methods import BY_MODES, NO_CULLING
+from viewer.state.views import FATE_MEANING, FATE_NAMES
+from viewer.util.numbers import count, percent
+
+LONGEST = ": 29.6 % of shadow rays saved, 15 % fewer steps, not verified, 1.08 × as fast as none (± 0.02)"
+"""As long as the sentence usually is, after the method's name: what room there should be for it."""
+_WHOLE = 0.005  # of some work: less is no difference
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the shadow rays that are due: what became of them, how many they are, and their share of all."""
+
+    fate: Fate
+    rays: int
+    due: int
+
+    @property
+    def name(self) -> str:
+        return FATE_NAMES[self.fate]
+
+    @property
+    def share(self) -> str:
+        return percent(self.rays, self.due)
+
+    def in_words(self, would: bool) -> str:
+        """What it is, in two lines."""
+        meaning, way = FATE_MEANING[self.fate], f"with {BY_MODES}, it would be so; " if would else ""
+        return f"{self.name}: {count(self.rays)} of {count(self.due)} shadow rays due ({self.share})\n{way}{meaning}"
+
+
+@dataclass(frozen=True)
+class Bar:
+    """The shadow rays that are due by what became of them, or, where nothing is culled, `would` become of them by the
+    paper's method."""
+
+    parts: tuple[Part, ...]
+    would: bool = False
+
+
+def bar_of(frame: Frame) -> Bar:
+    """The bar of a frame; without parts where no shadow ray is due, or no single light is asked."""
+    shadow, said = frame.statistics.shadow, frame.statistics.by_modes_in_all
+    if not shadow.due or frame.statistics.cuts is not None:
+        return Bar(())
+    would = not Method.parse(frame.settings.method).culls
+    if would:
+        rays = {Fate.CULLED: said.full_shadow, Fate.DYNAMIC_ONLY: said.non_shadow}
+        rays[Fate.TRACED] = shadow.due - sum(rays.values())
+    else:
+        rays = {
+            Fate.CULLED: shadow.culled,
+            Fate.DYNAMIC_ONLY: shadow.dynamic_only,
+            Fate.CANDIDATES: shadow.candidates_only,
+            Fate.CACHED: shadow.cache_hits,
+            Fate.TRACED: shadow.traced,
+        }
+    return Bar(tuple(Part(fate, number, shadow.due) for fate, number in rays.items() if number > 0), would)
+
+
+class Tone(Enum):
+    """How a clause is meant."""
+
+    PLAIN = "a figure"
+    QUIET = "not known, or not yet"
+    WRONG = "something is wrong"
+
+
+@dataclass(frozen=True)
+class Clause:
+    """A part of the sentence, and more about it."""
+
+    text: str
+    tip: str = ""
+    tone: Tone = Tone.PLAIN
+
+
+@dataclass(frozen=True)
+class Standing:
+    """What is known beside the frame's counters: what was `measured` in turn, whether pictures keep coming as something
+    is `moving`, whether this one is still to `learn`, how far proving is where it goes on (`proves`), and `why_not`
+    where nothing can be measured."""
+
+    measured: InTurn | None = None
+    moving: bool = False
+    learns: bool = False
+    proves: str = ""
+    why_not: str = ""
+
+
+def sentence(frame: Frame, standing: Standing) -> tuple[Clause, ...]:
+    """What the method of a frame saves of it, and whether that pays; clauses to be joined by commas."""
+    return tuple(_clauses(frame, standing))
+
+
+def in_words(clauses: tuple[Clause, ...]) -> str:
+    """The sentence as text."""
+    return ", ".join(clause.text for clause in clauses)
+
+
+def _clauses(frame: Frame, standing: Standing) -> Iterator[Clause]:
+    s, method = frame.statistics, Method.parse(frame.settings.method)
+    yield _saved(frame, standing.learns)
+    if frame.settings.method == NO_CULLING or not s.shadow.due:
+        return
+    measured = standing.measured
+    if measured is not None and frame.settings.method not in measured.methods:
+        measured = None  # it is of another picture
+    tells = measured is not None and measured.tells
+    if measured is not None and not standing.moving:
+        yield from _steps(measured, frame)
+    if method.culls and (_answered(s.shadow) or s.cuts is not None):
+        yield _wrong(frame, method)
+    if standing.moving:
+        yield Clause("speed not measurable while moving", _HOW, Tone.QUIET)
+    elif standing.proves:
+        yield Clause(standing.proves, "what is proved now saves rays later, and its time is none of theirs", Tone.QUIET)
+    elif standing.why_not:
+        yield Clause("speed not measured", standing.why_not, Tone.QUIET)
+    elif tells and measured is not None:
+        yield from _speed(measured, frame, method)
+    elif measured is not None:
+        done = "preparing" if measured.prepares else f"{measured.count} rounds"
+        yield Clause("measuring speed ...", f"{_HOW} So far: {done}.", Tone.QUIET)
+    else:
+        yield Clause("speed is measured once the picture rests", _HOW, Tone.QUIET)
+
+
+_HOW = (
+    "The same picture is traced by none and by the chosen method in turn, again and again, while nothing else is to do."
+)
+
+
+def _answered(shadow: ShadowCounts) -> int:
+    """Rays that were not traced through the whole scene."""
+    return shadow.due - shadow.traced
+
+
+def _saved(frame: Frame, learns: bool) -> Clause:
+    s, name = frame.statistics, frame.settings.method
+    shadow = s.shadow
+    part = f" (of the {s.part:.0%} shaded)" if s.part < 1.0 else ""
+    if s.cuts is not None:
+        text = f"{name}: {s.cuts.mean:.0f} clusters for {count(s.cuts.lights)} lights"
+        return Clause(f"{text}{part}", "of the lights that each block of points is shaded by, on average")
+    if not shadow.due:
+        return Clause(f"{name}: no shadow ray is due here", terms.MEANINGS[terms.DUE])
+    if not Method.parse(name).culls:
+        said = s.by_modes_in_all
+        share = percent(said.full_shadow + said.non_shadow, shadow.due)
+        would = f"; {BY_MODES} would save {share}" if said.due else ""
+        return Clause(f"{name}: every shadow ray is traced{would}{part}", "what the modes that are kept now would save")
+    if not _answered(shadow):
+        if learns:
+            return Clause(f"{name}: nothing saved yet", "what this picture teaches saves rays in the next")
+        return Clause(f"{name}: culls nothing here", s.decision or "every shadow ray is traced")
+    tip = f"{count(shadow.saved)} of {count(shadow.due)} shadow rays due: culled, or asked dynamic objects only"
+    return Clause(f"{name}: {percent(shadow.saved, shadow.due)} of shadow rays saved{part}", tip)
+
+
+def _steps(measured: InTurn, frame: Frame) -> Iterator[Clause]:
+    mine, its = measured.steps(frame.settings.method), measured.steps(NO_CULLING)
+    if mine is None or not its:
+        return
+    more = mine / its - 1.0
+    tree = "; of whole packets of rays where these are coherent" if frame.settings.accelerator == BVH8 else ""
+    tip = f"nodes of the tree that rays of all kinds enter: {count(mine)}, with none {count(its)}{tree}"
+    if abs(more) < _WHOLE:
+        yield Clause("as many steps", tip)
+    elif more > 1.0:
+        yield Clause(f"{mine / its:.1f} × as many steps", tip)
+    else:
+        yield Clause(f"{100.0 * abs(more):.0f} % {'more' if more > 0.0 else 'fewer'} steps", tip)
+
+
+def _wrong(frame: Frame, method: Method) -> Clause:
+    s = frame.statistics
+    if s.wrong is not None:
+        tone = Tone.WRONG if verified.is_wrong(s) else Tone.PLAIN
+        share = f"{percent(s.wrong.answers, s.wrong.due)} wrong" if s.wrong.answers else "none wrong"
+        return Clause(
+            share if s.cuts is None else verified.in_short(s) or "not verified yet", verified.in_words(s), tone
+        )
+    if method.exact:
+        return Clause("exact", "its pictures are those of none, bit for bit: V traces every culled ray to check (V)")
+    return Clause("not verified", "trace every culled ray as well, to count wrong answers (V)", Tone.QUIET)
+
+
+def _speed(measured: InTurn, frame: Frame, method: Method) -> Iterator[Clause]:
+    speed = measured.speed(frame.settings.method, NO_CULLING)
+    if speed is None:
+        return
+    besides = [f"± {max(speed.margin, 0.01):.2f}"]
+    if method.has_certificates or method.makes:
+        besides.append("proofs not counted" if not method.makes or "certificates made" in method.makes else
+                       "preparing not counted")  # fmt: skip
+    tree = "" if frame.settings.accelerator == BVH8 else f" in the {frame.settings.accelerator}"
+    tip = _tip(measured, speed, frame.settings.method)
+    if speed.is_one:
+        yield Clause(f"as fast as none{tree} ({', '.join(['within noise', *besides[1:]])})", tip)
+    else:
+        yield Clause(f"{speed.median:.2f} × as fast as none{tree} ({', '.join(besides)})", tip)
+
+
+def _tip(measured: InTurn, speed: Spread, method: str) -> str:
+    """How the speed was measured."""
+    mine, its = measured.seconds(method), measured.seconds(NO_CULLING)
+    assert mine is not None and its is not None
+    times = f"median frame {1e3 * mine.median:.1f} ms, with none {1e3 * its.median:.1f} ms"
+    ratio = f"none over {method}: median {speed.median:.3f} ± {speed.margin:.3f}, quartiles {speed.low:.3f} and"
+    ends = "" if measured.settled else "; it goes on"
+    return f"{times}\n{ratio} {speed.high:.3f}\n{measured.count} whole frames by each, in turn{ends}. {_HOW}"

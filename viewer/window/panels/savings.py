@@ -1,0 +1,142 @@
+"""What culling saves now, above the picture: one sentence, and a bar of the shadow rays by what became of them."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from viewer.services.controller import Controller
+from viewer.state import terms
+from viewer.state.savings import LONGEST, Bar, Clause, Part, Standing, Tone, bar_of, sentence
+from viewer.state.views import FATE_COLORS, Color
+from viewer.util.numbers import count
+from viewer.window.ui import Ui
+from viewer.window.widgets import ERROR, QUIET, em, fitted, tooltip
+
+LEAST = 14.0
+"""Ems of height that there must be for the picture, sentence and bar; with less, these are not shown."""
+_GAP, _PAD = 0.3, 0.35  # ems between sentence and bar, and beside the words of a part
+_STRIPE = 0.55  # ems from stripe to stripe of what would be
+_DARK, _LIGHT = (0.05, 0.06, 0.08), (0.96, 0.97, 0.98)
+_COLORS = {Tone.PLAIN: None, Tone.QUIET: QUIET, Tone.WRONG: ERROR}
+
+
+def standing(c: Controller) -> Standing:
+    """What is known of the newest frame beside its counters."""
+    tracing, baseline, frame = c.tracing, c.baseline, c.frame
+    proves = ""
+    if frame is not None and tracing.certifies:
+        made, _ = terms.made(frame.settings.method)
+        proves = f"{terms.things(made)} still being proved: {count(frame.statistics.certificates)} in this picture"
+    return Standing(
+        baseline.measured,
+        baseline.moving,
+        baseline.moving or tracing.awaits or c.renderer.busy,
+        proves,
+        baseline.why_not,
+    )
+
+
+def height(ui: Ui, room: ImVec2) -> float:
+    """What sentence and bar take of the room for the picture; it depends on the room and the method's name alone, so
+    that the picture stays where it is."""
+    if not ui.controller.preferences.savings or room.y < em(LEAST):
+        return 0.0
+    return _lines(ui, room.x) * imgui.get_text_line_height() + em(_GAP) + _bar_height() + em(_GAP)
+
+
+def _lines(ui: Ui, width: float) -> int:
+    return 1 if imgui.calc_text_size(ui.controller.session.settings.method + LONGEST).x <= width else 2
+
+
+def _bar_height() -> float:
+    return imgui.get_text_line_height() + em(0.1)
+
+
+def show(ui: Ui, width: float) -> None:
+    """Both, from the cursor on."""
+    c = ui.controller
+    frame = c.frame
+    if frame is None or c.session.scene is None:
+        return
+    start, lines = imgui.get_cursor_pos(), _lines(ui, width)
+    _write(ui, sentence(frame, standing(c)), start, width, lines)
+    imgui.set_cursor_pos(ImVec2(start.x, start.y + lines * imgui.get_text_line_height() + em(_GAP)))
+    bar = ui.cached("savings", frame, 0, lambda: bar_of(frame))
+    _draw(ui, bar, width)
+
+
+def _write(ui: Ui, clauses: tuple[Clause, ...], start: ImVec2, width: float, lines: int) -> None:
+    """Clause after clause, in so many lines; what is too long ends in an ellipsis."""
+    x, line, step = 0.0, 0, imgui.get_text_line_height()
+    for number, clause in enumerate(clauses):
+        text = clause.text + (", " if number + 1 < len(clauses) else "")
+        needed = imgui.calc_text_size(text.rstrip()).x
+        if x and x + needed > width and line + 1 < lines:
+            x, line = 0.0, line + 1
+        shown = fitted(text, width - x) if x + needed > width else text
+        imgui.set_cursor_pos(ImVec2(start.x + x, start.y + line * step))
+        color = _COLORS[clause.tone]
+        if color is not None:
+            imgui.push_style_color(imgui.Col_.text, color)
+        imgui.text_unformatted(shown)
+        if color is not None:
+            imgui.pop_style_color()
+        tip = ui.with_keys(clause.tip)
+        if tip or shown != text:
+            tooltip(f"{clause.text}\n{tip}" if shown != text else tip)
+        x += imgui.calc_text_size(text).x
+        if shown != text:
+            break
+
+
+def _draw(ui: Ui, bar: Bar, width: float) -> None:
+    """The parts beside each other, each as wide as its share."""
+    corner, high = imgui.get_cursor_screen_pos(), _bar_height()
+    draw, done = imgui.get_window_draw_list(), 0
+    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), _packed(_DARK), em(0.15))
+    for part in bar.parts:
+        left, right = (corner.x + width * rays / part.due for rays in (done, done + part.rays))
+        done += part.rays
+        at, end = ImVec2(round(left), corner.y), ImVec2(max(round(right), round(left) + 1.0), corner.y + high)
+        imgui.set_cursor_screen_pos(at)
+        imgui.invisible_button(f"{part.name}##savings", ImVec2(end.x - at.x, high))
+        hovered = imgui.is_item_hovered()
+        _fill(draw, FATE_COLORS[part.fate], at, end, bar.would)
+        if hovered:
+            draw.add_rect(at, end, imgui.get_color_u32(imgui.Col_.text), 0.0, thickness=2.0)
+        tooltip(part.in_words(bar.would))
+        _label(draw, part, at, end, bar.would)
+
+
+def _fill(draw: imgui.ImDrawList, color: Color, at: ImVec2, end: ImVec2, hatched: bool) -> None:
+    if not hatched:
+        draw.add_rect_filled(at, end, _packed(color))
+        return
+    high, step = end.y - at.y, em(_STRIPE)
+    draw.add_rect_filled(at, end, _packed(color, 0.35))
+    draw.push_clip_rect(at, end, True)
+    x = at.x - (at.x % step) - high
+    while x < end.x:
+        draw.add_line(ImVec2(x, end.y), ImVec2(x + high, at.y), _packed(color), 0.3 * step)
+        x += step
+    draw.pop_clip_rect()
+
+
+def _label(draw: imgui.ImDrawList, part: Part, at: ImVec2, end: ImVec2, hatched: bool) -> None:
+    """The part's name and share, or the share alone, as far as there is room."""
+    room = end.x - at.x - 2.0 * em(_PAD)
+    for text in (f"{part.name} {part.share}", part.share):
+        size = imgui.calc_text_size(text)
+        if size.x <= room:
+            red, green, blue = FATE_COLORS[part.fate]
+            light = hatched or 0.3 * red + 0.6 * green + 0.1 * blue < 0.45
+            x, y = round(at.x + em(_PAD)), round(at.y + (end.y - at.y - size.y) / 2.0)
+            if hatched:
+                back = ImVec2(x - 0.2 * em(1.0), at.y), ImVec2(x + size.x + 0.2 * em(1.0), end.y)
+                draw.add_rect_filled(*back, _packed(_DARK, 0.8))
+            draw.add_text(ImVec2(x, y), _packed(_LIGHT if light else _DARK), text)
+            return
+
+
+def _packed(color: Color, alpha: float = 1.0) -> int:
+    return int(imgui.get_color_u32(ImVec4(*color, alpha)))
