@@ -110,6 +110,7 @@ def make_frame(settings: Settings | None = None, time: float = 0.0, camera: Came
         primitive=primitive,
         normal=normal,
         modes=np.array(modes, np.uint32),
+        modes_before=np.array(modes, np.uint32),
         pixel_count=counts,
         highest_count=np.where(np.arange(7) == 3, counts * 2, 0).astype(np.int32),
         lights=3,

@@ -176,6 +176,10 @@ def _add_style(parser: Parser) -> None:
 
     add = parser.add_argument
     add("--legend-at", type=place, metavar="X,Y", help="where the legend is: 0,0 is the upper left (default: 0,1)")
+    help_ = (
+        "what culling saves, above the picture: a sentence, with TEXT for what is known of steps and time, and a bar"
+    )
+    add("--savings", nargs="?", const="", metavar="TEXT", help=help_)
     add("--caption", default="", metavar="TEXT", help="a line below the picture, like '{scene}, frame {frame}'")
     add("--annotations", type=annotation_list, default=(), metavar="JSON", help="arrows, boxes and words; see below")
     add("--outlines", action="store_true", help="draw the borders between primitives")

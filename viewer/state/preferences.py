@@ -110,6 +110,7 @@ class Preferences:
     legend_x: float = 0.0
     legend_y: float = 1.0
     legend_in_pictures: bool = False
+    savings_in_pictures: bool = False
     pixel_values: bool = True
     draw_explanation: bool = True
     screenshot_folder: str = ""
