@@ -132,8 +132,7 @@ def test_culling_that_takes_no_notice_of_what_is_hidden_is_found_out(golden: Gol
     right = tracer.culling.mode_history.set_occlusion_modes
 
     def blind(words, hidden, *rest):
-        hidden[:] = False
-        right(words, hidden, *rest)
+        right(words, np.zeros_like(hidden), *rest)
 
     monkeypatch.setattr(tracer.culling.mode_history, "set_occlusion_modes", blind)
     world = world_of(golden.scene)

@@ -44,7 +44,8 @@ class Frame:
     normal : (h, w, 3) float32
         Shading normal, on the viewer's side.
     modes : (units,) uint32 or uint64
-        The packed words of modes as this frame leaves them; without meaning unless `settings.keeps_modes`.
+        The packed words of modes as this frame leaves them, or would if no more of it were shaded; without meaning
+        unless `settings.keeps_modes`.
     modes_before : (units,) uint32 or uint64
         The same as the last frame left them: what shadow testing has gone by.
     pixel_count, highest_count : (units,) int32

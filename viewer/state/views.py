@@ -332,6 +332,13 @@ FATE_COLORS: dict[Fate, Color] = {
 }
 """Of a shadow ray; a fate that a mode brings about has the colour of this mode. TRACED also stands for all traced."""
 
+
+def label_color(color: Color) -> Color:
+    """Of words that stand on this colour: dark on bright ones, else light."""
+    red, green, blue = color
+    return (0.96, 0.97, 0.98) if 0.3 * red + 0.6 * green + 0.1 * blue < 0.45 else (0.05, 0.06, 0.08)
+
+
 FATE_NAMES: dict[Fate, str] = {
     Fate.NONE: "not known yet",
     Fate.FACES_AWAY: "faces away",

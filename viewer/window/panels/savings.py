@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from viewer.output.legend_layout import BACKDROP, TEXT
 from viewer.services.controller import Controller
 from viewer.state import terms
 from viewer.state.savings import LONGEST, Bar, Clause, Part, Standing, Tone, bar_of, sentence
-from viewer.state.views import FATE_COLORS, Color
+from viewer.state.views import FATE_COLORS, Color, label_color
 from viewer.util.numbers import count
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, tooltip
@@ -16,7 +17,6 @@ LEAST = 14.0
 """Ems of height that there must be for the picture, sentence and bar; with less, these are not shown."""
 _GAP, _PAD = 0.3, 0.35  # ems between sentence and bar, and beside the words of a part
 _STRIPE = 0.55  # ems from stripe to stripe of what would be
-_DARK, _LIGHT = (0.05, 0.06, 0.08), (0.96, 0.97, 0.98)
 _COLORS = {Tone.PLAIN: None, Tone.QUIET: QUIET, Tone.WRONG: ERROR}
 
 
@@ -93,7 +93,7 @@ def _draw(ui: Ui, bar: Bar, width: float) -> None:
     """The parts beside each other, each as wide as its share."""
     corner, high = imgui.get_cursor_screen_pos(), _bar_height()
     draw, done = imgui.get_window_draw_list(), 0
-    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), _packed(_DARK), em(0.15))
+    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), _packed(BACKDROP), em(0.15))
     for part in bar.parts:
         left, right = (corner.x + width * rays / part.due for rays in (done, done + part.rays))
         done += part.rays
@@ -128,13 +128,11 @@ def _label(draw: imgui.ImDrawList, part: Part, at: ImVec2, end: ImVec2, hatched:
     for text in (f"{part.name} {part.share}", part.share):
         size = imgui.calc_text_size(text)
         if size.x <= room:
-            red, green, blue = FATE_COLORS[part.fate]
-            light = hatched or 0.3 * red + 0.6 * green + 0.1 * blue < 0.45
             x, y = round(at.x + em(_PAD)), round(at.y + (end.y - at.y - size.y) / 2.0)
             if hatched:
                 back = ImVec2(x - 0.2 * em(1.0), at.y), ImVec2(x + size.x + 0.2 * em(1.0), end.y)
-                draw.add_rect_filled(*back, _packed(_DARK, 0.8))
-            draw.add_text(ImVec2(x, y), _packed(_LIGHT if light else _DARK), text)
+                draw.add_rect_filled(*back, _packed(BACKDROP, 0.8))
+            draw.add_text(ImVec2(x, y), _packed(TEXT if hatched else label_color(FATE_COLORS[part.fate])), text)
             return
 
 
