@@ -216,7 +216,7 @@ def _wrong(frame: Frame, method: Method) -> Clause:
             share if s.cuts is None else verified.in_short(s) or "not verified yet", verified.in_words(s), tone
         )
     if method.exact:
-        return Clause("exact", "its pictures are those of none, bit for bit: V traces every culled ray to check (V)")
+        return Clause("exact", "its pictures are those of none, bit for bit; to check that, trace every culled ray as well (V)")
     return Clause("not verified", "trace every culled ray as well, to count wrong answers (V)", Tone.QUIET)
 
 
