@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from tracer.geometry.accelerators import ACCELERATORS
-from tracer.method import Method
+from tracer.method import DEFAULT_METHOD, Method
 from tracer.scene.lights import MAX_SAMPLES
 
 MAX_SIDE = 16384
@@ -75,7 +75,7 @@ class Settings:
     width: int = 512
     height: int = 512
     depth: int = 10
-    method: str = "paper"
+    method: str = DEFAULT_METHOD
     symmetric: bool = False
     zoom_factor: float = 4.0
     modes: bool = False

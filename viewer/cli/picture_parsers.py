@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tracer.method import DEFAULT_METHOD
 from viewer.cli import examples, parsers
 from viewer.cli.argument_types import (
     annotation_list,
@@ -61,8 +62,8 @@ def _add_picture(parser: Parser) -> None:
         "--method",
         type=method,
         metavar="M",
-        help=f"how shadow rays are culled: {parsers.methods()} (default: auto, or paper or certified for views that "
-        "show what these do)",
+        help=f"how shadow rays are culled: {parsers.methods()} (default: {DEFAULT_METHOD}, or the "
+        "method that a view belongs to: certified, lightcuts, voxels or lie-exact)",
     )
     add(
         "--view",

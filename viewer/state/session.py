@@ -20,7 +20,6 @@ from tracer.scene.model import Camera, Scene
 from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
-from viewer.state.methods import DEFAULT
 from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
@@ -149,7 +148,7 @@ class Session:
     time: float = 0.0
     free_camera: Camera | None = None
     playing: bool = False
-    settings: Settings = field(default_factory=lambda: Settings(method=DEFAULT))
+    settings: Settings = field(default_factory=Settings)
     view: View = View.COLOR
     light: int = 0
     counting: bool = False  # whether frames are to count the rays at each pixel, whatever the view
