@@ -1,12 +1,15 @@
 """A path of frames by several methods: the paper's Table 1.
 
-Every method has a renderer, and so modes, of its own, and renders the same frames in turn.  What is
-compared is the work of shadow rays, frame by frame, against `none`; certificates, where a method
-makes any, count against it.
+Every method has a renderer, and so modes, of its own, and renders the same frames in turn.  Each frame begins with
+another method, so that what goes on beside it, and what the first of them finds in no cache, falls on all alike.
+
+What is compared is the work of shadow rays, frame by frame, against `none`; certificates, where a method makes any,
+count against it.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -140,7 +143,9 @@ class Row:
     Savings are parts of 1. `most_steps_frame` and `most_tests_frame` are the frames that save the most, `wrong_part` is
     the part of the shadow rays due that had a wrong answer, and `frame_seconds` is the median. `path_seconds` is what
     all frames took, `build_seconds` the part of it in which the method made what it culls by, and `memory_bytes` what
-    it held at most. `speed_up` is the time of "none" over that of the method, in all frames.
+    it held at most. `speed_up` is the time of "none" over that of the method, in all frames, and `speed_up_spread` is
+    twice its standard error over the frames, infinite for fewer than two. `saved_part` is the part of the shadow rays
+    due that was culled, or tested against dynamic objects only.
     """
 
     method: str
@@ -158,6 +163,8 @@ class Row:
     build_seconds: float
     memory_bytes: int
     speed_up: float
+    speed_up_spread: float
+    saved_part: float
 
 
 def table(results: Results) -> list[Row]:
@@ -169,7 +176,10 @@ def _row(results: Results, method: str) -> Row:
     steps, tests = (results.reductions(method, work) for work in ("steps", "tests"))
     figures = {name: np.array(values, np.float64) for name, values in results.methods[method].items()}
     pixels = results.size[0] * results.size[1]
-    seconds, of_reference = (sum(results.methods[name]["frame_seconds"]) for name in (method, REFERENCE))
+    due = max(1.0, figures["shadow_rays_due"].sum())
+    saved = figures["shadow_rays_culled"].sum() + figures["shadow_rays_dynamic_only"].sum()
+    of_reference = np.array(results.methods[REFERENCE]["frame_seconds"], np.float64)
+    faster, spread = speed_up(of_reference, figures["frame_seconds"])
     return Row(
         method=method,
         average_steps=float(steps.mean()),
@@ -180,13 +190,37 @@ def _row(results: Results, method: str) -> Row:
         most_tests_frame=results.frames[int(tests.argmax())],
         extra_tests_per_pixel=float(figures["occlusion_tests"].mean() / pixels),
         wrong=int(figures["wrong"].sum()),
-        wrong_part=float(figures["wrong"].sum() / max(1.0, figures["shadow_rays_due"].sum())),
+        wrong_part=float(figures["wrong"].sum() / due),
         frame_seconds=float(np.median(figures["frame_seconds"])),
-        path_seconds=float(seconds),
+        path_seconds=float(figures["frame_seconds"].sum()),
         build_seconds=float(sum(results.build_seconds.get(method, ()))),
         memory_bytes=max(results.memory_bytes.get(method, (0,))),
-        speed_up=of_reference / seconds if seconds > 0 else 0.0,
+        speed_up=faster,
+        speed_up_spread=spread,
+        saved_part=float(saved / due),
     )
+
+
+def speed_up(reference: np.ndarray, seconds: np.ndarray) -> tuple[float, float]:
+    """Compare the times of the same frames by "none" and by a method.
+
+    Parameters
+    ----------
+    reference, seconds : (frames,) float64
+        Seconds of each frame by either.
+
+    Returns
+    -------
+    tuple of float and float
+        The ratio of their sums, 0 where nothing took any time, and twice the standard error of this ratio.
+    """
+    total, frames = float(seconds.sum()), len(seconds)
+    if total <= 0.0:
+        return 0.0, 0.0
+    ratio = float(reference.sum()) / total
+    if frames < 2:
+        return ratio, math.inf
+    return ratio, 2.0 * float(np.std(reference - ratio * seconds, ddof=1)) * math.sqrt(frames) / total
 
 
 def path_times(scene: Scene, frames: int | None = None) -> list[float]:
@@ -195,6 +229,12 @@ def path_times(scene: Scene, frames: int | None = None) -> list[float]:
         return [scene.frame_time(i) for i in range(scene.frames)]
     start, end = scene.time_range
     return [float(t) for t in np.linspace(start, end, frames)] if frames > 1 else [start]
+
+
+def in_turn(methods: Sequence[str], frame: int) -> list[str]:
+    """The methods in the order in which they render a frame, the first of the run being 0."""
+    first = frame % len(methods)
+    return [*methods[first:], *methods[:first]]
 
 
 def with_reference(methods: list[str]) -> list[str]:
@@ -268,13 +308,13 @@ def run(
         planned=len(numbers),
         settings={name: getattr(settings, name) for name in _SHARED},
     )
-    for number in numbers:
+    for turn, number in enumerate(numbers):
         frames = {}
         try:
             if builder is not None:  # or the first method would build for all of them
                 builder.render(times[number], cancel=cancel)
-            for name, renderer in renderers.items():
-                frames[name] = renderer.render(times[number], cancel=cancel)
+            for name in in_turn(names, turn):
+                frames[name] = renderers[name].render(times[number], cancel=cancel)
                 if on_frame is not None:
                     on_frame(number, name, frames[name])
         except Cancelled:

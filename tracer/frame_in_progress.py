@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 from tracer.culling.cells import units_of
 from tracer.culling.counters import COUNTERS, SHADOW, SHADOW_COUNTERS
 from tracer.culling.mode_changes import mode_changes
+from tracer.culling.mode_history import Learnt
 from tracer.culling.occlusion import count_pixels, occlusion_testing
 from tracer.fit import remark
 from tracer.frame import Frame
 from tracer.geometry.camera import Pinhole, pinhole
+from tracer.geometry.rays import MISS
 from tracer.method import Method
 from tracer.methods.interface import ShadowMethod, Stage, StageTable
 from tracer.parallel import for_each_chunk, thread_count
@@ -27,6 +29,7 @@ from tracer.settings import Settings
 from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks, pixels_of
 from tracer.shading.buffers import Buffers, empty_buffers
 from tracer.shading.surfaces import see_surfaces
+from tracer.shading.teaching import find_untaught
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
 from tracer.state import State
 from tracer.statistics import BuiltPart, WrongCounts, gather, sample_counts, shadow_counts
@@ -66,6 +69,8 @@ class FrameInProgress:
         self.tiles = np.array(self._tiles, np.int64)
         self._everywhere = all_blocks(settings.width, settings.height)
         self._focus: tuple[float, float] | None = None
+        self._records_fates = settings.record_fates and not Method.parse(settings.method).clusters
+        self._records = settings.record_lights or settings.record_work or self._records_fates
         self.buffers = self._empty_buffers(progressive)
 
         # What is known, and learnt.
@@ -79,9 +84,10 @@ class FrameInProgress:
         self._counts = np.zeros((self.workers, COUNTERS), np.int64)
         self._verified = np.zeros(SHADOW_COUNTERS, np.int64)  # shadow counters of further samples
         self._occlusion_tests = np.zeros(self.workers, np.int64)
+        self._learnt: Learnt | None = None  # if the frame ended here
+        self._pixel_count: NDArray[np.int32] | None = None
         self._begun = False  # shading
         self._passes: list[NDArray[np.int32]] = []  # the pixels that each pass over the tiles has shaded
-        self._records = settings.record_lights or settings.record_work
         self._parts: Parts | None = None
         for method in self.methods:
             method.begin(self)
@@ -120,6 +126,7 @@ class FrameInProgress:
         planes = self._state.planes(s.width, s.height) if progressive else NO_PLANES
         asked = {
             "record_lights": s.record_lights and records,
+            "record_fates": self._records_fates and records,
             "verify": s.verify,
             "record_work": s.record_work and records,
         }
@@ -251,19 +258,40 @@ class FrameInProgress:
 
     def set_modes(self) -> None:
         """§2.5, §2.6: keep what was learnt, and say what has been seen whole."""
-        count_pixels(self.units, self.history.pixel_count)
-        if self.settings.keeps_modes:
-            self.words = self.words.copy()  # further samples, and whoever asks, go by what was known before
-            self.history.keep_frame(self.settings.zoom_factor)
+        self.learn()
+        assert self._learnt is not None
+        self.history.keep(self._learnt)
         for method in self.methods:
             method.keep(self)
 
+    def learn(self) -> None:
+        """§2.5, §2.6: what will be known if no more of the frame is shaded than is by now."""
+        if self._pixel_count is None:
+            self._pixel_count = self._count(self.units)
+        counts, history = self._pixel_count, self.history
+        if not self.settings.keeps_modes:
+            self._learnt = Learnt(history.words, counts, history.highest_count, history.taught)
+            return
+        shaded = self._parts.pixels if self._parts is not None else None
+        of_shaded = counts if shaded is None else self._count(np.where(shaded, self.units, np.int32(MISS)))
+        self._learnt = history.learnt(counts, of_shaded, self.settings.zoom_factor)
+
+    def _count(self, units: NDArray[np.int32]) -> NDArray[np.int32]:
+        """How many of these pixels (height, width) see each unit."""
+        counts = np.empty(len(self.history.words), np.int32)
+        count_pixels(units, counts)
+        return counts
+
     def discard(self) -> None:
-        """Learn nothing from this frame, unless it is over."""
+        """Learn nothing more from this frame, unless it is over: no more than the last picture of it that was shown
+        has taught."""
         if self.over:
             return
         self.over = True
-        self.history.discard_frame()
+        if self._learnt is not None:
+            self.history.keep(self._learnt)
+        else:
+            self.history.discard_frame()
         for method in self.methods:
             method.discard(self, self._begun)
 
@@ -307,9 +335,17 @@ class FrameInProgress:
             return
         if part == TURNS:  # nobody will be filled in
             self.buffers = self.buffers._replace(planes=NO_PLANES)
-        for lanes in self._parts.left_up_to(part, self._fill):
+        for lanes in self._parts.left_up_to(part, self._fill, self._untaught() if part < TURNS else None):
             with self.phase("shading"):
                 self.shade(lanes)
+
+    def _untaught(self) -> NDArray[np.int32] | None:
+        """The pixels of each block that are to be shaded first, as they would teach; None where modes are not kept."""
+        if not self.settings.keeps_modes:
+            return None
+        lanes = all_blocks(self.settings.width, self.settings.height, 0)
+        find_untaught(self.units, self.words, self.history.hidden, lanes)
+        return lanes
 
     def _fill(self) -> None:
         """Fill in the pixels that have not been shaded."""
@@ -319,8 +355,11 @@ class FrameInProgress:
                 self._parts.fill(color, self.workers, self.cancel)
 
     def so_far(self) -> Frame:
-        """A frame of which some pixels have not been shaded: these are filled in from the others."""
+        """A frame of which some pixels have not been shaded: these are filled in from the others.  What it has learnt
+        is kept if it is left now."""
         assert self._parts is not None, "a progressive picture"
+        with self.phase("mode setting"):
+            self.learn()
         self._fill()
         frame = self._frame()
         shaded, frame.color = frame.color, self._parts.give()
@@ -387,13 +426,14 @@ class FrameInProgress:
         return frame
 
     def _frame(self) -> Frame:
-        buffers, history, settings = self.buffers, self.history, self.settings
+        buffers, settings, learnt = self.buffers, self.settings, self._learnt
+        assert learnt is not None
         shape, lights = buffers.primitive.shape, len(self._state.scene.lights)
         tests = int(self._occlusion_tests.sum()) if self._culls_by_modes else 0
         statistics = gather(self._counts, tests, lights if settings.keeps_modes else 0)
         statistics.part = 1.0 if self._parts is None else self._parts.share
         if settings.keeps_modes:
-            statistics.mode_changes = mode_changes(self.words, history.words, self.workers)
+            statistics.mode_changes = mode_changes(self.words, learnt.words, self.workers)
         if settings.record_lights:
             statistics.samples = sample_counts(buffers.asked, buffers.reached)
         built = self._state.world.built()
@@ -422,12 +462,14 @@ class FrameInProgress:
             depth=buffers.depth,
             primitive=buffers.primitive,
             normal=buffers.normal.reshape(*shape, 3),
-            modes=history.words.copy(),
-            pixel_count=history.pixel_count.copy(),
-            highest_count=history.highest_count.copy(),
+            modes=learnt.words.copy(),  # those of the history change when lights move
+            modes_before=self.words,
+            pixel_count=learnt.pixel_count,
+            highest_count=learnt.highest_count,
             lights=lights,
             asked=per_pixel(buffers.asked, settings.record_lights),
             reached=per_pixel(buffers.reached, settings.record_lights),
+            fates=per_pixel(buffers.fates, self._records_fates),
             reference=per_pixel(buffers.reference, settings.verify),
             wrong=per_pixel(buffers.wrong, settings.verify),
             cells=layers.pop("cells", None),

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tracer.experiment import REFERENCE, Results, run
+from tracer.experiment import REFERENCE, Results, run, speed_up
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.scene.lights import as_lamps
@@ -98,15 +98,14 @@ def table(results: LampResults) -> list[LampRow]:
     return [_row(one, method) for one in results.runs for method in one.methods]
 
 
-def speed_up(results: Results, method: str) -> float:
-    """The time of `none` over that of a method, in all frames."""
-    none, other = (sum(results.methods[name]["frame_seconds"]) for name in (REFERENCE, method))
-    return none / other
+def _speed_up(results: Results, method: str) -> float:
+    none, other = (np.array(results.methods[name]["frame_seconds"]) for name in (REFERENCE, method))
+    return speed_up(none, other)[0]
 
 
 def _row(results: Results, method: str) -> LampRow:
     figures = {name: np.array(values, np.float64) for name, values in results.methods[method].items()}
-    due, faster = figures["shadow_rays_due"], speed_up(results, method)
+    due, faster = figures["shadow_rays_due"], _speed_up(results, method)
     known = figures["shadow_rays_culled"] + figures["shadow_rays_dynamic_only"]
     return LampRow(
         lamp_radius=results.settings["lamp_radius"],
@@ -116,5 +115,5 @@ def _row(results: Results, method: str) -> LampRow:
         shadow_rays=float(due.mean()),
         known=float(known.sum() / max(1.0, due.sum())),
         speed_up=faster,
-        share_of_free=faster / speed_up(results, CEILING),
+        share_of_free=faster / _speed_up(results, CEILING),
     )

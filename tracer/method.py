@@ -16,6 +16,8 @@ from typing import Any
 
 from tracer.similar import similar
 
+DEFAULT_METHOD = "paper"
+"""What culls until another method is chosen, in scripts, commands and the window alike."""
 ANY_NUMBER = 1 << 31
 MANY = 16  # lights: clusters of fewer are hardly ever worth it
 HELD = 31  # lights that words of modes have room for (`tracer.culling.modes.MAX_CULLED_LIGHTS`)
@@ -33,8 +35,8 @@ TOGETHER = (
 
 @dataclass(frozen=True)
 class Kind:
-    """A base or an addition: its name, one sentence for menus and help texts, the class that implements it, and its
-    capabilities.
+    """A base or an addition: its name, what it trusts and whether it is exact, for menus and help texts, the class that
+    implements it, and its capabilities.
 
     `implementation` is a subclass of `tracer.methods.interface.ShadowMethod`, or where one is: "module:Class".
     `culls`: it answers shadow rays without tracing them. `exact`: its pictures are those of "none", bit for bit.
@@ -254,38 +256,38 @@ _FEW = {"lights": (0, HELD), "answers": HELD, "lamps": False}
 _PROVES = {"has_certificates": True, "makes": "certificates made"}
 _MEASURE = {"addition": True, "measures": True}
 
-# Name, class in `tracer.methods`, what it can do, and a sentence; in the order of menus.
+# Name, class in `tracer.methods`, what it can do, what it trusts and whether it is exact; in the order of menus.
 _TABLE: tuple[tuple[str, str, dict[str, Any], str], ...] = (
     ("none", "none:NoCulling", {"culls": False},
-     "Traces every shadow ray: the truth that others are compared with."),
+     "Trusts nothing: traces every shadow ray. Exact; all others are compared with it."),
     ("paper", "paper:Paper", _BY_MODES,
-     "Culls by the paper's shadow modes of whole primitives; wrong now and then."),
+     "Trusts what the shadow rays of a primitive have met since all of it was seen (§2.4). Wrong now and then."),
     ("cells", "cells:Cells", {**_BY_MODES, "uses_cells": True},
-     "The paper's modes, kept for the cells of large triangles; wrong now and then."),
+     "Trusts the same as paper, but of the cells of large triangles. Wrong now and then."),
     ("certified", "certified:certified", _PROVES,
-     "Culls by what is proven of the cells of triangles; never wrong."),
+     "Trusts only what is proven of the cells of triangles. Exact."),
     ("auto", "auto:Auto", {**_PROVES, "adaptive": True},
-     "Culls by certificates where that is measured to be quicker; never wrong."),
+     "Trusts certificates where these are measured to be quicker, else traces every shadow ray. Exact."),
     ("free", "free:Free", {"measures": True},
-     "Replays the answers of the same frame: no culling can be faster."),
+     "Trusts the answers of the same frame, traced before: no culling can be faster. Exact."),
     ("lightcuts", "lightcuts:Lightcuts", _CUTS,
-     "Shades by clusters of lights, as fine as a bound of the error asks for."),
+     "Trusts a bound of the error, by which clusters of lights are as fine as asked for. Not exact."),
     ("lightcuts-stochastic", "lightcuts_stochastic:StochasticLightcuts", _CUTS,
-     "Lightcuts with lights drawn for each pixel: noise, which averages out, instead of bands."),
+     "Lightcuts with lights drawn for each pixel: noise, which averages out, instead of bands. Not exact."),
     ("lightcuts-certified", "lightcuts_certified:CertifiedLightcuts", {**_CUTS, **_PROVES},
-     "Lightcuts of those lights that are not proven to be hidden."),
+     "Lightcuts of those lights that are not proven to be hidden. Not exact."),
     ("voxels", "voxels:Voxels", {**_OF_SPACE, **_FEW, "makes": "voxels classified"},
-     "Culls by cubes of space that are lit, or in shadow, as a whole; never wrong."),
+     "Trusts cubes of space that are proven to be lit, or in shadow, as a whole. Exact."),
     ("lie-exact", "lie:Environments", _IN_PART,
-     "Tests only what can block a light from a cell of space, and no light that is hidden there; never wrong."),
+     "Trusts what is proven to be all that can block a light from a cell of space. Exact."),
     ("lie", "lie:SampledEnvironments", {**_IN_PART, "exact": False},
-     "Local illumination environments, by samples as published; wrong now and then."),
+     "Trusts samples of what blocks a light from a cell of space, as published. Wrong now and then."),
     ("cache", "cache:OccluderCache", {"addition": True},
-     "Tests what blocked a light before first."),
+     "Tests what blocked a light before first. As exact as the method."),
     ("rest", "rest:Resting", {"addition": True, "culls": False},
-     "Counts objects that rest as static."),
+     "Counts objects that rest as static. As exact as the method."),
     ("lightbuffer", "lightbuffer:LightBuffer", {**_EITHER, **_FEW, "makes": "light buffers made"},
-     "Looks up what each light sees in each direction; never wrong."),
+     "Trusts lists of all that each light can meet in each direction. Exact."),
     ("cache-directions", "cache:DirectionCache", _MEASURE,
      "Tests first what blocked a light before in this direction."),
     ("cache-tile", "cache:TileCache", _MEASURE,

@@ -2,8 +2,8 @@
 
 A picture is refined in parts, which are counted in sixteenths of its pixels.  With 1, 2, 4 or 16 sixteenths, as many
 pixels are shaded in each block of 4 x 4; with half a sixteenth, one pixel in every other block.  Pixels beyond these
-numbers go to the blocks that are most in doubt (`tracer.shading.filling`), so that the borders of shadows and
-reflections are shaded before even surfaces.
+numbers go to units whose modes are still to be set (`tracer.shading.teaching`), and then to the blocks that are most in
+doubt (`tracer.shading.filling`), so that the borders of shadows and reflections are shaded before even surfaces.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from tracer.shading.filling import fill_in, nearest
 
 LEVELS = (0.5, 1, 2, 4, TURNS)  # sixteenths that are the same for all blocks
 HALVES = 2 * TURNS  # steps of half a sixteenth in a whole picture
+BEYOND = 1 / 8  # of a part, by which it may grow rather than be shaded in two steps
 FILLED = 4  # rows of blocks that a thread fills in at a time
 
 
@@ -52,7 +53,11 @@ class Parts:
     @property
     def share(self) -> float:
         """How much of the picture has been shaded, 0 to 1; blocks that its border cuts count as whole."""
-        inside = self.shaded[EDGE:-EDGE, EDGE:-EDGE]
+        return self._share_of(self.shaded)
+
+    @staticmethod
+    def _share_of(lanes: NDArray[np.int32]) -> float:
+        inside = lanes[EDGE:-EDGE, EDGE:-EDGE]
         return int(np.bitwise_count(inside).sum()) / (TURNS * inside.size)
 
     @property
@@ -60,17 +65,47 @@ class Parts:
         """(height, width): which pixels have been shaded; None where all have."""
         return None if self.share >= 1.0 else pixels_of(self.shaded, self._width, self._height)
 
-    def left_up_to(self, part: float, fill: Callable[[], None]) -> Iterator[NDArray[np.int32]]:
-        """The pixels of each block that are to be shaded until so many sixteenths are, in one step or in two, between
-        which `fill` has to fill in the others."""
-        level = level_of(part)
+    def left_up_to(
+        self, part: float, fill: Callable[[], None], untaught: NDArray[np.int32] | None = None
+    ) -> Iterator[NDArray[np.int32]]:
+        """The pixels of each block that are to be shaded until so many sixteenths are, or a few more, in one step or in
+        two, between which `fill` has to fill in the others; those that are `untaught`, like `shaded`, before others:
+        where there are many, fewer lie evenly, and of the smallest part up to twice as many are shaded."""
+        level, waiting = level_of(part), self._waiting(untaught, part)
         lanes = self._left(level)
+        if TURNS * self._share_of(waiting & ~lanes) > self._room(part, lanes) and level > LEVELS[0]:
+            level = LEVELS[LEVELS.index(level) - 1]
+            lanes = self._left(level)
+        lanes |= self._some_of(waiting & ~lanes, self._room(part, lanes) + part * (part == LEVELS[0]))
         if lanes.any():
             yield self._take(lanes)
-        if part > level:
+        if part - TURNS * self.share > BEYOND * part:
             more = LEVELS[LEVELS.index(level) + 1]
             fill()
             yield self._take(self._most_in_doubt(self._left(more), part))
+
+    def _waiting(self, untaught: NDArray[np.int32] | None, part: float) -> NDArray[np.int32]:
+        """Of these pixels those that are left; none where all are shaded anyway."""
+        if untaught is None or part == TURNS:
+            return np.zeros_like(self.shaded)
+        return untaught & ~self.shaded
+
+    def _room(self, part: float, lanes: NDArray[np.int32]) -> float:
+        """How many sixteenths may still be shaded besides these pixels and those that are."""
+        return max((1 + BEYOND) * part - TURNS * self._share_of(self.shaded | lanes), 0.0)
+
+    def _some_of(self, lanes: NDArray[np.int32], room: float) -> NDArray[np.int32]:
+        """So many sixteenths of the picture's pixels, of these, or all: those first whose turn it is first."""
+        left, chosen = round(room * lanes[EDGE:-EDGE, EDGE:-EDGE].size), np.zeros_like(lanes)
+        for turn in range(TURNS):
+            mine = np.flatnonzero(lanes & lanes_of((self._first + turn) % TURNS, 1))
+            if len(mine) > left:
+                mine = mine[:: -(-len(mine) // max(left, 1))][:left]
+            chosen.reshape(-1)[mine] |= lanes_of((self._first + turn) % TURNS, 1)
+            left -= len(mine)
+            if left <= 0:
+                break
+        return chosen
 
     def _left(self, level: float) -> NDArray[np.int32]:
         """What is left to shade before this level is reached."""
@@ -144,6 +179,8 @@ class Parts:
         frame.shaded = pixels_of(self.shaded, self._width, self._height)
         if frame.asked is not None and frame.reached is not None:
             frame.asked, frame.reached = frame.asked.copy(), frame.reached.copy()
+        if frame.fates is not None:
+            frame.fates = self.stretched(frame.fates)
         if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
             frame.saved, frame.cost, frame.due_rays = (
                 self.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)

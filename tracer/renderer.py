@@ -140,9 +140,11 @@ class Renderer:
         """Render one picture step by step, finer each time.
 
         Each step shades more of the pixels, those first where it helps the most (`tracer.progressive`), and fills in
-        the others from shaded pixels on the same surfaces. The whole picture is that of `render`, bit for bit. Only the
-        whole picture sets modes: a generator that is closed before it leaves, at most, certificates behind. Frames with
-        2 to `samples` samples per pixel follow; the last is that of `render` with so many samples.
+        the others from shaded pixels on the same surfaces. The whole picture is that of `render`, bit for bit. So are
+        the modes that it leaves. A generator that is closed, or cancelled, before it leaves those that its last frame
+        has: all primary rays have been traced, and shadow modes are set by the pixels that have been shaded
+        (`tracer.culling.occlusion.set_occlusion_modes`). Frames with 2 to `samples` samples per pixel follow; the last
+        is that of `render` with so many samples.
 
         Parameters
         ----------
@@ -176,6 +178,8 @@ class Renderer:
                 frame.place_objects_and_lights()
             with frame.phase("primary"):
                 frame.trace_primary_rays()
+            with frame.phase("occlusion testing"):
+                frame.test_occlusion()
             with frame.phase("certification"):
                 frame.prepare_culling()
             if parts[0] < TURNS:
@@ -187,9 +191,6 @@ class Renderer:
                     so_far = frame.so_far()
                     with frame.shown():
                         yield so_far
-            # Only a picture that nobody has left becomes whole, and teaches.
-            with frame.phase("occlusion testing"):
-                frame.test_occlusion()
             with frame.phase("mode setting"):
                 frame.set_modes()
         whole = self._finished(frame)

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from tracer.geometry.accelerators import ACCELERATORS
-from tracer.method import Method
+from tracer.method import DEFAULT_METHOD, Method
 from tracer.scene.lights import MAX_SAMPLES
 
 MAX_SIDE = 16384
@@ -49,6 +49,8 @@ class Settings:
         counts them ray by ray; or "kdtree-lazy", one kd-tree over everything, which is built where rays arrive.
     record_lights : bool
         Fill `Frame.due` and `Frame.lit`.
+    record_fates : bool
+        Fill `Frame.fates`, what became of each shadow ray.
     record_work : bool
         Fill `Frame.saved`, `Frame.cost` and `Frame.due_rays`.
     certificates : int
@@ -75,7 +77,7 @@ class Settings:
     width: int = 512
     height: int = 512
     depth: int = 10
-    method: str = "paper"
+    method: str = DEFAULT_METHOD
     symmetric: bool = False
     zoom_factor: float = 4.0
     modes: bool = False
@@ -86,6 +88,7 @@ class Settings:
     threads: int = 0
     accelerator: str = "bvh8"
     record_lights: bool = False
+    record_fates: bool = False
     record_work: bool = False
     certificates: int = 100_000
     certificate_seconds: float = math.inf

@@ -23,7 +23,7 @@ from rich.table import Table
 from tests.bench.frame_times import machine
 from tests.bench.of_scenes import add_options, finish, prepared
 from tracer import lamp_experiment
-from tracer.experiment import REFERENCE
+from tracer.experiment import REFERENCE, with_reference
 from tracer.frame import Frame, Settings
 from tracer.lamp_experiment import CEILING, run_lamps
 from tracer.method import Method
@@ -44,14 +44,16 @@ def measure(path: Path, settings: Settings, methods: list[str], frames: int, ste
     path_frames = max(1, scene.frames)
     numbers = [k * step % path_frames if step else k * path_frames // frames for k in range(frames)]
     times = [scene.frame_time(number) for number in numbers]
-    truth, differ = b"", []
+    pictures: dict[str, bytes] = {}  # of a frame
+    differ = []
 
     def compare(number: int, method: str, frame: Frame) -> None:
-        nonlocal truth
-        if method == REFERENCE:
-            truth = frame.color.tobytes()
-        elif Method.parse(method).exact and frame.color.tobytes() != truth:
-            differ.append((method, numbers[number]))
+        pictures[method] = frame.color.tobytes()
+        if len(pictures) == len(with_reference([*methods, CEILING])):
+            truth = pictures[REFERENCE]
+            exact = [name for name in pictures if Method.parse(name).exact]
+            differ.extend((name, numbers[number]) for name in exact if pictures[name] != truth)
+            pictures.clear()
 
     kinds = [(settings.lamp_radius, settings.lamp_samples)]
     *_, results = run_lamps(scene, settings, methods, kinds, times, world=world, on_frame=compare)

@@ -28,7 +28,6 @@ from tests.bench.frame_times import machine
 from tests.bench.memory import ROOT, resident
 from tests.bench.meshes import bumpy_face, frequency_for
 from tests.bench.of_scenes import finish
-from viewer.state.methods import DEFAULT
 from viewer.util.messages import say
 
 GB = 1e9
@@ -101,7 +100,7 @@ def inspect(path: Path, size: int) -> dict[str, Any]:
     before, started, reports = resident("VmRSS"), time.perf_counter(), Reports()
     scene = load_visible_scene(path, reports, meshes=IN_STUDIO)
     read, most_reading, as_scene = time.perf_counter(), resident("VmHWM"), resident("VmRSS")
-    opened = open_loaded(scene, Settings(width=size, height=size, method=DEFAULT), lambda: True, reports)
+    opened = open_loaded(scene, Settings(width=size, height=size), lambda: True, reports)
     reports("ready", 1.0)
     built, most_building = time.perf_counter(), resident("VmHWM")
     frame = opened.renderer.render(0.0)

@@ -5,7 +5,8 @@
 In bursts of some seconds the scene's path is played, or the camera led by a hand, each from another place;
 then nothing moves until the picture is whole.  WAY is "parts", how the window works, or "coarse", its
 resolution divided until whole frames come in time.  Once the window is closed, some of the pictures that it
-showed are compared, pixel by pixel, with the exact picture of their own moment.
+showed are compared, pixel by pixel, with the exact picture of their own moment, and what the paper's modes saved
+is held against what they save where the same moments are traced as whole frames.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 import json
 import sys
 import time
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -23,6 +25,7 @@ from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
+from tracer.shading.blocks import TURNS
 from tracer.statistics import FrameStatistics
 from viewer.output.pictures import picture
 from viewer.services.governor import AT_ONCE, LARGEST_DIVISOR, SPARE, Governor, Plan, divided
@@ -196,6 +199,57 @@ def compared(burst: Burst, size: tuple[int, int], renderer: Renderer) -> list[di
     return found
 
 
+def savings(burst: Burst, size: tuple[int, int], renderer: Renderer) -> dict[str, float]:
+    """What culling by the paper's modes saved of the shadow rays of a burst's pictures, as the window showed them, and
+    what it saves where each of their moments is traced as a whole, as `bench` does, both beginning without modes; and
+    the shares of wrong answers."""
+    whole, parts = Counts(), Counts()
+    renderer.settings = settings = replace(burst.shown[0].settings, verify=True, method="paper", samples=1)
+    renderer.reset_modes()
+    for frame in burst.shown:
+        renderer.settings = replace(settings, width=size[0], height=size[1])
+        whole.add(renderer.render(frame.time, frame.camera))
+    renderer.reset_modes()
+    for frame in burst.shown:
+        renderer.settings = replace(settings, width=frame.width, height=frame.height)
+        part = max(0.5, round(32 * frame.statistics.part) / 2)
+        with closing(renderer.refine(frame.time, frame.camera, parts=sorted({part, TURNS}))) as refining:
+            parts.add(next(refining))
+    shown = Counts()
+    for frame in burst.shown:
+        shown.add(frame)
+    return {
+        "saved": shown.saved_share,
+        "saved_verified": parts.saved_share,
+        "saved_whole": whole.saved_share,
+        "wrong": parts.wrong_share,
+        "wrong_whole": whole.wrong_share,
+    }
+
+
+@dataclass
+class Counts:
+    """Shadow rays of some frames."""
+
+    due: int = 0
+    saved: int = 0
+    wrong: int = 0
+
+    def add(self, frame: Frame) -> None:
+        shadow = frame.statistics.shadow
+        self.due += shadow.due
+        self.saved += shadow.culled + shadow.dynamic_only
+        self.wrong += shadow.wrong
+
+    @property
+    def saved_share(self) -> float:
+        return self.saved / max(self.due, 1)
+
+    @property
+    def wrong_share(self) -> float:
+        return self.wrong / max(self.due, 1)
+
+
 def on_screen(pixels: NDArray[np.uint8], size: tuple[int, int]) -> NDArray[np.uint8]:
     """As the window shows a picture that is smaller than its place: smoothly enlarged."""
     if pixels.shape[1::-1] == size:
@@ -207,7 +261,7 @@ def main() -> int:
     path, window, way, bursts, out = sys.argv[1:]
     app = App(Path(path))
     app.controller.tracing.governor = WAYS[way]()
-    app.controller.settings.change(samples=1)
+    app.controller.settings.change(samples=1, method="paper")
     app.ui.tour.end()
     width, height = (int(side) for side in window.split("x"))
     geometry = app.params.app_window_params
@@ -221,7 +275,7 @@ def main() -> int:
     for burst in script.done:
         about = {"kind": burst.kind, "seconds": burst.seconds, "pictures": len(burst.shown), "window": burst.frames}
         about |= {"settled": burst.settled, "full": burst.full}
-        told.append(about | {"compared": compared(burst, size, renderer)})
+        told.append(about | {"compared": compared(burst, size, renderer), **savings(burst, size, renderer)})
     Path(out).write_text(json.dumps({"size": size, "bursts": told}))
     return code
 

@@ -92,17 +92,22 @@ def meet_all(scene: Scene, time: float, origin: np.ndarray, direction: np.ndarra
     return t, margin
 
 
-def set_occlusion_mode(mode: int, hidden: bool, count: int, highest: int, zoom: float) -> tuple[int, int]:
-    """(mode, highest count) of one unit at the end of a frame: the paper's section 2.6, rule by rule."""
+def set_occlusion_mode(
+    mode: int, hidden: bool, count: int, shaded: int, highest: int, taught: int, zoom: float
+) -> tuple[int, int, int]:
+    """(mode, highest count, pixels that have taught) of one unit at the end of a frame of whose `count` pixels `shaded`
+    are shaded: the paper's section 2.6, rule by rule, where these are all."""
     if mode == DYNAMIC:
-        return DYNAMIC, highest
+        return DYNAMIC, highest, taught
     if mode == PARTIAL:  # what was found in the last frame is forgotten
         mode = INIT
     if mode == FULLY:
-        return (INIT, count) if count > zoom * highest else (FULLY, highest)
+        return (INIT, count, taught) if count > zoom * highest else (FULLY, highest, taught)
     if hidden:
-        return PARTIAL, highest
-    return (FULLY, count) if count > 0 else (INIT, highest)
+        return PARTIAL, highest, 0
+    if count == 0 or taught + shaded < count:
+        return INIT, highest, taught + shaded
+    return FULLY, count, 0
 
 
 def hidden_units(ids: np.ndarray, units: np.ndarray, hits, symmetric: bool) -> tuple[set[int], int]:
@@ -132,6 +137,7 @@ class Modes:
     def __init__(self, dynamic: Iterable[bool], lights: int) -> None:
         self.occlusion = [DYNAMIC if moves else INIT for moves in dynamic]
         self.highest = [0] * len(self.occlusion)
+        self.taught = [0] * len(self.occlusion)
         self.shadow = [[int(ShadowMode.INIT)] * lights for _ in self.occlusion]
 
     def known(self, unit: int, light: int) -> int:
@@ -145,17 +151,24 @@ class Modes:
             for unit, mode in enumerate(self.occlusion):
                 self.shadow[unit][light] = int(ShadowMode.INIT)
                 self.occlusion[unit] = INIT if mode == FULLY else mode
+        self.taught = [0] * len(self.occlusion)
 
     def end_frame(
-        self, hidden: set[int], counts: list[int], learnt: Iterable[tuple[int, int, int]], zoom: float
+        self,
+        hidden: set[int],
+        counts: list[int],
+        shaded: list[int],
+        learnt: Iterable[tuple[int, int, int]],
+        zoom: float,
     ) -> None:
-        """Sections 2.4 and 2.6: `learnt` are (unit, light, mode) of the frame's shadow rays."""
+        """Sections 2.5 and 2.6: of the pixels counted `shaded` are, and `learnt` are (unit, light, mode) of the shadow
+        rays."""
         for unit, light, mode in learnt:
             if light < self.CULLED_LIGHTS and self.occlusion[unit] != DYNAMIC:
                 self.shadow[unit][light] |= int(mode)
         for unit, mode in enumerate(self.occlusion):
-            self.occlusion[unit], self.highest[unit] = set_occlusion_mode(
-                mode, unit in hidden, counts[unit], self.highest[unit], zoom
+            self.occlusion[unit], self.highest[unit], self.taught[unit] = set_occlusion_mode(
+                mode, unit in hidden, counts[unit], shaded[unit], self.highest[unit], self.taught[unit], zoom
             )
 
     def words(self) -> list[int]:

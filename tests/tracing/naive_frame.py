@@ -96,17 +96,19 @@ class NaiveRenderer:
         self.modes = naive.Modes(np.repeat(~self.static, np.diff(self.first)), len(scene.lights))
         self.lamps: np.ndarray | None = None
 
-    def render(self, time: float, camera: Camera) -> NaiveFrame:
-        """The next frame: the phases of the paper's Figure 1."""
+    def render(self, time: float, camera: Camera, shaded: np.ndarray | None = None) -> NaiveFrame:
+        """The next frame: the phases of the paper's Figure 1; of `shaded` pixels (height, width), or of all."""
         self._place(time)
         rays = self._primary_rays(pinhole(camera, self.settings.width, self.settings.height))
         met = self._meet([r.origin for r in rays], [r.direction for r in rays])
         frame = self._blank(met)
         hidden = self._test_occlusion(frame, met) if self.by_modes else set()
-        learnt = self._shade(frame, rays, met)
+        shaded = np.ones(frame.cell.shape, np.bool_) if shaded is None else shaded
+        learnt = self._shade(frame, rays, met, shaded)
         frame.pixel_count = [int((frame.cell == unit).sum()) for unit in range(self.first[-1])]
+        of_shaded = [int((frame.cell[shaded] == unit).sum()) for unit in range(self.first[-1])]
         if self.by_modes:
-            self.modes.end_frame(hidden, frame.pixel_count, learnt, self.settings.zoom_factor)
+            self.modes.end_frame(hidden, frame.pixel_count, of_shaded, learnt, self.settings.zoom_factor)
         frame.words, frame.highest_count = self.modes.words(), list(self.modes.highest)
         return frame
 
@@ -155,7 +157,9 @@ class NaiveRenderer:
         )
         return hidden
 
-    def _shade(self, frame: NaiveFrame, rays: list[Ray], met: brute.Meetings) -> list[tuple[int, int, int]]:
+    def _shade(
+        self, frame: NaiveFrame, rays: list[Ray], met: brute.Meetings, chosen: np.ndarray
+    ) -> list[tuple[int, int, int]]:
         """Whitted's recursion, all rays of a bounce together; what shadow rays taught: (unit, light, mode)."""
         learnt: list[tuple[int, int, int]] = []
         for bounce in range(self.settings.depth + 1):
@@ -166,6 +170,8 @@ class NaiveRenderer:
                 frame.counts["primary"] += len(rays)
             shaded = []
             for i, (ray, primitive) in enumerate(zip(rays, met.closest().tolist(), strict=True)):
+                if not chosen[ray.pixel]:
+                    continue
                 if primitive < 0:
                     for picture in (frame.color, frame.reference):
                         picture[ray.pixel] += ray.weight * np.array(self.scene.background)

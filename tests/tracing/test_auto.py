@@ -105,7 +105,7 @@ def test_when_they_no_longer_pay_they_are_left():
     machine = Machine(lambda known: (0.3 if pays[0] else -0.1) * known, 0.05)
     payoff = Payoff(0.01, False)
     payoff.made_ready()
-    assert payoff.reason == "Every shadow ray is traced: no measurement shows that certificates would save time here."
+    assert payoff.reason == "Every shadow ray is traced: too few trials tell yet whether certificates would save time."
     rng, wrong = np.random.default_rng(3), 0
     for frame in range(600):
         pays[0] = frame < 300

@@ -78,3 +78,44 @@ def test_paths_are_resampled_with_both_ends():
 def test_a_method_that_does_not_exist_is_named():
     with pytest.raises(ValueError, match="telepathy"):
         next(experiment.run(small_scene(), SETTINGS, ["telepathy"], [0.0]))
+
+
+def test_each_frame_begins_with_another_method():
+    came = []
+    for _ in experiment.run(
+        small_scene(), SETTINGS, ["paper", "free"], experiment.path_times(small_scene()),
+        on_frame=lambda number, method, frame: came.append((number, method)),
+    ):  # fmt: skip
+        pass
+    orders = [[method for number, method in came if number == frame] for frame in range(4)]
+    assert orders[:3] == [["none", "paper", "free"], ["paper", "free", "none"], ["free", "none", "paper"]]
+    assert orders[3] == orders[0]
+
+
+def test_a_speed_up_has_the_spread_of_its_frames():
+    lots = np.random.default_rng(1)
+    truth = 1.25
+    hits = 0
+    for _ in range(400):
+        seconds = lots.uniform(0.9, 1.1, 60)
+        none = truth * seconds + lots.normal(0.0, 0.2, 60)
+        found, spread = experiment.speed_up(none, seconds)
+        hits += abs(found - truth) <= spread
+    assert 0.92 < hits / 400 < 0.98, "twice the standard error"
+    assert experiment.speed_up(np.array([2.0]), np.array([1.0])) == (2.0, np.inf)
+    assert experiment.speed_up(np.zeros(3), np.zeros(3)) == (0.0, 0.0)
+
+
+def test_the_table_tells_what_is_saved_and_how_sure_the_speed_up_is():
+    results = experiment.Results("s", (10, 10), frames=[7, 9])
+    figures = _figures(steps=[1, 1], tests=[1, 1], occlusion=[0, 0])
+    culled = figures | {
+        "shadow_rays_culled": [20, 10],
+        "shadow_rays_dynamic_only": [0, 10],
+        "frame_seconds": [0.1, 0.1],
+    }
+    results.methods = {"none": figures, "paper": culled}
+    none, paper = experiment.table(results)
+    assert (none.saved_part, none.speed_up, none.speed_up_spread) == (0.0, 1.0, 0.0)
+    assert paper.saved_part == pytest.approx(0.4) and paper.speed_up == pytest.approx(2.0)
+    assert paper.speed_up_spread == pytest.approx(2.0)

@@ -83,6 +83,37 @@ def test_frames_of_random_scenes_are_what_the_naive_twin_says(
     assert set(+seen) == counted  # none of them was never anything but 0
 
 
+@pytest.mark.parametrize("method", ["paper", "cells"])
+def test_frames_that_are_left_teach_what_the_naive_twin_says(method: str):
+    """Whole frames and some that are left with a part of their pixels shaded, in any order."""
+    seen: Counter[str] = Counter()
+
+    @quickly(8)
+    @given(walks(2), st.lists(st.sampled_from([0, 1, 2, 3]), min_size=8, max_size=8), st.integers(0, 2))
+    def check(walk: Walk, shown: list[int], depth: int) -> None:
+        settings = tracer.Settings(34, 14, depth, method, verify=True, threads=2, accelerator="kdtree")
+        renderer, twin = tracer.Renderer(walk.scene, settings), NaiveRenderer(walk.scene, settings)
+        for (time, camera), count in zip(2 * walk.frames, shown, strict=False):
+            if count == 0:
+                frame = renderer.render(time, camera)
+            else:
+                refining = renderer.refine(time, camera, parts=(2, 6, 12, 16))
+                for _ in range(count):
+                    frame = next(refining)
+                refining.close()
+            expected = twin.render(time, camera, frame.shaded)
+            assert frame.modes.tolist() == expected.words
+            assert frame.highest_count.tolist() == expected.highest_count
+            shadow = frame.statistics.shadow
+            assert [shadow.due, shadow.culled, shadow.dynamic_only] == [
+                expected.counts[name] for name in ("due", "culled", "dynamic_only")
+            ]
+            seen.update(expected.counts if count else ())
+
+    check()
+    assert seen["culled"] and seen["dynamic_only"], "no frame that was left has culled: this shows nothing"
+
+
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 @pytest.mark.parametrize("method", ["paper", "cells"])
 def test_the_reference_of_random_scenes_is_the_picture_without_culling(method: str, accelerator: str):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,11 +19,22 @@ from tracer.geometry.primitives import Outlines
 from tracer.scene.lamps import LampTable
 
 
+class Learnt(NamedTuple):
+    """What one frame hands on to the next: see `ModeHistory`."""
+
+    words: np.ndarray
+    pixel_count: np.ndarray
+    highest_count: np.ndarray
+    taught: np.ndarray
+
+
 class ModeHistory:
     """Modes and counts of all units at one resolution.
 
-    words (units,) uint32 or uint64 (`tracer.culling.modes`), pixel_count and highest_count (units,)
-    int32, hidden (units,) bool, gained (workers, units) like words.
+    words (units,) uint32 or uint64 (`tracer.culling.modes`); pixel_count and highest_count (units,) int32;
+    taught (units,) int32, the pixels that have set modes of a unit that is not FULLY_RENDERED yet
+    (`tracer.culling.occlusion.set_occlusion_modes`).  Of the frame under way: hidden (units,) bool, gained
+    (workers, units) like words.
     """
 
     def __init__(self, object_of: np.ndarray, lights: int, workers: int, first: np.ndarray) -> None:
@@ -34,6 +46,7 @@ class ModeHistory:
         self.words = np.where(object_of != 0, word(modes.DYNAMIC), word(modes.INIT)).astype(word)
         self.pixel_count = np.zeros(units, np.int32)
         self.highest_count = np.zeros(units, np.int32)
+        self.taught = np.zeros(units, np.int32)
         self.hidden = np.zeros(units, np.bool_)
         self.gained = np.zeros((workers, units), word)
         self.light_positions: np.ndarray | None = None
@@ -64,6 +77,7 @@ class ModeHistory:
                 moved |= [a != b for a, b in zip(shapes.lights, lamps.lights, strict=True)]
             if moved.any():
                 modes.forget_lights(self.words, np.flatnonzero(moved).tolist())
+                self.taught = np.zeros_like(self.taught)
 
     def follow_rest(self, resting: Resting, outlines: Callable[[], Outlines], threads: int) -> None:
         """Let the units of what rests carry modes, and no others of dynamic objects; after `follow_lights`.
@@ -80,6 +94,7 @@ class ModeHistory:
             self.words[concerned[self._object_of]] = mode
         for changed, mode in ((started, modes.FULL_SHADOW), (stopped, modes.NON_SHADOW)):
             self._drop_dependent(outlines(), changed.boxes, mode, threads)
+        self.taught = np.zeros_like(self.taught)
         # What lies between a unit and a lamp of several samples is not looked into.
         assert self._lamps is not None
         modes.forget_lights(self.words, np.flatnonzero(~self._lamps.single).tolist())
@@ -97,14 +112,23 @@ class ModeHistory:
         self.words ^= lost
         self.words[(lost != 0) & (modes.occlusion_mode(self.words) == modes.FULLY_RENDERED)] &= ~word(3)
 
-    def keep_frame(self, zoom_factor: float) -> None:
-        """§2.6: take what workers have gained into the words, and say what has been seen whole; pixels have been
-        counted."""
-        modes.merge_words(self.words, self.gained)
-        zoom = np.float64(zoom_factor)
-        set_occlusion_modes(self.words, self.hidden, self.pixel_count, self.highest_count, zoom)
+    def learnt(self, pixel_count: np.ndarray, shaded_count: np.ndarray, zoom_factor: float) -> Learnt:
+        """What is known if the frame ends here (§2.5, §2.6); the history itself stays as it is until it keeps that.
+
+        pixel_count and shaded_count (units,) int32 are the frame's primary pixels, and those of them that are shaded.
+        """
+        learnt = Learnt(self.words.copy(), pixel_count, self.highest_count.copy(), self.taught.copy())
+        modes.merge_words(learnt.words, self.gained)
+        counts = pixel_count, shaded_count, np.float64(zoom_factor), learnt.highest_count, learnt.taught
+        set_occlusion_modes(learnt.words, self.hidden, *counts)
+        return learnt
+
+    def keep(self, learnt: Learnt) -> None:
+        """The frame has ended: this is what the next one begins with."""
+        self.words, self.pixel_count, self.highest_count, self.taught = learnt
+        self.discard_frame()
 
     def discard_frame(self) -> None:
-        """Drop what an unfinished frame has gathered."""
+        """Drop what the frame under way has gathered."""
         self.hidden[:] = False
         self.gained[:] = 0

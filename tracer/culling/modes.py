@@ -84,12 +84,10 @@ def add_shadow(words, unit, light, mode):
 
 @kernel
 def merge_words(words, gained):
-    """OR what each worker has gained, (workers, units), into the words, and clear it."""
+    """OR what each worker has gained, (workers, units), into the words."""
     for worker in range(len(gained)):
         for unit in range(len(words)):
-            if gained[worker, unit] != 0:
-                words[unit] |= gained[worker, unit]
-                gained[worker, unit] = 0
+            words[unit] |= gained[worker, unit]
 
 
 def forget_lights(words: np.ndarray, lights: list[int]) -> None:

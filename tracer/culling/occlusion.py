@@ -3,7 +3,8 @@
 Neighbouring pixels that see different primitives are asked whether one hides the other: the ray of
 the current pixel is tested against the primitive of the reference pixel, left and above.  If it
 hits, something nearer hides that primitive here, and it is PARTIALLY_OCCLUDED.  A primitive that is
-never found hidden has been seen whole and becomes FULLY_RENDERED at the end of the frame.
+never found hidden has been seen whole and becomes FULLY_RENDERED at the end of the frame, or, where not all
+of the frame's pixels are shaded, of the one that has shaded as many of its pixels as it covers.
 
 Where modes are carried by cells of primitives (`tracer.culling.cells`), it is the reference pixel's
 cell that the ray is tested against.  Cells of one triangle hide nothing of each other, and nothing is
@@ -99,15 +100,18 @@ def occlusion_testing(world, camera, primitives, first, units, symmetric, first_
 
 
 @kernel
-def set_occlusion_modes(words, hidden, pixel_count, highest_count, zoom_factor):
-    """Occlusion-mode setting at the end of a frame, over all units; clears `hidden`.
+def set_occlusion_modes(words, hidden, pixel_count, shaded_count, zoom_factor, highest_count, taught):
+    """Set occlusion modes at the end of a frame (§2.6), over all units.
 
-    pixel_count (units,) int32 are this frame's primary pixels.  highest_count (units,) int32 is
-    what a FULLY_RENDERED unit was last examined at; past zoom_factor times that it is INIT again.
+    pixel_count (units,) int32 are the frame's primary pixels, shaded_count (units,) int32 those of them whose shadow
+    rays have set modes: all in a whole picture, some in one that was left before.  A unit that is seen whole is
+    FULLY_RENDERED once as many pixels have set its modes, in this frame and in those just before it in which it was
+    seen whole, as it covers now; taught (units,) int32 counts them.  So a whole picture makes it so at once, as
+    published.  highest_count (units,) int32 is what a FULLY_RENDERED unit was last examined at; past zoom_factor times
+    that it is INIT again.
     """
     for unit in range(len(words)):
-        mode, was_hidden = occlusion_bits(words[unit]), hidden[unit]
-        hidden[unit] = False
+        mode = occlusion_bits(words[unit])
         if mode == DYNAMIC:
             continue
         count = pixel_count[unit]
@@ -117,11 +121,15 @@ def set_occlusion_modes(words, hidden, pixel_count, highest_count, zoom_factor):
                 highest_count[unit] = count
         else:  # PARTIALLY_OCCLUDED of the last frame starts this one as INIT
             mode = INIT
-            if was_hidden:
+            if hidden[unit]:
                 mode = PARTIALLY_OCCLUDED
+                taught[unit] = 0
             elif count > 0:
-                mode = FULLY_RENDERED
-                highest_count[unit] = count
+                taught[unit] += shaded_count[unit]
+                if taught[unit] >= count:
+                    mode = FULLY_RENDERED
+                    highest_count[unit] = count
+                    taught[unit] = 0
         words[unit] = (np.uint64(words[unit]) & ~np.uint64(3)) | np.uint64(mode)
 
 

@@ -174,7 +174,7 @@ class Payoff:
                 return "Certificates are looked up: tracing is slow here, so they should save time; trials will tell."
             return f"Certificates are looked up: that saves {100.0 * saved:.0f} % of the shading time."
         if math.isinf(doubt):
-            return "Every shadow ray is traced: no measurement shows that certificates would save time here."
+            return "Every shadow ray is traced: too few trials tell yet whether certificates would save time."
         if saved < 0.0:
             return f"Every shadow ray is traced: with certificates, shading would take {-100.0 * saved:.0f} % longer."
         return f"Every shadow ray is traced: certificates would save only {100.0 * saved:.0f} % of the shading time."

@@ -99,8 +99,9 @@ def _run(
     total, done = len(numbers) * len(methods), 0
 
     def show() -> None:
-        frame, method = divmod(min(done, total - 1), len(methods))
-        work.count(f"frame {frame + 1} of {len(numbers)}, {methods[method]}", done, total)
+        frame, turn = divmod(min(done, total - 1), len(methods))
+        method = experiment.in_turn(methods, frame)[turn]
+        work.count(f"frame {frame + 1} of {len(numbers)}, {method}", done, total)
 
     def on_frame(number: int, method: str, frame: Frame) -> None:
         nonlocal done

@@ -11,7 +11,7 @@ from tracer import experiment
 from tracer.experiment import Results, Row
 from viewer.cli.console import width_of
 from viewer.cli.narrow_tables import left_out, named
-from viewer.output.reports import LINES, WRONG, frames_in_words
+from viewer.output.reports import SPEED_UP, WRONG, caveats, frames_in_words, lines
 from viewer.util.messages import printable
 
 MOST_COLUMNS = 5
@@ -24,7 +24,7 @@ _COLUMNS = {
     "time of a frame, median": "a frame",
     "time of all frames": "all\nframes",
     "  of it preparing": "preparing",
-    "speed-up over none, all frames": "speed-\nup",
+    SPEED_UP: "speed-\nup",
     "memory of the method": "memory",
 }
 LEAST_WANTED = ("preparing", "all\nframes", "memory", "a frame", "tests\nsaved", "wrong")
@@ -47,9 +47,8 @@ def _by_columns(results: Results, rows: Sequence[Row], verified: bool) -> Table:
     table.add_column("")
     for row in rows:
         table.add_column(row.method.replace("+", "\n+"), justify="right")
-    for heading, cell in LINES:
-        if verified or heading != WRONG:
-            table.add_row(heading, *(cell(row) for row in rows))
+    for heading, cell in lines(verified):
+        table.add_row(heading, *(cell(row) for row in rows))
     return table
 
 
@@ -58,8 +57,8 @@ def _by_lines(results: Results, rows: Sequence[Row], verified: bool, left: Seque
     table.add_column("method", no_wrap=True)
     shown = [
         (_COLUMNS[heading], cell)
-        for heading, cell in LINES
-        if heading in _COLUMNS and _COLUMNS[heading] not in left and (verified or heading != WRONG)
+        for heading, cell in lines(verified)
+        if heading in _COLUMNS and _COLUMNS[heading] not in left
     ]
     for heading, _ in shown:
         table.add_column(heading, justify="right", no_wrap=True)
@@ -77,5 +76,5 @@ def _begun(results: Results, verified: bool) -> Table:
         f"Work of shadow rays\n{printable(Path(results.scene).name)}, {width} × {height}, {frames_in_words(results)}"
     )
     table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
-    table.caption = "times include verifying" if verified else "--verify counts wrong answers"
+    table.caption = "; ".join([*caveats(results), *([] if verified else ["--verify counts wrong answers"])])
     return table

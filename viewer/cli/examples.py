@@ -71,7 +71,7 @@ FILM = """\
 examples:
   shadowcull film kitchen.aff -o kitchen --size 1280x720 --samples 4
   shadowcull film kitchen.aff -o kitchen.mp4 --frames 100-300 --method certified --size 1920x1080
-  shadowcull film default -o modes.mp4 --frames 0-49 --method paper --view occlusion --legend
+  shadowcull film default -o modes.mp4 --frames 0-49 --view occlusion --legend
   shadowcull film kitchen.aff -o flight.mp4 --through door.png table.png window.png --seconds 10
   shadowcull film kitchen.aff -o flight --bookmarks --fps 30
 
@@ -159,10 +159,10 @@ distance at which full shadow begins. The legends have the numbers.
 
 EXPLAIN = """\
 examples:
-  shadowcull explain default --pixel 300,200
-  shadowcull explain kitchen.aff --frame 50 --warmup 10 --pixel 256,400 --method paper
-  shadowcull explain kitchen.aff --frame 50 --warmup 10 --pixel 256,400 --method paper --only wrong
-  shadowcull explain default --pixel 300,200 --accelerator kdtree --json
+  shadowcull explain default --pixel 200,300
+  shadowcull explain kitchen.aff --frame 50 --warmup 10 --pixel 256,400 --only wrong
+  shadowcull explain default --pixel 200,300 --method certified
+  shadowcull explain default --pixel 200,300 --accelerator kdtree --json
 
 The tree has the pixel's primary, reflected and refracted rays, and below each the shadow rays from where it ends.
 Each shadow ray was not asked, as the surface faces away from its light; culled, by a mode of the paper, a certificate
@@ -171,7 +171,7 @@ intersection tests, counted for the ray alone. It says what blocks a ray first, 
 that is not true is said to be wrong. Where a point has more than 12 lights, those with the same fate have one line.
 
 Modes are set and certificates made from frame to frame, so culling acts only after some frames: --warmup N first
-traces the N frames before the one that is explained.
+traces the N frames before the one that is explained, and --repeat N that frame itself N times.
 """
 
 HUNT = """\
@@ -180,7 +180,7 @@ examples:
   shadowcull hunt kitchen.aff --method paper --step 10 --around 100 --radius 0.5 --seed 7
   shadowcull hunt default --method certified --around 50
   shadowcull check wrong/*.png
-  shadowcull explain kitchen.aff --frame 12 --pixel 147,125 --method paper --before '[[0, null]]' --only wrong
+  shadowcull explain kitchen.aff --frame 12 --pixel 147,125 --before '[[0, null]]' --only wrong
 
 The frames are traced one after another, as in bench, so that the method learns from each; every culled shadow ray is
 verified. Wrong pixels are ranked by how far their colour is from the right one, and of each primitive and light the

@@ -16,7 +16,7 @@ from rich.text import Text
 from rich.tree import Tree
 
 from tracer.frame import Frame
-from tracer.method import Method
+from tracer.method import DEFAULT_METHOD, Method
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
@@ -33,7 +33,6 @@ from viewer.output.ray_rows import RayRows, Row, totals
 from viewer.output.why_lines import why_data, why_lines
 from viewer.services.teachers import Answers, Teacher, answers_at, can_be_asked, with_teachers
 from viewer.state.earlier import Earlier
-from viewer.state.methods import DEFAULT
 from viewer.state.teaching import Ledger
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
@@ -43,7 +42,7 @@ def explain(path: Path, options: Namespace) -> None:
     """Trace a frame, and print the reasons and the tree of a pixel's rays; raises SceneError and ValueError in one
     line, or Cancelled."""
     check_scene_file(path)
-    settings = replace(tracing_settings(options), method=options.method or DEFAULT)
+    settings = replace(tracing_settings(options), method=options.method or DEFAULT_METHOD)
     x, y = options.pixel
     if not (x < settings.width and y < settings.height):
         raise ValueError(f"--pixel {x},{y}: the picture is {settings.width} x {settings.height}")
@@ -55,6 +54,7 @@ def explain(path: Path, options: Namespace) -> None:
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
         times = times_before(scene, time, options.warmup, work)
+        times += [time] * _repeats(options)
         before = [*options.before, *(Earlier(then, options.camera) for then in times)]
         ledger, moves = Ledger(len(scene.lights)), _Moves(scene)
         for done, earlier in enumerate(before):
@@ -74,6 +74,14 @@ def explain(path: Path, options: Namespace) -> None:
         return
     title = f"{path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
     _print(found, tree, scene, Filter(Shown(options.only), light), title)
+
+
+def _repeats(options: Namespace) -> int:
+    """How often the frame itself is traced before: as in the window at rest where no others come before it, so that
+    what culls by earlier frames has seen one."""
+    if options.repeat is not None:
+        return int(options.repeat)
+    return 0 if options.warmup or options.before else 1
 
 
 class _Moves:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from dataclasses import replace
 
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import Work
 from viewer.output.recipe import Recipe
 from viewer.services.filming import Script, make_folder
+from viewer.state.methods import CERTIFIED
 
 
 def is_wanted(recipe: Recipe, options: Namespace, work: Work) -> bool:
@@ -21,9 +23,10 @@ def is_wanted(recipe: Recipe, options: Namespace, work: Work) -> bool:
     if filmed_alone(recipe):
         return True
     settings = recipe.settings
+    exact = replace(recipe, settings=replace(settings, method=CERTIFIED))
     work.note(
         f"pictures by {settings.method} in the view {recipe.view.value} depend on the frames before them: one process "
-        "traces them all, in turn"
+        f"traces them all, in turn{f'; give --method {CERTIFIED} to share them' if filmed_alone(exact) else ''}"
     )
     return False
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.table import Table
 
-from tracer.experiment import REFERENCE
+from tracer.experiment import REFERENCE, in_turn, with_reference
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.lamp_experiment import CEILING, LampResults, LampRow, run_lamps, table
@@ -35,8 +35,9 @@ def run(
 
     def show() -> None:
         lamps, place = divmod(min(done, total - 1), each)
-        frame, method = divmod(place, len(names))
-        label = f"lamps {lamps + 1} of {len(kinds)}, frame {frame + 1} of {len(numbers)}, {names[method]}"
+        frame, turn = divmod(place, len(names))
+        method = in_turn(with_reference(names), frame)[turn]
+        label = f"lamps {lamps + 1} of {len(kinds)}, frame {frame + 1} of {len(numbers)}, {method}"
         work.count(label, done, total)
 
     def on_frame(number: int, method: str, frame: Frame) -> None:
@@ -78,7 +79,7 @@ def _table(results: LampResults, left: Sequence[str]) -> Table:
     wider = f"\na wider terminal shows {named(left)}, too; --csv FILE has all figures" if left else ""
     made.caption = (
         f"shadow rays: due per frame; speed-up: over {REFERENCE}, all frames; {CEILING}: shadow rays cost nothing\n"
-        f"known: shadow rays that are culled, or tested against dynamic objects only{wider}"
+        f"saved: shadow rays that are culled, or tested against dynamic objects only{wider}"
     )
     return made
 
@@ -91,9 +92,9 @@ def _kind(row: LampRow) -> tuple[str, str]:
 _FIGURES: dict[str, Callable[[LampRow], str]] = {
     "frame,\nmedian": lambda row: f"{1000.0 * row.frame_seconds:,.1f} ms",
     "shadow\nrays": lambda row: f"{row.shadow_rays:,.0f}",
-    "known": lambda row: "" if row.method in (REFERENCE, CEILING) else f"{row.known:.1%}",
+    "saved": lambda row: "" if row.method in (REFERENCE, CEILING) else f"{row.known:.1%}",
     "speed-\nup": lambda row: f"{row.speed_up:.2f}",
     "of free": lambda row: f"{row.share_of_free:.1%}",
 }
-LEAST_WANTED = ("shadow\nrays", "known", "of free")
+LEAST_WANTED = ("shadow\nrays", "saved", "of free")
 """Columns that are left out, one after another, where there is no room for all."""

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tracer.geometry.accelerators import ACCELERATORS
+from tracer.method import DEFAULT_METHOD
 from tracer.settings import MAX_NODES
 from viewer.cli import examples
 from viewer.cli.argument_types import (
@@ -121,7 +122,8 @@ def explain() -> Parser:
     add("--pixel", type=pixel, required=True, metavar="X,Y", help="column and row, counted from the upper left")
     add_moment(parser)
     add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
-    add("--method", type=method, metavar="M", help=f"how shadow rays are culled: {methods()} (default: auto)")
+    help_ = f"how shadow rays are culled: {methods()} (default: {DEFAULT_METHOD})"
+    add("--method", type=method, metavar="M", help=help_)
     only = ("all", "traced", "culled", "blocked", "wrong")
     add("--only", choices=only, default="all", help="which shadow rays are listed (default: all)")
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
@@ -129,6 +131,8 @@ def explain() -> Parser:
     add("--camera", metavar="JSON", help=f"another camera: {CAMERA}")
     add_edits(parser)
     add_before(parser)
+    help_ = "then trace the frame itself N times (default: 1 without --warmup and --before, else 0)"
+    add("--repeat", type=count(0, 1000), metavar="N", help=help_)
     add_tracing_options(parser, "bvh8")
     add_zoom_factor(parser)
     parser.set_defaults(verify=False, samples=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tracer.method import DEFAULT_METHOD
 from viewer.cli import examples, parsers
 from viewer.cli.argument_types import (
     annotation_list,
@@ -61,8 +62,8 @@ def _add_picture(parser: Parser) -> None:
         "--method",
         type=method,
         metavar="M",
-        help=f"how shadow rays are culled: {parsers.methods()} (default: auto, or paper or certified for views that "
-        "show what these do)",
+        help=f"how shadow rays are culled: {parsers.methods()} (default: {DEFAULT_METHOD}, or the "
+        "method that a view belongs to: certified, lightcuts, voxels or lie-exact)",
     )
     add(
         "--view",
@@ -70,7 +71,8 @@ def _add_picture(parser: Parser) -> None:
         default="color",
         metavar="V",
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
-        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, tree, saved or cost, "
+        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, tree, fate:LIGHT, "
+        "moving-shadow:LIGHT, saved or cost, "
         "as counts of rays or as shares like saved:share (default: color)",
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")
@@ -175,6 +177,10 @@ def _add_style(parser: Parser) -> None:
 
     add = parser.add_argument
     add("--legend-at", type=place, metavar="X,Y", help="where the legend is: 0,0 is the upper left (default: 0,1)")
+    help_ = (
+        "what culling saves, above the picture: a sentence, with TEXT for what is known of steps and time, and a bar"
+    )
+    add("--savings", nargs="?", const="", metavar="TEXT", help=help_)
     add("--caption", default="", metavar="TEXT", help="a line below the picture, like '{scene}, frame {frame}'")
     add("--annotations", type=annotation_list, default=(), metavar="JSON", help="arrows, boxes and words; see below")
     add("--outlines", action="store_true", help="draw the borders between primitives")

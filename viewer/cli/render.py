@@ -126,10 +126,11 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
         clipping=options.mark_clipped,
         span=options.range,
         cut=options.slice,
+        savings=options.savings,
     )
     time = moment(scene, options.frame, options.time)
     history = ""
-    if recipe.by_chance(settings, view):
+    if recipe.by_chance(settings, view, style.savings is not None):
         history = f"what the method {settings.method} makes depends on time and threads"
     return Recipe(
         path, time, options.camera, settings, view, light, wipe, style, options.warmup, options.repeat, history,

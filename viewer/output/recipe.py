@@ -46,8 +46,8 @@ class Style:
     """How a frame is drawn, without tracing it: shares instead of counts in maps of work, rings around wrong pixels for
     a picture that is shown `magnified` times, how much of the light shows under flat colours, how bright the picture
     beneath the difference is, borders between primitives, where the legend is if there is one, the caption, what was
-    drawn on it, the tone of its colours, whether what this clips is marked, the range of a map of numbers, and the
-    slice `cut` through space."""
+    drawn on it, the tone of its colours, whether what this clips is marked, the range of a map of numbers, the slice
+    `cut` through space, and, where what culling saves stands above it, what that says of steps and time (`savings`)."""
 
     shares: bool = False
     marked: bool = True
@@ -62,6 +62,7 @@ class Style:
     clipping: bool = False
     span: tuple[float, float] | None = None
     cut: Slice = MIDDLE
+    savings: str | None = None
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,12 @@ class Recipe:
     @property
     def needs_history(self) -> bool:
         """Whether frames before it show in the picture."""
-        return needs_history(self.settings.method, self.view)
+        return needs_history(self.settings.method, self.view, self.tells_counters)
+
+    @property
+    def tells_counters(self) -> bool:
+        """Whether what is drawn tells how many rays were culled."""
+        return self.style.savings is not None
 
     @property
     def by_one_thread(self) -> bool:
@@ -130,26 +136,31 @@ class Recipe:
         }
 
 
-def needs_history(method: str, view: View) -> bool:
-    """Whether a picture by a method in a view depends on the frames before it."""
+def needs_history(method: str, view: View, counters: bool = False) -> bool:
+    """Whether a picture by a method in a view depends on the frames before it; `counters` stand beside it, or not."""
     parsed = Method.parse(method)
     of_work = view is View.CERTIFICATE or (view.needs_work and parsed.culls)
-    return of_work or view.of_modes or view is View.TREE or not parsed.exact
+    return of_work or counters or view.of_modes or view is View.TREE or not parsed.exact
 
 
-def by_chance(settings: Settings, view: View) -> bool:
+def by_chance(settings: Settings, view: View, counters: bool = False) -> bool:
     """Whether chance has a part in it: what is certified within a limit of time, or by several threads, or what `auto`
     measures."""
     method = Method.parse(settings.method)
     limited = method.has_certificates and (math.isfinite(settings.certificate_seconds) or settings.threads != 1)
-    return needs_history(settings.method, view) and method.exact and not view.of_modes and (limited or method.adaptive)
+    return (
+        needs_history(settings.method, view, counters)
+        and method.exact
+        and not view.of_modes
+        and (limited or method.adaptive)
+    )
 
 
-def cannot_come_back(settings: Settings, view: View) -> str:
+def cannot_come_back(settings: Settings, view: View, counters: bool = False) -> str:
     """Why no frames before it bring a picture of the window back, in words; nothing where some do, or none count."""
     if view is View.TREE:
         return BUILT
-    return CHANCE if by_chance(settings, view) else ""
+    return CHANCE if by_chance(settings, view, counters) else ""
 
 
 def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Recipe:
@@ -210,6 +221,7 @@ def _style(data: Mapping[str, Any]) -> Style:
         caption=str(data.get("caption", "")),
         annotations=annotations_from_json(data.get("annotations", [])),
         clipping=bool(data.get("clipping", False)),
+        savings=None if data.get("savings") is None else str(data["savings"]),
     )
 
 
@@ -263,6 +275,8 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         words += [f"--range={style.span[0]!r}:{style.span[1]!r}"]
     if view.has_slice and style.cut != usual.cut:
         words += ["--slice", style.cut.in_words()]
+    if style.savings is not None:
+        words += [f"--savings={style.savings}"] if style.savings else ["--savings"]
     if style.caption:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
     if recipe.before:

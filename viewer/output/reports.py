@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, fields
 from pathlib import Path
@@ -24,8 +25,15 @@ def _compared(cell: Callable[[Row], str]) -> Callable[[Row], str]:
     return lambda row: cell(row) if row.method != REFERENCE else ""
 
 
+def _speed_up(row: Row) -> str:
+    spread = row.speed_up_spread
+    return f"{row.speed_up:.2f}" + (f" ± {spread:.2f}" if math.isfinite(spread) else "")
+
+
 WRONG = "wrong answers (of rays due)"
+SPEED_UP = "speed-up over none, all frames"
 LINES: tuple[tuple[str, Callable[[Row], str]], ...] = (
+    ("shadow rays saved (of rays due)", _compared(lambda row: saved(row.saved_part))),
     ("traversal steps saved, average", _compared(lambda row: saved(row.average_steps))),
     ("  most (frame)", _compared(lambda row: f"{saved(row.most_steps)} ({row.most_steps_frame})")),
     ("intersection tests saved, average", _compared(lambda row: saved(row.average_tests))),
@@ -35,10 +43,37 @@ LINES: tuple[tuple[str, Callable[[Row], str]], ...] = (
     ("time of a frame, median", lambda row: f"{1000.0 * row.frame_seconds:,.0f} ms"),
     ("time of all frames", lambda row: f"{row.path_seconds:,.2f} s"),
     ("  of it preparing", lambda row: f"{row.build_seconds:,.2f} s" if row.build_seconds >= 0.005 else ""),
-    ("speed-up over none, all frames", _compared(lambda row: f"{row.speed_up:.2f}")),
+    (SPEED_UP, _compared(_speed_up)),
     ("memory of the method", lambda row: memory(row.memory_bytes) if row.memory_bytes else ""),
 )
-"""The table's lines: what each is called, and what it says of a method; WRONG means nothing unless verified."""
+"""The table's lines: what each is called, and what it says of a method."""
+
+
+def lines(verified: bool) -> list[tuple[str, Callable[[Row], str]]]:
+    """Those that mean anything: wrong answers are counted only where frames were `verified`, and then traced rays that
+    are culled are in the times."""
+    return [line for line in LINES if line[0] != (SPEED_UP if verified else WRONG)]
+
+
+def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
+    """What else the times depend on, in half sentences; `in_window` says that they were measured beside one."""
+    settings = results.settings
+    if settings.get("verify"):
+        return ["times include verifying, which traces culled rays, too: no speed-up is told"]
+    said = ["traced beside the window, which draws meanwhile: bench has the processor for itself"] if in_window else []
+    if "accelerator" in settings:
+        said.append(f"times are those of {settings['accelerator']}: another tree has other speed-ups")
+    for method, seconds in results.build_seconds.items():
+        share = sum(seconds) / max(sum(results.methods[method]["frame_seconds"]), 1e-9)
+        if share >= PREPARING:
+            said.append(f"{share:.0%} of the time of {method} is preparing")
+    if len(results.frames) > 1:
+        said.append("±: twice the standard error over the frames")
+    return said
+
+
+PREPARING = 0.05
+"""The part of a method's time from which on it is worth a word that this was preparing."""
 
 QUICKER = 1.03
 """Speed-up over the reference from which on a method is called quicker: less is within what clocks differ by."""
@@ -57,7 +92,8 @@ def leaders(rows: Sequence[Row], timed: bool = True) -> list[str]:
     culling = [row for row in others if row.average_steps or row.average_tests]  # else it is only chance
     steps = _best(others, lambda row: row.average_steps, SAVING)
     tests = _best(others, lambda row: row.average_tests, SAVING)
-    time = _best(culling, lambda row: row.speed_up, QUICKER)
+    beyond_chance = [row for row in culling if row.speed_up - row.speed_up_spread > 1.0]
+    time = _best(beyond_chance, lambda row: row.speed_up, QUICKER)
     none = f"{REFERENCE}; no other"
     lines = [
         "fewest steps, of exact methods: "

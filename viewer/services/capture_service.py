@@ -20,6 +20,7 @@ from viewer.output.annotations import annotated
 from viewer.output.legend_parts import Legend
 from viewer.output.legend_picture import with_legend
 from viewer.output.recipe import Recipe
+from viewer.output.savings_picture import with_savings
 from viewer.services import stills
 from viewer.services.jobs import Job
 from viewer.state.notices import Notices
@@ -106,7 +107,8 @@ class CaptureService:
         def save() -> Path:
             described = with_legend(pixels, legend, place) if legend is not None else None
             saved = pixels if described is None else described
-            saved = saved if recipe is None else annotated(saved, recipe.style.annotations)
+            if recipe is not None:
+                saved = with_savings(annotated(saved, recipe.style.annotations), frame, recipe.style.savings)
             if recipe is None:
                 return capture.save(saved, folder, name, text)
             kept = recipe if described is not None else replace(recipe, style=replace(recipe.style, legend=None))

@@ -132,7 +132,7 @@ class FilmController:
         style = replace(
             recipe.style, magnified=1, caption=plan.caption, legend=(p.legend_x, p.legend_y) if plan.legend else None
         )
-        history = cannot_come_back(settings, recipe.view)
+        history = cannot_come_back(settings, recipe.view, recipe.tells_counters)
         recipe = replace(recipe, settings=settings, style=style, repeats=0, history=history, by_gpu=False)
         name = f"{scene.path.stem}-film-{datetime.now():%Y-%m-%d-%H-%M-%S}"
         folder = p.picture_folder / name

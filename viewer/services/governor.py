@@ -33,7 +33,7 @@ MOVING_SAMPLES, FEWEST_SAMPLES = 4, 1  # of lamps in motion, where there is time
 LEAST_PART = 4  # sixteenths of the pixels that there must be time for with the former
 STALLED = 10.0  # times what a frame should take, after which one alone is not believed
 PRIMARY, UNSHADED, SHADING = ("primary",), ("surfaces", "filling"), ("shading",)
-BESIDE = ("place", "certification")
+BESIDE = ("place", "occlusion testing", "certification", "mode setting")
 
 
 @dataclass(frozen=True)

@@ -134,7 +134,7 @@ class PictureController:
         style = replace(recipe.style, magnified=1, legend=place, caption=plan.caption)
         settings = replace(recipe.settings, width=width, height=height, samples=plan.samples).validated()
         # Modes are those of a resolution, and begin anew in another; once more, and they show what they are.
-        history = cannot_come_back(settings, recipe.view)
+        history = cannot_come_back(settings, recipe.view, recipe.tells_counters)
         wanted = replace(
             recipe, settings=settings, style=style, repeats=1 if recipe.needs_history else 0, history=history,
             by_gpu=False,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from viewer.state.choices import Choices
-from viewer.state.methods import BY_MODES, CERTIFIED, DEFAULT, NO_CULLING
+from viewer.state.methods import ADAPTIVE, BY_MODES, CERTIFIED, NO_CULLING
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -31,8 +31,8 @@ BUILT_IN = (
     BuiltIn(
         "As in the paper",
         "The method paper, tested one way, with zoom factor 4, 10 bounces, a ray for each pixel, and point lights; "
-        "each frame is traced in full, at 512 x 512. (The window always traces through its fast trees; the command "
-        "bench takes the paper's kd-tree.)",
+        "every frame of the animation is traced, each in full, at 512 x 512. (The window always traces through its "
+        "fast trees; the command bench takes the paper's kd-tree.)",
         {
             "method": BY_MODES, "symmetric": False, "zoom_factor": 4.0, "depth": 10, "samples": 1, "verify": False,
             "lamp_radius": 0.0, "lamp_samples": None,
@@ -40,7 +40,7 @@ BUILT_IN = (
         None,
         {
             "fixed_resolution": True, "fixed_width": 512, "fixed_height": 512, "dynamic_resolution": False,
-            "keep_tracing": False,
+            "every_frame": True, "keep_tracing": False,
         },
     ),
     BuiltIn(
@@ -51,9 +51,9 @@ BUILT_IN = (
     BuiltIn(
         "Quick and exact",
         "The method auto, which culls where that is quicker, in the size of the window, refined while nothing moves.",
-        {"method": DEFAULT, "verify": False, "samples": 16},
+        {"method": ADAPTIVE, "verify": False, "samples": 16},
         None,
-        {"fixed_resolution": False, "dynamic_resolution": True},
+        {"fixed_resolution": False, "dynamic_resolution": True, "every_frame": False},
     ),
     BuiltIn(
         "What the paper gets wrong",

@@ -73,12 +73,13 @@ class Recipes:
             clipping=session.clipping and view.shows_clipped,
             span=session.spans.get(view) if ranged else None,
             cut=session.cut if view.has_slice else MIDDLE,
+            savings="" if p.savings_in_pictures else None,
         )
 
     def _with_history(self, found: Recipe, frame: Frame) -> Recipe:
         if not found.needs_history:
             return found
-        why = recipe.cannot_come_back(frame.settings, found.view)
+        why = recipe.cannot_come_back(frame.settings, found.view, found.tells_counters)
         if why:
             return replace(found, history=why)
         repeats = self._tracing.learnt.repeats(frame)

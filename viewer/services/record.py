@@ -3,7 +3,8 @@ them taught each mode."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.history import History
 from viewer.state.moments import MOST, Moment, Moments
 from viewer.state.picking import Pick
+from viewer.state.rate import Rate
 from viewer.state.readings import has_modes_of_cells
 from viewer.state.session import Session, settings_to_json
 from viewer.state.teaching import Ledger, Taught
@@ -25,17 +27,24 @@ Key = tuple[int, int, bool, float | None, int | None]
 
 class Record:
     """`moments` are the frames that can be gone back to; `learnt_from` are the numbers of those that set modes since
-    these were last forgotten, in order, None where the first of them are not kept any more."""
+    these were last forgotten, in order, None where the first of them are not kept any more; `rate` is how many pictures
+    come."""
 
-    def __init__(self, session: Session, history: History) -> None:
-        self._session, self._history = session, history
-        self.moments = Moments()
+    def __init__(self, session: Session, history: History, clock: Callable[[], float] = time.monotonic) -> None:
+        self._session, self._history, self._clock = session, history, clock
+        self.moments, self.rate = Moments(), Rate()
         self.forget()
+
+    @property
+    def pictures_a_second(self) -> float | None:
+        """None while none are coming."""
+        return self.rate.per_second(self._clock())
 
     def forget(self) -> None:
         """Another scene is open."""
         self._history.clear()
         self.moments.clear()
+        self.rate.forget()
         self._request: RenderRequest | None = None
         self._shown: Key | None = None
         self.forget_modes()
@@ -67,6 +76,8 @@ class Record:
         """Put a frame into the plots, and keep what brings it back; returns its number."""
         again, self._request = traced.request is self._request, traced.request
         self._history.add(traced.frame, drawn_seconds, again)
+        if not again:
+            self.rate.count(self._clock())
         number = self._history.frames - 1
         self.moments.put(self._moment(traced, number))
         return number

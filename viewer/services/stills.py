@@ -25,6 +25,7 @@ from viewer.output.legend_parts import Chosen
 from viewer.output.legend_picture import with_legend
 from viewer.output.pictures import lights_in_words, picture
 from viewer.output.recipe import Recipe
+from viewer.output.savings_picture import with_savings
 from viewer.state.earlier import Earlier
 from viewer.state.readings import can_record_lights, records_lights
 from viewer.state.session import Session
@@ -70,7 +71,7 @@ def trace(
     scene, settings, view = renderer.scene, recipe.settings, recipe.view
     times = times_before(scene, recipe.time, recipe.warmup) + [recipe.time] * recipe.repeats
     before = [*recipe.before, *(Earlier(time, recipe.camera) for time in times)]
-    modes = settings.modes or view.of_modes or everything
+    modes = settings.modes or view.of_modes or everything or recipe.tells_counters
     renderer.settings = replace(settings, samples=1, verify=False, modes=modes)
     for done, earlier in enumerate(before):
         on_frame(done, len(before) + 1)
@@ -82,6 +83,7 @@ def trace(
         modes=modes,
         verify=settings.verify or view.needs_verify,
         record_lights=lights,
+        record_fates=view.needs_fates,
         record_work=view.needs_work,
     )
     frame = renderer.render(recipe.time, recipe.camera, cancelled)
@@ -91,12 +93,13 @@ def trace(
 def lights_fit(recipe: Recipe, scene: Scene, everything: bool = False) -> bool:
     """Whether there is memory for what all lights send to each pixel, where that is to be recorded."""
     width, height = recipe.size
-    return not (everything or recipe.view is View.LIGHTS) or can_record_lights(width * height, len(scene.lights))
+    recorded = everything or recipe.view is View.LIGHTS or recipe.view.needs_fates
+    return not recorded or can_record_lights(width * height, len(scene.lights))
 
 
 def draw(frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8], str]:
-    """(h, w, 3) uint8, the frame as the recipe draws it, with legend, annotations and caption; and why there is no
-    legend where one was wanted, in words."""
+    """(h, w, 3) uint8, the frame as the recipe draws it, with all that goes with it; and why there is no legend where
+    one was wanted, in words."""
     style, view, light = recipe.style, recipe.view, recipe.light
     pixels = picture(
         frame, view, light, style.shading, style.marked, recipe.wipe, style.shares, style.beneath,
@@ -106,7 +109,7 @@ def draw(frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8],
 
 
 def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8], str]:
-    """What lies over a drawn view (h, w, 3), and below it; as `draw`."""
+    """What lies over a drawn view (h, w, 3), above and below it; as `draw`."""
     style, view, light, missing = recipe.style, recipe.view, recipe.light, ""
     if style.legend is not None:
         name = scene.lights[light].name if view.of_light else ""
@@ -117,7 +120,8 @@ def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recip
         if described is None:
             missing = f"no legend: {'the picture is too small for it' if legend else 'the traced picture needs none'}"
         pixels = pixels if described is None else described
-    return with_caption(annotated(pixels, style.annotations), style.caption), missing
+    pixels = with_savings(annotated(pixels, style.annotations), frame, style.savings)
+    return with_caption(pixels, style.caption), missing
 
 
 def with_caption_filled(recipe: Recipe, scene: Scene) -> Recipe:

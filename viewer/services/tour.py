@@ -166,6 +166,7 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
     show_panel("Statistics")
     if Method.parse(before).adaptive or not _culls(c):
         c.settings.change(method=with_base(before, BY_MODES))
+        c.notices.say(f"the method is {c.session.settings.method} now, as {before} has culled nothing here")
     yield from _until(_shows(c, culling=True))
     yield SECONDS
     c.settings.toggle_culling()
@@ -174,8 +175,6 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
     c.settings.toggle_culling()
     yield from _until(_shows(c, culling=True))
     yield SECONDS
-    if Method.parse(before).culls:
-        c.settings.change(method=before)
 
 
 def _how_to_toggle(c: Controller, key: Key) -> str:
@@ -185,7 +184,7 @@ def _how_to_toggle(c: Controller, key: Key) -> str:
     if method.adaptive:
         return (
             f"Choose {BY_MODES}, the published method, at the top of the Culling panel, and then press {toggle} twice. "
-            f"{seen} (The method at the start, {method.base}, culls only where that is quicker.)"
+            f"{seen} (The method {method.base} culls only where that is quicker.)"
         )
     if not method.culls:
         return f"Press {toggle} once more to cull again. {seen}"
@@ -269,8 +268,8 @@ STEPS = (
         _how_to_toggle,
         _has_toggled_culling,
         _toggle_culling,
-        "Culling is on, then off, so that every shadow ray is traced, and then on again: compare the row Traced in the "
-        "Statistics panel. The picture looks the same.",
+        "Culling is on, then off, so that every shadow ray is traced, and then on again, as it stays: compare the row "
+        "Traced in the Statistics panel. The picture looks the same.",
     ),
     Step(
         "See the modes",

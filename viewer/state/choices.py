@@ -34,6 +34,7 @@ LOOKS = {
     "dynamic_resolution": "progressive refinement",
     "certificate_share": "share of certificates",
     "keep_tracing": "tracing at idle",
+    "every_frame": "every frame",
 }
 """Fields of the preferences that change what the picture shows, and what each is called."""
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from tracer.frame import Frame
 from viewer.state import terms
+from viewer.state.in_turn import InTurn
 from viewer.util.numbers import count
 
 
@@ -54,9 +55,17 @@ class Row:
         return f"{share:+,.{1 if abs(share) < 1000.0 else 0}f} %" if share else "0 %"
 
 
-def rows(a: Frame, b: Frame) -> list[Row]:
-    """All figures of two frames, in the words of the panel of statistics; what neither frame has is left out."""
-    found = list(_rows(a, b))
+NO_TIME = (
+    "known for two methods live, once the picture rests and both have traced it in turn: of two single frames nothing "
+    "follows"
+)
+
+
+def rows(a: Frame, b: Frame, timed: InTurn | None = None) -> list[Row]:
+    """All figures of two frames, in the words of the panel of statistics; what neither frame has is left out.
+
+    Times are those of frames in turn, where there are any by both methods."""
+    found = list(_rows(a, b, timed))
     kept = [row for row in found if row.heading or row.name in _ALWAYS or row.shows_any]
     return [row for i, row in enumerate(kept) if not row.heading or (i + 1 < len(kept) and not kept[i + 1].heading)]
 
@@ -64,11 +73,12 @@ def rows(a: Frame, b: Frame) -> list[Row]:
 _ALWAYS = (terms.DUE.capitalize(), terms.TRACED.capitalize(), "Frame")
 
 
-def _rows(a: Frame, b: Frame) -> Iterator[Row]:
+def _rows(a: Frame, b: Frame, timed: InTurn | None) -> Iterator[Row]:
     s, t = a.statistics, b.statistics
     if a.statistics.part < 1.0 or b.statistics.part < 1.0:
         shaded = [round(one.primitive.size * one.statistics.part) for one in (a, b)]
-        yield Row("Shaded pixels", "so far; all counts but those of primary rays are theirs", shaded[0], shaded[1])
+        meaning = "so far; all counts but those of primary rays and occlusion tests are theirs"
+        yield Row("Shaded pixels", meaning, shaded[0], shaded[1])
     yield Row("Shadow rays", heading=True)
     for term in (terms.DUE, terms.SAVED, terms.CULLED, terms.DYNAMIC_ONLY, terms.CANDIDATES_ONLY, terms.CACHE_HITS):
         field = {terms.CANDIDATES_ONLY: "candidates_only"}.get(term, term.replace(" ", "_"))
@@ -97,7 +107,24 @@ def _rows(a: Frame, b: Frame) -> Iterator[Row]:
         yield Row("  steps", "that this took", s.certificate_steps, t.certificate_steps)
         yield Row("  tests", "that this took", s.certificate_tests, t.certificate_tests)
     yield Row("Time", heading=True)
-    yield Row("Frame", "from the request to the picture", 1e3 * s.seconds, 1e3 * t.seconds, " ms", 1)
-    for name, (label, tip) in terms.PHASES.items():
-        times = [1e3 * one.phases[name] if name in one.phases else None for one in (s, t)]
-        yield Row(f"  {label}", tip, times[0], times[1], " ms", 1)
+    yield from _times(a, b, timed)
+
+
+def _times(a: Frame, b: Frame, timed: InTurn | None) -> Iterator[Row]:
+    """Medians of frames in turn: single frames vary by more than methods differ."""
+    methods = a.settings.method, b.settings.method
+    if timed is None or not timed.tells or not set(methods) <= set(timed.methods):
+        yield Row("Frame", NO_TIME)
+        return
+
+    def median(method: str, phase: str = "") -> float | None:
+        found = timed.seconds(method, phase)
+        return 1e3 * found.median if found is not None else None
+
+    speed = timed.speed(methods[1], methods[0])
+    tip = f"medians of {timed.count} whole frames by each method, in turn, while nothing else was to be done"
+    if speed is not None:
+        tip += f"; B is {speed.median:.2f} ± {speed.margin:.2f} times as fast as A"
+    yield Row("Frame", tip, median(methods[0]), median(methods[1]), " ms", 1)
+    for name, (label, what) in terms.PHASES.items():
+        yield Row(f"  {label}", what, median(methods[0], name), median(methods[1], name), " ms", 1)

@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tracer.method import Kind, Method, additions, bases
+from tracer.method import DEFAULT_METHOD, Kind, Method, additions, bases
 from viewer.state.views import View
 
-DEFAULT = "auto"
-"""What the window and `render` trace with until another method is chosen."""
-NO_CULLING, BY_MODES, CERTIFIED = "none", "paper", "certified"
-"""What is chosen to see every ray traced, the paper's modes at work, and certificates."""
+NO_CULLING, BY_MODES, CERTIFIED, ADAPTIVE = "none", "paper", "certified", "auto"
+"""What is chosen to see every ray traced, the paper's modes at work, certificates, and whatever is quickest."""
 
-
-SHOWN_BY = {View.CUTS: "lightcuts", View.VOXELS: "voxels", View.CELL_LIGHTS: "lie-exact"}
+SHOWN_BY = {
+    View.CERTIFICATE: CERTIFIED,
+    View.CUTS: "lightcuts",
+    View.VOXELS: "voxels",
+    View.CELL_LIGHTS: "lie-exact",
+}
 """Views of what single methods have, and one that has it."""
 
 
 def default_for(view: View) -> str:
-    """The method for one picture in a view: the default one, or one that has something to show there."""
-    if view is View.CERTIFICATE or view.needs_work:
-        return CERTIFIED
-    return BY_MODES if view.needs_verify else SHOWN_BY.get(view, DEFAULT)
+    """The method for one picture in a view: the default one, or else one that has something to show there."""
+    return SHOWN_BY.get(view, DEFAULT_METHOD)
 
 
 def groups() -> list[tuple[str, list[Kind]]]:

@@ -18,16 +18,18 @@ from typing import Any
 import platformdirs
 
 from tracer.frame import Settings
-from tracer.method import Method
+from tracer.method import DEFAULT_METHOD, Method
 from tracer.scene.lights import MAX_SAMPLES
 from viewer.state.merging import merged
-from viewer.state.methods import DEFAULT, NO_CULLING, is_method
+from viewer.state.methods import ADAPTIVE, NO_CULLING, is_method, with_base
 from viewer.state.views import BENEATH, View
 from viewer.util.files import write_text
 from viewer.util.json_numbers import finite
 from viewer.util.part_files import claimed
 
 SETTINGS_FILE = "settings.json"
+FORMAT = 2
+"""Of the file. Version 0.2 wrote none, and its default method, auto, as if it had been chosen."""
 PATIENCE = 2.0  # seconds that one window waits for another to save
 RECENT_SCENES = 10
 RECENT_COMMANDS = 30
@@ -64,16 +66,17 @@ _RANGES: dict[str, tuple[float, float]] = {
 
 @dataclass
 class Preferences:
-    """Everything that outlives the window.  `speed` is relative to the scene's own pace, 1 by default; `method` is
-    the one to cull by while `culling` is on, `certificate_share` the part of a frame's time in motion that may go into
-    certificates; `samples` is how many a pixel gets at idle; `lamp_samples` how many each lamp has, 0 for as many as
-    the scene says (the radius of lamps is measured in units of the scene, and not kept); `savings` says that what
-    culling saves is shown above the picture; `legend_x` and `legend_y` say
-    where in the room that the picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the
-    tour has not been shown yet, `last` is the snapshot, as JSON, to start from where that is asked for;
-    `habits` names the program that the viewer is steered like, `keys` are those that the user has chosen, by the names
-    of commands, and `used` what the command palette ran last, newest first."""
+    """Everything that outlives the window.  `format` is that of the file (`FORMAT`); `speed` is relative to the scene's
+    own pace, 1 by default; `method` is the one to cull by while `culling` is on, `certificate_share` the part of a
+    frame's time in motion that may go into certificates; `samples` is how many a pixel gets at idle; `lamp_samples` how
+    many each lamp has, 0 for as many as the scene says (the radius of lamps is measured in units of the scene, and not
+    kept); `savings` says that what culling saves is shown above the picture; `legend_x` and `legend_y` say where in the
+    room that the picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the tour has not
+    been shown yet, `last` is the snapshot, as JSON, to start from where that is asked for; `habits` names the program
+    that the viewer is steered like, `keys` are those that the user has chosen, by the names of commands, and `used`
+    what the command palette ran last, newest first."""
 
+    format: int = FORMAT
     target_fps: float = 15.0
     dynamic_resolution: bool = True
     fixed_resolution: bool = False
@@ -87,7 +90,7 @@ class Preferences:
     playback_rate: float = 1.0
     keep_tracing: bool = False
     culling: bool = True
-    method: str = DEFAULT
+    method: str = DEFAULT_METHOD
     certificate_share: float = 0.15
     symmetric: bool = False
     zoom_factor: float = 4.0
@@ -107,6 +110,7 @@ class Preferences:
     legend_x: float = 0.0
     legend_y: float = 1.0
     legend_in_pictures: bool = False
+    savings_in_pictures: bool = False
     pixel_values: bool = True
     draw_explanation: bool = True
     screenshot_folder: str = ""
@@ -135,7 +139,7 @@ class Preferences:
             values = {name: getattr(self, name) for name in names}
             return Settings(method=method, lamp_samples=self.lamp_samples or None, **values).validated()
         except ValueError:
-            return Settings(method=DEFAULT)
+            return Settings()
 
     def keep(self, settings: Settings) -> None:
         """Remember what was chosen to trace with."""
@@ -211,7 +215,7 @@ def _read(path: Path) -> tuple[Mapping[str, Any] | None, str | None]:
         data = json.loads(path.read_text(encoding="utf-8"))
         if not isinstance(data, dict):
             raise ValueError("not an object")
-        return data, None
+        return _of_today(data), None
     except FileNotFoundError:
         return None, None
     except (OSError, ValueError, RecursionError) as error:
@@ -232,6 +236,17 @@ def _from_json(data: Mapping[str, Any]) -> Preferences:
             value = checked(item.name, data[item.name], default)
             setattr(preferences, item.name, value)
     return preferences
+
+
+def _of_today(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """What is stored, with the default method in the place of the one that version 0.2 has written unasked; what is
+    added to it was chosen."""
+    method = data.get("method")
+    if "format" in data or not isinstance(method, str) or not is_method(method):
+        return data
+    if Method.parse(method).base == ADAPTIVE:
+        return {**data, "method": with_base(method, DEFAULT_METHOD)}
+    return data
 
 
 def checked(name: str, value: Any, default: Any) -> Any:

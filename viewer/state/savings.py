@@ -7,7 +7,7 @@ time, which need a frame by `none` to be compared with, come from frames that we
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 
@@ -45,7 +45,7 @@ class Part:
 
     def in_words(self, would: bool) -> str:
         """What it is, in two lines."""
-        meaning, way = FATE_MEANING[self.fate], f"with {BY_MODES}, it would be so; " if would else ""
+        meaning, way = FATE_MEANING[self.fate], f"what {BY_MODES} would do: " if would else ""
         return f"{self.name}: {count(self.rays)} of {count(self.due)} shadow rays due ({self.share})\n{way}{meaning}"
 
 
@@ -88,11 +88,12 @@ class Tone(Enum):
 
 @dataclass(frozen=True)
 class Clause:
-    """A part of the sentence, and more about it."""
+    """A part of the sentence, and more about it; `compares` says that it compares the method with none."""
 
     text: str
     tip: str = ""
     tone: Tone = Tone.PLAIN
+    compares: bool = False
 
 
 @dataclass(frozen=True)
@@ -113,9 +114,20 @@ def sentence(frame: Frame, standing: Standing) -> tuple[Clause, ...]:
     return tuple(_clauses(frame, standing))
 
 
-def in_words(clauses: tuple[Clause, ...]) -> str:
+def in_words(clauses: Iterable[Clause]) -> str:
     """The sentence as text."""
     return ", ".join(clause.text for clause in clauses)
+
+
+def comparison_in_words(frame: Frame, standing: Standing) -> str:
+    """What of the sentence no counter of the frame can tell: how its method compares with none; empty where that is not
+    known."""
+    return in_words(one for one in _clauses(frame, standing) if one.compares and one.tone is not Tone.QUIET)
+
+
+def counters_in_words(frame: Frame) -> str:
+    """What of the sentence the frame's counters tell."""
+    return in_words(one for one in _clauses(frame, Standing()) if not one.compares)
 
 
 def _clauses(frame: Frame, standing: Standing) -> Iterator[Clause]:
@@ -132,18 +144,20 @@ def _clauses(frame: Frame, standing: Standing) -> Iterator[Clause]:
     if method.culls and (_answered(s.shadow) or s.cuts is not None):
         yield _wrong(frame, method)
     if standing.moving:
-        yield Clause("speed not measurable while moving", _HOW, Tone.QUIET)
+        yield Clause("speed not measurable while moving", _HOW, Tone.QUIET, compares=True)
     elif standing.proves:
-        yield Clause(standing.proves, "what is proved now saves rays later, and its time is none of theirs", Tone.QUIET)
+        yield Clause(
+            standing.proves, "what is proved now saves rays later, and its time is none of theirs", Tone.QUIET, True
+        )
     elif standing.why_not:
-        yield Clause("speed not measured", standing.why_not, Tone.QUIET)
+        yield Clause("speed not measured", standing.why_not, Tone.QUIET, compares=True)
     elif tells and measured is not None:
         yield from _speed(measured, frame, method)
     elif measured is not None:
         done = "preparing" if measured.prepares else f"{measured.count} rounds"
-        yield Clause("measuring speed ...", f"{_HOW} So far: {done}.", Tone.QUIET)
+        yield Clause("measuring speed ...", f"{_HOW} So far: {done}.", Tone.QUIET, compares=True)
     else:
-        yield Clause("speed is measured once the picture rests", _HOW, Tone.QUIET)
+        yield Clause("speed is measured once the picture rests", _HOW, Tone.QUIET, compares=True)
 
 
 _HOW = (
@@ -186,11 +200,11 @@ def _steps(measured: InTurn, frame: Frame) -> Iterator[Clause]:
     tree = "; of whole packets of rays where these are coherent" if frame.settings.accelerator == BVH8 else ""
     tip = f"nodes of the tree that rays of all kinds enter: {count(mine)}, with none {count(its)}{tree}"
     if abs(more) < _WHOLE:
-        yield Clause("as many steps", tip)
+        yield Clause("as many steps", tip, compares=True)
     elif more > 1.0:
-        yield Clause(f"{mine / its:.1f} × as many steps", tip)
+        yield Clause(f"{mine / its:.1f} × as many steps", tip, compares=True)
     else:
-        yield Clause(f"{100.0 * abs(more):.0f} % {'more' if more > 0.0 else 'fewer'} steps", tip)
+        yield Clause(f"{100.0 * abs(more):.0f} % {'more' if more > 0.0 else 'fewer'} steps", tip, compares=True)
 
 
 def _wrong(frame: Frame, method: Method) -> Clause:
@@ -202,7 +216,9 @@ def _wrong(frame: Frame, method: Method) -> Clause:
             share if s.cuts is None else verified.in_short(s) or "not verified yet", verified.in_words(s), tone
         )
     if method.exact:
-        return Clause("exact", "its pictures are those of none, bit for bit: V traces every culled ray to check (V)")
+        return Clause(
+            "exact", "its pictures are those of none, bit for bit; to check, trace every culled ray as well (V)"
+        )
     return Clause("not verified", "trace every culled ray as well, to count wrong answers (V)", Tone.QUIET)
 
 
@@ -217,9 +233,9 @@ def _speed(measured: InTurn, frame: Frame, method: Method) -> Iterator[Clause]:
     tree = "" if frame.settings.accelerator == BVH8 else f" in the {frame.settings.accelerator}"
     tip = _tip(measured, speed, frame.settings.method)
     if speed.is_one:
-        yield Clause(f"as fast as none{tree} ({', '.join(['within noise', *besides[1:]])})", tip)
+        yield Clause(f"as fast as none{tree} ({', '.join(['within noise', *besides[1:]])})", tip, compares=True)
     else:
-        yield Clause(f"{speed.median:.2f} × as fast as none{tree} ({', '.join(besides)})", tip)
+        yield Clause(f"{speed.median:.2f} × as fast as none{tree} ({', '.join(besides)})", tip, compares=True)
 
 
 def _tip(measured: InTurn, speed: Spread, method: str) -> str:

@@ -20,7 +20,6 @@ from tracer.scene.model import Camera, Scene
 from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
-from viewer.state.methods import DEFAULT
 from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
@@ -29,8 +28,8 @@ from viewer.util.json_numbers import finite, number, whole
 
 # Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
 _NOT_RESTORED = {
-    "width", "height", "threads", "accelerator", "modes", "record_lights", "record_work", "certificates",
-    "certificate_seconds", "patient",
+    "width", "height", "threads", "accelerator", "modes", "record_lights", "record_fates", "record_work",
+    "certificates", "certificate_seconds", "patient",
 }  # fmt: skip
 _OPTIONAL: dict[str, type] = {"lamp_radius": float, "lamp_samples": int}  # None: as the scene says
 
@@ -149,7 +148,7 @@ class Session:
     time: float = 0.0
     free_camera: Camera | None = None
     playing: bool = False
-    settings: Settings = field(default_factory=lambda: Settings(method=DEFAULT))
+    settings: Settings = field(default_factory=Settings)
     view: View = View.COLOR
     light: int = 0
     counting: bool = False  # whether frames are to count the rays at each pixel, whatever the view

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from viewer.state.parts import parts_of
+from viewer.state.savings import comparison_in_words
 from viewer.window import comparing, previewing
 from viewer.window.compared import Compared
 from viewer.window.display import Display, Look
 from viewer.window.magnifier import Magnifier
-from viewer.window.panels import legend
+from viewer.window.panels import legend, savings
 from viewer.window.shots import Shots
 from viewer.window.ui import CaptureKind, Ui
 
@@ -95,6 +96,9 @@ def capture(ui: Ui) -> None:
             pixels = comparing.composed(ui, pixels)
         described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
         recipe = c.recipes.of(c.frame, look.view) if c.frame is not None and not compared else None
+        if recipe is not None and c.frame is not None and recipe.tells_counters:
+            said = comparison_in_words(c.frame, savings.standing(c))
+            recipe = replace(recipe, style=replace(recipe.style, savings=said))
         if wanted is CaptureKind.CLIPBOARD:
             c.pictures.copy(pixels, c.frame, described, recipe)
         else:

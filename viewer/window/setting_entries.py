@@ -75,6 +75,7 @@ _SWITCHES = {
     "dynamic_resolution": ("Progressive refinement", "Rendering"),
     "fixed_resolution": ("Fixed size", "Rendering"),
     "legend_in_pictures": ("Legend in saved pictures", "Saving"),
+    "savings_in_pictures": ("What culling saves in saved pictures", "Saving"),
     "pads": ("Game pads and space mice", "Camera"),
 }
 

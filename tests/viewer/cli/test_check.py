@@ -10,8 +10,11 @@ import pytest
 from PIL import Image
 
 from tests.commands import ROOM, complaint, run
+from tracer.culling.fate import Fate
 from viewer.cli.console import Work
+from viewer.cli.saved_pictures import defaults
 from viewer.output import capture, png
+from viewer.state.views import FATE_COLORS
 
 SIZE = ("--size", "64x48", "--threads", 1)
 
@@ -72,6 +75,26 @@ def test_pictures_stay_true_until_something_changes(capfd: pytest.CaptureFixture
     png.write(Path("old.png"), pixels("plain.png"), json.dumps(data))
     code, (line,) = verdict(capfd, "old.png")
     assert code == 1 and "the version, 0.0.1 then" in line and "shadow rays due" in line
+
+
+@pytest.mark.parametrize("method", ["paper", "none"])
+def test_what_culling_saves_stands_above_the_picture_and_comes_back(
+    capfd: pytest.CaptureFixture[str], method: str
+) -> None:
+    wanted = "render", "room.aff", *SIZE, "--method", method, "--repeat", 1
+    said = "1.10 × as fast as none"
+    assert run(capfd, *wanted, "-o", "plain.png")[0] == 0
+    assert run(capfd, *wanted, "-o", "savings.png", f"--savings={said}")[0] == 0
+    assert run(capfd, *wanted, "-o", "counted.png", "--savings")[0] == 0
+    plain, both, counted = (pixels(name) for name in ("plain.png", "savings.png", "counted.png"))
+    height = len(plain)
+    assert np.array_equal(both[-height:], plain) and np.array_equal(counted[-height:], plain)
+    bar = FATE_COLORS[Fate.TRACED]
+    assert (both[:-height] == np.round(255.0 * np.array(bar))).all(-1).any(), "no part of the bar is seen"
+    code, lines = verdict(capfd, "savings.png", "counted.png")
+    assert code == 0 and all("true" in line for line in lines), lines
+    kept = defaults(Path("savings.png"))[1]
+    assert kept["savings"] == said and defaults(Path("plain.png"))[1]["savings"] is None
 
 
 def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> None:

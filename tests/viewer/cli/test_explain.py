@@ -9,6 +9,10 @@ from pathlib import Path
 import pytest
 
 from tests.commands import ROOM, complaint, run
+from tracer.method import DEFAULT_METHOD
+from viewer.cli import examples
+
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture
@@ -61,6 +65,33 @@ def test_who_taught_a_shadow_mode_is_named(capfd: pytest.CaptureFixture[str]) ->
     assert code == 0
     found = re.search(r"PARTIAL_SHADOW since frame 1 of the 2 before: pixel \((\d+), (\d+)\) (saw|was)", out)
     assert found is not None, out
+
+
+def test_culling_has_seen_a_frame_before_unless_none_is_asked_for(
+    capfd: pytest.CaptureFixture[str], room: Path
+) -> None:
+    """Without frames before it, the frame itself is traced once before, as in the window at rest."""
+    seen = (room, "--pixel", "24,16", "--json")
+
+    def culled(*arguments: object) -> int:
+        told = json.loads(explained(capfd, *seen, *arguments)[1])
+        assert told["method"] == DEFAULT_METHOD
+        return told["due"] - told["traced"]
+
+    assert culled() == culled("--repeat", 1) > 0
+    assert culled("--repeat", 0) == 0
+    assert culled("--frame", 1, "--warmup", 1) == culled("--frame", 1, "--warmup", 1, "--repeat", 0)
+
+
+def test_the_first_example_shows_culling_at_work(capfd: pytest.CaptureFixture[str]) -> None:
+    """Of each of the paper's kinds: culled in full shadow, dynamic objects only in non-shadow, traced in between."""
+    (example,) = re.findall(r"shadowcull (explain \S+ --pixel \S+)  ", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert example in examples.EXPLAIN
+    code, out, _ = run(capfd, *example.split())
+    assert code == 0 and "method paper" in out
+    (rays,) = (line for line in out.splitlines() if "shadow rays that are due" in line)
+    assert all(f" culled by {mode}" in rays for mode in ("FULL_SHADOW", "NON_SHADOW"))
+    assert "traced (PARTIAL_SHADOW)" in out
 
 
 def test_json_adds_up(capfd: pytest.CaptureFixture[str], room: Path) -> None:

@@ -181,7 +181,8 @@ def test_seeds_shake_the_camera_and_a_warmup_cuts_paths(shared: Cluster, capfd: 
 
 
 def test_a_film_by_two_processes_is_that_of_one(shared: Cluster, capfd: pytest.CaptureFixture[str]) -> None:
-    wanted = ("room.aff", "--frames", "1-4", "--size", "40x30", "--caption", "{frame}")
+    learning = ("room.aff", "--frames", "1-4", "--size", "40x30", "--caption", "{frame}")
+    wanted = (*learning, "--method", "certified")
     assert run(capfd, "film", *wanted, "-o", "one", "--threads", 1)[0] == 0
     assert run(capfd, "film", *wanted, "-o", "two", "--workers", 2)[0] == 0
     Path("two/0003.png").unlink()
@@ -193,8 +194,8 @@ def test_a_film_by_two_processes_is_that_of_one(shared: Cluster, capfd: pytest.C
     assert run(capfd, "check", "two/0003.png")[0] == 0
     line = complaint(run(capfd, "film", *wanted, "-o", "two", "--workers", 2, "--depth", 1))
     assert "0001.png: a picture of another film (another settings)" in line
-    code, _, err = run(capfd, "film", *wanted, "-o", "three", "--workers", 2, "--method", "paper")
-    assert code == 0 and "one process traces them all" in err
+    code, _, err = run(capfd, "film", *learning, "-o", "three", "--workers", 2)
+    assert code == 0 and "one process traces them all" in err and "give --method certified" in err
     legend = ("--view", "depth", "--legend", "--workers", 2)
     code, _, err = run(capfd, "film", *wanted, "-o", "four", *legend)
     assert code == 0 and err.count("no legend: the picture is too small for it") == 1, err

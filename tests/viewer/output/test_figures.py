@@ -26,6 +26,8 @@ def results(wrong=(0, 0, 0, 0), **methods: dict[str, list[float]]) -> experiment
     for method, left in {"none": {"steps": [1.0] * 4, "tests": [1.0] * 4}, "paper": PAPER, **methods}.items():
         made.methods[method] = {
             "shadow_rays_due": [1000] * 4,
+            "shadow_rays_culled": [0] * 4,
+            "shadow_rays_dynamic_only": [0] * 4,
             "shadow_traversal_steps": [10_000 * part for part in left["steps"]],
             "shadow_intersection_tests": [5_000 * part for part in left["tests"]],
             "occlusion_tests": [0] * 4,

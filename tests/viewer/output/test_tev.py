@@ -100,8 +100,8 @@ def test_render_sends(server: Server, tmp_path: Path, capfd: pytest.CaptureFixtu
     options = ("--to-tev", f"127.0.0.1:{server.port}", "--size", "32x24", "--threads", 1)
     assert run(capfd, "render", tmp_path / "room.aff", *options)[0] == 0
     server.close()
-    assert list(server.images) == ["room 0 s auto"]
-    image = server.images["room 0 s auto"]
+    assert list(server.images) == ["room 0 s paper"]
+    image = server.images["room 0 s paper"]
     assert image["R"].shape == (24, 32) and image["due.1"].any() and image["occlusion_mode"].min() == -1.0
 
 

@@ -90,7 +90,7 @@ def _tour_fits(d: Driver) -> None:
         d.ui.tour.start()
         d.ui.preview = None
         heights = []
-        for height in (800, 1100):
+        for height in (680, 1100):
             d.resize(1280, height)
             steps, viewport = imgui.internal.find_window_by_name("###steps"), imgui.get_main_viewport()
             assert steps.pos.y + steps.size.y <= viewport.work_pos.y + viewport.work_size.y, "the tour is cut off"

@@ -47,6 +47,7 @@ def test_as_in_the_paper_is_what_the_paper_says(parts: Parts):
     assert (s.method, s.symmetric, s.zoom_factor, s.depth, s.samples) == ("paper", False, 4.0, 10, 1)
     assert s.lamp_radius == 0.0, "point lights"
     assert (p.fixed_resolution, p.fixed_width, p.fixed_height, p.dynamic_resolution) == (True, 512, 512, False)
+    assert p.every_frame, "frame-to-frame coherence is that of one frame and the next"
     assert parts.session.view is View.DEPTH, "it says nothing of the view"
     assert parts.named == ["preset As in the paper"] and parts.notices.message.text.endswith("As in the paper")
 

@@ -56,6 +56,11 @@ def made(desk: Desk, capfd: pytest.CaptureFixture[str]) -> np.ndarray:
         return np.asarray(image)
 
 
+def exactly(desk: Desk) -> None:
+    """By a method whose pictures depend on no frames before them."""
+    desk.c.settings.change(method="certified")
+
+
 def later(desk: Desk) -> None:
     desk.c.session.time = 1.2345678901234567
     desk.c.preferences.outlines = True
@@ -98,7 +103,7 @@ def by_modes(view: View) -> Callable[[Desk], None]:
 
 def test_a_copied_command_makes_the_same_picture(odd: Desk, capfd: pytest.CaptureFixture[str]) -> None:
     modes = [by_modes(view) for view in (View.SHADOW, View.OCCLUSION, View.WIPE, View.DIFFERENCE, View.SAVED)]
-    for change in (lambda _: None, later, elsewhere, soft, toned, ranged, *modes):
+    for change in (lambda _: None, exactly, later, elsewhere, soft, toned, ranged, *modes):
         change(odd)
         odd.rest()
         assert np.array_equal(made(odd, capfd), shown(odd)), odd.c.recipes.command()

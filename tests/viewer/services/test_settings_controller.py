@@ -57,10 +57,10 @@ def test_what_was_added_while_culling_was_off_stays():
     parts = Parts()
     parts.settings.change(method="none+rest")
     parts.settings.toggle_culling()
-    assert parts.session.settings.method == "auto+rest"
+    assert parts.session.settings.method == "paper+rest"
     parts.settings.toggle_culling()
     parts.settings.toggle_culling()
-    assert parts.session.settings.method == "auto+rest"
+    assert parts.session.settings.method == "paper+rest"
 
 
 def test_lights_are_counted_around():

@@ -75,18 +75,18 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Desk:
 
 
 def test_each_change_is_a_step_with_a_name(desk: Desk):
-    desk.settings.change(method="paper")
+    desk.settings.change(method="certified")
     desk.frame()
     desk.settings.set_view(View.DEPTH)
     desk.frame()
     assert desk.undo.undoes == "view Depth" and desk.undo.redoes == ""
     desk.undo.undo()
     assert desk.said == "undone: view Depth" and desk.session.view is View.COLOR
-    assert desk.session.settings.method == "paper" and desk.preferences.view == "color"
+    assert desk.session.settings.method == "certified" and desk.preferences.view == "color"
     desk.undo.undo()
-    assert desk.session.settings.method == desk.preferences.method == "auto" and desk.undo.undoes == ""
+    assert desk.session.settings.method == desk.preferences.method == "paper" and desk.undo.undoes == ""
     desk.undo.redo()
-    assert desk.said == "redone: method paper" and desk.session.settings.method == "paper"
+    assert desk.said == "redone: method certified" and desk.session.settings.method == "certified"
     assert desk.undo.redoes == "view Depth"
     desk.settings.change(depth=3)
     desk.frame()
@@ -166,12 +166,12 @@ def test_time_is_no_step_and_stays(desk: Desk):
 
 def test_what_is_named_is_one_step_with_that_name(desk: Desk):
     desk.undo.call_next("preset mine")
-    desk.settings.change(method="paper", depth=2)
+    desk.settings.change(method="certified", depth=2)
     desk.settings.set_view(View.DEPTH)
     desk.frame()
     assert desk.undo.undoes == "preset mine"
     desk.undo.undo()
-    assert (desk.session.settings.method, desk.session.settings.depth) == ("auto", 10)
+    assert (desk.session.settings.method, desk.session.settings.depth) == ("paper", 10)
 
 
 def test_a_name_for_nothing_names_nothing_else(desk: Desk):

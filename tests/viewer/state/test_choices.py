@@ -42,11 +42,11 @@ def test_choices_are_put_back_as_they_were_and_through_json(session: Session):
 def test_differences_are_in_words(session: Session):
     p = Preferences()
     before = Choices.of(session, p)
-    session.settings = replace(session.settings, method="paper", symmetric=True, lamp_radius=0.25)
+    session.settings = replace(session.settings, method="certified", symmetric=True, lamp_radius=0.25)
     session.view, session.light, p.legend = View.SHADOW, 1, False
     said = set(differences(before, Choices.of(session, p)).values())
-    assert said == {"method paper", "symmetric occlusion test on", "lamp radius 0.25", "view Shadow mode", "light 1",
-                    "legend off"}  # fmt: skip
+    assert said == {"method certified", "symmetric occlusion test on", "lamp radius 0.25", "view Shadow mode",
+                    "light 1", "legend off"}  # fmt: skip
     back = differences(Choices.of(session, p), before).values()
     assert "lamp radius of the scene" in back
     assert differences(before, before) == {}

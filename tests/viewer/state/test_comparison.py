@@ -10,7 +10,7 @@ import pytest
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.frame import Settings
 from tracer.statistics import FrameStatistics, ShadowCounts, WrongCounts
-from viewer.state.columns import rows
+from viewer.state.columns import NO_TIME, rows
 from viewer.state.comparison import (
     Comparison,
     Side,
@@ -22,6 +22,7 @@ from viewer.state.comparison import (
     signed_difference,
     sizes_in_words,
 )
+from viewer.state.in_turn import LEAST, InTurn
 from viewer.state.slices import MIDDLE
 from viewer.state.values import values_of
 from viewer.state.views import View
@@ -100,19 +101,37 @@ def test_it_is_in_turn_that_pictures_blink():
 
 def test_columns_have_differences_and_shares():
     a, b = make_frame(), make_frame()
-    a = replace(a, statistics=FrameStatistics(shadow=ShadowCounts(due=1000, rays=1000), seconds=0.2))
-    b = replace(b, statistics=FrameStatistics(shadow=ShadowCounts(due=1000, culled=250, rays=750), seconds=0.1))
+    a = replace(a, statistics=FrameStatistics(shadow=ShadowCounts(due=1000, rays=1000)))
+    b = replace(b, statistics=FrameStatistics(shadow=ShadowCounts(due=1000, culled=250, rays=750)))
     found = {row.name: row for row in rows(a, b)}
-    culled, traced, frame = found["Culled"], found["Traced"], found["Frame"]
+    culled, traced = found["Culled"], found["Traced"]
     assert (culled.difference, culled.share, culled.written_share) == (250, None, "-")
     assert culled.written(culled.difference, signed=True) == "+250"
     assert (traced.difference, traced.written_share) == (-250, "-25.0 %")
-    assert (frame.written(frame.a), frame.written_share) == ("200.0 ms", "-50.0 %")
     assert found["Due"].written_share == "0 %"
     assert "Wrong answers" not in found and "Certificates made" not in found, "what neither has is left out"
     verified = replace(b, statistics=replace(b.statistics, wrong=WrongCounts(answers=3, due=1000, pixels=2)))
     wrong = {row.name: row for row in rows(a, verified)}["Wrong answers"]
     assert (wrong.written(wrong.a), wrong.written(wrong.b), wrong.written_share) == ("-", "3", "-")
+
+
+def test_times_are_those_of_many_frames_in_turn_or_none():
+    def took(seconds: float) -> FrameStatistics:
+        return FrameStatistics(seconds=seconds, phases={"shading": seconds / 2.0})
+
+    a, b = (replace(make_frame(Settings(method=method)), statistics=took(9.0)) for method in ("none", "paper"))
+    rounds = tuple((took(0.2 + 0.001 * i), took(0.1)) for i in range(LEAST))
+    timed = InTurn(("none", "paper"), rounds, prepares=False)
+    found = {row.name: row for row in rows(a, b, timed)}
+    frame, shading = found["Frame"], found["  shading"]
+    assert (frame.written(frame.a), frame.written(frame.b), shading.written(shading.b)) == (
+        "203.5 ms", "100.0 ms", "50.0 ms",
+    )  # fmt: skip
+    assert "2.0" in frame.tip
+    other = replace(b, settings=Settings(method="certified"))
+    for kept in (rows(a, b), rows(a, b, replace(timed, rounds=rounds[1:])), rows(a, other, timed)):
+        frame = next(row for row in kept if row.name == "Frame")
+        assert (frame.a, frame.b) == (None, None) and frame.tip == NO_TIME
 
 
 def test_columns_say_what_is_shaded_so_far():

@@ -3,25 +3,37 @@
 from __future__ import annotations
 
 from tracer.experiment import with_reference
-from tracer.method import Method, additions, bases
+from tracer.method import DEFAULT_METHOD, Method, additions, bases
+from tracer.settings import Settings
 from viewer.state.methods import (
+    ADAPTIVE,
     BY_MODES,
     CERTIFIED,
-    DEFAULT,
     NO_CULLING,
+    SHOWN_BY,
+    default_for,
     groups,
     in_order,
     is_method,
     toggled,
     with_base,
 )
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
+from viewer.state.views import View
 
 
 def test_methods_that_are_chosen_by_name_can_do_what_they_are_chosen_for():
     assert not Method.parse(NO_CULLING).culls and Method.parse(BY_MODES).uses_modes
     certified = Method.parse(CERTIFIED)
     assert certified.has_certificates and not certified.adaptive
-    assert Method.parse(DEFAULT).exact and Method.parse(DEFAULT).culls
+    assert Method.parse(ADAPTIVE).adaptive and Method.parse(ADAPTIVE).exact
+
+
+def test_one_method_is_the_default_everywhere_that_has_something_to_show():
+    assert DEFAULT_METHOD == Settings().method == Session().settings.method == Preferences().settings().method
+    assert Method.parse(DEFAULT_METHOD).uses_modes and Method.parse(DEFAULT_METHOD).culls
+    assert {view: default_for(view) for view in View if default_for(view) != DEFAULT_METHOD} == SHOWN_BY
 
 
 def test_every_method_that_can_be_put_together_exists():
@@ -51,4 +63,10 @@ def test_the_list_of_methods_has_each_once_among_its_like():
     assert sorted(kind.name for kind in listed) == sorted(kind.name for kind in bases())
     (_, exact), (_, wrong) = groups()
     assert {kind.exact for kind in exact} == {True} and {kind.exact for kind in wrong} == {False}
-    assert all(kind.summary.endswith(".") for kind in (*listed, *additions()))
+
+
+def test_each_method_says_what_it_trusts_and_whether_it_is_exact():
+    for kind in bases(measures=True):
+        assert kind.summary.startswith(("Trusts ", "Lightcuts ")) and kind.summary.endswith("."), kind.name
+        assert ("Exact" in kind.summary) == kind.exact, kind.name
+        assert ("Wrong now and then." in kind.summary or "Not exact." in kind.summary) != kind.exact, kind.name

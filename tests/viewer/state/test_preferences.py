@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,28 @@ def test_the_method_to_cull_by_is_kept_while_culling_is_off(tmp_path: Path):
     save_preferences(mine, tmp_path)
     read, _ = load_preferences(tmp_path)
     assert (read.culling, read.method, read.settings().method) == (False, "certified+cache", "none")
+
+
+@pytest.mark.parametrize(
+    ("stored", "found"),
+    [
+        ({"method": "auto"}, "paper"),
+        ({"method": "auto+rest"}, "paper+rest"),
+        ({"method": "certified"}, "certified"),
+        ({"method": "auto", "format": 2}, "auto"),
+        ({"method": 3}, "paper"),
+    ],
+)
+def test_the_default_method_of_version_0_2_was_not_chosen(tmp_path: Path, stored: dict, found: str):
+    """That version has written `auto` whether anybody chose it or not; since then, what is stored was chosen."""
+    (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(stored))
+    read, problem = load_preferences(tmp_path)
+    assert (read.method, problem) == (found, None)
+    save_preferences(read, tmp_path, base=asdict(read))
+    assert load_preferences(tmp_path)[0].method == found, "nor is it when two windows' changes are put together"
+    read.keep(Settings(method="auto"))
+    save_preferences(read, tmp_path, base=asdict(load_preferences(tmp_path)[0]))
+    assert load_preferences(tmp_path)[0].method == "auto"
 
 
 def test_samples_of_lamps_are_kept(tmp_path: Path):

@@ -7,9 +7,9 @@ from collections import Counter
 import pytest
 from imgui_bundle import imgui
 
+from tracer.method import DEFAULT_METHOD
 from viewer.services.controller import Controller
 from viewer.state.keymap import HELD
-from viewer.state.methods import DEFAULT
 from viewer.state.preferences import SCALES, Preferences
 from viewer.state.views import View
 from viewer.window import closer, command, commands
@@ -93,7 +93,7 @@ def test_culling_is_switched(ui):
     culling.run()
     assert ui.controller.session.settings.method == "none" and not ui.controller.preferences.culling
     culling.run()
-    assert ui.controller.session.settings.method == DEFAULT
+    assert ui.controller.session.settings.method == DEFAULT_METHOD
     ui.controller.settings.change(method="cells+cache")
     culling.run()
     assert ui.controller.session.settings.method == "none"

@@ -154,7 +154,8 @@ def _columns(ui: Ui) -> None:
     a, b = comparing.a, comparing.b
     if a is None or b is None:
         return
-    found: list[Row] = ui.cached("columns", a.frame, id(b.frame), lambda: rows(a.frame, b.frame))
+    timed = ui.controller.baseline.measured if comparing.measures else None
+    found: list[Row] = ui.cached("columns", a.frame, (id(b.frame), id(timed)), lambda: rows(a.frame, b.frame, timed))
     flags = int(
         imgui.TableFlags_.sizing_stretch_same
         | imgui.TableFlags_.row_bg

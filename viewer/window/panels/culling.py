@@ -100,8 +100,10 @@ def _method(ui: Ui) -> None:
     name = c.session.settings.method
     with properties("method", 4.0) as shown:
         if shown:
-            row("Method", f"{Method.parse(name).kind.summary} C turns culling off and on.")
+            row("Method", "which shadow rays are not traced, and what that trusts; C turns culling off and on")
             method_list(ui, "##method", name, lambda chosen: c.settings.change(method=chosen))
+    for kind in Method.parse(name).kinds:
+        paragraph(kind.summary if kind.name == name else f"{kind.name}: {kind.summary}", QUIET)
 
 
 def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:

@@ -8,19 +8,17 @@ from imgui_bundle import ImVec4, imgui
 
 from tracer import experiment
 from tracer.experiment import Results, Row
-from viewer.output.reports import LINES, WRONG
+from viewer.output.reports import LINES, WRONG, caveats, lines
 from viewer.services.runs import Experiment
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, clipped, em, in_window_style, right, tooltip
+from viewer.window.widgets import ERROR, QUIET, clipped, em, in_window_style, paragraph, right, tooltip
 
 _SHORT = (
-    "steps saved", "most steps (frame)", "tests saved", "most tests (frame)", "extra / pixel", "wrong",
-    "time in window", "all frames", "preparing", "speed-up", "memory",
+    "rays saved", "steps saved", "most steps (frame)", "tests saved", "most tests (frame)", "extra / pixel", "wrong",
+    "median frame", "all frames", "preparing", "speed-up", "memory",
 )  # fmt: skip
-COMPARED = ("speed-up", "steps saved", "tests saved", "wrong")
+COMPARED = ("speed-up", "rays saved", "steps saved", "tests saved", "wrong")
 """What methods are compared by, which comes first."""
-_TIMES = ("time in window", "all frames", "preparing", "speed-up")
-_TIME_TIP = "measured while the window draws as well: do not compare it with times of shadowcull bench"
 _MOST_COLUMNS = 3  # methods that have columns
 _HEADING, _LONGEST = 8.4, 11.0  # ems of what figures are called there, and of the longest name where methods have lines
 
@@ -43,6 +41,8 @@ def show(ui: Ui, run: Experiment | None, results: Results | None) -> None:
     if run is None or results is None:
         return
     rows, figures = _rows(ui, results), _figures(run)
+    said = "; ".join(caveats(results, in_window=True))
+    paragraph(f"{said[:1].upper()}{said[1:]}.", QUIET)
     widths = [max(_text_width(r.method), *(_text_width(_figure_cell(f, r)[0]) for f in figures)) for r in rows]
     gaps = (len(rows) + 1) * 2.0 * imgui.get_style().cell_padding.x + imgui.get_style().scrollbar_size
     if len(rows) <= _MOST_COLUMNS and em(_HEADING) + sum(widths) + gaps <= imgui.get_content_region_avail().x:
@@ -58,11 +58,8 @@ def _rows(ui: Ui, results: Results) -> list[Row]:
 
 def _figures(run: Experiment) -> list[Figure]:
     """What is told of each method, in the order in which it is read."""
-    figures = [
-        (heading, short, cell)
-        for (heading, cell), short in zip(LINES, _SHORT, strict=True)
-        if heading != WRONG or run.settings.verify
-    ]
+    short = {heading: short for (heading, _), short in zip(LINES, _SHORT, strict=True)}
+    figures = [(heading, short[heading], cell) for heading, cell in lines(run.settings.verify)]
     return sorted(figures, key=lambda figure: COMPARED.index(figure[1]) if figure[1] in COMPARED else len(COMPARED))
 
 
@@ -113,7 +110,7 @@ def _method_lines(rows: list[Row], figures: list[Figure]) -> None:
 def _figure_name(figure: Figure) -> None:
     heading, short, _ = figure
     clipped(short, QUIET)
-    tooltip(f"{heading.strip()}, {_TIME_TIP}" if short in _TIMES else heading.strip())
+    tooltip(heading.strip())
 
 
 def _figure_cell(figure: Figure, line: Row) -> tuple[str, ImVec4 | None]:

@@ -38,4 +38,6 @@ def show(ui: Ui) -> None:
             _, p.tev = imgui.input_text("##tev", p.tev)
     tip = "where the view has one; the picture with panels shows what the window shows"
     checkbox("With legend", p.legend_in_pictures, lambda on: setattr(p, "legend_in_pictures", on), tip)
+    tip = "the sentence and the bar, above the picture"
+    checkbox("With what culling saves", p.savings_in_pictures, lambda on: setattr(p, "savings_in_pictures", on), tip)
     paragraph("A saved picture carries scene, camera, settings and statistics: open or drop it to come back.", QUIET)

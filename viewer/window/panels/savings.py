@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from viewer.output.legend_layout import BACKDROP, TEXT
 from viewer.services.controller import Controller
 from viewer.state import terms
 from viewer.state.savings import LONGEST, Bar, Clause, Part, Standing, Tone, bar_of, sentence
-from viewer.state.views import FATE_COLORS, Color
+from viewer.state.views import FATE_COLORS, Color, label_color
 from viewer.util.numbers import count
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, tooltip
@@ -16,7 +17,6 @@ LEAST = 14.0
 """Ems of height that there must be for the picture, sentence and bar; with less, these are not shown."""
 _GAP, _PAD = 0.3, 0.35  # ems between sentence and bar, and beside the words of a part
 _STRIPE = 0.55  # ems from stripe to stripe of what would be
-_DARK, _LIGHT = (0.05, 0.06, 0.08), (0.96, 0.97, 0.98)
 _COLORS = {Tone.PLAIN: None, Tone.QUIET: QUIET, Tone.WRONG: ERROR}
 
 
@@ -59,41 +59,43 @@ def show(ui: Ui, width: float) -> None:
     if frame is None or c.session.scene is None:
         return
     start, lines = imgui.get_cursor_pos(), _lines(ui, width)
-    _write(ui, sentence(frame, standing(c)), start, width, lines)
+    _write(sentence(frame, standing(c)), start, width, lines)
     imgui.set_cursor_pos(ImVec2(start.x, start.y + lines * imgui.get_text_line_height() + em(_GAP)))
     bar = ui.cached("savings", frame, 0, lambda: bar_of(frame))
-    _draw(ui, bar, width)
+    _draw(bar, width)
 
 
-def _write(ui: Ui, clauses: tuple[Clause, ...], start: ImVec2, width: float, lines: int) -> None:
-    """Clause after clause, in so many lines; what is too long ends in an ellipsis."""
-    x, line, step = 0.0, 0, imgui.get_text_line_height()
+def _write(clauses: tuple[Clause, ...], start: ImVec2, width: float, lines: int) -> None:
+    """Clause after clause, in so many lines, the last of which is that above the bar; what is too long ends in an
+    ellipsis."""
+    places: list[tuple[float, int, str]] = []
+    x, line = 0.0, 0
     for number, clause in enumerate(clauses):
         text = clause.text + (", " if number + 1 < len(clauses) else "")
-        needed = imgui.calc_text_size(text.rstrip()).x
-        if x and x + needed > width and line + 1 < lines:
+        if x and line + 1 < lines and x + imgui.calc_text_size(text.rstrip()).x > width:
             x, line = 0.0, line + 1
-        shown = fitted(text, width - x) if x + needed > width else text
-        imgui.set_cursor_pos(ImVec2(start.x + x, start.y + line * step))
+        places.append((x, line, text))
+        x += imgui.calc_text_size(text).x
+    below = start.y + (lines - 1 - line) * imgui.get_text_line_height()
+    for clause, (x, line, text) in zip(clauses, places, strict=True):
+        if x >= width:
+            return  # what comes before has ended in an ellipsis
+        imgui.set_cursor_pos(ImVec2(start.x + x, below + line * imgui.get_text_line_height()))
+        shown = text if x + imgui.calc_text_size(text.rstrip()).x <= width else fitted(text, width - x)
         color = _COLORS[clause.tone]
         if color is not None:
             imgui.push_style_color(imgui.Col_.text, color)
         imgui.text_unformatted(shown)
         if color is not None:
             imgui.pop_style_color()
-        tip = ui.with_keys(clause.tip)
-        if tip or shown != text:
-            tooltip(f"{clause.text}\n{tip}" if shown != text else tip)
-        x += imgui.calc_text_size(text).x
-        if shown != text:
-            break
+        tooltip("\n".join(filter(None, (clause.text if shown != text else "", clause.tip))))
 
 
-def _draw(ui: Ui, bar: Bar, width: float) -> None:
+def _draw(bar: Bar, width: float) -> None:
     """The parts beside each other, each as wide as its share."""
     corner, high = imgui.get_cursor_screen_pos(), _bar_height()
     draw, done = imgui.get_window_draw_list(), 0
-    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), _packed(_DARK), em(0.15))
+    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), _packed(BACKDROP), em(0.15))
     for part in bar.parts:
         left, right = (corner.x + width * rays / part.due for rays in (done, done + part.rays))
         done += part.rays
@@ -128,13 +130,11 @@ def _label(draw: imgui.ImDrawList, part: Part, at: ImVec2, end: ImVec2, hatched:
     for text in (f"{part.name} {part.share}", part.share):
         size = imgui.calc_text_size(text)
         if size.x <= room:
-            red, green, blue = FATE_COLORS[part.fate]
-            light = hatched or 0.3 * red + 0.6 * green + 0.1 * blue < 0.45
             x, y = round(at.x + em(_PAD)), round(at.y + (end.y - at.y - size.y) / 2.0)
             if hatched:
                 back = ImVec2(x - 0.2 * em(1.0), at.y), ImVec2(x + size.x + 0.2 * em(1.0), end.y)
-                draw.add_rect_filled(*back, _packed(_DARK, 0.8))
-            draw.add_text(ImVec2(x, y), _packed(_LIGHT if light else _DARK), text)
+                draw.add_rect_filled(*back, _packed(BACKDROP, 0.8))
+            draw.add_text(ImVec2(x, y), _packed(TEXT if hatched else label_color(FATE_COLORS[part.fate])), text)
             return
 
 

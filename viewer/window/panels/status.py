@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from imgui_bundle import ImVec2, hello_imgui, imgui
+from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
@@ -102,13 +102,14 @@ def _learns(c: Controller) -> bool:
 
 
 def _summary(ui: Ui) -> str:
-    """The picture's size and cost, and how often the window is drawn while anything goes on."""
+    """What is wrong in the picture, its size and cost, and how many pictures come while anything goes on."""
     c = ui.controller
     frame = c.frame
-    parts = []
+    parts: list[str] = []
     if frame is not None:
         parts += filter(None, (verified.in_short(frame.statistics),))
         parts += [f"{frame.width} x {frame.height}", f"{1e3 * frame.statistics.seconds:.0f} ms"]
-    if c.active:
-        parts.append(f"{hello_imgui.frame_rate():.0f} frames/s")
+    rate = c.record.pictures_a_second
+    if rate is not None and c.active:
+        parts.append(f"{rate:.0f} pictures/s" if rate >= 9.5 else f"{rate:.1f} pictures/s")
     return "   ".join(parts)

@@ -1,0 +1,29 @@
+"""Pictures a second are those that come, whatever the window draws meanwhile."""
+
+from __future__ import annotations
+
+import pytest
+
+from viewer.state.rate import Rate
+
+
+def test_as_many_as_came_within_the_last_second() -> None:
+    rate = Rate()
+    assert rate.per_second(0.0) is None
+    for n in range(50):
+        rate.count(5.0 + 0.04 * n)
+        assert n == 0 or rate.per_second(5.0 + 0.04 * n) == pytest.approx(25.0)
+    for n in range(20):
+        rate.count(7.0 + 0.1 * n)
+    assert rate.per_second(9.0) == pytest.approx(10.0), "what came before that second does not count"
+
+
+def test_slow_pictures_count_by_their_distance_and_none_that_have_ended() -> None:
+    rate = Rate()
+    for now in (0.0, 4.0, 8.0):
+        rate.count(now)
+    assert rate.per_second(12.0) == pytest.approx(0.25)
+    assert rate.per_second(16.5) is None, "nothing comes any more"
+    rate.count(17.0)
+    rate.forget()
+    assert rate.per_second(17.0) is None
