@@ -181,8 +181,8 @@ class Reason:
         How many shadow rays this holds for, of how many to the light.
     lit : int
         How many of them reach the light.
-    wrong : bool
-        Whether the answer is not true.
+    wrong : int
+        How many answers for the light are not true.
     blocker : int
         The primitive that is truly in the way, -1 for none.
     shadow : ShadowMode
@@ -214,7 +214,7 @@ class Reason:
     rays: int = 1
     samples: int = 1
     lit: int = 0
-    wrong: bool = False
+    wrong: int = 0
     blocker: int = -1
     shadow: ShadowMode = ShadowMode.INIT
     occlusion: OcclusionMode = OcclusionMode.INIT
@@ -346,7 +346,7 @@ class _Pixel:
             rays=len(those),
             samples=len(places),
             lit=int(s.lit[those].sum()),
-            wrong=bool(s.wrong[those].any()),
+            wrong=int(s.wrong[places].sum()),
             blocker=int(s.blocker[place]),
             named=s.named.get(place, ()),
             dynamic_objects=self._dynamic_objects,

@@ -69,6 +69,8 @@ class Words:
         if reason.fate is Fate.FACES_AWAY:
             return ()
         blocked = reason.lit < reason.rays
+        if reason.wrong and reason.samples > 1:
+            return (f"{reason.wrong} of the answers for its {reason.samples} samples are wrong.",)
         if reason.wrong:
             truth = (
                 (self.primitive(reason.blocker), " is in its way")

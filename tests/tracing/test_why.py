@@ -307,7 +307,7 @@ def test_what_is_in_a_lights_way_in_words(room: tracer.Scene):
     dark = Reason(0, Rule.FULL_SHADOW, Fate.CULLED, Verdict.FULL_SHADOW, blocker=812)
     assert plain(words.answer(dark)) == f"In shadow: blocked by {named(room, 812)}."
     assert plain(words.answer(replace(dark, blocker=5))).startswith("In shadow: its own surface is in the way")
-    assert plain(words.answer(replace(dark, wrong=True, blocker=-1))) == (
+    assert plain(words.answer(replace(dark, wrong=1, blocker=-1))) == (
         "In shadow in the picture, which is wrong: nothing is in its way."
     )
     assert plain(words.answer(replace(dark, lit=3, rays=12, samples=16))) == (
