@@ -26,7 +26,9 @@ def standing(c: Controller) -> Standing:
     proves = ""
     if frame is not None and tracing.certifies:
         made, _ = terms.made(frame.settings.method)
-        proves = f"{terms.things(made)} still being proved: {count(frame.statistics.certificates)} in this picture"
+        at, most = tracing.refinement.progress
+        far = f", picture {at} of at most {most}" if most else ""
+        proves = f"{terms.things(made)} still being proved: {count(frame.statistics.certificates)} made{far}"
     return Standing(
         baseline.measured,
         baseline.moving,
