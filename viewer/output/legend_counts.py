@@ -124,7 +124,8 @@ def _with_shares(
 
 @dataclass(frozen=True)
 class WorkLegend:
-    """What a heat map shows, summed over the frame and at its most expensive pixel; `top` has the last colour.
+    """What a heat map shows, summed over the pixels that are shaded, and at the most expensive of them; `top` has the
+    last colour.
 
     `whole` is what the total is a part of (`views.whole_of`)."""
 
@@ -139,9 +140,11 @@ def work_legend(frame: Frame, view: View) -> WorkLegend:
     """Of a frame that recorded the work at its pixels; raises ValueError for another."""
     top, work = work_top(frame, view), work_of(frame, view)
     assert work is not None
+    whole, known = whole_of(frame, view), frame.shaded
+    if known is not None:  # the others show what the nearest of these has
+        work, whole = work[known], whole[known]
     total = int(work.sum(dtype=np.int64))
-    whole = int(whole_of(frame, view).sum(dtype=np.int64))
-    return WorkLegend(total, whole, total / work.size, int(work.max(initial=0)), top)
+    return WorkLegend(total, int(whole.sum(dtype=np.int64)), total / max(work.size, 1), int(work.max(initial=0)), top)
 
 
 @dataclass(frozen=True)

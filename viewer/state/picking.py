@@ -84,7 +84,8 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
 
 
 def _wrong_at(frame: Frame, x: int, y: int) -> int | None:
-    return None if frame.wrong is None else int(frame.wrong[y, x])
+    known = frame.wrong is not None and (frame.shaded is None or frame.shaded[y, x])
+    return int(frame.wrong[y, x]) if known and frame.wrong is not None else None
 
 
 def _seen(frame: Frame) -> tuple[float, Camera, int, int]:

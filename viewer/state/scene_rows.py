@@ -139,7 +139,8 @@ def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table
     def summed(buffer: NDArray | None) -> NDArray | None:
         if buffer is None:
             return None
-        return np.bincount(at, buffer.reshape(-1)[hit], minlength=total).astype(np.int64)
+        rays = buffer if frame.shaded is None else np.where(frame.shaded, buffer, 0)  # the others have the nearest's
+        return np.bincount(at, rays.reshape(-1)[hit], minlength=total).astype(np.int64)
 
     pixels = np.bincount(at, minlength=total).astype(np.int32)
     due, saved, wrong = summed(frame.due_rays), summed(frame.saved), summed(frame.wrong)

@@ -53,6 +53,7 @@ def values_of(frame: Frame, view: View, light: int = 0, *, cut: Slice) -> Values
     if not can_draw(frame, view, light):
         raise ValueError(f"the frame has nothing for the view {view.label}")
     everywhere, hit = np.ones(frame.primitive.shape, np.bool_), frame.primitive >= 0
+    known = everywhere if frame.shaded is None else frame.shaded
     if view in (View.COLOR, View.WIPE):
         return Values(frame.color, CHANNELS, everywhere)
     if view is View.NORMAL:
@@ -70,7 +71,7 @@ def values_of(frame: Frame, view: View, light: int = 0, *, cut: Slice) -> Values
     if view is View.PIXEL_COUNT:
         return _single(_per_pixel(frame, frame.pixel_count), "pixels of the primitive", hit)
     if view is View.DIFFERENCE:
-        return _single(_there(frame.wrong), "wrong answers", everywhere)
+        return _single(_there(frame.wrong), "wrong answers", known)
     if view is View.LIGHTS:
         due = lights_due(frame)
         return _single(due, "lights due", hit & (due >= 0))
@@ -90,10 +91,9 @@ def values_of(frame: Frame, view: View, light: int = 0, *, cut: Slice) -> Values
         return _single(np.where(parts.built, parts.levels, -1), "level", parts.numbers != NOWHERE, classes=True)
     if view is View.PENUMBRA:
         asked, reached = samples_of(frame, light)
-        known = hit if frame.shaded is None else hit & frame.shaded
-        return _single(reached / np.maximum(asked, 1), "share of the light", known & (asked > 0))
+        return _single(reached / np.maximum(asked, 1), "share of the light", hit & known & (asked > 0))
     name = "shadow rays saved" if view is View.SAVED else "rays traced"
-    return _single(_there(work_of(frame, view)), name, everywhere)
+    return _single(_there(work_of(frame, view)), name, known)
 
 
 def words_at(
@@ -104,6 +104,8 @@ def words_at(
         return ()
     if view in (View.COLOR, View.WIPE):
         return tuple(f"{channel:.3f}" for channel in frame.color[y, x])
+    if (view.needs_work or view is View.DIFFERENCE) and frame.shaded is not None and not frame.shaded[y, x]:
+        return ("?",)
     if view is View.DIFFERENCE:
         return (f"{int(_there(frame.wrong)[y, x])} wrong",)
     if view in (View.SAVED, View.COST):
