@@ -22,6 +22,7 @@ from viewer.output.legend_counts import (
     shadow_legend,
     work_legend,
 )
+from viewer.output.legend_of_fates import of_fates, of_moving_shadows
 from viewer.output.legend_of_space import of_cell_lights, of_cuts, of_tree, of_voxels
 from viewer.output.legend_parts import ARRIVAL_NAMES, AS_USUAL, Chosen, Entry, Legend, Note, Scale, Tone, light_in_words
 from viewer.state import terms, verified
@@ -62,6 +63,8 @@ def legend_of(frame: Frame, view: View, chosen: Chosen = AS_USUAL) -> Legend | N
         View.VOXELS: of_voxels,
         View.CELL_LIGHTS: of_cell_lights,
         View.TREE: of_tree,
+        View.FATE: of_fates,
+        View.MOVING_SHADOW: of_moving_shadows,
     }
     return makers[view](frame, view, chosen) if view in makers and can_draw(frame, view, chosen.light) else None
 

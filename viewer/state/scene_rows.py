@@ -19,7 +19,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from viewer.state.parts import KINDS, Parts, parts_of
-from viewer.state.readings import has_modes_of_cells, units_of
+from viewer.state.readings import has_modes_of_cells
 from viewer.util.numbers import count
 
 UNKNOWN, SEVERAL = -1, 4  # beside the four modes
@@ -277,7 +277,7 @@ def _together(planes: Sequence[NDArray], total: int) -> NDArray[np.int8]:
 
 def _of_cells(frame: Frame, total: int, planes: Sequence[NDArray]) -> NDArray[np.int8]:
     """The mode of all cells of a primitive that the frame shows."""
-    units, shown = units_of(frame).reshape(-1), frame.primitive.reshape(-1)
+    units, shown = frame.unit.reshape(-1), frame.primitive.reshape(-1)
     hit = (units >= 0) & (shown >= 0)
     units, shown = units[hit], shown[hit]
     has = np.zeros((4, total), np.bool_)

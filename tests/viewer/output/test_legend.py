@@ -20,7 +20,8 @@ from tests.viewer.fakes import (
     with_tree,
     with_voxels,
 )
-from tracer.culling.modes import ShadowMode
+from tracer.culling.fate import Fate
+from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
@@ -32,7 +33,15 @@ from viewer.output.legend_parts import Chosen, Legend, Tone, light_in_words
 from viewer.output.legend_picture import with_legend
 from viewer.state.readings import voxels_of
 from viewer.state.slices import Slice
-from viewer.state.views import OCCLUSION_COLORS, WRONG, Certificate, View, color_map
+from viewer.state.views import (
+    FATE_COLORS,
+    FATE_NAMES,
+    OCCLUSION_COLORS,
+    WRONG,
+    Certificate,
+    View,
+    color_map,
+)
 from viewer.util.numbers import percent
 from viewer.util.resources import embedded_scenes
 
@@ -127,6 +136,36 @@ def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
     share = [percent(reached[between].sum(), asked[between].sum())] if between.any() else []
     assert [fact.values[0] for fact in legend.facts[1:]] == share and bool(share) == (light != 1)
     assert legend_of(make_frame(), View.PENUMBRA, Chosen(light)) is None
+
+
+@pytest.mark.parametrize("light", [0, 1, 2])
+@pytest.mark.parametrize("method", ["paper+cache", "certified+cache"])
+def test_fates_come_with_shares_of_pixels_and_of_the_rays_that_are_due(frame: Frame, light: int, method: str):
+    frame = replace(frame, settings=replace(SETTINGS, method=method))
+    legend, hit = of(frame, View.FATE, light=light, light_name="lamp"), frame.primitive >= 0
+    assert legend.title == f"Fate of shadow rays, light {light} (lamp)" and legend.columns == ("pixels", "of due")
+    fates = frame.fate(light)[hit]
+    due = (fates >= Fate.CULLED).sum()
+    by_name = {entry.name: entry for entry in legend.entries}
+    for fate in set(Fate(one) for one in fates):
+        entry, pixels = by_name.pop(FATE_NAMES[fate]), (fates == fate).sum()
+        share = percent(pixels, due) if fate is not Fate.FACES_AWAY else ""
+        assert entry.values == (percent(pixels, hit.sum()), share) and entry.color == FATE_COLORS[fate]
+    assert all(entry.values[0] == "0.0 %" for entry in by_name.values()), "what is usual is named"
+    saved = ((fates == Fate.CULLED) | (fates == Fate.DYNAMIC_ONLY)).sum()
+    said = {fact.name: fact.values[1] for fact in legend.facts}
+    assert said == {"saved": percent(saved, due), "traced": percent((fates >= Fate.PARTLY_OCCLUDED).sum(), due)}
+    assert not legend.notes and "nearest" in of(in_part(frame), View.FATE, light=light).notes[0].text
+    assert legend_of(make_frame(), View.FATE, Chosen(light)) is None
+
+
+def test_shadows_of_moving_objects_are_counted(frame: Frame):
+    legend, hit = of(frame, View.MOVING_SHADOW, light=1), frame.primitive >= 0
+    dark, asked = frame.moving_shadow(1), frame.fate(1) == Fate.DYNAMIC_ONLY
+    moves = (frame.occlusion_mode == OcclusionMode.DYNAMIC) & ~dark
+    counts = (dark & asked, dark & ~asked, ~dark & asked & ~moves, moves)
+    assert [entry.values for entry in legend.entries] == [(percent(one.sum(), hit.sum()),) for one in counts]
+    assert legend.facts[0].values == (percent((dark & asked).sum(), (dark & asked).sum() + counts[2].sum()),)
 
 
 def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):
