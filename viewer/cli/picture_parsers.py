@@ -71,7 +71,8 @@ def _add_picture(parser: Parser) -> None:
         default="color",
         metavar="V",
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
-        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, tree, saved or cost, "
+        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, tree, fate:LIGHT, "
+        "moving-shadow:LIGHT, saved or cost, "
         "as counts of rays or as shares like saved:share (default: color)",
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")

@@ -56,7 +56,7 @@ class Refinement:
 
 def _view_of(request: RenderRequest) -> RenderRequest:
     """The request without what varies between frames of the same view."""
-    settings = replace(request.settings, verify=False, record_work=False, record_lights=False)
+    settings = replace(request.settings, verify=False, record_work=False, record_lights=False, record_fates=False)
     return replace(request, settings=settings, serial=0, refinement_seconds=0.0)
 
 

@@ -83,6 +83,7 @@ def trace(
         modes=modes,
         verify=settings.verify or view.needs_verify,
         record_lights=lights,
+        record_fates=view.needs_fates,
         record_work=view.needs_work,
     )
     frame = renderer.render(recipe.time, recipe.camera, cancelled)
@@ -92,7 +93,8 @@ def trace(
 def lights_fit(recipe: Recipe, scene: Scene, everything: bool = False) -> bool:
     """Whether there is memory for what all lights send to each pixel, where that is to be recorded."""
     width, height = recipe.size
-    return not (everything or recipe.view is View.LIGHTS) or can_record_lights(width * height, len(scene.lights))
+    recorded = everything or recipe.view is View.LIGHTS or recipe.view.needs_fates
+    return not recorded or can_record_lights(width * height, len(scene.lights))
 
 
 def draw(frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8], str]:

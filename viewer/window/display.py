@@ -29,8 +29,11 @@ from viewer.state.views import (
     CELL_LINE,
     CERTIFICATE_COLORS,
     FAINT_LINE,
+    FATE_COLORS,
     GREY,
+    MOVING_SHADOW_COLORS,
     OCCLUSION_COLORS,
+    PALE,
     RING_DIMMING,
     SHADOW_COLORS,
     TOO_BRIGHT,
@@ -212,6 +215,8 @@ class Display:
             View.PENUMBRA: list(ARRIVAL_COLORS.values()),
             View.VOXELS: list(VOXEL_COLORS.values()),
             View.TREE: list(TREE_WAITS),
+            View.FATE: list(FATE_COLORS.values()),
+            View.MOVING_SHADOW: list(MOVING_SHADOW_COLORS.values()),
         }
         values: dict[str, Any] = {
             "table_width": TABLE_WIDTH,
@@ -229,6 +234,7 @@ class Display:
             "clip_colors": [TOO_BRIGHT, BLACK],
             "shares": look.shares,
             "beneath": look.beneath,
+            "pale": PALE,
             "cell_line": FAINT_LINE if view in (View.CELL_LIGHTS, View.TREE) else CELL_LINE,
             "zoom_factor": frame.settings.zoom_factor,
             "unknown": GREY,

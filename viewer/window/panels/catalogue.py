@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from viewer.output.figure1 import TITLE
 from viewer.window import finding
 from viewer.window.panels import (
     camera,
     compare,
     culling,
     experiment,
+    figure1,
     filming,
     find,
     hunt,
@@ -61,6 +63,7 @@ PANELS = {
         Panel("Inspector", "RightBottom", icons.ICON_FA_MAGNIFYING_GLASS, inspector.show),
         Panel("What if", "LeftBottom", icons.ICON_FA_WAND_MAGIC_SPARKLES, what_if.show),
         Panel("Plots", "Bottom", icons.ICON_FA_CHART_LINE, plots.show, wide=True),
+        Panel(TITLE, "Bottom", icons.ICON_FA_DIAGRAM_PROJECT, figure1.show, wide=True),
         Panel("Compare", "Bottom", icons.ICON_FA_CODE_COMPARE, compare.show, wide=True),
         Panel("Pixels", "Bottom", icons.ICON_FA_BORDER_ALL, pixels.show, wide=True),
         Panel("Rays", "Bottom", icons.ICON_FA_CODE_BRANCH, rays.show, wide=True),

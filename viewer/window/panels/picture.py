@@ -62,7 +62,7 @@ def show(ui: Ui) -> None:
     c, room = ui.controller, imgui.get_content_region_avail()
     bar = timeline.height() if c.session.animated else 0.0
     room = ImVec2(room.x, room.y - bar)
-    above = savings.height(ui, room)
+    above = savings.height(ui, ImVec2(room.x, room.y - tour.height(ui)))
     if above > 0.0:
         start = imgui.get_cursor_pos()
         ui.guard.panel("What culling saves", lambda: savings.show(ui, room.x))

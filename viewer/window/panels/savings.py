@@ -59,37 +59,39 @@ def show(ui: Ui, width: float) -> None:
     if frame is None or c.session.scene is None:
         return
     start, lines = imgui.get_cursor_pos(), _lines(ui, width)
-    _write(ui, sentence(frame, standing(c)), start, width, lines)
+    _write(sentence(frame, standing(c)), start, width, lines)
     imgui.set_cursor_pos(ImVec2(start.x, start.y + lines * imgui.get_text_line_height() + em(_GAP)))
     bar = ui.cached("savings", frame, 0, lambda: bar_of(frame))
-    _draw(ui, bar, width)
+    _draw(bar, width)
 
 
-def _write(ui: Ui, clauses: tuple[Clause, ...], start: ImVec2, width: float, lines: int) -> None:
-    """Clause after clause, in so many lines; what is too long ends in an ellipsis."""
-    x, line, step = 0.0, 0, imgui.get_text_line_height()
+def _write(clauses: tuple[Clause, ...], start: ImVec2, width: float, lines: int) -> None:
+    """Clause after clause, in so many lines, the last of which is that above the bar; what is too long ends in an
+    ellipsis."""
+    places: list[tuple[float, int, str]] = []
+    x, line = 0.0, 0
     for number, clause in enumerate(clauses):
         text = clause.text + (", " if number + 1 < len(clauses) else "")
-        needed = imgui.calc_text_size(text.rstrip()).x
-        if x and x + needed > width and line + 1 < lines:
+        if x and line + 1 < lines and x + imgui.calc_text_size(text.rstrip()).x > width:
             x, line = 0.0, line + 1
-        shown = fitted(text, width - x) if x + needed > width else text
-        imgui.set_cursor_pos(ImVec2(start.x + x, start.y + line * step))
+        places.append((x, line, text))
+        x += imgui.calc_text_size(text).x
+    below = start.y + (lines - 1 - line) * imgui.get_text_line_height()
+    for clause, (x, line, text) in zip(clauses, places, strict=True):
+        if x >= width:
+            return  # what comes before has ended in an ellipsis
+        imgui.set_cursor_pos(ImVec2(start.x + x, below + line * imgui.get_text_line_height()))
+        shown = text if x + imgui.calc_text_size(text.rstrip()).x <= width else fitted(text, width - x)
         color = _COLORS[clause.tone]
         if color is not None:
             imgui.push_style_color(imgui.Col_.text, color)
         imgui.text_unformatted(shown)
         if color is not None:
             imgui.pop_style_color()
-        tip = ui.with_keys(clause.tip)
-        if tip or shown != text:
-            tooltip(f"{clause.text}\n{tip}" if shown != text else tip)
-        x += imgui.calc_text_size(text).x
-        if shown != text:
-            break
+        tooltip("\n".join(filter(None, (clause.text if shown != text else "", clause.tip))))
 
 
-def _draw(ui: Ui, bar: Bar, width: float) -> None:
+def _draw(bar: Bar, width: float) -> None:
     """The parts beside each other, each as wide as its share."""
     corner, high = imgui.get_cursor_screen_pos(), _bar_height()
     draw, done = imgui.get_window_draw_list(), 0

@@ -30,9 +30,14 @@ def show(ui: Ui) -> None:
 
 def leave_room(ui: Ui, corner: ImVec2, room: ImVec2) -> float:
     """How much of the room that the picture has from `corner` on goes to the tour, below the picture."""
-    height = ui.tour_height if ui.tour.step is not None else 0.0
-    ui.tour_place = (corner.x, corner.y + room.y - height, room.x)
-    return height if room.y - height >= em(_LEAST) else 0.0
+    wanted = height(ui)
+    ui.tour_place = (corner.x, corner.y + room.y - wanted, room.x)
+    return wanted if room.y - wanted >= em(_LEAST) else 0.0
+
+
+def height(ui: Ui) -> float:
+    """How much the tour would have of the room for the picture; 0 while none is taken."""
+    return ui.tour_height if ui.tour.step is not None else 0.0
 
 
 def _strip(ui: Ui, left: float, top: float, width: float) -> None:

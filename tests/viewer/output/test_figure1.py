@@ -1,0 +1,190 @@
+"""Figure 1 with a frame's numbers: what it says, where its parts lie, and the SVG."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import tracer
+from tests.tracing.shades import roof, shadow_scene
+from tests.tracing.worlds import moved
+from viewer.output.figure1 import Figure, Flow, figure_of
+from viewer.output.figure1_layout import Drawing, lay_out
+from viewer.output.figure1_svg import svg
+from viewer.state.views import View
+
+SETTINGS = tracer.Settings(width=64, height=48, depth=2, threads=1)
+LINE = 15.0
+
+
+def measure(text: str) -> float:
+    """About as wide as letters are."""
+    return 7.0 * len(text)
+
+
+def frame_by(method: str, **settings: bool) -> tracer.Frame:
+    """The second frame of a scene in which something moves."""
+    scene = shadow_scene(dynamic=(moved("kite", roof(5.0, 0.6), np.eye(4)),))
+    renderer = tracer.Renderer(scene, replace(SETTINGS, method=method, **settings))
+    renderer.render()
+    return renderer.render()
+
+
+def flows_of(figure: Figure) -> dict[str, Flow]:
+    return {flow.name: flow for stage in figure.stages for flow in stage.flows}
+
+
+def names_of(figure: Figure) -> list[str]:
+    return [stage.name for stage in figure.stages]
+
+
+def test_the_stages_are_those_of_the_paper_with_the_frames_numbers():
+    frame = frame_by("paper")
+    figure, s = figure_of(frame, "a scene"), frame.statistics
+    assert names_of(figure) == [
+        "Place dynamic objects",
+        "Primary rays",
+        "Occlusion testing",
+        "Shading",
+        "Shadow testing",
+        "Shadow-mode setting",
+        "Occlusion-mode setting",
+    ]
+    numbers = {name: flow.number for name, flow in flows_of(figure).items()}
+    assert s.shadow.culled > 0 and s.mode_changes is not None
+    assert numbers == {
+        "dynamic primitives": s.mode_changes.units["dynamic"],
+        "primary rays": 64 * 48,
+        "extra tests": s.occlusion_tests,
+        "shadow rays due": s.shadow.due,
+        "culled": s.shadow.culled,
+        "dynamic only": s.shadow.dynamic_only,
+        "traced": s.shadow.traced,
+        "→ full shadow": s.mode_changes.full_shadow,
+        "→ non-shadow": s.mode_changes.non_shadow,
+        "→ partial shadow": s.mode_changes.partial_shadow,
+        "→ fully rendered": s.mode_changes.fully_rendered,
+        "→ partly occluded": s.mode_changes.partially_occluded,
+        "→ examined anew": s.mode_changes.examined_anew,
+    }
+    assert figure.title.startswith("a scene, paper, 64 × 48 pixels")
+    assert f"{s.mode_changes.units['fully_rendered']:,} of {sum(s.mode_changes.units.values()):,}" in figure.next_frame
+    for stage in figure.stages:
+        assert sum(part.share for part in stage.bar) == pytest.approx(1.0 if stage.bar else 0.0)
+
+
+def test_stages_have_their_parts_of_the_time():
+    frame = frame_by("paper")
+    phases = {"place": 0.01, "primary": 0.02, "occlusion testing": 0.03, "surfaces": 0.05, "shading": 0.25}
+    frame.statistics.phases, frame.statistics.seconds = phases | {"mode setting": 0.04}, 0.5
+    figure = figure_of(frame)
+    assert [stage.share for stage in figure.stages] == pytest.approx([0.02, 0.04, 0.06, 0.6, 0.0, 0.0, 0.08])
+    assert (figure.stages[3].time, figure.stages[3].part) == ("300.0 ms", "60.0 %")
+
+
+def test_what_would_be_culled_is_outlined_where_nothing_is():
+    frame = frame_by("none", modes=True)
+    said, flows = frame.statistics.by_modes_in_all, flows_of(figure_of(frame))
+    assert said.full_shadow > 0
+    assert (flows["would be culled"].number, flows["would be culled"].hollow) == (said.full_shadow, True)
+    assert flows["… dynamic only"].number == said.non_shadow
+    assert (flows["traced in any case"].number, flows["traced in any case"].hollow) == (
+        said.due - said.full_shadow - said.non_shadow,
+        False,
+    )
+    testing = next(stage for stage in figure_of(frame).stages if stage.name == "Occlusion testing")
+    assert testing.time == "not counted", "modes that are only looked at cost a method nothing"
+    plain = figure_of(frame_by("none"))
+    assert not any("mode" in name or "Occlusion" in name for name in names_of(plain))
+    assert flows_of(plain)["traced"].share == "100.0 %"
+
+
+def test_certificates_stand_in_the_place_of_modes():
+    frame = frame_by("certified", modes=True)
+    figure, shadow = figure_of(frame), frame.statistics.shadow
+    assert "Certificates" in names_of(figure) and not any("mode" in name for name in names_of(figure))
+    assert flows_of(figure)["certificates made"].number == frame.statistics.certificates
+    assert flows_of(figure)["dynamic only"].number == shadow.dynamic_only > 0
+    certificates = next(stage for stage in figure.stages if stage.name == "Certificates")
+    assert certificates.view is View.CERTIFICATE
+
+
+def test_a_picture_of_which_a_part_is_shaded_says_so_and_wrong_answers_are_counted():
+    frame = frame_by("paper", verify=True)
+    frame.statistics.part = 0.38
+    figure = figure_of(frame)
+    assert any("38 % of the pixels" in note for note in figure.notes)
+    assert flows_of(figure)["wrong answers"].number == frame.statistics.wrong.answers
+    frame.statistics.part = 1.0
+    assert not any("pixels" in note for note in figure_of(frame).notes)
+
+
+@pytest.mark.parametrize("method", ["cells", "cache", "lightcuts", "voxels", "lie-exact", "lightbuffer", "auto"])
+def test_every_method_has_a_figure(method):
+    method = "paper+cache" if method == "cache" else method
+    figure = figure_of(frame_by(method, modes=method != "lightcuts"))
+    assert names_of(figure)[0] == "Place dynamic objects" and flows_of(figure)["primary rays"].number == 64 * 48
+    ElementTree.fromstring(svg(figure))
+
+
+@pytest.mark.parametrize(
+    "width, height", [(340, 900), (340, 300), (200, 200), (670, 190), (860, 270), (1232, 672), (60, 40)]
+)
+def test_nothing_overlaps_or_leaves_the_drawing(width, height):
+    figure = figure_of(frame_by("paper"))
+    drawing = lay_out(figure, measure, LINE, width, height)
+    assert drawing.width == width
+    if (width, height) != (60, 40):
+        texts = [(*_from_to(words), words.y) for words in drawing.words]
+        assert all(left >= -0.5 and right <= width + 0.5 for left, right, _ in texts)
+        for a, b in pairwise(sorted(texts, key=lambda text: (text[2], text[0]))):
+            assert a[2] != b[2] or a[1] <= b[0] + 0.5, f"{a} and {b} overlap"
+    for box in (*drawing.boxes, *drawing.bars, *drawing.areas):
+        assert box.x >= 0 and box.y >= 0 and box.y + box.height <= drawing.height + 0.01
+
+
+def _from_to(words) -> tuple[float, float]:
+    room = measure(words.text)
+    return (words.x - room, words.x) if words.right else (words.x, words.x + room)
+
+
+def test_what_finds_room_is_written_out_and_the_rest_are_tips():
+    figure = figure_of(frame_by("paper"))
+    rule = figure.stages[2].rule
+
+    def told(drawing: Drawing) -> str:
+        return " ".join(words.text for words in drawing.words)
+
+    roomy, low = lay_out(figure, measure, LINE, 1200, 800), lay_out(figure, measure, LINE, 720, 260)
+    assert rule[:30] in told(roomy) and rule[:30] not in told(low)
+    for drawing in (roomy, low):
+        assert drawing.height <= 800 and any(rule in area.tip for area in drawing.areas)
+    assert low.height <= 260
+    high = lay_out(figure, measure, LINE, 340, 100)
+    assert high.height > 100, "it is scrolled, not cut"
+
+
+def test_what_lies_at_a_point_opens_its_view():
+    drawing = lay_out(figure_of(frame_by("paper")), measure, LINE, 1200, 800)
+    for name, view in (("Occlusion testing", View.OCCLUSION), ("→ examined anew", View.PIXEL_COUNT)):
+        words = next(words for words in drawing.words if words.text.startswith(name))
+        area = drawing.at(words.x + 1.0, words.y + 1.0)
+        assert area is not None and area.view is view and name in area.tip
+    assert drawing.at(-5.0, 0.0) is None
+
+
+def test_the_svg_is_well_formed_and_has_the_numbers():
+    frame = frame_by("paper")
+    text = svg(figure_of(frame, "<scene> & more"))
+    root = ElementTree.fromstring(text)
+    said = [element.text or "" for element in root.iter("{http://www.w3.org/2000/svg}text")]
+    shadow = frame.statistics.shadow
+    for number in (shadow.due, shadow.culled, shadow.dynamic_only, shadow.traced, frame.statistics.occlusion_tests):
+        assert f"{number:,}" in said
+    assert any("<scene> & more" in line for line in said)
+    assert float(root.get("width", 0)) == 1280 and 0 < float(root.get("height", 0)) < 800
+    assert len(text) < 60_000

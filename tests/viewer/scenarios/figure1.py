@@ -1,0 +1,84 @@
+"""The paper's Figure 1 with the numbers of the newest frame: read, and clicked."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from tests.viewer.driver import Driver
+from viewer.output.figure1_layout import Drawing
+from viewer.state.views import View
+from viewer.util.resources import embedded_scenes
+
+
+def figure1(d: Driver) -> None:
+    """The figure has the frame's numbers, wherever its panel is, and its parts open the views that show them."""
+    d.settle()
+    d.drop(embedded_scenes()["figure4"])
+    d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path.stem == "figure4", "the scene")
+    d.fix_resolution(320, 220)
+    d.settle()
+    d.c.settings.change(method="paper")
+    d.settle()
+    for _ in range(2):
+        d.c.tracing.trace_again()
+        d.settle()
+    for _ in d.sizes():
+        d.ui.show_panel("Figure 1")
+        d.frames(5)
+        shadow, changes = d.c.frame.statistics.shadow, d.c.frame.statistics.mode_changes
+        assert shadow.saved > 0
+        told = " ".join(area.tip for area in _drawing(d).areas)
+        for name, number in (
+            ("shadow rays due", shadow.due),
+            ("culled", shadow.culled),
+            ("dynamic only", shadow.dynamic_only),
+            ("traced", shadow.traced),
+            ("→ fully rendered", changes.fully_rendered),
+        ):
+            assert f"{name}: {number:,}" in told
+        window = imgui.internal.find_window_by_name("Figure 1")
+        assert window.scroll_max.y == 0.0, "the figure does not fit its panel"
+    for name, view in (
+        ("Occlusion testing", View.OCCLUSION),
+        ("→ examined anew", View.PIXEL_COUNT),
+        ("Shadow-mode setting", View.SHADOW),
+        ("Occlusion-mode setting", View.OCCLUSION),
+        ("primary rays", View.PRIMITIVE),
+    ):
+        _click(d, name)
+        assert d.c.session.view is view, name
+    d.c.settings.set_view(View.COLOR)
+
+    # Without culling it says what modes would do; with certificates these stand in the place of modes.
+    d.c.settings.change(method="none")
+    d.settle()
+    said = {words.text for words in _drawing(d).words}
+    assert "would be culled" in said
+    d.c.settings.change(method="certified")
+    d.settle()
+    said = {words.text for words in _drawing(d).words}
+    assert "Certificates" in said and not any("mode setting" in text for text in said)
+    _click(d, "Certificates")
+    assert d.c.session.view is View.CERTIFICATE
+    d.c.settings.set_view(View.COLOR)
+
+
+def _drawing(d: Driver) -> Drawing:
+    """What is drawn of the newest frame."""
+    d.frames(3)
+    frame, _, drawing = d.ui._cache["figure 1"]
+    assert frame is d.c.frame, "the panel is not drawn"
+    return drawing
+
+
+def _click(d: Driver, name: str) -> None:
+    """On the part of the figure that has this name, where the panel shows it."""
+    words = next(words for words in _drawing(d).words if words.text.startswith(name))
+    window = imgui.internal.find_window_by_name("Figure 1")
+    imgui.internal.set_scroll_y(window, max(words.y - 0.5 * window.inner_rect.get_height(), 0.0))
+    d.frames(3)
+    place = d.context.item_info("//Figure 1/figure 1").rect_full.min
+    d.context.mouse_move_to_pos((place.x + words.x + 4.0, place.y + words.y + 4.0))
+    d.frames(2)
+    d.context.mouse_click(0)
+    d.frames(3)
