@@ -86,10 +86,12 @@ vec3 marked_where_clipped(vec3 traced) {
     return clamp(shown, 0.0, 1.0);
 }
 
+float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
+
 // A flat colour with some of the traced picture's light and shade, so that shapes stay readable.
 vec3 shaded(vec3 flat_color) {
     vec3 traced = clamp(texelFetch(color_buffer, pixel(), 0).rgb, 0.0, 1.0);
-    float light = 0.25 + 0.95 * sqrt(dot(traced, vec3(0.2126, 0.7152, 0.0722)));
+    float light = 0.25 + 0.95 * sqrt(luminance(traced));
     return clamp(flat_color * mix(1.0, light, shading), 0.0, 1.0);
 }
 

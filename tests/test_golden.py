@@ -88,6 +88,7 @@ def test_every_golden_picture_is_looked_at() -> None:
     expected = {
         f"{g.name}-{view}.png" for g in GOLDEN for view in ("color", "occlusion", *(f"shadow-{x}" for x in g.lights))
     }
+    expected |= {f"{g.name}-{view.value}.png" for g in GOLDEN for view in g.fates}
     expected |= {f"{of.name}.png" for of in OF_METHODS} | {"light-cube.png"}
     assert {path.name for path in FOLDER.glob("*.png")} == expected
 

@@ -1,11 +1,12 @@
 """Make the pictures of the README anew, from the real window: `make pictures`, or
 
-    python tools/with_screen.py python tools/make_pictures.py [film] [still] [methods]
+    python tools/with_screen.py python tools/make_pictures.py [film] [still] [figure1] [methods]
 
 `viewer.png` is the window with a clicked pixel and its shadow rays.  `loop.webp` is a short film that repeats: a
 flight along the scene's own path, the occlusion modes and shadow modes that it has taught, and the wipe between the
 culled picture and the right one.  ImGui's test engine presses the keys, as in the tests of the window.
-`methods` are those of the page of methods (`tools/method_pictures.py`).
+`figure-1.svg` is the paper's Figure 1 with the numbers of a frame.  `methods` are those of the page of methods
+(`tools/method_pictures.py`).
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from PIL import Image
 from tests.viewer import real_window
 from tests.viewer.driver import Driver
 from tools import method_pictures
+from viewer.cli import main as command_line
 
 ROOT = Path(__file__).resolve().parent.parent
 SIZE = [1280, 800]  # of the window
@@ -104,13 +106,18 @@ def _begin(d: Driver) -> None:
 
 
 def main(names: list[str]) -> int:
-    made = {"film": film, "still": still, "methods": None}
+    made = {"film": film, "still": still, "figure1": None, "methods": None}
     if not set(names) <= set(made):
         print(f"make_pictures: give any of {', '.join(made)}", file=sys.stderr)
         return 2
     for name in names or made:
         if name == "methods":
             if code := method_pictures.main([]):
+                return code
+            continue
+        if name == "figure1":
+            words = ["render", "default", "--frame", "19", "--warmup", "19", "--size", "640x480"]
+            if code := command_line.main([*words, "--figure1", str(FOLDER / "figure-1.svg")], lambda *_: 2):
                 return code
             continue
         real_window.SCENARIOS[name] = made[name]

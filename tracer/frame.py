@@ -10,9 +10,14 @@ from numpy.typing import NDArray
 
 from tracer import notebook
 from tracer.culling import modes
+from tracer.culling.fate import FATE, MOVING_SHADOW, Fate, by_modes
+from tracer.method import Method
 from tracer.scene.model import Camera
 from tracer.settings import Settings
 from tracer.statistics import FrameStatistics
+
+Region = tuple[slice, slice]
+EVERYWHERE: Region = (slice(None), slice(None))
 
 
 @dataclass(eq=False)  # arrays cannot be compared as one
@@ -50,6 +55,9 @@ class Frame:
     asked, reached : (h, w, lights) uint16
         How many samples of a light the primary hit faces, and how many of their shadow rays reach it; with
         `record_lights`. A point has one sample.
+    fates : (h, w, lights) uint8
+        What became of the shadow rays from the primary hit to a light, as it is recorded (`fate`, `moving_shadow`), 0
+        where that is not known; with `record_fates`, for methods that do not cluster lights.
     only_light : int
         The light that they are of, which alone has a column, or None for all (`tracer.one_light`).
     shaded : (h, w) bool
@@ -93,6 +101,7 @@ class Frame:
     lights: int
     asked: NDArray[np.uint16] | None = None
     reached: NDArray[np.uint16] | None = None
+    fates: NDArray[np.uint8] | None = None
     only_light: int | None = None
     shaded: NDArray[np.bool_] | None = None
     reference: NDArray[np.float32] | None = None
@@ -142,6 +151,11 @@ class Frame:
         return self.primitive if self.cells is None else self.cells
 
     @property
+    def unit(self) -> NDArray[np.int32]:
+        """(h, w) int32: the same, but never one of those cells that have certificates and no modes."""
+        return self.cell if self.certificates is None else self.primitive
+
+    @property
     def occlusion_mode(self) -> NDArray[np.uint8]:
         """(h, w) uint8: the OcclusionMode of each pixel's unit, 255 for a miss."""
         return self._per_pixel(modes.occlusion_mode(self.modes))
@@ -152,8 +166,48 @@ class Frame:
         planes = [self._per_pixel(modes.shadow_mode(self.modes, light)) for light in range(self.lights)]
         return np.stack(planes, axis=-1) if planes else np.empty((*self.primitive.shape, 0), np.uint8)
 
+    def fate(self, light: int, where: Region = EVERYWHERE) -> NDArray[np.uint8]:
+        """What became of the shadow ray of each pixel's primary hit to a light.
+
+        Of a lamp with several samples, it is the fate of the ray that asked most. Pixels that have not been shaded yet
+        have that of the nearest that has, and go by their own modes.
+
+        Parameters
+        ----------
+        light : int
+            Number of the light.
+        where : (slice, slice), optional
+            The rows and columns of the picture that are asked about; all, if none are given.
+
+        Returns
+        -------
+        (h, w) uint8
+            The Fate of each pixel, NONE for a miss.
+
+        Raises
+        ------
+        ValueError
+            If the frame has no record of fates.
+        """
+        hit = self.primitive[where] >= 0
+        fates = np.where(hit, self._recorded_fates(light, where) & np.uint8(FATE), np.uint8(Fate.NONE))
+        if Method.parse(self.settings.method).uses_modes:
+            fates[hit] = by_modes(fates[hit], self.modes_before[self.unit[where][hit]], light)
+        return fates
+
+    def moving_shadow(self, light: int, where: Region = EVERYWHERE) -> NDArray[np.bool_]:
+        """(h, w): where nothing static, but something dynamic is between the primary hit and a light, or some sample
+        of it; as `fate`."""
+        moving = self._recorded_fates(light, where) & np.uint8(MOVING_SHADOW) != 0
+        return moving & (self.primitive[where] >= 0)
+
+    def _recorded_fates(self, light: int, where: Region) -> NDArray[np.uint8]:
+        if self.fates is None:
+            raise ValueError("the frame did not record what became of its shadow rays")
+        return self.fates[(*where, light)]
+
     def _per_pixel(self, values: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        units = self.cell if self.certificates is None else self.primitive  # cells with certificates have no modes
+        units = self.unit
         hit = units >= 0
         result = np.full(units.shape, 255, np.uint8)
         result[hit] = values[units[hit]]

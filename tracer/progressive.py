@@ -179,6 +179,8 @@ class Parts:
         frame.shaded = pixels_of(self.shaded, self._width, self._height)
         if frame.asked is not None and frame.reached is not None:
             frame.asked, frame.reached = frame.asked.copy(), frame.reached.copy()
+        if frame.fates is not None:
+            frame.fates = self.stretched(frame.fates)
         if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
             frame.saved, frame.cost, frame.due_rays = (
                 self.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)

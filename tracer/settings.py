@@ -49,6 +49,8 @@ class Settings:
         counts them ray by ray; or "kdtree-lazy", one kd-tree over everything, which is built where rays arrive.
     record_lights : bool
         Fill `Frame.due` and `Frame.lit`.
+    record_fates : bool
+        Fill `Frame.fates`, what became of each shadow ray.
     record_work : bool
         Fill `Frame.saved`, `Frame.cost` and `Frame.due_rays`.
     certificates : int
@@ -86,6 +88,7 @@ class Settings:
     threads: int = 0
     accelerator: str = "bvh8"
     record_lights: bool = False
+    record_fates: bool = False
     record_work: bool = False
     certificates: int = 100_000
     certificate_seconds: float = math.inf

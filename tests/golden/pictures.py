@@ -44,7 +44,8 @@ AMPLIFIED = 8  # times, in a picture of differences
 
 @dataclass(frozen=True)
 class Golden:
-    """A frame of an embedded scene, after the frames from `first` on; `stray` pixels may differ."""
+    """A frame of an embedded scene, after the frames from `first` on, in the views of modes of some lights and in those
+    of `fates` of the first of them; `stray` pixels may differ."""
 
     name: str
     scene: str
@@ -52,10 +53,11 @@ class Golden:
     last: int
     lights: tuple[int, ...]
     stray: int
+    fates: tuple[View, ...] = ()
 
     def frame(self, scene: Scene, settings: Settings = SETTINGS, world: World | None = None) -> Frame:
         """The frame, rendered with modes learnt in the frames before it; world as in `Renderer`."""
-        renderer = Renderer(scene, settings, world=world)
+        renderer = Renderer(scene, replace(settings, record_fates=bool(self.fates)), world=world)
         for number in range(self.first, self.last + 1):
             frame = renderer.render(scene.frame_time(number))
         return frame
@@ -66,10 +68,14 @@ class Golden:
         yield f"{self.name}-occlusion", picture(frame, View.OCCLUSION)
         for light in self.lights:
             yield f"{self.name}-shadow-{light}", picture(frame, View.SHADOW, light)
+        for view in self.fates:
+            yield f"{self.name}-{view.value}", picture(frame, view, self.lights[0])
 
 
 GOLDEN = (
-    Golden("default", "default", 20, 28, (0, 3), stray=57),  # 0.3 % of the pixels
+    Golden(
+        "default", "default", 20, 28, (0, 3), stray=57, fates=(View.FATE, View.MOVING_SHADOW)
+    ),  # 0.3 % of the pixels
     Golden("figure3", "figure3", 0, 1, (0, 1), stray=4),
     Golden("figure4-before-zooming", "figure4", 0, 20, (0,), stray=2),  # its shadow is not known of
     Golden("figure4", "figure4", 0, 40, (0,), stray=2),

@@ -10,6 +10,7 @@ from threading import Event
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.fate import CACHED, CANDIDATES, CULLED, DYNAMIC_ONLY, FACES_AWAY, MOVING_SHADOW, TRACED
 from tracer.culling.voxels.grid import VoxelGrid
 from tracer.culling.voxels.tell import VoxelStates
 from tracer.frame import Frame, Settings
@@ -146,13 +147,17 @@ def with_certificates(frame: Frame) -> Frame:
 
 
 def with_lamps(frame: Frame) -> Frame:
-    """The frame with what reaches each pixel from lights of 16, 1 and 64 samples, drawn by lot."""
+    """The frame with what reaches each pixel from lights of 16, 1 and 64 samples, and what became of the rays, drawn by
+    lot."""
     lots, shape = np.random.default_rng(2), (*frame.primitive.shape, frame.lights)
     most = np.resize(np.array([16, 1, 64], np.uint16), frame.lights)
     hit = (frame.primitive >= 0)[..., None]
     asked = np.where(hit, lots.choice([0.0, 0.4, 1.0, 1.0], shape) * most, 0).astype(np.uint16)
     reached = (lots.choice([0.0, 0.3, 0.7, 1.0], shape) * asked).astype(np.uint16)
-    return replace(frame, asked=asked, reached=reached)
+    answered = lots.choice([CULLED, DYNAMIC_ONLY, DYNAMIC_ONLY | MOVING_SHADOW, CANDIDATES, CACHED, TRACED], shape)
+    answered = np.where(lots.random(shape) < 0.1, TRACED | MOVING_SHADOW, answered)
+    fates = np.where(hit, np.where(asked > 0, answered, FACES_AWAY), 0).astype(np.uint8)
+    return replace(frame, asked=asked, reached=reached, fates=fates)
 
 
 def with_cuts(frame: Frame) -> Frame:
@@ -229,7 +234,8 @@ def in_cells(frame: Frame) -> Frame:
     words[1::2] ^= words.dtype.type(5 << 2)  # other shadow modes
     counts = np.bincount(cells[cells >= 0], minlength=len(words)).astype(np.int32)
     highest = np.repeat(frame.highest_count, 2)
-    return replace(frame, cells=cells, modes=words, pixel_count=counts, highest_count=highest)
+    before = np.repeat(frame.modes_before, 2)
+    return replace(frame, cells=cells, modes=words, modes_before=before, pixel_count=counts, highest_count=highest)
 
 
 class FakeRenderer:

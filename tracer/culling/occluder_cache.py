@@ -198,6 +198,7 @@ def test_slots(cache, tile, points, light, number, count, batch, slots, counts):
         hit = bits_of(surely_blocked(cache.triangles, light, direction, LIGHT_MARGIN, names, padding)) & tested
         counts[TESTS] += ones(tested)
         counts[CACHE_HITS] += ones(hit)
+        batch.cached[v] |= hit
         batch.live[v] = live & ~hit
 
 

@@ -16,6 +16,8 @@ class ShadowBatch(NamedTuple):
     - live: nothing is known yet, so that the trees are to be asked;
     - unblocked: due, and no static geometry is in the way;
     - settled: due, and dynamic objects need not be asked any more;
+    - candidates: answered by a few static primitives, which were tested in the place of all;
+    - cached: blocked by what blocked a light before;
     - lit: due, and nothing is in the way: the answer that shading uses;
     - truth: the same by tracing every due ray, where answers are verified.
 
@@ -34,6 +36,8 @@ class ShadowBatch(NamedTuple):
     live: IntRow
     unblocked: IntRow
     settled: IntRow
+    candidates: IntRow
+    cached: IntRow
     lit: IntRow
     truth: IntRow
     active: IntRow

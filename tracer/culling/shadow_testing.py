@@ -71,7 +71,7 @@ def _find_due(points, light, count, looked, everything, batch, counts):
     Vectors that need not look at the light (`looks_at`) are passed over, or culled where one asks for everything."""
     active = 0
     for v in range(vectors(count)):
-        batch.lit[v] = batch.settled[v] = batch.unblocked[v] = 0
+        batch.lit[v] = batch.settled[v] = batch.unblocked[v] = batch.candidates[v] = batch.cached[v] = 0
         looks, there = looks_at(looked, v), lanes_below(count, v)
         if not looks and not everything:
             batch.due[v] = batch.live[v] = 0

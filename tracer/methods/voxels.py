@@ -81,6 +81,7 @@ def choose(data, call, light, count, counts):
         counted[CULLED] += ones(full & ~walked)
         counted[DYNAMIC_ONLY] += ones(null & ~walked)
         counted[CANDIDATES_ONLY] += ones((full | null) & walked)
+        batch.candidates[v] |= (full | null) & walked
         batch.live[v] = live & ~(full | null)
         batch.lit[v] |= null
 

@@ -19,9 +19,10 @@ PIXEL_ROWS = 10
 
 class Buffers(NamedTuple):
     """One picture: color and normal (height * width, 3), depth, u and v (height, width) float32,
-    primitive (height, width) int32; asked and reached (height * width, lights) uint16, or without rows;
-    reference like color and wrong (height * width,) int32, or without rows where nothing is verified; saved, cost and
-    due_rays (height * width,) int32, or without rows; and planes for a picture that is refined progressively."""
+    primitive (height, width) int32; asked and reached (height * width, lights) uint16, or without rows; fates
+    (height * width, lights) uint8 (`tracer.culling.fate`), or without rows; reference like color and wrong
+    (height * width,) int32, or without rows where nothing is verified; saved, cost and due_rays (height * width,)
+    int32, or without rows; and planes for a picture that is refined progressively."""
 
     color: NDArray[np.float32]
     normal: NDArray[np.float32]
@@ -31,6 +32,7 @@ class Buffers(NamedTuple):
     v: NDArray[np.float32]
     asked: NDArray[np.uint16]
     reached: NDArray[np.uint16]
+    fates: NDArray[np.uint8]
     reference: NDArray[np.float32]
     wrong: NDArray[np.int32]
     saved: NDArray[np.int32]
@@ -45,13 +47,16 @@ def empty_buffers(
     lights: int,
     *,
     record_lights: bool = False,
+    record_fates: bool = False,
     verify: bool = False,
     record_work: bool = False,
     planes: Planes = NO_PLANES,
 ) -> Buffers:
     """Buffers for a picture of this size, with rows for what is to be recorded."""
     pixels = width * height
-    recorded, verified, worked = (pixels if asked else 0 for asked in (record_lights, verify, record_work))
+    recorded, told, verified, worked = (
+        pixels if asked else 0 for asked in (record_lights, record_fates, verify, record_work)
+    )
     return Buffers(
         color=np.zeros((pixels, 3), np.float32),
         normal=np.zeros((pixels, 3), np.float32),
@@ -61,6 +66,7 @@ def empty_buffers(
         v=np.empty((height, width), np.float32),
         asked=np.zeros((recorded, lights), np.uint16),
         reached=np.zeros((recorded, lights), np.uint16),
+        fates=np.zeros((told, lights), np.uint8),
         reference=np.zeros((verified, 3), np.float32),
         wrong=np.zeros(verified, np.int32),
         saved=np.zeros(worked, np.int32),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tracer.culling.fate import CACHED, CANDIDATES, CULLED, DYNAMIC_ONLY, FACES_AWAY, FATE, MOVING_SHADOW, TRACED
 from tracer.kernels import subkernel
 
 
@@ -20,6 +21,30 @@ def record_lights(wave, light, batch, pixels, buffers):
         place = pixels.place[wave.pixel[i]]
         buffers.asked[place, light] += (batch.due[i >> 4] >> (i & 15)) & 1
         buffers.reached[place, light] += (batch.lit[i >> 4] >> (i & 15)) & 1
+
+
+@subkernel
+def record_fates(wave, light, batch, pixels, buffers):
+    """What became of the shadow rays of primary hits to a light: of its samples, the fate of that which asked most."""
+    for i in range(wave.size):
+        v, bit, moving = i >> 4, i & 15, 0
+        fate = FACES_AWAY
+        if (batch.due[v] >> bit) & 1:
+            unblocked = (batch.unblocked[v] >> bit) & 1
+            moving = MOVING_SHADOW if unblocked and not (batch.lit[v] >> bit) & 1 else 0
+            if (batch.live[v] >> bit) & 1:
+                fate = TRACED
+            elif (batch.cached[v] >> bit) & 1:
+                fate = CACHED
+            elif (batch.candidates[v] >> bit) & 1:
+                fate = CANDIDATES
+            elif unblocked and not (batch.settled[v] >> bit) & 1:
+                fate = DYNAMIC_ONLY
+            else:
+                fate = CULLED
+        place = pixels.place[wave.pixel[i]]
+        told = buffers.fates[place, light]
+        buffers.fates[place, light] = max(told & FATE, fate) | (told & MOVING_SHADOW) | moving
 
 
 @subkernel

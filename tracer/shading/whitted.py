@@ -38,7 +38,14 @@ from tracer.shading.buffers import pixels_in, write
 from tracer.shading.phong import add_light
 from tracer.shading.points import points_at
 from tracer.shading.primary import primary_wave, read_hits, write_hits
-from tracer.shading.recording import count_rays, count_shadow_rays, count_wrong, record_lights, record_normals
+from tracer.shading.recording import (
+    count_rays,
+    count_shadow_rays,
+    count_wrong,
+    record_fates,
+    record_lights,
+    record_normals,
+)
 from tracer.shading.spatial_sort import sorted_by_position
 from tracer.shading.wave import accumulate, drop_misses, room, trace
 from tracer.simd import f32_at, load_i64, local_memory
@@ -144,6 +151,8 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
                 count_wrong(wave, batch, pixels, buffers.wrong)
             if bounce == 0 and len(buffers.asked) > 0:
                 record_lights(wave, light, batch, pixels, buffers)
+            if bounce == 0 and len(buffers.fates) > 0:
+                record_fates(wave, light, batch, pixels, buffers)
             if len(buffers.saved) > 0:
                 count_shadow_rays(wave, batch, pixels, buffers, not stages.shades)
     run_stages(stages, FINISH, call, 0, wave.size, counts)

@@ -35,6 +35,7 @@ examples:
   shadowcull render kitchen.aff -o modes.png --frame 50 --warmup 20 --view shadow:2
   shadowcull render kitchen.aff -o wrong.png --frame 50 --warmup 20 --view difference
   shadowcull render kitchen.aff -o cells.png --frame 50 --warmup 20 --method certified --view certificate:0
+  shadowcull render kitchen.aff --frame 50 --warmup 20 --figure1 kitchen.svg
   shadowcull render Robot.aff --frame 10 --warmup 10 --buffers robot.npz
   shadowcull render Robot.aff -o robot.exr --frame 10 --warmup 10 --verify
   shadowcull render saved.png --samples 16 --size 1920x1080

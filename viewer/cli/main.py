@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any
 
 from tracer.similar import did_you_mean
 from viewer.cli import hunt_parser, parsers, picture_parsers, sweep_parser
-from viewer.cli.mesh_arguments import as_arguments, mesh_options
+from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.parser import MISUSED, Parser
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
@@ -42,7 +42,6 @@ OpenWindow = Callable[[Path | None, dict[str, Any], Sequence[Path], "MeshOptions
 meshes are read; returns the exit code, or raises OSError in one line."""
 
 FAILED, INTERRUPTED = 1, 130
-PICTURE = Path("out") / "first-light.png"
 
 
 def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
@@ -122,18 +121,16 @@ def _check_is_scene(parser: Parser, name: str, commands: list[str]) -> None:
 
 
 def _picture_instead(options: Namespace) -> int:
-    """Without a display, `make run` still does the main job: a frame after enough others for culling to act."""
-    say(f"{no_display_reason()}; rendering to a file instead")
-    PICTURE.parent.mkdir(exist_ok=True)
-    where = ["--frame", "12", "--warmup", "12"] if options.scene is None else []  # others may have no frames before
-    where += ["--size", "640x480", "--method", "certified"]  # which culls most
-    for folder in options.folder:
-        where += ["--folder", str(folder)]
-    for name in ("lamp_radius", "lamp_samples"):
-        if getattr(options, name) is not None:
-            where += [f"--{name.replace('_', '-')}", str(getattr(options, name))]
-    where += as_arguments(mesh_options(options))
-    return _render([options.scene or resources.DEFAULT_SCENE, "-o", str(PICTURE.absolute()), *where])
+    """Without a display, `make run` still does the main job: it shows what culling saves, stage by stage."""
+    say(f"{no_display_reason()}; rendering to files instead")
+
+    from viewer.cli import first_light, saved_pictures
+
+    path = resources.scene_path(options.scene or resources.DEFAULT_SCENE)
+    if saved_pictures.is_capture(path):
+        return _render([str(options.scene)])
+    first_light.show(path, options)
+    return 0
 
 
 def _render(arguments: list[str]) -> int:

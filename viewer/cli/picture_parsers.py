@@ -31,7 +31,7 @@ def render() -> Parser:
     """Of `render`."""
     parser = Parser(
         prog="shadowcull render",
-        description="Trace one frame of a scene, print its statistics, and write a picture, its buffers, or both.",
+        description="Trace one frame, print its statistics, and write it as a picture, as buffers, or as a figure.",
         epilog=examples.RENDER + examples.methods(),
     )
     add = parser.add_argument
@@ -47,6 +47,8 @@ def render() -> Parser:
     add("--to-tev", type=tev_address, metavar="HOST:PORT", help=help_)
     add("--half", action="store_true", help="colours and normals of an .exr with 16 bits, not 32")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
+    help_ = "the paper's Figure 1 with the numbers of this frame, for slides"
+    add("--figure1", type=Path, metavar="FILE.svg", help=help_)
     parsers.add_tracing_options(parser, "bvh8")
     parsers.add_zoom_factor(parser)
     add("--verify", action="store_true", help="trace every culled shadow ray as well, and count wrong answers")
@@ -71,7 +73,8 @@ def _add_picture(parser: Parser) -> None:
         default="color",
         metavar="V",
         help="what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, "
-        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, tree, saved or cost, "
+        "wipe:PART, certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, tree, fate:LIGHT, "
+        "moving-shadow:LIGHT, saved or cost, "
         "as counts of rays or as shares like saved:share (default: color)",
     )
     add("--legend", action="store_true", help="draw the view's legend into the picture")

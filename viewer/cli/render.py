@@ -26,7 +26,7 @@ from viewer.cli.console import Work, print_table, statistics_table, working
 from viewer.cli.edit_options import edited_scene, edits_of, light_index
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
-from viewer.output import exr, png, recipe, tev
+from viewer.output import exr, figure1_svg, png, recipe, tev
 from viewer.output.buffers import buffers
 from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
@@ -64,7 +64,7 @@ def render(path: Path, options: Namespace) -> None:
     if as_exr:
         exr.check()
     if not options.print_command:
-        _check_outputs(options.output, options.buffers, options.to_tev is not None)
+        _check_outputs(options.output, options.buffers, options.figure1, options.to_tev is not None)
     check_view(settings, view)
     check_display(options)
     with working() as work:
@@ -83,7 +83,9 @@ def render(path: Path, options: Namespace) -> None:
             raise ValueError(_too_many_lights(options, settings.width * settings.height, len(scene.lights)))
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
-        frame = _traced(renderer, wanted, everything, work)
+        modes = options.figure1 is not None and not Method.parse(settings.method).culls  # it says what they would do
+        asked = replace(wanted, settings=replace(wanted.settings, modes=True)) if modes else wanted
+        frame = _traced(renderer, asked, everything, work)
         work.progress("writing", 1.0)
         if as_exr:
             exr.write(options.output, frame, stills.text(frame.pixels, frame, scene, wanted), options.half)
@@ -92,13 +94,15 @@ def render(path: Path, options: Namespace) -> None:
         if options.buffers is not None:
             arrays: dict[str, Any] = buffers(frame)
             write_whole(options.buffers, lambda file: np.savez(file, **arrays))
+        if options.figure1 is not None:
+            figure1_svg.write(options.figure1, frame, scene)
         if options.to_tev is not None:
             tev.send(options.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
     title = f"{path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
     by_beams = terms.asks_by_beams(frame, LampSamples().any(scene.lights, frame.settings))
     beams = terms.BY_BEAMS if by_beams else ""
     print_table(statistics_table(frame.statistics, title, frame.settings.method, beams))
-    for written in (options.output, options.buffers):
+    for written in (options.output, options.buffers, options.figure1):
         if written is not None:
             print(printable(written))
 
@@ -174,14 +178,16 @@ def _too_many_lights(options: Namespace, pixels: int, lights: int) -> str:
     )
 
 
-def _check_outputs(output: Path | None, npz: Path | None, sent: bool) -> None:
-    if output is None and npz is None and not sent:
-        raise ValueError("render: nothing to write; give -o out.png, --buffers out.npz, or both")
+def _check_outputs(output: Path | None, npz: Path | None, figure: Path | None, sent: bool) -> None:
+    if output is None and npz is None and figure is None and not sent:
+        raise ValueError("render: nothing to write; give -o out.png, --buffers out.npz, --figure1 out.svg, or several")
     if output is not None and output.suffix.lower() not in PICTURES:
         raise ValueError(f"{output}: unknown kind of picture; give one of {' '.join(PICTURES)}")
     if npz is not None and npz.suffix.lower() != ".npz":
         raise ValueError(f"{npz}: --buffers writes a .npz")
-    for path in (output, npz):
+    if figure is not None and figure.suffix.lower() != ".svg":
+        raise ValueError(f"{figure}: --figure1 writes a .svg")
+    for path in (output, npz, figure):
         if path is not None:
             check_writable(path)
 

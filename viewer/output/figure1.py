@@ -31,7 +31,7 @@ from viewer.state.views import (
 from viewer.util.numbers import count, percent
 
 TITLE = "Figure 1"
-WITHIN = "within shading"
+WITHIN = "in shading"
 """What is said of the time of stages that are parts of another."""
 
 

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from xml.sax.saxutils import escape
 
-from viewer.output.figure1 import Figure
+from tracer.frame import Frame
+from tracer.scene.model import Scene
+from viewer.output.figure1 import Figure, figure_of
 from viewer.output.figure1_layout import Arrow, Box, Drawing, Tone, Words, lay_out
 from viewer.output.legend_picture import font
+from viewer.state.session import Session
 from viewer.state.views import Color
+from viewer.util.files import write_whole
 
 WIDTH, HEIGHT = 1280.0, 720.0
 """Of the picture in pixels; it is as high as it must be."""
@@ -19,6 +24,12 @@ _FONTS = "'DejaVu Sans', Verdana, Arial, Helvetica, sans-serif"  # the widest fi
 _COLORS = {Tone.PLAIN: "#1c2026", Tone.STRONG: "#1c2026", Tone.QUIET: "#5a6270"}
 _BOX, _EDGE, _ARROW, _TIME, _OUTLINE = "#f4f5f7", "#aab1bc", "#5a6270", "#1f6fbf", "#5a6270"
 _HEAD = 4.5
+
+
+def write(path: Path, frame: Frame, scene: Scene) -> None:
+    """Write the figure of a frame; raises OSError in one line."""
+    text = svg(figure_of(frame, f"{scene.path.stem}, frame {Session(scene).frame_at(frame.time)}"))
+    write_whole(path, lambda file: file.write(text.encode()))
 
 
 def svg(figure: Figure) -> str:

@@ -22,6 +22,7 @@ from viewer.output.legend_counts import (
     shadow_legend,
     work_legend,
 )
+from viewer.output.legend_of_fates import of_fates, of_moving_shadows
 from viewer.output.legend_of_space import of_cell_lights, of_cuts, of_tree, of_voxels
 from viewer.output.legend_parts import ARRIVAL_NAMES, AS_USUAL, Chosen, Entry, Legend, Note, Scale, Tone, light_in_words
 from viewer.state import terms, verified
@@ -62,6 +63,8 @@ def legend_of(frame: Frame, view: View, chosen: Chosen = AS_USUAL) -> Legend | N
         View.VOXELS: of_voxels,
         View.CELL_LIGHTS: of_cell_lights,
         View.TREE: of_tree,
+        View.FATE: of_fates,
+        View.MOVING_SHADOW: of_moving_shadows,
     }
     return makers[view](frame, view, chosen) if view in makers and can_draw(frame, view, chosen.light) else None
 
@@ -92,7 +95,7 @@ def _by_modes(frame: Frame, light: int | None = None, number: int | None = None)
     culls = Method.parse(frame.settings.method).uses_modes
     parts = columns.values()
     return (
-        Entry(f"shadow rays{'' if culls else ', if by modes'}", None, tuple(columns), _BY_MODES, quiet=True),
+        Entry(f"shadow rays{'' if culls else ', if by modes'}{_of_part(frame)}", None, tuple(columns), _BY_MODES, True),
         Entry(
             terms.CULLED,
             None,
@@ -106,6 +109,12 @@ def _by_modes(frame: Frame, light: int | None = None, number: int | None = None)
             "of the rays due: those of fully rendered primitives in non-shadow, tested against dynamic objects only",
         ),
     )
+
+
+def _of_part(frame: Frame) -> str:
+    """That figures are not those of all pixels, where that is so."""
+    part = frame.statistics.part
+    return f", {percent(part, 1.0)} shaded" if part < 1.0 else ""
 
 
 def _occlusion(frame: Frame, view: View, chosen: Chosen) -> Legend:
@@ -169,17 +178,20 @@ def _pixel_counts(frame: Frame, view: View, chosen: Chosen) -> Legend:
 def _work(frame: Frame, view: View, chosen: Chosen) -> Legend:
     found, saved = work_legend(frame, view), view is View.SAVED
     part = f"{percent(found.total, found.whole)}{' of those due' if saved else ''}"
-    facts = [Entry("in all", values=(f"{count(found.total)} ({part})",), meaning=_IN_ALL_SAVED if saved else _IN_ALL)]
+    partly = frame.statistics.part < 1.0
+    name = f"in the {percent(frame.statistics.part, 1.0)} that is shaded" if partly else "in all"
+    facts = [Entry(name, values=(f"{count(found.total)} ({part})",), meaning=_IN_ALL_SAVED if saved else _IN_ALL)]
     facts.append(Entry("per pixel", values=(f"{found.per_pixel:.2f}, at most {count(found.most)}",)))
+    notes = (Note(_NEAREST),) if partly else ()
     if not chosen.shares:
         low, high = chosen.span or (0.0, found.top)
         scale = Scale(f"{low:.4g}", f"{high:.4g} and more", f"{(low + high) / 2.0:.3g}")
-        return Legend(view.label, (), (), scale, tuple(facts))
+        return Legend(view.label, (), (), scale, tuple(facts), notes=notes)
     title = (
         "Share of the shadow rays due that is saved" if saved else "Share of the rays without culling that is traced"
     )
     entries = (Entry("no shadow ray is due", GREY),) if saved else ()
-    return Legend(title, (), entries, Scale("0 %", "100 %", "50 %"), tuple(facts))
+    return Legend(title, (), entries, Scale("0 %", "100 %", "50 %"), tuple(facts), notes=notes)
 
 
 def _penumbra(frame: Frame, view: View, chosen: Chosen) -> Legend:
@@ -223,10 +235,10 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     )
     cuts = statistics.cuts
     if cuts is not None and cuts.errors is not None:
-        return Legend(view.label, (), entries, facts=(*_cut_errors(cuts.errors), *of_pixels))
+        return Legend(view.label, (), entries, facts=(*of_pixels, *_cut_errors(cuts.errors)))
     if found.answers:
         answers = f"{count(found.answers)} ({percent(found.answers, found.due)} of those due)"
-        facts = (Entry(terms.WRONG, None, (answers,), terms.MEANINGS[terms.WRONG]), *of_pixels)
+        facts = (*of_pixels, Entry(terms.WRONG, None, (answers,), terms.MEANINGS[terms.WRONG]))
         notes = (Note(verified.of_what(statistics)),) if statistics.part < 1.0 else ()
         return Legend(view.label, (), entries, facts=facts, notes=notes)
     said = f"{verified.in_words(statistics)}."
@@ -234,6 +246,7 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 
 _TOO_BRIGHT = "red, green or blue is brighter than the screen's"
+_NEAREST = "Other pixels show what the nearest of these has."
 _BLACK = "no channel is brighter than nothing"
 
 

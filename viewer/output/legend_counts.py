@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling import modes
+from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from viewer.state.readings import (
@@ -17,8 +19,8 @@ from viewer.state.readings import (
     cut_nodes,
     lights_due,
     lights_top,
+    moving_shadows,
     samples_of,
-    units_of,
     voxels_of,
     whole_of,
     work_of,
@@ -35,6 +37,7 @@ from viewer.state.views import (
     Arrival,
     Certificate,
     Color,
+    MovingShadow,
     View,
 )
 
@@ -102,7 +105,7 @@ def certificates_of(frame: Frame, light: int) -> NDArray[np.uint8]:
         classes = np.zeros(frame.primitive.shape, np.uint8)
     if len(frame.modes):
         dynamic = modes.occlusion_mode(frame.modes) == OcclusionMode.DYNAMIC
-        classes[dynamic[np.maximum(units_of(frame), 0)] & (frame.primitive >= 0)] = len(Certificate)
+        classes[dynamic[np.maximum(frame.unit, 0)] & (frame.primitive >= 0)] = len(Certificate)
     return classes
 
 
@@ -124,7 +127,8 @@ def _with_shares(
 
 @dataclass(frozen=True)
 class WorkLegend:
-    """What a heat map shows, summed over the frame and at its most expensive pixel; `top` has the last colour.
+    """What a heat map shows, summed over the pixels that are shaded, and at the most expensive of them; `top` has the
+    last colour.
 
     `whole` is what the total is a part of (`views.whole_of`)."""
 
@@ -139,9 +143,11 @@ def work_legend(frame: Frame, view: View) -> WorkLegend:
     """Of a frame that recorded the work at its pixels; raises ValueError for another."""
     top, work = work_top(frame, view), work_of(frame, view)
     assert work is not None
+    whole, known = whole_of(frame, view), frame.shaded
+    if known is not None:  # the others show what the nearest of these has
+        work, whole = work[known], whole[known]
     total = int(work.sum(dtype=np.int64))
-    whole = int(whole_of(frame, view).sum(dtype=np.int64))
-    return WorkLegend(total, whole, total / work.size, int(work.max(initial=0)), top)
+    return WorkLegend(total, int(whole.sum(dtype=np.int64)), total / max(work.size, 1), int(work.max(initial=0)), top)
 
 
 @dataclass(frozen=True)
@@ -165,6 +171,43 @@ def penumbra_legend(frame: Frame, light: int) -> PenumbraLegend:
     share = int(reached[between].sum()) / faced if faced else None
     counts = {one: int(pixels[one]) for one in Arrival}
     return PenumbraLegend(counts, int(hit.sum()), int(asked.max(initial=0)), share)
+
+
+@dataclass(frozen=True)
+class FateLegend:
+    """Primary pixels by the fate of their shadow rays to a light, of so many that are `seen`: so many rays are due,
+    and of these so many are saved and traced."""
+
+    pixels: dict[Fate, int]
+    seen: int
+
+    @property
+    def due(self) -> int:
+        return self._sum(lambda fate: fate.is_due)
+
+    @property
+    def saved(self) -> int:
+        return self._sum(lambda fate: fate.is_saved)
+
+    @property
+    def traced(self) -> int:
+        return self._sum(lambda fate: fate.is_traced)
+
+    def _sum(self, of: Callable[[Fate], bool]) -> int:
+        return sum(pixels for fate, pixels in self.pixels.items() if of(fate))
+
+
+def fate_legend(frame: Frame, light: int) -> FateLegend:
+    """Of a frame that recorded fates; raises ValueError for another."""
+    hit = frame.primitive >= 0
+    pixels = np.bincount(frame.fate(light)[hit], minlength=len(Fate))
+    return FateLegend({fate: int(pixels[fate]) for fate in Fate}, int(hit.sum()))
+
+
+def moving_shadow_legend(frame: Frame, light: int) -> dict[MovingShadow, int]:
+    """Primary pixels by what moving objects have to do with them; raises ValueError for a frame without fates."""
+    pixels = np.bincount(moving_shadows(frame, light)[frame.primitive >= 0], minlength=len(MovingShadow))
+    return {one: int(pixels[one]) for one in MovingShadow}
 
 
 @dataclass(frozen=True)

@@ -20,10 +20,10 @@ from viewer.state.readings import (
     cell_lights,
     cut_nodes,
     lights_due,
+    moving_shadows,
     samples_of,
     span_of,
     tree_of,
-    units_of,
     voxels_of,
     whole_of,
     work_of,
@@ -42,8 +42,11 @@ from viewer.state.views import (
     CERTIFICATE_COLORS,
     CLIP_STRIPE,
     FAINT_LINE,
+    FATE_COLORS,
     GREY,
+    MOVING_SHADOW_COLORS,
     OCCLUSION_COLORS,
+    PALE,
     RING_DIMMING,
     SHADOW_COLORS,
     TOO_BRIGHT,
@@ -52,6 +55,7 @@ from viewer.state.views import (
     WIPE_LINE,
     WRONG,
     Arrival,
+    MovingShadow,
     View,
     color_map,
 )
@@ -107,6 +111,11 @@ def picture(
         colors = _on_background(frame, _certificate(frame, light, shading))
     elif view is View.PENUMBRA:
         colors = _on_background(frame, _shaded(frame, _penumbra(frame, light), shading))
+    elif view is View.FATE:
+        fates = np.asarray(list(FATE_COLORS.values()), np.float32)[frame.fate(light)]
+        colors = _on_background(frame, _shaded(frame, fates, shading))
+    elif view is View.MOVING_SHADOW:
+        colors = _on_background(frame, _moving_shadow(frame, light, shading, tone))
     elif view is View.LIGHTS:
         colors = _on_background(frame, _counted(lights_due(frame), span or span_of(frame, view)))
     elif view is View.CUTS:
@@ -124,7 +133,7 @@ def picture(
     else:
         table = {View.OCCLUSION: _occlusion, View.PRIMITIVE: _primitive, View.PIXEL_COUNT: _pixel_count}
         entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
-        numbers = frame.primitive if view is View.PRIMITIVE else units_of(frame)
+        numbers = frame.primitive if view is View.PRIMITIVE else frame.unit
         colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
     if outlines and not (view.needs_verify or view.has_slice):  # those draw over the borders
         colors = _outlined(frame, colors)
@@ -197,6 +206,15 @@ def _penumbra(frame: Frame, light: int) -> NDArray:
     ramp = palette[Arrival.FEW] + share * (palette[Arrival.MOST] - palette[Arrival.FEW])
     between = (found == Arrival.FEW) | (found == Arrival.MOST)
     return np.where(between[..., None], ramp, palette[found])
+
+
+def _moving_shadow(frame: Frame, light: int, shading: float, tone: Tone) -> NDArray:
+    """Shadows of moving objects over the paled picture in greys, tinted where rays ask these only, and on these."""
+    found = moving_shadows(frame, light)
+    flat = np.asarray(list(MOVING_SHADOW_COLORS.values()), np.float32)[found]
+    paled = (PALE + (1.0 - PALE) * (np.clip(toned(frame.color, tone), 0.0, 1.0) @ _LUMINANCE))[..., None]
+    shadow = (found == MovingShadow.DARK) | (found == MovingShadow.TRACED)
+    return np.where(shadow[..., None], _shaded(frame, flat, shading), paled * flat)
 
 
 def _displayed(color: NDArray[np.float32], tone: Tone, clipping: bool) -> NDArray:

@@ -19,7 +19,8 @@ from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
 from viewer.services import refinement
 from viewer.services.render_request import Spare, Traced, Traces
-from viewer.state.in_turn import LEAST, InTurn
+from viewer.services.requests import recording
+from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import NO_CULLING
 
 STILL = 0.7
@@ -28,8 +29,8 @@ FIRST = 2
 """Frames of each method that do not count, at least: the first finds memory and caches cold, and learns."""
 MOST = 40
 """Rounds, each of one frame by every method."""
-NARROW = 0.01
-"""The margin of the median ratio that is small enough."""
+NARROW, CLEAR = 0.01, 0.25
+"""The margin of the median ratio that is small enough: in any case, and as a part of what it is away from 1."""
 BUILDS = "the tree is built where rays arrive: none would have more of it built"
 
 
@@ -55,8 +56,8 @@ def subject_of(traced: Traced, second: str = "") -> Subject | None:
     if len(methods) < 2:
         return None
     settings = replace(
-        frame.settings, method=NO_CULLING, samples=1, modes=False, verify=False, record_lights=False,
-        record_work=False, certificate_seconds=refinement.SECONDS, patient=True,
+        recording(frame.settings, Settings()), method=NO_CULLING, samples=1, modes=False,
+        certificate_seconds=refinement.SECONDS, patient=True,
     )  # fmt: skip
     return Subject(frame.time, frame.camera, settings, methods)
 
@@ -114,12 +115,15 @@ class Rounds:
         rounds = (*self.so_far.rounds, tuple(self._round[method] for method in methods))
         self._round = {}
         so_far = InTurn(methods, rounds, prepares=False)
-        margins = [so_far.speed(method, methods[0]) for method in methods[1:]]
-        narrow = all(speed is not None and speed.margin <= NARROW for speed in margins)
-        settled = len(rounds) >= MOST or (len(rounds) >= LEAST and narrow)
+        speeds = [so_far.speed(method, methods[0]) for method in methods[1:]]
+        settled = len(rounds) >= MOST or (so_far.tells and all(map(_is_narrow, speeds)))
         self.so_far = replace(so_far, settled=settled)
         if settled:
             self._renderers = {}  # with all that they have learnt
+
+
+def _is_narrow(speed: Spread | None) -> bool:
+    return speed is not None and speed.margin <= max(NARROW, CLEAR * abs(speed.median - 1.0))
 
 
 class Spares(Protocol):

@@ -9,17 +9,19 @@ from tracer.frame import Frame, Settings
 from tracer.method import Method
 from viewer.services.render_request import RenderRequest
 from viewer.state.methods import NO_CULLING, with_base
+from viewer.state.readings import records_fates, records_lights
 from viewer.state.session import Session
 
-RECORDS = ("verify", "record_work", "record_lights")
+RECORDS = ("verify", "record_work", "record_lights", "record_fates")
 """Settings that only add to what a frame holds."""
 
 
-def settings_for(session: Session, certificate_seconds: float, ready: bool, lights: bool) -> Settings:
-    """What the user has set, with modes; verified, and with more recorded, where the view needs that: what lights send,
-    if `lights`.  Until what makes certificates is `ready`, still being compiled, it is traced without: the
-    picture is the same."""
+def settings_for(session: Session, certificate_seconds: float, ready: bool, pixels: int) -> Settings:
+    """What the user has set, with modes; verified, and with more recorded, where the view needs that and there is
+    memory for it in a picture of so many `pixels`.  Until what makes certificates is `ready`, still being compiled,
+    it is traced without: the picture is the same."""
     view, method = session.view, session.settings.method
+    lights = len(session.scene.lights) if session.scene is not None else 0
     if not ready and Method.parse(method).has_certificates:
         method = with_base(method, NO_CULLING)
     return replace(
@@ -27,7 +29,8 @@ def settings_for(session: Session, certificate_seconds: float, ready: bool, ligh
         method=method,
         verify=session.settings.verify or view.needs_verify,
         record_work=view.needs_work or session.counting,
-        record_lights=lights,
+        record_lights=records_lights(view, pixels, lights),
+        record_fates=records_fates(view, pixels, lights) and not Method.parse(method).clusters,
         modes=not Method.parse(method).clusters,  # which would look at single lights for these alone
         certificate_seconds=certificate_seconds,
     )

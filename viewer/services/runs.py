@@ -100,6 +100,8 @@ class Run(ABC, Generic[Results]):
             return "does not count the rays of each pixel"
         if view.needs_lights:
             return "does not record which samples of lights reach each pixel"
+        if view.needs_fates:
+            return "does not record what becomes of the shadow rays of each pixel"
         return "does not verify" if view.needs_verify and not self.verifies else ""
 
     def is_of(self, scene: Scene | None) -> bool:

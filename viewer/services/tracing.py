@@ -23,7 +23,7 @@ from viewer.services.runs import Run
 from viewer.state.learnt import Learnt
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.preferences import Preferences
-from viewer.state.readings import can_draw, records_lights
+from viewer.state.readings import can_draw
 from viewer.state.session import Session
 from viewer.state.views import View
 
@@ -294,13 +294,8 @@ class Tracing:
     def settings(self) -> Settings:
         """What the user has set, and what else the next picture needs."""
         seconds = self._preferences.certificate_share * self._frame_seconds
-        return settings_for(self._session, seconds, self.now.ready, self._records_lights)
-
-    @property
-    def _records_lights(self) -> bool:
-        """Whether frames are to record what all lights send to each pixel."""
-        scene, (width, height) = self._session.scene, self.full_size
-        return scene is not None and records_lights(self._session.view, width * height, len(scene.lights))
+        width, height = self.full_size
+        return settings_for(self._session, seconds, self.now.ready, width * height)
 
     def _answered(self, wanted: RenderRequest) -> bool:
         """Whether a frame has been asked for, or is there.  One that holds more than the view needs will do."""
@@ -402,6 +397,12 @@ class Tracing:
         view = self._session.view
         return view if self.frame is None or can_draw(self.frame, view, self._session.light) else View.COLOR
 
+    def _comes(self, view: View) -> bool:
+        """Whether the frame that is asked for holds what the view needs."""
+        if view is View.LIGHTS:
+            return self.settings.record_lights
+        return self.settings.record_fates if view.needs_fates else view.needs_more
+
     @property
     def title(self) -> str:
         """The view, and the light where it shows one; before it what a run that is under way is at."""
@@ -413,6 +414,6 @@ class Tracing:
             return f"{run.showing}   {title}{f' (this run {lacks})' if lacks else ''}"
         if wanted is view:
             return title
-        if not wanted.needs_more or (wanted is View.LIGHTS and not self._records_lights):  # the picture says why
+        if not self._comes(wanted):  # the picture says why
             return f"{wanted.label}: none here, {view.label.lower()} shown"
         return f"{wanted.label}: {'verifying' if wanted.needs_verify else 'counting'} ..."

@@ -10,7 +10,7 @@ from viewer.state.views import View
 
 _OF_LIGHTS = (
     *(View.SHADOW, View.CERTIFICATE, View.PENUMBRA, View.LIGHTS, View.CUTS, View.VOXELS, View.CELL_LIGHTS),
-    *(View.SAVED, View.DIFFERENCE),
+    *(View.SAVED, View.DIFFERENCE, View.FATE, View.MOVING_SHADOW),
 )
 _OF_METHODS = (View.CERTIFICATE, View.VOXELS)  # views of what a method knows of single lights
 

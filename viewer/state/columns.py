@@ -77,7 +77,8 @@ def _rows(a: Frame, b: Frame, timed: InTurn | None) -> Iterator[Row]:
     s, t = a.statistics, b.statistics
     if a.statistics.part < 1.0 or b.statistics.part < 1.0:
         shaded = [round(one.primitive.size * one.statistics.part) for one in (a, b)]
-        yield Row("Shaded pixels", "so far; all counts but those of primary rays are theirs", shaded[0], shaded[1])
+        meaning = "so far; all counts but those of primary rays and occlusion tests are theirs"
+        yield Row("Shaded pixels", meaning, shaded[0], shaded[1])
     yield Row("Shadow rays", heading=True)
     for term in (terms.DUE, terms.SAVED, terms.CULLED, terms.DYNAMIC_ONLY, terms.CANDIDATES_ONLY, terms.CACHE_HITS):
         field = {terms.CANDIDATES_ONLY: "candidates_only"}.get(term, term.replace(" ", "_"))

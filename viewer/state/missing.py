@@ -62,12 +62,20 @@ def missing(view: View, frame: Frame, shares: bool = False, more: bool = False) 
         text = f"The method {method.base} {why}: no answer can be wrong. The paper's method is sometimes wrong."
         return Missing(text, BY_MODES)
     if view is View.LIGHTS and not can_record_lights(frame.primitive.size, frame.lights):
-        most = count(MOST_RECORDED // frame.lights)
-        text = f"There is no memory to look at {count(frame.lights)} lights at each pixel of a picture of this size"
-        return Missing(f"{text}, but at up to {most} pixels: give it a smaller size in the panel Rendering.", "")
+        return _no_memory(frame)
+    if view.needs_fates and method.clusters:
+        return Missing(f"The method {method.base} shades by clusters of lights: single lights have no rays.", BY_MODES)
+    if view.needs_fates and not can_record_lights(frame.primitive.size, frame.lights):
+        return _no_memory(frame)
     if view.of_modes and not can_draw(frame, view):
         return Missing(f"This run keeps no modes with the method {method}.", "")
     return None
+
+
+def _no_memory(frame: Frame) -> Missing:
+    most = count(MOST_RECORDED // frame.lights)
+    text = f"There is no memory to look at {count(frame.lights)} lights at each pixel of a picture of this size"
+    return Missing(f"{text}, but at up to {most} pixels: give it a smaller size in the panel Rendering.", "")
 
 
 def _nothing_saved(view: View, frame: Frame) -> Missing | None:

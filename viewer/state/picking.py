@@ -14,7 +14,7 @@ from tracer.scene.model import Camera, Material, Scene
 from tracer.why_in_words import kind_of
 from viewer.state.navigation import Vector, ray
 from viewer.state.projection import HIDDEN, place
-from viewer.state.readings import has_modes_of_cells, units_of
+from viewer.state.readings import has_modes_of_cells
 
 NEARBY = 2
 """Pixels from a point's place on the picture at which its surface still stands for it."""
@@ -60,7 +60,7 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
     primitive = int(frame.primitive[y, x])
     if not 0 <= primitive < scene.primitive_count:
         return Pick(x, y, -1)
-    index, unit = scene.object_of(primitive), int(units_of(frame)[y, x])
+    index, unit = scene.object_of(primitive), int(frame.unit[y, x])
     return Pick(
         x,
         y,
@@ -84,7 +84,8 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
 
 
 def _wrong_at(frame: Frame, x: int, y: int) -> int | None:
-    return None if frame.wrong is None else int(frame.wrong[y, x])
+    known = frame.wrong is not None and (frame.shaded is None or frame.shaded[y, x])
+    return int(frame.wrong[y, x]) if known and frame.wrong is not None else None
 
 
 def _seen(frame: Frame) -> tuple[float, Camera, int, int]:
@@ -170,7 +171,7 @@ def refreshed(old: Pick, frame: Frame) -> Pick:
     same, in_cells = old.seen == _seen(frame), has_modes_of_cells(frame)
     unit = old.unit if in_cells == old.in_cells else old.primitive
     if in_cells != old.in_cells and in_cells:
-        unit = int(units_of(frame)[old.y, old.x]) if same else -1
+        unit = int(frame.unit[old.y, old.x]) if same else -1
     if old.primitive < 0 or not 0 <= unit < len(frame.modes):
         return old
     return replace(

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.fate import Fate
+from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.culling.voxels.tell import VoxelStates
-from tracer.frame import Frame
+from tracer.frame import EVERYWHERE, Frame, Region
 from tracer.geometry.tree_parts import TreeParts
-from viewer.state.views import Arrival, View
+from viewer.state.views import Arrival, MovingShadow, View
 
 MOST_RECORDED = 1 << 28
 """Pixels times lights, at most, of which all samples are recorded: a gigabyte of memory."""
@@ -39,6 +41,8 @@ def can_draw(frame: Frame, view: View, light: int = 0) -> bool:
         return work_of(frame, view) is not None
     if view.needs_lights:
         return frame.asked is not None and frame.only_light in ((None, light) if view.of_light else (None,))
+    if view.needs_fates:
+        return frame.fates is not None
     if view is View.CERTIFICATE:
         return frame.certificates is not None
     if view is View.CUTS:
@@ -63,6 +67,11 @@ def records_lights(view: View, pixels: int, lights: int) -> bool:
     return view.needs_lights and few and can_record_lights(pixels, lights)
 
 
+def records_fates(view: View, pixels: int, lights: int) -> bool:
+    """Whether frames of so many pixels are to record what becomes of the shadow rays to all lights for this view."""
+    return view.needs_fates and can_record_lights(pixels, lights)
+
+
 def depth_range(frame: Frame) -> tuple[float, float]:
     """Nearest and farthest distance worth a colour: the 1st and 99th percentile of what is hit (0, 1 for nothing)."""
     step = max(1, frame.height * frame.width // 20000)
@@ -72,13 +81,6 @@ def depth_range(frame: Frame) -> tuple[float, float]:
         return 0.0, 1.0
     low, high = np.percentile(sample, (1.0, 99.0))
     return float(low), float(max(high, low * (1.0 + 1e-6) + 1e-12))
-
-
-def units_of(frame: Frame) -> NDArray[np.int32]:
-    """(h, w) what carries modes at each pixel, a virtual cell or the primitive itself; -1 for a miss.
-
-    Cells that have certificates have no modes."""
-    return frame.cell if frame.certificates is None else frame.primitive
 
 
 def has_modes_of_cells(frame: Frame) -> bool:
@@ -119,6 +121,18 @@ def arrivals(frame: Frame, light: int) -> NDArray[np.uint8]:
     found = np.where(asked == 0, Arrival.AWAY, lit).astype(np.uint8)
     if frame.shaded is not None:
         found[~frame.shaded] = Arrival.UNKNOWN
+    return found
+
+
+def moving_shadows(frame: Frame, light: int, where: Region = EVERYWHERE) -> NDArray[np.uint8]:
+    """(h, w) MovingShadow of a light at each pixel, or at some; raises ValueError for a frame without a record of
+    fates."""
+    dynamic_only, dark = frame.fate(light, where) == Fate.DYNAMIC_ONLY, frame.moving_shadow(light, where)
+    found = np.where(dynamic_only, MovingShadow.LIT, MovingShadow.NONE).astype(np.uint8)
+    hit = frame.primitive[where] >= 0
+    seen = occlusion_mode(frame.modes[frame.unit[where][hit]])
+    found[hit] = np.where(seen == OcclusionMode.DYNAMIC, np.uint8(MovingShadow.OBJECT), found[hit])
+    found[dark] = np.where(dynamic_only[dark], MovingShadow.DARK, MovingShadow.TRACED)
     return found
 
 

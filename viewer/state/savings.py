@@ -45,7 +45,7 @@ class Part:
 
     def in_words(self, would: bool) -> str:
         """What it is, in two lines."""
-        meaning, way = FATE_MEANING[self.fate], f"with {BY_MODES}, it would be so; " if would else ""
+        meaning, way = FATE_MEANING[self.fate], f"what {BY_MODES} would do: " if would else ""
         return f"{self.name}: {count(self.rays)} of {count(self.due)} shadow rays due ({self.share})\n{way}{meaning}"
 
 
@@ -216,7 +216,9 @@ def _wrong(frame: Frame, method: Method) -> Clause:
             share if s.cuts is None else verified.in_short(s) or "not verified yet", verified.in_words(s), tone
         )
     if method.exact:
-        return Clause("exact", "its pictures are those of none, bit for bit: V traces every culled ray to check (V)")
+        return Clause(
+            "exact", "its pictures are those of none, bit for bit; to check, trace every culled ray as well (V)"
+        )
     return Clause("not verified", "trace every culled ray as well, to count wrong answers (V)", Tone.QUIET)
 
 

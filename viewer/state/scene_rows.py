@@ -19,7 +19,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from viewer.state.parts import KINDS, Parts, parts_of
-from viewer.state.readings import has_modes_of_cells, units_of
+from viewer.state.readings import has_modes_of_cells
 from viewer.util.numbers import count
 
 UNKNOWN, SEVERAL = -1, 4  # beside the four modes
@@ -139,7 +139,8 @@ def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table
     def summed(buffer: NDArray | None) -> NDArray | None:
         if buffer is None:
             return None
-        return np.bincount(at, buffer.reshape(-1)[hit], minlength=total).astype(np.int64)
+        rays = buffer if frame.shaded is None else np.where(frame.shaded, buffer, 0)  # the others have the nearest's
+        return np.bincount(at, rays.reshape(-1)[hit], minlength=total).astype(np.int64)
 
     pixels = np.bincount(at, minlength=total).astype(np.int32)
     due, saved, wrong = summed(frame.due_rays), summed(frame.saved), summed(frame.wrong)
@@ -276,7 +277,7 @@ def _together(planes: Sequence[NDArray], total: int) -> NDArray[np.int8]:
 
 def _of_cells(frame: Frame, total: int, planes: Sequence[NDArray]) -> NDArray[np.int8]:
     """The mode of all cells of a primitive that the frame shows."""
-    units, shown = units_of(frame).reshape(-1), frame.primitive.reshape(-1)
+    units, shown = frame.unit.reshape(-1), frame.primitive.reshape(-1)
     hit = (units >= 0) & (shown >= 0)
     units, shown = units[hit], shown[hit]
     has = np.zeros((4, total), np.bool_)

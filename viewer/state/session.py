@@ -28,8 +28,8 @@ from viewer.util.json_numbers import finite, number, whole
 
 # Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
 _NOT_RESTORED = {
-    "width", "height", "threads", "accelerator", "modes", "record_lights", "record_work", "certificates",
-    "certificate_seconds", "patient",
+    "width", "height", "threads", "accelerator", "modes", "record_lights", "record_fates", "record_work",
+    "certificates", "certificate_seconds", "patient",
 }  # fmt: skip
 _OPTIONAL: dict[str, type] = {"lamp_radius": float, "lamp_samples": int}  # None: as the scene says
 

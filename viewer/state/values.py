@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling import modes
+from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode
-from tracer.frame import Frame
+from tracer.frame import Frame, Region
 from tracer.geometry.tree_parts import NOWHERE
 from viewer.state.readings import (
     CUT_BOUND,
@@ -18,16 +19,16 @@ from viewer.state.readings import (
     cell_lights,
     cut_nodes,
     lights_due,
+    moving_shadows,
     samples_of,
     tree_of,
-    units_of,
     voxels_of,
     whole_of,
     work_of,
 )
 from viewer.state.slices import MIDDLE, Slice, slice_seen, voxel_words
 from viewer.state.tree_slice import part_seen, part_words, tree_seen
-from viewer.state.views import Certificate, View
+from viewer.state.views import FATE_NAMES, MOVING_SHADOW_NAMES, Certificate, MovingShadow, View
 
 CHANNELS = ("red", "green", "blue")
 AXES = ("x", "y", "z")
@@ -53,6 +54,7 @@ def values_of(frame: Frame, view: View, light: int = 0, *, cut: Slice) -> Values
     if not can_draw(frame, view, light):
         raise ValueError(f"the frame has nothing for the view {view.label}")
     everywhere, hit = np.ones(frame.primitive.shape, np.bool_), frame.primitive >= 0
+    known = everywhere if frame.shaded is None else frame.shaded
     if view in (View.COLOR, View.WIPE):
         return Values(frame.color, CHANNELS, everywhere)
     if view is View.NORMAL:
@@ -70,7 +72,7 @@ def values_of(frame: Frame, view: View, light: int = 0, *, cut: Slice) -> Values
     if view is View.PIXEL_COUNT:
         return _single(_per_pixel(frame, frame.pixel_count), "pixels of the primitive", hit)
     if view is View.DIFFERENCE:
-        return _single(_there(frame.wrong), "wrong answers", everywhere)
+        return _single(_there(frame.wrong), "wrong answers", known)
     if view is View.LIGHTS:
         due = lights_due(frame)
         return _single(due, "lights due", hit & (due >= 0))
@@ -90,10 +92,13 @@ def values_of(frame: Frame, view: View, light: int = 0, *, cut: Slice) -> Values
         return _single(np.where(parts.built, parts.levels, -1), "level", parts.numbers != NOWHERE, classes=True)
     if view is View.PENUMBRA:
         asked, reached = samples_of(frame, light)
-        known = hit if frame.shaded is None else hit & frame.shaded
-        return _single(reached / np.maximum(asked, 1), "share of the light", known & (asked > 0))
+        return _single(reached / np.maximum(asked, 1), "share of the light", hit & known & (asked > 0))
+    if view is View.FATE:
+        return _single(frame.fate(light), "fate of the shadow ray", hit, classes=True)
+    if view is View.MOVING_SHADOW:
+        return _single(moving_shadows(frame, light), "shadow of a moving object", hit, classes=True)
     name = "shadow rays saved" if view is View.SAVED else "rays traced"
-    return _single(_there(work_of(frame, view)), name, everywhere)
+    return _single(_there(work_of(frame, view)), name, known)
 
 
 def words_at(
@@ -104,6 +109,8 @@ def words_at(
         return ()
     if view in (View.COLOR, View.WIPE):
         return tuple(f"{channel:.3f}" for channel in frame.color[y, x])
+    if (view.needs_work or view is View.DIFFERENCE) and frame.shaded is not None and not frame.shaded[y, x]:
+        return ("?",)
     if view is View.DIFFERENCE:
         return (f"{int(_there(frame.wrong)[y, x])} wrong",)
     if view in (View.SAVED, View.COST):
@@ -133,11 +140,11 @@ def _primitive(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
 
 
 def _occlusion(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
-    return _spoken(OcclusionMode(int(modes.occlusion_mode(frame.modes[units_of(frame)[y, x]]))).name)
+    return _spoken(OcclusionMode(int(modes.occlusion_mode(frame.modes[frame.unit[y, x]]))).name)
 
 
 def _shadow(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
-    word = frame.modes[units_of(frame)[y, x]]
+    word = frame.modes[frame.unit[y, x]]
     if int(modes.occlusion_mode(word)) == OcclusionMode.DYNAMIC:
         return _spoken(OcclusionMode.DYNAMIC.name)
     if not has_shadow_mode(frame.modes, light):
@@ -153,7 +160,7 @@ def _certificate(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
 
 
 def _pixel_count(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
-    unit = units_of(frame)[y, x]
+    unit = frame.unit[y, x]
     highest = int(frame.highest_count[unit])
     return f"{int(frame.pixel_count[unit])} now", f"{highest} most" if highest else "no most"
 
@@ -163,6 +170,18 @@ def _penumbra(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
     if frame.shaded is not None and not frame.shaded[y, x]:
         return ("?",)
     return (f"{int(reached[y, x])} of {int(asked[y, x])}",)
+
+
+def _fate(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
+    return tuple(FATE_NAMES[Fate(int(frame.fate(light, _at(x, y))[0, 0]))].split(": "))
+
+
+def _moving_shadow(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
+    return tuple(MOVING_SHADOW_NAMES[MovingShadow(int(moving_shadows(frame, light, _at(x, y))[0, 0]))].split(", "))
+
+
+def _at(x: int, y: int) -> Region:
+    return slice(y, y + 1), slice(x, x + 1)
 
 
 def _lights(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
@@ -189,6 +208,8 @@ _WORDS: dict[View, Callable[[Frame, int, int, int], tuple[str, ...]]] = {
     View.CERTIFICATE: _certificate,
     View.PIXEL_COUNT: _pixel_count,
     View.PENUMBRA: _penumbra,
+    View.FATE: _fate,
+    View.MOVING_SHADOW: _moving_shadow,
     View.LIGHTS: _lights,
     View.CUTS: _cuts,
     View.CELL_LIGHTS: _cell_lights,
@@ -210,7 +231,7 @@ def _there(buffer: NDArray | None) -> NDArray:
 
 def _per_pixel(frame: Frame, entries: NDArray) -> NDArray:
     """What units have, at each pixel; -1 for a miss."""
-    units = units_of(frame)
+    units = frame.unit
     if len(entries) == 0:
         return np.full(units.shape, -1)
     return np.where(units >= 0, entries[np.maximum(units, 0)].astype(np.int64), -1)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
+from viewer.state import terms
 
 Color = tuple[float, float, float]
 
@@ -40,6 +41,8 @@ class View(StrEnum):
     VOXELS = "voxels"
     CELL_LIGHTS = "cell-lights"
     TREE = "tree"
+    FATE = "fate"
+    MOVING_SHADOW = "moving-shadow"
 
     @property
     def label(self) -> str:
@@ -48,6 +51,11 @@ class View(StrEnum):
     @property
     def key(self) -> str:
         return _KEYS[self]
+
+    @property
+    def also(self) -> str:
+        """Words by which it is found as well."""
+        return _ALSO.get(self, "")
 
     @property
     def needs_verify(self) -> bool:
@@ -65,14 +73,19 @@ class View(StrEnum):
         return self in (View.PENUMBRA, View.LIGHTS)
 
     @property
+    def needs_fates(self) -> bool:
+        """Whether it can be drawn only of frames that recorded what became of the shadow rays of each pixel."""
+        return self in (View.FATE, View.MOVING_SHADOW)
+
+    @property
     def needs_more(self) -> bool:
         """Whether it can be drawn only of frames that were asked to record something."""
-        return self.needs_verify or self.needs_work or self.needs_lights
+        return self.needs_verify or self.needs_work or self.needs_lights or self.needs_fates
 
     @property
     def of_light(self) -> bool:
         """Whether it speaks of one light."""
-        return self in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA, View.VOXELS)
+        return self.needs_fates or self in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA, View.VOXELS)
 
     @property
     def has_range(self) -> bool:
@@ -82,7 +95,7 @@ class View(StrEnum):
     @property
     def shows_picture(self) -> bool:
         """Whether it shows traced colours, by the tone that is chosen."""
-        return self in (View.COLOR, View.DIFFERENCE, View.WIPE, View.VOXELS, View.TREE)
+        return self in (View.COLOR, View.DIFFERENCE, View.WIPE, View.VOXELS, View.TREE, View.MOVING_SHADOW)
 
     @property
     def has_slice(self) -> bool:
@@ -128,6 +141,8 @@ _TITLES = {
     View.VOXELS: "Voxels",
     View.CELL_LIGHTS: "Lights per cell",
     View.TREE: "Tree built",
+    View.FATE: "Fate of shadow rays",
+    View.MOVING_SHADOW: "Shadows of moving objects",
 }
 
 _KEYS = {
@@ -141,6 +156,13 @@ _KEYS = {
     View.VOXELS: "Shift+V",
     View.CELL_LIGHTS: "Shift+K",
     View.TREE: "Shift+T",
+    View.FATE: "Shift+X",
+    View.MOVING_SHADOW: "Shift+O",
+}
+
+_ALSO = {
+    View.FATE: "why traced culled dynamic reason",
+    View.MOVING_SHADOW: "dynamic only NON_SHADOW darkened",
 }
 
 _EXPLANATIONS = {
@@ -172,6 +194,10 @@ _EXPLANATIONS = {
     View.TREE: "A slice through a tree that is built where rays arrive: built parts by their level, and grey stripes "
     "where no ray has been yet. Lines are the borders of parts, and white ones those of objects or pieces. The slice "
     "goes through everything; what lies before it shows as light and shade.",
+    View.FATE: "What became of each pixel's shadow ray to the chosen light: culled, asked dynamic objects only, or "
+    "traced, and why it was not culled.",
+    View.MOVING_SHADOW: "Where a moving object darkens a surface now that nothing static has ever hidden from the "
+    "chosen light (NON_SHADOW): its rays ask dynamic objects only, so that the shadow is right in every frame.",
 }
 
 
@@ -313,18 +339,36 @@ def label_color(color: Color) -> Color:
     return (0.96, 0.97, 0.98) if 0.3 * red + 0.6 * green + 0.1 * blue < 0.45 else (0.05, 0.06, 0.08)
 
 
+def fate_palette(shown: Fate | None = None) -> list[Color]:
+    """The colours of all fates in their order; where one is to stand out, all but its own are dimmed.
+
+    TRACED stands for all traced."""
+
+    def stands_out(fate: Fate) -> bool:
+        return shown in (None, fate) or (shown is Fate.TRACED and fate.is_traced)
+
+    def dimmed(color: Color) -> Color:
+        red, green, blue = (OTHERS * part + (1.0 - OTHERS) * dark for part, dark in zip(color, BACKGROUND, strict=True))
+        return red, green, blue
+
+    return [color if stands_out(fate) else dimmed(color) for fate, color in FATE_COLORS.items()]
+
+
+OTHERS = 0.18
+"""How much is left of the colours of other fates than the one that is to stand out."""
+
 FATE_NAMES: dict[Fate, str] = {
     Fate.NONE: "not known yet",
     Fate.FACES_AWAY: "faces away",
-    Fate.CULLED: "culled",
-    Fate.DYNAMIC_ONLY: "dynamic only",
-    Fate.CANDIDATES: "candidates",
-    Fate.CACHED: "cache",
-    Fate.PARTLY_OCCLUDED: "traced: partly occluded",
-    Fate.PARTIAL_SHADOW: "traced: partly in shadow",
-    Fate.NOT_SEEN_WHOLE: "traced: not seen whole yet",
-    Fate.DYNAMIC: "traced: dynamic",
-    Fate.TRACED: "traced",
+    Fate.CULLED: terms.CULLED,
+    Fate.DYNAMIC_ONLY: terms.DYNAMIC_ONLY,
+    Fate.CANDIDATES: terms.CANDIDATES_ONLY,
+    Fate.CACHED: terms.CACHE_HITS,
+    Fate.PARTLY_OCCLUDED: f"{terms.TRACED}: partly occluded",
+    Fate.PARTIAL_SHADOW: f"{terms.TRACED}: partly in shadow",
+    Fate.NOT_SEEN_WHOLE: f"{terms.TRACED}: not seen whole yet",
+    Fate.DYNAMIC: f"{terms.TRACED}: dynamic",
+    Fate.TRACED: terms.TRACED,
 }
 
 FATE_MEANING: dict[Fate, str] = {
@@ -341,6 +385,47 @@ FATE_MEANING: dict[Fate, str] = {
     Fate.DYNAMIC: "traced: the primitive belongs to a dynamic object, which is never culled (§2.2)",
     Fate.TRACED: "traced through the whole scene",
 }
+
+
+class MovingShadow(IntEnum):
+    """What moving objects have to do with a pixel and a light."""
+
+    NONE = 0
+    LIT = 1
+    DARK = 2
+    TRACED = 3
+    OBJECT = 4
+
+
+MOVING_SHADOW_COLORS: dict[MovingShadow, Color] = {
+    MovingShadow.NONE: (1.0, 1.0, 1.0),
+    MovingShadow.LIT: _hex("F8F2A0"),
+    MovingShadow.DARK: _hex("5B2A86"),
+    MovingShadow.TRACED: _hex("A98BC9"),
+    MovingShadow.OBJECT: _hex("E8BCD3"),
+}
+"""What is no shadow tints the paled picture: pale NON_SHADOW, and pale DYNAMIC."""
+
+MOVING_SHADOW_NAMES: dict[MovingShadow, str] = {
+    MovingShadow.NONE: "neither",
+    MovingShadow.LIT: "dynamic only, lit",
+    MovingShadow.DARK: "dynamic only, darkened",
+    MovingShadow.TRACED: "darkened, but not dynamic only",
+    MovingShadow.OBJECT: "moving object",
+}
+
+MOVING_SHADOW_MEANING: dict[MovingShadow, str] = {
+    MovingShadow.NONE: "no moving object has to do with it",
+    MovingShadow.LIT: "its ray asked dynamic objects only, and none of them is in the way",
+    MovingShadow.DARK: "its ray asked dynamic objects only, and one of them is in the way: the shadow mode NON_SHADOW "
+    "stays, and the shadow goes with the object",
+    MovingShadow.TRACED: "a moving object is in the way, and nothing static is; its ray was traced, or answered in "
+    "another way",
+    MovingShadow.OBJECT: "it moves itself: dynamic, never culled",
+}
+
+PALE = 0.5
+"""How far the greys of the picture are paled towards white beneath shadows of moving objects."""
 
 WRONG = _hex("FF00FF")
 """A pixel with a wrong shadow answer: a colour of no other view, as pure as no shaded one gets."""

@@ -36,8 +36,9 @@ def _always() -> bool:
 class Command:
     """An action.  `menu` may name a menu within another, as "Camera/Bookmarks".  `key` is the one that it has unless
     the user gives it others, written as it is shown, e.g. "Ctrl+O"; `other_keys` do the same on other keyboards, and
-    are not shown; `checked` makes it a tick in its menu, where `tip` says more about it; `title` is what it is called
-    now, where that changes, and "" where it is not to be seen."""
+    are not shown; `also` holds words by which the palette finds it, too; `checked` makes it a tick in its menu, where
+    `tip` says more about it; `title` is what it is called now, where that changes, and "" where it is not to be
+    seen."""
 
     name: str
     menu: str
@@ -48,6 +49,7 @@ class Command:
     separated: bool = False
     repeats: bool = False
     tip: str = ""
+    also: str = ""
     other_keys: tuple[str, ...] = ()
     title: Callable[[], str] | None = None
 

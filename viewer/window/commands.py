@@ -72,7 +72,12 @@ def _view(ui: Ui) -> list[Command]:
 
     def show(view: View) -> Command:
         return Command(
-            view.label, "View", lambda: c.settings.set_view(view), view.key, checked=lambda: c.session.view is view
+            view.label,
+            "View",
+            lambda: c.settings.set_view(view),
+            view.key,
+            checked=lambda: c.session.view is view,
+            also=view.also,
         )
 
     def toggle(name: str) -> Callable[[], None]:

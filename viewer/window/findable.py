@@ -32,7 +32,7 @@ def _commands(ui: Ui) -> Iterator[Item]:
                 checked=command.checked() if command.checked is not None else None,
                 enabled=command.enabled(),
                 why_not=command.why_not,
-                also=command.name,
+                also=f"{command.name} {command.also}",
             )
 
 

@@ -21,10 +21,10 @@ from viewer.state.readings import (
     depth_range,
     lights_due,
     lights_top,
+    moving_shadows,
     samples_of,
     span_of,
     tree_of,
-    units_of,
     voxels_of,
 )
 from viewer.state.slices import MIDDLE, Slice, slice_codes
@@ -36,7 +36,7 @@ NAMES = (
     "color_buffer", "primitive_buffer", "unit_buffer", "mode_table", "count_table", "depth_buffer", "normal_buffer",
     "color_map", "reference_buffer", "mark_buffer", "certificate_buffer", "cell_buffer", "saved_buffer", "cost_buffer",
     "due_rays_buffer", "penumbra_buffer", "lights_buffer", "cuts_buffer", "part_table",
-    "slice_buffer", "cell_lights_buffer", "tree_buffer",
+    "slice_buffer", "cell_lights_buffer", "tree_buffer", "fate_buffer", "moving_buffer",
 )  # fmt: skip
 """Of all textures, in the order of their units."""
 # What lies on the GPU as a frame holds it: components, their kind, and the frame's attribute.
@@ -145,8 +145,8 @@ class FrameTextures:
         """A buffer of the frame to the GPU, unless it is there."""
         frame = self.frame
         assert frame is not None
-        of: dict[str, object] = {"penumbra_buffer": light, "mark_buffer": magnified, "slice_buffer": (light, cut)}
-        of["tree_buffer"] = cut
+        of: dict[str, object] = dict.fromkeys(("penumbra_buffer", "fate_buffer", "moving_buffer"), light)
+        of |= {"mark_buffer": magnified, "slice_buffer": (light, cut), "tree_buffer": cut}
         wanted = self.serial, of.get(name, 0)
         if name == "part_table":  # it is the scene's, whatever the frame
             wanted = id(self.part_of), 0
@@ -162,6 +162,10 @@ class FrameTextures:
             self._write(name, self.size, 1, "u1", wrong_marks(frame, magnified))
         elif name == "penumbra_buffer":
             self._write(name, self.size, 2, "u2", _penumbra(frame, light))
+        elif name == "fate_buffer":
+            self._write(name, self.size, 1, "u1", frame.fate(light))
+        elif name == "moving_buffer":
+            self._write(name, self.size, 1, "u1", moving_shadows(frame, light))
         elif name == "lights_buffer":
             self._write(name, self.size, 1, "i4", self.ranges.lights)
         elif name == "cuts_buffer":
@@ -173,7 +177,7 @@ class FrameTextures:
         elif name == "cell_lights_buffer":
             self._write(name, self.size, 1, "i4", cell_lights(frame))
         elif name == "unit_buffer":
-            self._write(name, self.size, 1, "i4", units_of(frame))
+            self._write(name, self.size, 1, "i4", frame.unit)
         elif name == "part_table":
             self._write_list(name, self.part_of if self.part_of is not None else np.zeros(1, np.int32))
         elif name == "mode_table":

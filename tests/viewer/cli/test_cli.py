@@ -536,10 +536,37 @@ def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path) -> None:
     command = shadowcull("--or-picture", room)
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert done.stderr.splitlines()[0] == "shadowcull: no display; rendering to a file instead"
-    assert "traversal steps" in done.stdout
-    with Image.open(done.stdout.splitlines()[-1]) as image:
+    assert done.stderr.splitlines()[0] == "shadowcull: no display; rendering to files instead"
+    for said in ("Shadow testing §2.4", "culled", "dynamic only", "traversal steps", "Occlusion-mode setting §2.6"):
+        assert said in done.stdout
+    picture, figure = done.stdout.splitlines()[-2:]
+    with Image.open(picture) as image:
         assert image.size == (640, 480)
+    due = re.search(r"shadow rays due\D*([\d,]+)", done.stdout)
+    assert due is not None and due[1] in Path(figure).read_text()
+
+
+@pytest.mark.slow
+def test_ctrl_c_ends_what_is_done_instead_of_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in set(os.environ) - set(without_display()):
+        monkeypatch.delenv(name)
+    terminal = Terminal("--or-picture")
+    terminal.interrupt_once("frame 3 of 20")
+    assert (terminal.end(), terminal.said.splitlines()[-1]) == (130, "shadowcull: cancelled")
+
+
+def test_figure_1_of_a_frame(room: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Alone, or beside a picture; with none it says what would be culled."""
+    for method, said in (("paper", ">culled<"), ("none", ">would be culled<"), ("certified", ">Certificates<")):
+        file = tmp_path / f"{method}.svg"
+        code, out, _ = run(
+            capfd, "render", room, "--figure1", file, "--size", "32x24", "--method", method, "--repeat", "1"
+        )
+        assert code == 0 and out.splitlines()[-1] == str(file)
+        due = re.search(r"shadow rays due\D*([\d,]+)", out)
+        assert due is not None and f">{due[1]}<" in file.read_text() and said in file.read_text()
+    code, _, error = run(capfd, "render", room, "--figure1", tmp_path / "no.png")
+    assert code == 1 and "--figure1 writes a .svg" in error and error.count("\n") == 1
 
 
 @pytest.mark.slow

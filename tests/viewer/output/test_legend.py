@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.scenes import loaded
 from tests.viewer.colors import luminance
 from tests.viewer.fakes import (
     in_cells,
@@ -19,18 +20,30 @@ from tests.viewer.fakes import (
     with_tree,
     with_voxels,
 )
-from tracer.culling.modes import ShadowMode
+from tracer.culling.fate import Fate
+from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.frame import Frame, Settings
+from tracer.renderer import Renderer
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend import legend_of
+from viewer.output.legend_counts import work_legend
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT, TONES, fitting, lay_out, wrapped
 from viewer.output.legend_parts import Chosen, Legend, Tone, light_in_words
 from viewer.output.legend_picture import with_legend
 from viewer.state.readings import voxels_of
 from viewer.state.slices import Slice
-from viewer.state.views import OCCLUSION_COLORS, WRONG, Certificate, View, color_map
+from viewer.state.views import (
+    FATE_COLORS,
+    FATE_NAMES,
+    OCCLUSION_COLORS,
+    WRONG,
+    Certificate,
+    View,
+    color_map,
+)
 from viewer.util.numbers import percent
+from viewer.util.resources import embedded_scenes
 
 SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)
 LINE = 10.0
@@ -125,6 +138,36 @@ def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
     assert legend_of(make_frame(), View.PENUMBRA, Chosen(light)) is None
 
 
+@pytest.mark.parametrize("light", [0, 1, 2])
+@pytest.mark.parametrize("method", ["paper+cache", "certified+cache"])
+def test_fates_come_with_shares_of_pixels_and_of_the_rays_that_are_due(frame: Frame, light: int, method: str):
+    frame = replace(frame, settings=replace(SETTINGS, method=method))
+    legend, hit = of(frame, View.FATE, light=light, light_name="lamp"), frame.primitive >= 0
+    assert legend.title == f"Fate of shadow rays, light {light} (lamp)" and legend.columns == ("pixels", "of due")
+    fates = frame.fate(light)[hit]
+    due = (fates >= Fate.CULLED).sum()
+    by_name = {entry.name: entry for entry in legend.entries}
+    for fate in set(Fate(one) for one in fates):
+        entry, pixels = by_name.pop(FATE_NAMES[fate]), (fates == fate).sum()
+        share = percent(pixels, due) if fate is not Fate.FACES_AWAY else ""
+        assert entry.values == (percent(pixels, hit.sum()), share) and entry.color == FATE_COLORS[fate]
+    assert all(entry.values[0] == "0.0 %" for entry in by_name.values()), "what is usual is named"
+    saved = ((fates == Fate.CULLED) | (fates == Fate.DYNAMIC_ONLY)).sum()
+    said = {fact.name: fact.values[1] for fact in legend.facts}
+    assert said == {"saved": percent(saved, due), "traced": percent((fates >= Fate.PARTLY_OCCLUDED).sum(), due)}
+    assert not legend.notes and "nearest" in of(in_part(frame), View.FATE, light=light).notes[0].text
+    assert legend_of(make_frame(), View.FATE, Chosen(light)) is None
+
+
+def test_shadows_of_moving_objects_are_counted(frame: Frame):
+    legend, hit = of(frame, View.MOVING_SHADOW, light=1), frame.primitive >= 0
+    dark, asked = frame.moving_shadow(1), frame.fate(1) == Fate.DYNAMIC_ONLY
+    moves = (frame.occlusion_mode == OcclusionMode.DYNAMIC) & ~dark
+    counts = (dark & asked, dark & ~asked, ~dark & asked & ~moves, moves)
+    assert [entry.values for entry in legend.entries] == [(percent(one.sum(), hit.sum()),) for one in counts]
+    assert legend.facts[0].values == (percent((dark & asked).sum(), (dark & asked).sum() + counts[2].sum()),)
+
+
 def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):
     hit = frame.primitive >= 0
     due = (frame.asked[hit] > 0).sum(axis=-1)
@@ -157,7 +200,7 @@ def test_clusters_of_lights_per_pixel_with_the_bound_of_their_error(frame: Frame
 def test_pictures_by_clusters_of_lights_tell_their_errors(frame: Frame):
     cuts = replace(frame.statistics.cuts, errors=CutErrors(0.002, 0.0137, 0.041, 5))
     legend = of(replace(frame, statistics=replace(frame.statistics, cuts=cuts)), View.DIFFERENCE)
-    assert [fact.values[0] for fact in legend.facts][:3] == ["0.2 % at most", "1.4 % at most", "4.1 % at most"]
+    assert [fact.values[0] for fact in legend.facts][2:] == ["0.2 % at most", "1.4 % at most", "4.1 % at most"]
     assert not legend.notes, "nothing is said of answers"
 
 
@@ -178,6 +221,27 @@ def test_heat_maps_say_whether_they_count_or_share(frame: Frame):
     assert "without culling" in of(frame, View.COST, shares=True).title
 
 
+def test_work_of_a_picture_in_part_is_counted_where_it_was_done():
+    """Pixels that are not shaded yet show what the nearest has, and are no part of the counts."""
+    scene = loaded(embedded_scenes()["default"])
+    renderer = Renderer(scene, Settings(width=96, height=64, depth=2, record_work=True))
+    renderer.render(scene.frame_time(20))
+    partly, whole = renderer.refine(scene.frame_time(21), parts=(2, 16))
+    for one in (partly, whole):
+        rays, shadow = one.statistics.secondary.rays, one.statistics.shadow
+        saved, cost = (work_legend(one, view) for view in (View.SAVED, View.COST))
+        assert (saved.total, saved.whole) == (shadow.saved, shadow.due)
+        assert cost.total == round(one.statistics.part * 96 * 64) + rays + shadow.traced
+        assert cost.per_pixel == cost.total / round(one.statistics.part * 96 * 64)
+    assert partly.cost.sum() > 5 * work_legend(partly, View.COST).total
+    legend = of(partly, View.COST)
+    part = percent(partly.statistics.part, 1.0)
+    assert legend.facts[0].name == f"in the {part} that is shaded" and "nearest" in legend.notes[0].text
+    assert of(whole, View.COST).facts[0].name == "in all" and not of(whole, View.COST).notes
+    assert of(partly, View.OCCLUSION).facts[0].name.endswith(f"{part} shaded")
+    assert not of(whole, View.OCCLUSION).facts[0].name.endswith("shaded")
+
+
 def test_the_depths_ends_are_those_of_the_colours():
     depth = np.linspace(1.0, 9.0, 160 * 96, dtype=np.float32).reshape(96, 160)
     scale = of(replace(make_frame(SETTINGS), depth=depth), View.DEPTH).scale
@@ -187,10 +251,10 @@ def test_the_depths_ends_are_those_of_the_colours():
 def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame):
     wrong = of(frame, View.DIFFERENCE)
     assert wrong.entries[0].color == WRONG and wrong.entries[0].values == ("2 (0.013 %)",)
-    assert wrong.facts[0].values[0].startswith("3 (")
-    assert (wrong.entries[0].name, wrong.facts[0].name) == ("wrong pixels", "wrong answers")
+    assert wrong.facts[2].values[0].startswith("3 (")
+    assert (wrong.entries[0].name, wrong.facts[2].name) == ("wrong pixels", "wrong answers")
     assert of(frame, View.WIPE, marked=False).entries[0].color is None
-    assert [fact.values for fact in wrong.facts[1:]] == [("2",), ("26 of 255",)]
+    assert [fact.values for fact in wrong.facts[:2]] == [("2",), ("26 of 255",)]
     found, known = frame.statistics.wrong, frame.statistics
     known.wrong = replace(found, samples=4)
     assert of(frame, View.DIFFERENCE).entries[0].name == "wrong pixels, all 4 samples"

@@ -17,6 +17,7 @@ from tests.viewer.fakes import (
     with_tree,
     with_voxels,
 )
+from tracer.culling.fate import MOVING_SHADOW, TRACED, Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
@@ -35,7 +36,9 @@ from viewer.state.views import (
     CELL_LINE,
     CERTIFICATE_COLORS,
     FAINT_LINE,
+    FATE_COLORS,
     GREY,
+    MOVING_SHADOW_COLORS,
     OCCLUSION_COLORS,
     RING_DIMMING,
     SHADOW_COLORS,
@@ -44,6 +47,7 @@ from viewer.state.views import (
     WRONG,
     Arrival,
     Certificate,
+    MovingShadow,
     View,
     color_map,
 )
@@ -71,6 +75,13 @@ def frame(tmp_path_factory: pytest.TempPathFactory) -> Frame:
     path.write_text(SCENE)
     renderer = Renderer(load_scene(path), Settings(width=96, height=64, threads=1))
     return [renderer.render(time) for time in (1.0, 2.0, 3.0)][-1]
+
+
+def recorded(frame: Frame) -> Frame:
+    """The frame with what became of each shadow ray: those of what moves, and of what it hides light from, by hand."""
+    asks, shape = np.full((*frame.primitive.shape, frame.lights), TRACED, np.uint8), frame.primitive.shape
+    asks[:, : shape[1] // 2] |= MOVING_SHADOW
+    return replace(frame, fates=asks)
 
 
 @pytest.fixture(scope="module")
@@ -246,6 +257,33 @@ def test_penumbrae_are_a_ramp_between_dark_and_lit(certified_frame: Frame, light
     for bare in (replace(f, asked=None), replace(f, reached=None)):
         with pytest.raises(ValueError, match="did not record which samples"):
             picture(bare, View.PENUMBRA, light)
+
+
+def test_fates_have_their_colours(frame: Frame) -> None:
+    told, light = recorded(frame), 0
+    drawn, fates = picture(told, View.FATE, light, shading=0.0), told.fate(light)
+    seen = set()
+    for fate in Fate:
+        there = (fates == fate) & (told.primitive >= 0)
+        assert (drawn[there] == to_bytes(FATE_COLORS[fate])).all()
+        seen |= {fate} if there.any() else set()
+    assert seen >= {Fate.DYNAMIC_ONLY, Fate.PARTLY_OCCLUDED, Fate.DYNAMIC}
+    for view in (View.FATE, View.MOVING_SHADOW):
+        with pytest.raises(ValueError, match="did not record what became of"):
+            picture(frame, view, light)
+
+
+def test_shadows_of_moving_objects_stand_out_of_the_paled_picture(frame: Frame) -> None:
+    told, light = recorded(frame), 0
+    drawn = picture(told, View.MOVING_SHADOW, light, shading=0.0).astype(int)
+    dark, asked = told.moving_shadow(light), told.fate(light) == Fate.DYNAMIC_ONLY
+    assert (dark & asked).any()
+    for there, code in ((dark & asked, MovingShadow.DARK), (dark & ~asked, MovingShadow.TRACED)):
+        assert (drawn[there] == to_bytes(MOVING_SHADOW_COLORS[code])).all()
+    rest = (told.primitive >= 0) & ~dark & ~asked & (told.occlusion_mode != OcclusionMode.DYNAMIC)
+    assert rest.any()
+    grey = picture(told)[rest] @ np.array([0.2126, 0.7152, 0.0722])
+    assert np.abs(drawn[rest] - (127.5 + grey / 2.0)[:, None]).max() <= 1.5
 
 
 def test_what_is_not_known_yet_looks_like_nothing_that_is(certified_frame: Frame) -> None:

@@ -188,10 +188,12 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
     for view, title in (
         (View.PENUMBRA, "Penumbra: counting ..."),
         (View.LIGHTS, "Lights due: none here, colour shown"),
+        (View.FATE, "Fate of shadow rays: none here, colour shown"),
     ):
         window.session.view = view
         window.rest()
-        assert not window.renders.asked[-1].settings.record_lights
+        asked = window.renders.asked[-1].settings
+        assert not asked.record_lights and not asked.record_fates
         assert window.tracing.title == title
 
 

@@ -40,6 +40,8 @@ def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View
     wrong = "paper", "cells", "lie", *cuts
     shows = {View.CERTIFICATE: ("certified",), View.DIFFERENCE: wrong, View.WIPE: wrong, View.CUTS: cuts}
     shows |= {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}
+    one_by_one = tuple(kind.name for kind in bases() if kind.name not in cuts)  # rays to single lights
+    shows |= {View.FATE: one_by_one, View.MOVING_SHADOW: one_by_one}
     if view is View.TREE:
         assert (found.base, found.accelerator) == ("", "kdtree-lazy") and "before rays came (bvh8)" in found.text
         assert missing(view, with_tree(frame)) is None

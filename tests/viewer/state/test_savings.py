@@ -105,7 +105,7 @@ def test_the_parts_of_the_bar_are_all_rays_that_are_due():
     bar = bar_of(frame)
     assert not bar.would and sum(part.rays for part in bar.parts) == 1000
     assert [(part.name, part.share) for part in bar.parts] == [
-        ("culled", "10.0 %"), ("dynamic only", "5.0 %"), ("candidates", "30.0 %"), ("cache", "2.0 %"),
+        ("culled", "10.0 %"), ("dynamic only", "5.0 %"), ("candidates", "30.0 %"), ("cache hits", "2.0 %"),
         ("traced", "53.0 %"),
     ]  # fmt: skip
     assert "(§2.4)" in bar.parts[0].in_words(would=False)

@@ -53,6 +53,16 @@ def test_parts_are_those_that_hold_the_primitives(now: Edited) -> None:
     assert parts_of(now.original) is parts
 
 
+def test_rays_of_pixels_that_are_not_shaded_yet_are_nobodys(now: Edited) -> None:
+    frame = make_frame(RECORDED)
+    shaded = np.indices(frame.primitive.shape)[1] % 2 == 0
+    none = {name: np.where(shaded, getattr(frame, name), 0) for name in ("due_rays", "saved", "wrong")}
+    partly, counted = (tables_of(now, one, 0) for one in (replace(frame, shaded=shaded), replace(frame, **none)))
+    for level in Level:
+        for name in ("due", "saved", "wrong"):
+            assert column(partly[level], name) == column(counted[level], name), (level, name)
+
+
 def test_rows_count_what_each_pixel_says(now: Edited, tables: dict[Level, Table]) -> None:
     frame, total = make_frame(RECORDED), now.original.primitive_count
     counted: dict[str, Counter] = {name: Counter() for name in ("pixels", "due", "saved", "wrong")}

@@ -50,6 +50,10 @@ def test_pixels_are_put_into_words():
     assert said(View.PENUMBRA, 5) == (f"{FRAME.reached[2, 5, 0]} of {FRAME.asked[2, 5, 0]}",)
     assert said(View.LIGHTS, 5) == (str(np.count_nonzero(FRAME.asked[2, 5])),)
     part = in_part(FRAME)
+    assert words_at(part, View.DIFFERENCE, 0, 3, 2) == words_at(part, View.COST, 0, 3, 2) == ("?",)
+    assert words_at(part, View.COST, 0, 4, 2) == (str(FRAME.cost[2, 4]),)
+    for view in (View.SAVED, View.COST, View.DIFFERENCE):
+        assert np.array_equal(values_of(part, view, cut=MIDDLE).known, part.shaded), view
     assert words_at(part, View.PENUMBRA, 0, 3, 2) == words_at(part, View.LIGHTS, 0, 3, 2) == ("?",)
     nodes, bound = (FRAME.layers[name][2, 5] for name in ("cut nodes", "cut bound"))
     assert nodes >= 0 and said(View.CUTS, 5) == (str(nodes), f"± {100 * bound:.3g} %")

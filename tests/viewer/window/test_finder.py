@@ -37,12 +37,19 @@ def test_every_item_has_a_name_of_its_own(ui):
         ("undo", "Undo"), ("nl", "Next light"), ("occl", "Occlusion mode"), ("bounces", "setting Bounces"),
         ("paper as", "preset As in the paper"), ("figure4", None), ("reload", "Reload"),
         ("embree", "Copy camera for Embree"), ("occulsion", "Occlusion mode"),
+        ("why traced", "Fate of shadow rays"), ("culled view", "Fate of shadow rays"),
+        ("dynamic darkened", "Shadows of moving objects"),
         ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"), ("dead zone", "setting Dead zone of sticks"),
     ],
 )  # fmt: skip
 def test_what_is_meant_is_found_first(ui, typed: str, meant: str | None):
     first = look_for(ui, typed)[0]
     assert first.name == meant if meant else first.kind is Kind.SCENE
+
+
+@pytest.mark.parametrize("typed", ["culled", "traced", "dynamic", "why"])
+def test_views_of_fates_are_found_by_what_they_show(ui, typed: str):
+    assert "Fate of shadow rays" in [item.name for item in look_for(ui, typed)[:8]]
 
 
 def test_what_was_used_last_comes_first(ui):

@@ -204,6 +204,7 @@ def cull_by_certificates(certified, points, found, light, number, count, asks, b
         found.untried[v] |= live & ~some
         found.doubtful[v] |= some
         if asks:
+            batch.candidates[v] |= some
             which = lane_numbers_x16() + np.int32(16 * v)
             store(address_of(found.asked) + 4 * asked, pack(which, mask16(some)))
             asked += ones(some)
@@ -211,6 +212,8 @@ def cull_by_certificates(certified, points, found, light, number, count, asks, b
         known, tests = ask_candidates(certified, points, found, light, number, asked, batch.live, batch.lit)
         counts[CANDIDATES_ONLY] += known
         counts[TESTS] += tests
+        for v in range(vectors(count)):  # of some of these, too many are named, or one is in doubt
+            batch.candidates[v] &= ~np.int64(batch.live[v])
 
 
 @subkernel

@@ -108,5 +108,6 @@ def answer(environments, points, batch, light, place, count, cells, counts):
         counts[CULLED] += ones(full & ~asked)
         counts[DYNAMIC_ONLY] += ones(null & ~asked)
         counts[CANDIDATES_ONLY] += ones((full | null) & asked)
+        batch.candidates[v] |= (full | null) & asked
         batch.live[v] = live & ~(full | null)
         batch.lit[v] |= null

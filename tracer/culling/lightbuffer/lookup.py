@@ -267,3 +267,4 @@ def _answer(moves, rays, n, count, batch, counts):
         counts[CULLED] += ones((blocked | settled) & ~tested)
         counts[CANDIDATES_ONLY] += ones(tested)
         counts[DYNAMIC_ONLY] += ones(lit & ~settled)
+        batch.candidates[v] |= tested

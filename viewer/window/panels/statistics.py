@@ -51,6 +51,8 @@ def show(ui: Ui) -> None:
     certifies, prepares = Method.parse(frame.settings.method).has_certificates, terms.made(frame.settings.method)[0]
     _shadow_rays(frame, pixels, certifies)
     heading("Work")
+    if s.part < 1.0:
+        paragraph(f"Of all pixels for primary rays, else of the {s.part:.0%} that are shaded.", QUIET)
     _work(ui)
     if s.built is not None:
         with _amounts("tree") as shown:

@@ -9,7 +9,10 @@ from viewer.window.panels import legend, lights, slicing, tone
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, right, row
 
-_FLAT = (View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE, View.PENUMBRA, View.TREE)
+_FLAT = (
+    *(View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE, View.PENUMBRA, View.TREE),
+    *(View.FATE, View.MOVING_SHADOW),
+)
 
 
 def show(ui: Ui) -> None:

@@ -1,0 +1,169 @@
+"""What became of each shadow ray: what is recorded pixel by pixel agrees with what the frame counts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+import tracer
+from tests.scenes import loaded
+from tests.tracing.random_worlds import Walk, quickly, walks
+from tests.tracing.shades import shadow_scene
+from tracer.culling.fate import FATE, Fate
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from viewer.util.resources import embedded_scenes
+
+SETTINGS = tracer.Settings(48, 40, depth=0, threads=2, record_fates=True)
+METHODS = ("paper", "cells", "certified", "auto", "paper+cache", "lightbuffer", "voxels", "lie-exact", "none")
+BY_MODES = {Fate.PARTLY_OCCLUDED, Fate.PARTIAL_SHADOW, Fate.NOT_SEEN_WHOLE, Fate.DYNAMIC}
+
+
+def fates_of(frame: tracer.Frame) -> np.ndarray:
+    """(h, w, lights) uint8."""
+    return np.stack([frame.fate(light) for light in range(frame.lights)], axis=-1)
+
+
+def assert_counted(frame: tracer.Frame) -> None:
+    """Summed over pixels, fates are the counters of a frame without bounces."""
+    shadow = frame.statistics.shadow
+    expected = (shadow.culled, shadow.dynamic_only, shadow.candidates_only, shadow.cache_hits, shadow.traced)
+    assert frame.fates is not None
+    for fates in (frame.fates & FATE, fates_of(frame)):
+        count = np.bincount(fates.reshape(-1), minlength=len(Fate))
+        assert tuple(count[Fate.CULLED : Fate.PARTLY_OCCLUDED]) == expected[:-1]
+        assert count[Fate.PARTLY_OCCLUDED :].sum() == expected[-1]
+        hit = frame.primitive >= 0
+        assert (fates[hit] >= Fate.FACES_AWAY).all() and not fates[~hit].any(), "known of all that is seen"
+
+
+@pytest.mark.parametrize("method", METHODS)
+@given(walk=walks())
+@quickly(4)
+def test_fates_in_random_worlds_are_those_that_the_frame_counts(method: str, walk: Walk) -> None:
+    renderer = tracer.Renderer(walk.scene, replace(SETTINGS, method=method))
+    for time, camera in walk.frames[:4]:
+        assert_counted(renderer.render(time, camera))
+
+
+@pytest.mark.parametrize("method", ("paper", "cells", "certified", "paper+cache", "lightbuffer"))
+def test_fates_in_the_default_scene_with_what_moves_are_those_that_the_frame_counts(method: str) -> None:
+    renderer = tracer.Renderer(loaded(embedded_scenes()["default"]), replace(SETTINGS, method=method))
+    for number in range(4):
+        frame = renderer.render(1.0 + number / 30.0)
+        assert_counted(frame)
+    if method != "certified":
+        assert frame.statistics.shadow.saved > 0
+
+
+@given(walk=walks())
+@quickly(6)
+def test_reasons_are_those_for_which_the_modes_of_the_frame_before_do_not_cull(walk: Walk) -> None:
+    renderer = tracer.Renderer(walk.scene, SETTINGS)
+    before = None
+    for time, camera in walk.frames[:5]:
+        frame = renderer.render(time, camera)
+        light_moved = before is not None and (
+            walk.scene.light_positions(time) != walk.scene.light_positions(before.time)
+        ).any(axis=1)
+        if before is None or light_moved.any():
+            before = frame
+            continue
+        for y, x in np.argwhere(frame.primitive >= 0)[::7]:
+            unit = frame.primitive[y, x]
+            occlusion = OcclusionMode(int(before.modes[unit]) & 3)
+            for light in range(frame.lights):
+                shadow = ShadowMode(int(before.modes[unit]) >> (2 + 2 * light) & 3)
+                fate = Fate(frame.fate(light)[y, x])
+                if fate is Fate.FACES_AWAY:
+                    continue
+                if occlusion is not OcclusionMode.FULLY_RENDERED:
+                    assert fate is {
+                        OcclusionMode.INIT: Fate.NOT_SEEN_WHOLE,
+                        OcclusionMode.PARTIALLY_OCCLUDED: Fate.PARTLY_OCCLUDED,
+                        OcclusionMode.DYNAMIC: Fate.DYNAMIC,
+                    }[occlusion]  # fmt: skip
+                else:
+                    assert fate is {
+                        ShadowMode.INIT: Fate.NOT_SEEN_WHOLE,
+                        ShadowMode.FULL_SHADOW: Fate.CULLED,
+                        ShadowMode.NON_SHADOW: Fate.DYNAMIC_ONLY,
+                        ShadowMode.PARTIAL_SHADOW: Fate.PARTIAL_SHADOW,
+                    }[shadow]  # fmt: skip
+        before = frame
+
+
+@pytest.mark.parametrize("method", ("none", "certified", "certified+cache", "lightbuffer", "voxels", "free"))
+def test_reasons_of_the_papers_modes_are_given_for_methods_that_cull_by_them_alone(method: str) -> None:
+    renderer = tracer.Renderer(shadow_scene(), replace(SETTINGS, method=method))
+    renderer.render()
+    frame = renderer.render()
+    assert not BY_MODES & {Fate(fate) for fate in np.unique(fates_of(frame))}
+
+
+@pytest.mark.parametrize("method", ["none", "certified", "certified+cache", "lightbuffer", "paper"])
+def test_a_moving_shadow_is_where_light_comes_once_what_moves_is_gone(method: str) -> None:
+    scene = loaded(embedded_scenes()["default"])
+    renderer = tracer.Renderer(scene, replace(SETTINGS, width=96, height=80, method=method, record_lights=True))
+    for number in range(3):
+        frame = renderer.render(1.0 + number / 30.0)
+    still = replace(scene, objects=scene.objects[:1])
+    alone = tracer.Renderer(still, replace(frame.settings, method="none")).render(frame.time, frame.camera)
+    assert frame.lit is not None and frame.due is not None and alone.lit is not None
+    same, dark = frame.primitive == alone.primitive, 0
+    for light in range(frame.lights):
+        expected = same & alone.lit[..., light] & frame.due[..., light] & ~frame.lit[..., light]
+        found = same & frame.moving_shadow(light)
+        if method == "paper":  # it is wrong now and then about what is static
+            fates = frame.fate(light)
+            assert (fates[found & ~alone.lit[..., light]] == Fate.DYNAMIC_ONLY).all()
+            expected, found = expected & (fates != Fate.CULLED), found & alone.lit[..., light]
+        assert np.array_equal(found, expected), light
+        dark += np.count_nonzero(found)
+    assert dark > 50
+
+
+def test_a_picture_of_which_a_part_is_shaded_says_what_the_modes_of_each_pixel_say() -> None:
+    """Also of pixels that have not been shaded, which are due where the nearest that has been is due."""
+    scene = loaded(embedded_scenes()["default"])
+    renderer = tracer.Renderer(scene, replace(SETTINGS, width=96, height=80))
+    for number in range(4):
+        *parts, whole = renderer.refine(1.0 + number / 30.0, parts=(1, 4, 16))
+    apart = []
+    for part in parts:
+        assert part.shaded is not None and not part.shaded.all()
+        for light in range(whole.lights):
+            fates, final = part.fate(light), whole.fate(light)
+            assert np.array_equal(fates[part.shaded], final[part.shaded])
+            hit = part.primitive >= 0
+            guessed = hit & ~part.shaded & (fates >= Fate.CULLED) & (final >= Fate.CULLED)
+            assert np.array_equal(fates[guessed], final[guessed])
+            assert np.count_nonzero(part.moving_shadow(light) != whole.moving_shadow(light)) < 0.05 * fates.size
+        apart.append(np.mean([part.fate(light) != whole.fate(light) for light in range(whole.lights)]))
+    assert apart[1] < apart[0] < 0.15
+
+
+def test_of_a_lamp_the_sample_that_asked_most_counts() -> None:
+    settings = replace(SETTINGS, lamp_radius=0.4, lamp_samples=8)
+    renderer = tracer.Renderer(loaded(embedded_scenes()["default"]), settings)
+    for number in range(3):
+        frame = renderer.render(1.0 + number / 30.0)
+    shadow = frame.statistics.shadow
+    fates = fates_of(frame)
+    assert 8 * np.count_nonzero(fates == Fate.CULLED) >= shadow.culled > 0
+    assert np.count_nonzero(fates >= Fate.CULLED) * 8 >= shadow.due
+
+
+def test_without_a_record_there_is_one_line_and_with_one_the_picture_is_the_same() -> None:
+    scene = shadow_scene()
+    plain, recorded = (
+        tracer.Renderer(scene, replace(SETTINGS, depth=2, record_fates=record)).render() for record in (False, True)
+    )
+    assert plain.fates is None and np.array_equal(plain.color, recorded.color)
+    assert plain.statistics.shadow == recorded.statistics.shadow
+    with pytest.raises(ValueError, match="did not record"):
+        plain.fate(0)
+    clustered = tracer.Renderer(scene, replace(SETTINGS, method="lightcuts")).render()
+    assert clustered.fates is None, "single lights have no rays of their own"

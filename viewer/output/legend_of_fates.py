@@ -1,0 +1,72 @@
+"""What the legends of views of fates say: what became of the shadow rays to one light, and what moving objects do."""
+
+from __future__ import annotations
+
+from tracer.culling.fate import Fate
+from tracer.frame import Frame
+from tracer.method import Method
+from viewer.output.legend_counts import fate_legend, moving_shadow_legend
+from viewer.output.legend_parts import Chosen, Entry, Legend, Note, light_in_words
+from viewer.state import terms
+from viewer.state.views import (
+    FATE_COLORS,
+    FATE_MEANING,
+    FATE_NAMES,
+    MOVING_SHADOW_COLORS,
+    MOVING_SHADOW_MEANING,
+    MOVING_SHADOW_NAMES,
+    MovingShadow,
+    View,
+)
+from viewer.util.numbers import count, percent
+
+_PAPER = (Fate.PARTLY_OCCLUDED, Fate.PARTIAL_SHADOW, Fate.NOT_SEEN_WHOLE, Fate.DYNAMIC)
+_ALWAYS = (Fate.FACES_AWAY, Fate.CULLED, Fate.DYNAMIC_ONLY)
+
+
+def of_fates(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    """How many rays had each fate, of those that are due."""
+    found, method = fate_legend(frame, chosen.light), Method.parse(frame.settings.method)
+    usual = (*_ALWAYS, *(_PAPER if method.uses_modes else (Fate.TRACED,)))
+    entries = tuple(
+        Entry(
+            FATE_NAMES[fate],
+            FATE_COLORS[fate],
+            (percent(pixels, found.seen), percent(pixels, found.due) if fate.is_due else ""),
+            f"{FATE_MEANING[fate]}. {count(pixels)} pixels",
+        )
+        for fate, pixels in found.pixels.items()
+        if pixels or fate in usual
+    )
+    facts = (
+        Entry("saved", None, ("", percent(found.saved, found.due)), "culled, or asked dynamic objects only"),
+        Entry("traced", None, ("", percent(found.traced, found.due)), "through the whole scene, for whatever reason"),
+    )
+    return Legend(_title(view, chosen), ("pixels", "of due"), entries, facts=facts, notes=_filled_in(frame))
+
+
+def of_moving_shadows(frame: Frame, view: View, chosen: Chosen) -> Legend:
+    """How many pixels moving objects darken, and how many ask about these alone."""
+    pixels = moving_shadow_legend(frame, chosen.light)
+    seen, asked = sum(pixels.values()), pixels[MovingShadow.LIT] + pixels[MovingShadow.DARK]
+    entries = tuple(
+        Entry(
+            MOVING_SHADOW_NAMES[one],
+            MOVING_SHADOW_COLORS[one],
+            (percent(pixels[one], seen),),
+            f"{MOVING_SHADOW_MEANING[one]}. {count(pixels[one])} pixels",
+        )
+        for one in (MovingShadow.DARK, MovingShadow.TRACED, MovingShadow.LIT, MovingShadow.OBJECT)
+    )
+    share = percent(pixels[MovingShadow.DARK], asked)
+    facts = (Entry(f"of {terms.DYNAMIC_ONLY}, darkened", None, (share,), MOVING_SHADOW_MEANING[MovingShadow.DARK]),)
+    return Legend(_title(view, chosen), ("pixels",), entries, facts=facts, notes=_filled_in(frame))
+
+
+def _title(view: View, chosen: Chosen) -> str:
+    return f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
+
+
+def _filled_in(frame: Frame) -> tuple[Note, ...]:
+    """What is said of a picture of which only a part has been shaded."""
+    return () if frame.shaded is None else (Note("Pixels that are not shaded yet go by the nearest that is."),)
