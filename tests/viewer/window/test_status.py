@@ -91,7 +91,7 @@ def test_what_was_asked_says_what_it_waits_for() -> None:
         ({"adds_samples": True}, "answered after this sample"),
         ({"refines_lamps": True}, "answered after the samples of lamps"),
         ({"renderer": SimpleNamespace(busy=True)}, "answered after this picture"),
-        ({"motion": SimpleNamespace(lively=True)}, "traced when nothing moves"),
+        ({"motion": SimpleNamespace(lively=True)}, "answered when nothing moves"),
     ):
         assert unanswered(SimpleNamespace(controller=_idle(**changes))) == said
 
