@@ -89,6 +89,11 @@ class Renderer:
         """Forget all modes, at every resolution, and everything that methods have learnt."""
         self.state.forget()
 
+    @property
+    def modes(self) -> NDArray[np.unsignedinteger]:
+        """The modes (units,) that the next frame by these settings begins with; to be changed in place."""
+        return self.state.history(self.settings, self.state.method(self.settings.method).first_units(), 1).words
+
     def render(self, time: float = 0.0, camera: Camera | None = None, cancel: Cancel = None) -> Frame:
         """Render one frame.
 

@@ -17,6 +17,7 @@ from PIL import Image
 
 from tracer.frame import Frame
 from tracer.geometry.world import World
+from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edits, edited
 from tracer.scene.files import read_regular
@@ -26,10 +27,12 @@ from tracer.scene.model import Cancelled, Scene, SceneError
 from viewer.cli.console import Work, working
 from viewer.cli.tracing_options import prepare_kernels
 from viewer.output import capture, comparison_figure, exr, fingerprint, recipe
-from viewer.output.recipe import Recipe
+from viewer.output.recipe import BUILT, CHANCE, Recipe
 from viewer.services import comparison, stills
 from viewer.services.scene_files import find_scene
+from viewer.state.methods import NO_CULLING
 from viewer.state.session import Snapshot
+from viewer.state.views import View
 from viewer.util.messages import ERROR, in_one_line, printable
 from viewer.util.version import program_version
 
@@ -79,17 +82,42 @@ class Checker:
                 return self._compared(kept, np.asarray(image.convert("RGB")), data, {}, False)
         if data.get("window"):
             return Verdict(None, "it shows two pictures, or the window with its panels, which cannot be rendered again")
-        frame, wanted = self._traced(path, data)
+        wanted = self._wanted(data)
+        if wanted.history and not wanted.modes and wanted.view is View.COLOR and not wanted.tells_counters:
+            return self._against_tracing_all(path, kept, wanted)
+        frame, wanted = self._traced(path, wanted)
         pixels, _ = stills.draw(frame, self._open_scene, wanted)
         return self._compared(kept, pixels, data, frame.statistics.to_dict(), wanted.by_gpu)
 
-    def _traced(self, path: Path, data: Mapping[str, Any]) -> tuple[Frame, Recipe]:
-        """The frame of a picture, once more; raises ValueError, in one line, where that cannot be."""
+    def _against_tracing_all(self, path: Path, kept: NDArray[np.uint8], wanted: Recipe) -> Verdict:
+        """What can be said of a picture whose modes nobody can learn again: where it is not that without culling."""
+        settings = replace(wanted.settings, method=NO_CULLING)
+        frame, plain = self._traced(
+            path, replace(wanted, settings=settings, history="", before=(), warmup=0, repeats=0)
+        )
+        pixels, _ = stills.draw(frame, self._open_scene, plain)
+        if pixels.shape != kept.shape:
+            raise ValueError(_not_again(wanted))
+        apart = np.abs(kept.astype(np.int16) - pixels.astype(np.int16)).max(axis=-1)
+        differ, most = int((apart > 0).sum()), int(apart.max(initial=0))
+        if not differ:
+            return Verdict(True, "bit for bit the picture with every shadow ray traced: nothing of its culling shows")
+        return Verdict(
+            None,
+            f"but for {differ:,} of {apart.size:,} pixels it is the picture with every shadow ray traced; these differ "
+            f"by {most} of 255 at most, which culling may have done: {_not_again(wanted)}",
+        )
+
+    def _wanted(self, data: Mapping[str, Any]) -> Recipe:
+        """The recipe that a picture carries; raises ValueError in one line."""
         snapshot, size = Snapshot.from_json(data.get("state")), capture.size_of(data.get("size"))
-        wanted = recipe.from_json(snapshot, size, data.get("picture"))
-        if wanted.history:
-            raise ValueError(f"it cannot be made again: {wanted.history}")
-        scene, wanted = self._prepared(path, snapshot, wanted, (wanted.settings.method,))
+        return recipe.from_json(snapshot, size, data.get("picture"))
+
+    def _traced(self, path: Path, wanted: Recipe) -> tuple[Frame, Recipe]:
+        """The frame of a picture, once more; raises ValueError, in one line, where that cannot be."""
+        if wanted.history and not wanted.modes:
+            raise ValueError(_not_again(wanted))
+        scene, wanted = self._prepared(path, wanted, (wanted.settings.method,))
         stills.check_light(wanted, scene)
         renderer = Renderer(scene, wanted.settings, world=self._world_of(scene, wanted))
 
@@ -107,7 +135,7 @@ class Checker:
         """By its linear colours, as they are kept: with 32 bits, or with 16."""
         exr.check()
         kept, data = exr.read(path)
-        frame, _ = self._traced(path, data)
+        frame, _ = self._traced(path, self._wanted(data))
         color = frame.color.astype(kept.dtype)
         size = f"{kept.shape[1]} × {kept.shape[0]}"
         if kept.shape != color.shape:
@@ -132,7 +160,7 @@ class Checker:
         """The file of a figure, made again."""
         snapshot, size = Snapshot.from_json(data.get("state")), capture.size_of(data.get("size"))
         wanted = comparison.from_json(snapshot, size, data["figure"])
-        scene, common = self._prepared(path, snapshot, wanted.recipe, wanted.methods)
+        scene, common = self._prepared(path, wanted.recipe, wanted.methods)
         wanted = replace(wanted, recipe=common)
 
         def tell(method: str, done: int, frames: int) -> None:
@@ -145,16 +173,14 @@ class Checker:
             comparison_figure.save(shown, again, json.dumps(data))
             return again.read_bytes()
 
-    def _prepared(
-        self, path: Path, snapshot: Snapshot, wanted: Recipe, methods: tuple[str, ...]
-    ) -> tuple[Scene, Recipe]:
+    def _prepared(self, path: Path, wanted: Recipe, methods: tuple[str, ...]) -> tuple[Scene, Recipe]:
         """The scene, read, and the recipe with the path that it has now; raises ValueError where it is gone."""
-        found = find_scene(snapshot.scene, path)
+        found = find_scene(str(wanted.scene), path)
         if found is None:
-            raise ValueError(f"its scene is gone: {snapshot.scene}")
-        if self._scene is None or self._scene[0] != (found, snapshot.meshes, wanted.edits):
-            read = load_visible_scene(found, self._work.progress, self._options.folder, snapshot.meshes)
-            self._scene = (found, snapshot.meshes, wanted.edits), edited(read, wanted.edits).scene
+            raise ValueError(f"its scene is gone: {wanted.scene}")
+        if self._scene is None or self._scene[0] != (found, wanted.meshes, wanted.edits):
+            read = load_visible_scene(found, self._work.progress, self._options.folder, wanted.meshes)
+            self._scene = (found, wanted.meshes, wanted.edits), edited(read, wanted.edits).scene
             self._world = None
         scene = self._scene[1]
         prepare_kernels(self._work, len(scene.lights), wanted.settings.accelerator, *methods)
@@ -208,6 +234,15 @@ class Checker:
         if not found:
             return "nothing that it was made of has changed, so the program has, or the libraries it draws with"
         return f"changed since: {'; '.join(found)}"
+
+
+def _not_again(wanted: Recipe) -> str:
+    """Why a picture cannot be made again, and how to save one that can."""
+    if wanted.history in (CHANCE, BUILT):
+        way = "a picture of the view color can be made again" if Method.parse(wanted.settings.method).exact else ""
+    else:
+        way = "Backspace in the window forgets all modes: what is saved after it can be made again"
+    return f"it cannot be made again: {wanted.history}{f'; {way}' if way else ''}"
 
 
 def _counted(then: Any, now: Mapping[str, Any]) -> str:

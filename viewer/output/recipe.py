@@ -2,7 +2,8 @@
 
 Modes come from the frames before, and certificates and the caches as well.  A picture that shows them can be made again
 where those frames are known: any frames, each by its time and camera (`before`), then so many frames of the path before
-it (`warmup`), then the same frame so many times (`repeats`).  Where they are not, `history` says why, in words.
+it (`warmup`), then the same frame so many times (`repeats`).  Where they are not, `history` says why, in words; a saved
+picture may then carry the modes themselves.
 """
 
 from __future__ import annotations
@@ -69,7 +70,8 @@ class Style:
 class Recipe:
     """See the module.  `camera` None is the scene's own; `settings` are those of the picture's own frame; `by_gpu` says
     that a GPU drew the view, which may round otherwise.  `folders` are those that the user lets the scene read: a
-    picture does not carry them, or it could name any.  `edits` are what is otherwise than in the scene's file; `light`
+    picture does not carry them, or it could name any.  `modes` are those that its frame went by, in the place of frames
+    before it (`viewer.output.kept_modes`).  `edits` are what is otherwise than in the scene's file; `light`
     counts those that are on."""
 
     scene: Path
@@ -86,6 +88,7 @@ class Recipe:
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
     before: tuple[Earlier, ...] = ()
+    modes: str = ""
     meshes: MeshOptions = AS_IN_FILE
     edits: Edits = NO_EDITS
 
@@ -133,6 +136,7 @@ class Recipe:
             "by_gpu": self.by_gpu,
             "style": style,
             **({"before": earlier_to_json(self.before)} if self.before else {}),
+            **({"modes": self.modes} if self.modes else {}),
         }
 
 
@@ -188,6 +192,7 @@ def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Re
             history=str(data.get("history", "")),
             by_gpu=bool(data.get("by_gpu", False)),
             before=earlier_from_json(data.get("before", [])),
+            modes=str(data.get("modes", "")),
             meshes=snapshot.meshes,
             edits=snapshot.edits,
         )

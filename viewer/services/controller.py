@@ -262,7 +262,10 @@ class Controller:
             frame = run.picture.frame
         else:
             newest = self.tracing.take()
-            self.record.add(self.renderer.take_whole(), newest, self.drawn_seconds)
+            learnt = self.renderer.take_learnt()
+            for traced in learnt:
+                self.tracing.learnt.add(traced.frame)
+            self.record.add(learnt, newest, self.drawn_seconds)
             if newest is None:
                 return None
             frame = newest.frame

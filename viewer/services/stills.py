@@ -17,7 +17,7 @@ from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
-from viewer.output import capture, fingerprint
+from viewer.output import capture, fingerprint, kept_modes
 from viewer.output.annotations import annotated
 from viewer.output.caption import with_caption
 from viewer.output.legend import legend_of
@@ -70,12 +70,14 @@ def trace(
     `on_frame` is told how many of these are done, before each.  Raises Cancelled."""
     scene, settings, view = renderer.scene, recipe.settings, recipe.view
     times = times_before(scene, recipe.time, recipe.warmup) + [recipe.time] * recipe.repeats
-    before = [*recipe.before, *(Earlier(time, recipe.camera) for time in times)]
+    before = [*recipe.before, *(Earlier(time, recipe.camera) for time in times)] if not recipe.modes else []
     modes = settings.modes or view.of_modes or everything or recipe.tells_counters
     renderer.settings = replace(settings, samples=1, verify=False, modes=modes)
     for done, earlier in enumerate(before):
         on_frame(done, len(before) + 1)
         renderer.render(earlier.time, earlier.camera, cancelled)
+    if recipe.modes:
+        renderer.modes[:] = kept_modes.unpacked(recipe.modes, len(renderer.modes), renderer.modes.dtype)
     on_frame(len(before), len(before) + 1)
     lights = everything or records_lights(view, settings.width * settings.height, len(scene.lights))
     renderer.settings = replace(
@@ -143,9 +145,10 @@ def with_caption_filled(recipe: Recipe, scene: Scene) -> Recipe:
 
 
 def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recipe) -> str:
-    """What a picture carries: its recipe, its statistics, and what they were made of."""
+    """What a picture carries: its recipe, its statistics, and what they were made of; and its modes, where these cannot
+    be learnt again."""
     more = {
-        "picture": recipe.to_json(),
+        "picture": replace(recipe, modes=kept_modes.packed(frame, recipe)).to_json(),
         "made": {
             "version": program_version(),
             "scene": fingerprint.of_scene(scene),

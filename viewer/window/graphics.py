@@ -51,7 +51,7 @@ def draw(ui: Ui) -> None:
     if part is not None and now is not None:
         display.know_parts(ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives]))
     look = look_of(ui, picked.primitive if picked is not None else -1)
-    look = look if part is None else replace(look, selected_part=part)
+    look = replace(look if part is None else replace(look, selected_part=part), fate=ui.fate_shown)
     display.draw(look)
     comparing.draw(ui, look)
     comparing.magnify(ui, look)

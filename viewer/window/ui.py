@@ -12,6 +12,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
+from tracer.culling.fate import Fate
 from viewer.output.capture import FIELDS
 from viewer.output.legend_parts import named_light
 from viewer.services.controller import Controller
@@ -67,7 +68,8 @@ class Ui:
     being drawn, and `drawn_text` the words that are typed there, `pointed_light` which light it is on in the inspector;
     `light_filters` is what is typed above each list of lights; `screening` is the recorded picture that is shown in the
     picture's place; `legend_shown` says whether the picture shows its legend, `legend_place` where that is on the
-    screen, `legend_held` where the pointer holds it; `key_wanted` names the command that waits for a key to be pressed;
+    screen, `legend_held` where the pointer holds it; `fate_shown` is the fate of
+    shadow rays whose pixels are to stand out; `key_wanted` names the command that waits for a key to be pressed;
     `editing` is the list and the place in it of a name that is being edited, `edited` that name; `tour_height` is what
     the picture leaves free below it for the tour, `tour_place` where that is: left, top and width. `gesture` is what a
     drag does that moves no camera, from `gesture_at` on, a point of the picture; `menu_at` is the point that the menu
@@ -89,6 +91,7 @@ class Ui:
     save_as_open: bool = False
     shortcuts_open: bool = False
     keyboard: Keyboard = field(default_factory=Keyboard)
+    fate_shown: Fate | None = None
     key_wanted: str = ""
     finder: Finder = field(default_factory=Finder)
     presets_open: bool = False

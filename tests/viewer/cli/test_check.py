@@ -100,9 +100,10 @@ def test_what_culling_saves_stands_above_the_picture_and_comes_back(
 def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> None:
     assert run(capfd, "render", "room.aff", "-o", "a.png", *SIZE)[0] == 0
     data = capture.read_data(Path("a.png"))
+    unknown = data["picture"] | {"history": "its modes were learnt elsewhere"}
     for name, change in (
         ("window", {"window": True}),
-        ("unknown", {"picture": data["picture"] | {"history": "its modes were learnt elsewhere"}}),
+        ("unknown", {"picture": unknown, "state": data["state"] | {"view": "occlusion"}}),
         ("gone", {"state": data["state"] | {"scene": "/gone/gone.aff"}}),
         ("damaged", {"picture": data["picture"] | {"warmup": "many"}}),
         ("figure", {"figure": {}}),
