@@ -88,22 +88,18 @@ class _Texts:
     def number(self, flow: Flow) -> str:
         return _short(flow.number) if self.detail is Detail.LEAST else f"{flow.number:,}"
 
-    def share(self, flow: Flow) -> str:
-        return "" if self.detail is Detail.LEAST else flow.share
-
     def shares(self, flows: Sequence[Flow]) -> float:
-        """The room of the shares of flows, with what is before them; 0 where they have none."""
-        widest = max((self.measure(self.share(flow)) for flow in flows), default=0.0)
-        return widest + _BETWEEN * self.line if widest else 0.0
+        """The room of the shares of flows, with what is before them; 0 where they have none, or all are tips."""
+        widest = max((self.measure(flow.share) for flow in flows), default=0.0)
+        return widest + _BETWEEN * self.line if widest and self.detail is not Detail.LEAST else 0.0
 
     def before_names(self, flows: Sequence[Flow]) -> float:
         """From a column's left edge to the names of what leaves a stage."""
         return (_ROWS + (_SQUARE + 0.35 if any(flow.color for flow in flows) else 0.0)) * self.line
 
-    def beside_names(self, flows: Sequence[Flow]) -> float:
-        """From the end of these names to the column's right edge."""
-        numbers = max((self.wide(self.number(flow)) for flow in flows), default=0.0)
-        return _BETWEEN * self.line + numbers + self.shares(flows)
+    def numbers(self, flows: Sequence[Flow]) -> float:
+        """The room of the numbers of flows, with what is before them."""
+        return max((self.wide(self.number(flow)) for flow in flows), default=0.0) + _BETWEEN * self.line
 
     def fits_one_line(self, stage: Stage, column: float) -> bool:
         """Whether the name of a stage and its time find room beside each other."""
@@ -118,7 +114,10 @@ class _Texts:
             for stage in figure.stages
         )
         rows = (
-            self.before_names(stage.flows) + self.measure(flow.name) + self.beside_names(stage.flows)
+            self.before_names(stage.flows)
+            + self.measure(flow.name)
+            + self.numbers(stage.flows)
+            + self.shares(stage.flows)
             for stage in figure.stages
             for flow in stage.flows
         )
@@ -240,15 +239,18 @@ class _Sheet:
         """What leaves a stage: square, name, number and share, below each other."""
         drawing, line, texts = self.drawing, self._line, self._texts
         left, right = x + texts.before_names(flows), x + self._column
-        room = right - left - texts.beside_names(flows)
+        room, shares = right - left - texts.numbers(flows), texts.shares(flows)
+        if room - shares < max((texts.measure(flow.name) for flow in flows), default=0.0):
+            shares = 0.0  # they are tips, then
+        room -= shares
         for flow in flows:
             at = x + _ROWS * line
             if flow.color is not None:
                 square = _SQUARE * line
                 drawing.bars.append(Box(at, y + 0.5 * (line - square), square, square, flow.color, flow.hollow))
             drawing.words.append(Words(left, y, shortened(flow.name, texts.measure, room)))
-            drawing.words.append(Words(right - texts.shares(flows), y, texts.number(flow), Tone.STRONG, True))
-            if texts.share(flow):
+            drawing.words.append(Words(right - shares, y, texts.number(flow), Tone.STRONG, True))
+            if shares and flow.share:
                 drawing.words.append(Words(right, y, flow.share, Tone.QUIET, True))
             tip = f"{flow.name}: {flow.number:,}" + (f" ({flow.share})" if flow.share else "") + f"\n{flow.tip}"
             drawing.areas.append(Area(at, y, right - at, texts.step, tip, flow.view))

@@ -181,6 +181,13 @@ def test_it_fits_the_place_that_its_panel_has_at_first(method, part):
     assert len(drawing.boxes) == 7 and len({box.x for box in drawing.boxes}) == 3
 
 
+@pytest.mark.parametrize("height", [1200, 600, 300])
+def test_no_word_is_cut_in_a_narrow_panel(height):
+    for method in ("paper", "none", "certified"):
+        drawing = lay_out(figure_of(frame_by(method, modes=True)), measure, LINE, 340, height)
+        assert not any(words.text.endswith("…") for words in drawing.words)
+
+
 def test_what_lies_at_a_point_opens_its_view():
     drawing = lay_out(figure_of(frame_by("paper")), measure, LINE, 1200, 800)
     for name, view in (("Occlusion testing", View.OCCLUSION), ("→ examined anew", View.PIXEL_COUNT)):
