@@ -56,7 +56,8 @@ class RenderThread:
         self._finished: Traced | None = None
         self._learnt: deque[Traced] = deque(maxlen=MOST_LEARNT)
         self._fresh = True  # nothing is known of modes
-        self._failure: Failure | None = None
+        self._failure: Failure | None = None  # of a frame
+        self._complaints: list[Failure] = []  # of all else
         self._thread = threading.Thread(target=self._run, name="shadowcull render", daemon=True)
         self._thread.start()
 
@@ -139,10 +140,20 @@ class RenderThread:
             return learnt
 
     def take_failure(self) -> Failure | None:
-        """Why a frame, or an answer, did not come, once."""
+        """Why a frame did not come, once."""
         with self._changed:
             failed, self._failure = self._failure, None
             return failed
+
+    def take_complaints(self) -> list[Failure]:
+        """What else has failed, as an answer, each once: frames come all the same."""
+        with self._changed:
+            told, self._complaints = self._complaints, []
+            return told
+
+    def _complain(self, problem: Exception, what: str) -> None:
+        with self._changed:
+            self._complaints.append(failure(problem, what, _KNOWN))
 
     @property
     def busy(self) -> bool:
@@ -172,8 +183,7 @@ class RenderThread:
             try:
                 turn()
             except Exception as problem:  # a task that raises though it must not
-                with self._changed:
-                    self._failure = failure(problem, "work in the background failed", _KNOWN)
+                self._complain(problem, "work in the background failed")
                 self._wake()
 
     def _next(self) -> Callable[[], None] | None:
@@ -239,8 +249,7 @@ class RenderThread:
         except Cancelled:
             more = True
         except Exception as problem:
-            with self._changed:
-                self._failure = failure(problem, "not measured", _KNOWN)
+            self._complain(problem, "not measured")
         finally:
             renderer.take_turn(time)
         if not more:
@@ -252,8 +261,7 @@ class RenderThread:
         try:
             question.answer(renderer)
         except Exception as problem:
-            with self._changed:
-                self._failure = failure(problem, "no answer", _KNOWN)
+            self._complain(problem, "no answer")
         self._wake()
 
     def _answer_meanwhile(self, renderer: Traces, time: float) -> None:

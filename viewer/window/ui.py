@@ -24,6 +24,7 @@ from viewer.state.pixels import Pixels, Point
 from viewer.state.placing import Rect
 from viewer.state.preferences import default_screenshot_folder
 from viewer.state.preview_geometry import PreviewGeometry
+from viewer.state.views import View
 from viewer.window.command import Command, is_key, key_label
 from viewer.window.compared import Compared
 from viewer.window.display import Display
@@ -79,7 +80,7 @@ class Ui:
     below its list of lights, `held_light` the light that the pointer drags, and `changed_shown` says that changed
     pixels are to be seen. `find_focus` asks for the keyboard above the table of what is in the scene, of which
     `find_drawn` rows were drawn last, each `find_height` pixels high, in the order `find_order`. `chorded` are the keys
-    that steer which were pressed with Ctrl, Alt or Super."""
+    that steer which were pressed with Ctrl, Alt or Super. `capture_view` is the view that a picture is wanted of."""
 
     controller: Controller
     display: Display | None = None
@@ -88,6 +89,7 @@ class Ui:
     fold: Fold = field(default_factory=Fold)
     full_screen: FullScreen = field(default_factory=FullScreen)
     capture_wanted: CaptureKind | None = None
+    capture_view: View | None = None
     save_as_open: bool = False
     shortcuts_open: bool = False
     keyboard: Keyboard = field(default_factory=Keyboard)
