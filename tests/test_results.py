@@ -63,7 +63,8 @@ def test_rows_and_headings_of_each_table_are_of_one_length():
     lamp["speed_up"] = {"certified": found, "free": found}
     path = {"scene": "Robot.aff", "accelerator": "bvh8", "method": "auto", "frames": [1], "seconds": {"none": [0.1]}}
     path |= {"total": 0.9, "best": 0.8, "worst": 1.1, "processor": {"total": 0.95}}
-    moving = {name: 1.0 for name in ("ssim_median", "ssim_p5", "frames_per_second", "settle")}
+    measured = ("ssim_median", "ssim_p5", "frames_per_second", "settle", "saved", "saved_whole", "wrong", "wrong_whole")
+    moving = {name: 1.0 for name in measured}
     moving |= {f"baseline_{name}": 0.5 for name in moving}
     made = [
         tables.rays({"scenes": [scene]}),

@@ -199,6 +199,10 @@ def motion(run: Figures) -> str:
     for scene, of in run["scenes"].items():
         for way, name in (("", f"{NAMES.get(scene, 'default scene')}"), ("baseline_", "… with the resolution divided")):
             ssim = f"{of[way + 'ssim_median']:.3f} ({of[way + 'ssim_p5']:.3f})"
-            rows.append((name, ssim, f"{of[way + 'frames_per_second']:.1f}", f"{of[way + 'settle']:.2f}"))
-    headings = ("in motion", "SSIM (5th percentile)", "frames per second", "sharp again after")
+            saved, whole = of[way + "saved"], of[way + "saved_whole"]
+            wrong = f"{of[way + 'wrong']:.3%} ({of[way + 'wrong_whole']:.3%})"
+            culled = f"{saved:.1%} ({saved / max(whole, 1e-9):.0%})", wrong
+            rows.append((name, ssim, f"{of[way + 'frames_per_second']:.1f}", f"{of[way + 'settle']:.2f}", *culled))
+    headings = ("in motion", "SSIM (5th percentile)", "frames per second", "sharp again after",
+                "shadow rays saved (of what whole frames save)", "wrong answers (of whole frames)")  # fmt: skip
     return markdown(headings, rows)

@@ -124,6 +124,15 @@ def test_obj_texture_is_the_right_way_up(tmp_path):
     assert np.array_equal(triangles.uvs, triangles.corners[..., :2])  # v = 0 at the bottom
 
 
+@pytest.mark.parametrize("named", ["", "usemtl nowhere\n"])
+def test_texture_coordinates_without_a_material_leave_the_surface_as_without_them(tmp_path, named):
+    """The reader puts a dark texture of its own there."""
+    with_uvs = obj(tmp_path, OBJ + UV + named + "f 1/1 2/2 3/3 4/4\n")
+    without = obj(tmp_path, OBJ + named + "f 1 2 3 4\n")
+    assert with_uvs.textures == () and with_uvs.objects[0].triangles.texture.tolist() == [-1, -1]
+    assert with_uvs.materials == without.materials and min(with_uvs.materials[0].diffuse) > 0.5
+
+
 def test_a_missing_obj_texture_is_a_warning(tmp_path):
     scene = obj(tmp_path, OBJ + UV + "usemtl t\nf 1/1 2/2 3/3\n", "newmtl t\nmap_Kd no.png\n")
     assert scene.triangle_count == 1

@@ -52,7 +52,8 @@ def ask(world: tracer.World, rays: Rays, first: int = 0, last: int | None = None
         assert np.array_equal(named, blocked[first:last] != 0)
         assert ((world.object_of[occluders[first:last][named]] == 0) == (which == STATIC_GEOMETRY)).all()
     both = np.full(n, UNTOUCHED, np.uint8)
-    structure.any_hit.call(data, batch_of(rays, blocked=both).ctypes.data, first, last, counts.ctypes.data)
+    batch = batch_of(rays, blocked=both)
+    structure.any_hit.call(data, batch.ctypes.data, first, last, counts.ctypes.data)
     static, dynamic = (f[first:last] for f in flags)
     assert np.array_equal(both[first:last], np.where(static, STATIC_GEOMETRY, dynamic))
     for array in (*numbers, *flags, *names, both):

@@ -7,7 +7,7 @@ import pytest
 
 from tracer.geometry.bvh8.frustum import box_at, boxes_at, entering
 from tracer.geometry.bvh8.packet import MEMORY, fill, lanes_inside, open_vectors
-from tracer.geometry.bvh8.packet_group import WIDEST, frusta_of, group_of, lead_of, reaches_of
+from tracer.geometry.bvh8.packet_group import frusta_of, group_of, lead_of, reaches_of
 from tracer.geometry.bvh8.placed import child_planes
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Rays, ray_batch
@@ -28,11 +28,11 @@ def _refusals(batch, count, boxes, found):
     todo = open_vectors(memory, vectors)
     while todo != 0:
         v = lowest_bit(todo)
-        axis, way, together = lead_of(memory, v, WIDEST)
+        axis, way, together = lead_of(memory, v)
         if not (finite and together):
             todo &= todo - 1
             continue
-        group = group_of(memory, todo, axis, way, WIDEST)
+        group = group_of(memory, todo, axis, way)
         todo &= ~group.vectors
         for n in range(len(boxes)):
             node = address_of(boxes) + 256 * n
@@ -91,9 +91,10 @@ def _boxes(rng: np.random.Generator, rays: Rays, count: int) -> np.ndarray:
 @pytest.mark.parametrize("kind", ["from one point", "apart"])
 def test_what_a_frustum_refuses_all_its_rays_refuse(kind: str):
     rng, found = np.random.default_rng(5), np.zeros(5, np.int64)
-    for _ in range(300):
+    for _ in range(400):
         rays = _company(rng, kind)
-        _refusals(batch_of(rays).ctypes.data, RAYS, _boxes(rng, rays, 16), found)
+        batch = batch_of(rays)  # which has to live as long as its address is used
+        _refusals(batch.ctypes.data, RAYS, _boxes(rng, rays, 16), found)
     grouped, pairs, wrong, wrong_whole, refused = found.tolist()
     assert grouped > 1000 and pairs > 30_000 and refused > 10_000
     assert wrong == 0 and wrong_whole == 0

@@ -250,6 +250,7 @@ class FakeRenderer:
         self.go = Event()
         self.go.set()
         self.failing: Exception | None = None
+        self.pause_after: float | None = None  # the part of a picture after which it waits for `go` once
         self.other: FakeRenderer | None = None
         self.turns: list[str] = []
 
@@ -271,6 +272,9 @@ class FakeRenderer:
         for part in parts:
             frame = self.render(time, camera, cancel)
             frame.statistics.part = part / 16
+            if self.pause_after == frame.statistics.part:
+                self.pause_after = None
+                self.go.clear()
             yield frame
         for sample in range(2, samples + 1):
             frame = self.render(time, camera, cancel)

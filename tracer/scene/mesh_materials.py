@@ -41,7 +41,7 @@ class MaterialTable:
     def parts(self, mesh: Any, where: str) -> Iterator[Part]:
         """Which triangles of a mesh have which material and texture (-1 for none)."""
         visual = mesh.visual
-        if visual.kind == "texture" and visual.material is not None:
+        if visual.kind == "texture" and visual.material is not None and not _is_made_up(visual.material):
             material, image = _material(visual.material)
             yield slice(None), self._number(material), self._texture(image, where)
         elif visual.kind in ("face", "vertex"):
@@ -83,6 +83,13 @@ class MaterialTable:
                 self._textures[id(image)] = -1
                 self.warnings.append(f"{where}: texture {name!a}: {error}; the surface keeps its material colour")
         return self._textures[id(image)]
+
+
+def _is_made_up(given: Any) -> bool:
+    """Whether the material stands for none: trimesh gives a dark image of four pixels, which is from no file, to an OBJ
+    with texture coordinates and without a material."""
+    image = getattr(given, "image", None)
+    return image is not None and image.format is None and not given.kwargs
 
 
 def _material(given: Any) -> tuple[Material, Any]:

@@ -19,6 +19,7 @@ from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
 from viewer.services import refinement
 from viewer.services.render_request import Spare, Traced, Traces
+from viewer.services.requests import recording
 from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import NO_CULLING
 
@@ -55,8 +56,8 @@ def subject_of(traced: Traced, second: str = "") -> Subject | None:
     if len(methods) < 2:
         return None
     settings = replace(
-        frame.settings, method=NO_CULLING, samples=1, modes=False, verify=False, record_lights=False,
-        record_work=False, certificate_seconds=refinement.SECONDS, patient=True,
+        recording(frame.settings, Settings()), method=NO_CULLING, samples=1, modes=False,
+        certificate_seconds=refinement.SECONDS, patient=True,
     )  # fmt: skip
     return Subject(frame.time, frame.camera, settings, methods)
 

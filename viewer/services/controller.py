@@ -103,7 +103,7 @@ class Controller:
         )  # fmt: skip
         self.recorder = LightRecorder(session, renderer, self.tracing)
         refuses, overlook = self.runs.refuses, self.undo.overlook
-        self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook)
+        self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook, self.tracing.again)
         self.table = SceneTable(session, self.selection, preferences, notices, self.captures, self.editing, awaken)
         self.before_edits = BeforeEdits(session, self.editing)
         self.questions = Questions(self.runs, self.captures, awaken)
@@ -248,6 +248,8 @@ class Controller:
 
     def _take_frame(self) -> Frame | None:
         """The newest frame, of a run that is under way or else as it was asked for."""
+        for complaint in self.renderer.take_complaints():
+            self.notices.report(complaint)
         failed = self.renderer.take_failure()
         if failed is not None:
             self.notices.report(failed)
@@ -262,7 +264,10 @@ class Controller:
             frame = run.picture.frame
         else:
             newest = self.tracing.take()
-            self.record.add(self.renderer.take_whole(), newest, self.drawn_seconds)
+            learnt = self.renderer.take_learnt()
+            for traced in learnt:
+                self.tracing.learnt.add(traced.frame)
+            self.record.add(learnt, newest, self.drawn_seconds)
             if newest is None:
                 return None
             frame = newest.frame

@@ -115,11 +115,13 @@ class Editing:
         locked: Callable[[], bool],
         show: Show,
         overlook: Callable[[Callable[[], None]], None] = lambda change: change(),
+        again: Callable[[], None] = lambda: None,
     ) -> None:
-        """`show(edited, renderer)` is called with each scene when it is ready to be traced; what changes within
+        """`show(edited, renderer)` is called with each scene when it is ready to be traced, `again()` where an edit has
+        come to nothing: without another frame, nothing could be asked about what is shown.  What changes within
         `overlook` is no step of undo."""
         self._session, self._renderer, self._notices = session, renderer, notices
-        self._locked, self._show, self._overlook = locked, show, overlook
+        self._locked, self._show, self._overlook, self._again = locked, show, overlook, again
         self._kept: Kept | None = None
         self._task: EditTask | None = None
         self.put_aside = False
@@ -217,9 +219,11 @@ class Editing:
             if task.problem is not None:
                 self._notices.report(task.problem)
                 self._overlook(self._give_up)
-            elif task.found is not None and task.scene is session.original:
+            if task.found is not None and task.scene is session.original:
                 self._show(*task.found)
                 seen = False  # of this scene, nothing yet
+            else:
+                self._again()
         shown, kept = session.edited, self._kept
         wanted = NO_EDITS if self.put_aside else session.edits
         if self._task is None and seen and not running and shown is not None and kept is not None:

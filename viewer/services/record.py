@@ -62,13 +62,13 @@ class Record:
         self.forget_modes()
         self._blank, self.learnt_from = False, None
 
-    def add(self, whole: Sequence[Traced], newest: Traced | None, drawn_seconds: float) -> None:
-        """Take up the frames that have become whole since the last time, all of them and in their order, and the newest
+    def add(self, learnt: Sequence[Traced], newest: Traced | None, drawn_seconds: float) -> None:
+        """Take up the frames that have set modes since the last time, all of them and in their order, and the newest
         that is shown, which may be one of them or not be whole yet; `drawn_seconds` is what the window needed last."""
-        for traced in whole:
+        for traced in learnt:
             number = self._count(traced, drawn_seconds)
             self._learn(traced, number)
-        last = whole[-1].request if whole else None
+        last = learnt[-1].request if learnt else None
         if newest is not None and newest.request is not last and newest.frame.settings.samples == 1:
             self._count(newest, drawn_seconds)
 
@@ -103,7 +103,7 @@ class Record:
             self.forget_modes()
         if self.learnt_from is not None:
             self.learnt_from.append(number)
-            if len(self.learnt_from) > MOST:
+            if not traced.whole or len(self.learnt_from) > MOST:
                 self.learnt_from = None
         if scene is None or not frame.settings.keeps_modes:
             return

@@ -53,6 +53,11 @@ class Refinement:
         self._left -= 1
         return True
 
+    @property
+    def progress(self) -> tuple[int, int]:
+        """Which frame of the view is under way, and how many there may be at most; 0, 0 while none is to follow."""
+        return (MOST_FRAMES - self._left, MOST_FRAMES) if self._settled is not None and self._left > 0 else (0, 0)
+
 
 def _view_of(request: RenderRequest) -> RenderRequest:
     """The request without what varies between frames of the same view."""

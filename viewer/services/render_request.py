@@ -61,7 +61,7 @@ class RenderRequest:
 @dataclass(frozen=True)
 class Traced:
     """A frame and the request it answers, what the first part of this cost, and the same frame by a second method;
-    `fresh` says of a whole frame that all modes were forgotten before it, and none has become whole in between."""
+    `fresh` says of a frame that has set modes that it is the first to do so since all were forgotten."""
 
     request: RenderRequest
     frame: Frame

@@ -29,8 +29,8 @@ from viewer.services.pair import Asked, Pair
 from viewer.services.render_request import Question, RenderRequest, Spare, Task, Traced, Traces
 from viewer.util.failures import Failure, failure
 
-MOST_WHOLE = 16
-"""Whole frames that wait to be taken; the window asks for one at a time, and takes what has come before."""
+MOST_LEARNT = 16
+"""Frames that have set modes and wait to be taken; the window takes them before it asks for the next."""
 _KNOWN = (MemoryError, OSError)  # what may go wrong here without a mistake of the program's
 
 
@@ -54,9 +54,10 @@ class RenderThread:
         self._reset = False
         self._closing = False
         self._finished: Traced | None = None
-        self._became_whole: deque[Traced] = deque(maxlen=MOST_WHOLE)
+        self._learnt: deque[Traced] = deque(maxlen=MOST_LEARNT)
         self._fresh = True  # nothing is known of modes
-        self._failure: Failure | None = None
+        self._failure: Failure | None = None  # of a frame
+        self._complaints: list[Failure] = []  # of all else
         self._thread = threading.Thread(target=self._run, name="shadowcull render", daemon=True)
         self._thread.start()
 
@@ -67,7 +68,7 @@ class RenderThread:
         with self._changed:
             self._renderer = renderer
             self._waiting = self._finished = self._failure = self._placed_at = None
-            self._became_whole.clear()
+            self._learnt.clear()
             self._fresh = fresh
             self._questions.clear()
             self._spare = None
@@ -130,19 +131,29 @@ class RenderThread:
             traced, self._finished = self._finished, None
             return traced
 
-    def take_whole(self) -> list[Traced]:
-        """The frames that have become whole since the last time, as they were before further samples, in their order:
-        each of them has set modes."""
+    def take_learnt(self) -> list[Traced]:
+        """The frames that have set modes since the last time, in their order: those that became whole, as they were
+        before further samples, and those that were left before, as they were shown last."""
         with self._changed:
-            whole = list(self._became_whole)
-            self._became_whole.clear()
-            return whole
+            learnt = list(self._learnt)
+            self._learnt.clear()
+            return learnt
 
     def take_failure(self) -> Failure | None:
-        """Why a frame, or an answer, did not come, once."""
+        """Why a frame did not come, once."""
         with self._changed:
             failed, self._failure = self._failure, None
             return failed
+
+    def take_complaints(self) -> list[Failure]:
+        """What else has failed, as an answer, each once: frames come all the same."""
+        with self._changed:
+            told, self._complaints = self._complaints, []
+            return told
+
+    def _complain(self, problem: Exception, what: str) -> None:
+        with self._changed:
+            self._complaints.append(failure(problem, what, _KNOWN))
 
     @property
     def busy(self) -> bool:
@@ -172,8 +183,7 @@ class RenderThread:
             try:
                 turn()
             except Exception as problem:  # a task that raises though it must not
-                with self._changed:
-                    self._failure = failure(problem, "work in the background failed", _KNOWN)
+                self._complain(problem, "work in the background failed")
                 self._wake()
 
     def _next(self) -> Callable[[], None] | None:
@@ -239,8 +249,7 @@ class RenderThread:
         except Cancelled:
             more = True
         except Exception as problem:
-            with self._changed:
-                self._failure = failure(problem, "not measured", _KNOWN)
+            self._complain(problem, "not measured")
         finally:
             renderer.take_turn(time)
         if not more:
@@ -252,8 +261,7 @@ class RenderThread:
         try:
             question.answer(renderer)
         except Exception as problem:
-            with self._changed:
-                self._failure = failure(problem, "no answer", _KNOWN)
+            self._complain(problem, "no answer")
         self._wake()
 
     def _answer_meanwhile(self, renderer: Traces, time: float) -> None:
@@ -268,7 +276,7 @@ class RenderThread:
                 self._answer(renderer, question)
 
     def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
-        failed = None
+        failed = first = shown = None
         try:
             if reset:
                 self._forget(renderer)
@@ -276,11 +284,11 @@ class RenderThread:
             patient = request.refinement_seconds > 0.0
             renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
             with closing(self._refining(renderer, request)) as refining:
-                first = None
                 for frame, second in refining:
                     first = first or frame.statistics
+                    shown = Traced(request, frame, first, second)
                     self._answer_meanwhile(renderer, request.time)  # a newer picture makes the window ask anew
-                    if not self._deliver(renderer, Traced(request, frame, first, second)):
+                    if not self._deliver(renderer, shown):
                         break
                     self._answer_meanwhile(renderer, request.time)
         except Cancelled:
@@ -291,6 +299,8 @@ class RenderThread:
             self._running = None
             if renderer is self._renderer:
                 self._failure = failed or self._failure
+                if shown is not None and not shown.whole:
+                    self._learnt.append(self._first_to_learn(shown))
         self._wake()
 
     def _refining(self, renderer: Traces, request: RenderRequest) -> Generator[tuple[Frame, Frame | None], None, None]:
@@ -304,6 +314,11 @@ class RenderThread:
             self._pair = Pair(renderer)
         yield from self._pair.refine(asked, request.second)
 
+    def _first_to_learn(self, traced: Traced) -> Traced:
+        """The frame, which has set modes, and whether it is the first since these were forgotten."""
+        fresh, self._fresh = self._fresh, False
+        return replace(traced, fresh=fresh)
+
     def _deliver(self, renderer: Traces, traced: Traced) -> bool:
         """Hand out a frame, unless it is of a scene that was left meanwhile; whether more of it is wanted."""
         with self._changed:
@@ -311,9 +326,8 @@ class RenderThread:
                 self._finished = traced
                 self._shown, self._whole = True, traced.whole
                 if traced.whole and traced.frame.settings.samples == 1:
-                    traced = self._finished = replace(traced, fresh=self._fresh)
-                    self._fresh = False
-                    self._became_whole.append(traced)
+                    traced = self._finished = self._first_to_learn(traced)
+                    self._learnt.append(traced)
             newer = self._waiting is not None and self._waiting.supersedes(traced.request, shown=True)
             on = not (self._cancel or newer)
         self._wake()

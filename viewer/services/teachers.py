@@ -183,6 +183,7 @@ class Teachers:
             return None
         for number in sorted({n for lesson in taught.lights for n in lesson if n != NEVER} - self._known.keys()):
             moment = self._record.moments.get(number)
-            if moment is not None and can_be_asked(moment.settings, len(pick.shadows)):
+            # Of a picture that was left before it was whole, nobody knows any more which of its pixels were shaded.
+            if moment is not None and moment.whole and can_be_asked(moment.settings, len(pick.shadows)):
                 return moment
         return None

@@ -154,8 +154,6 @@ class Tracing:
             if not traced.request.refinement_seconds:  # else it took its time for certificates, not for its pixels
                 pixels = traced.frame.width * traced.frame.height
                 self.governor.observe(traced.first, pixels, self.lamps.most(traced.request.settings))
-        if traced.whole and traced.frame.settings.samples == 1:
-            self.learnt.add(traced.frame)
         self.traced = self._with_modes(traced)
         return self.traced
 

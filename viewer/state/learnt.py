@@ -8,7 +8,7 @@ from tracer.frame import Frame
 
 
 class Learnt:
-    """Counts whole frames.  Modes are kept for each resolution apart, so that those of another do not count."""
+    """Counts frames that have set modes.  Modes are kept for each resolution apart: those of another do not count."""
 
     def __init__(self) -> None:
         self._seen: dict[tuple[int, int], tuple[Hashable, int]] = {}
@@ -22,8 +22,8 @@ class Learnt:
         self._seen = dict.fromkeys(self._seen, (None, 0))
 
     def add(self, frame: Frame) -> None:
-        """A whole frame of one sample has set modes."""
-        size, key = (frame.width, frame.height), _key(frame)
+        """A frame has set modes.  One that was left before it was whole cannot be traced again as it was."""
+        size, key = (frame.width, frame.height), _key(frame) if frame.statistics.part >= 1.0 else None
         known, count = self._seen.get(size, (key, 0))
         self._seen[size] = (key, count + 1) if known == key else (None, 0)
 

@@ -339,6 +339,24 @@ def label_color(color: Color) -> Color:
     return (0.96, 0.97, 0.98) if 0.3 * red + 0.6 * green + 0.1 * blue < 0.45 else (0.05, 0.06, 0.08)
 
 
+def fate_palette(shown: Fate | None = None) -> list[Color]:
+    """The colours of all fates in their order; where one is to stand out, all but its own are dimmed.
+
+    TRACED stands for all traced."""
+
+    def stands_out(fate: Fate) -> bool:
+        return shown in (None, fate) or (shown is Fate.TRACED and fate.is_traced)
+
+    def dimmed(color: Color) -> Color:
+        red, green, blue = (OTHERS * part + (1.0 - OTHERS) * dark for part, dark in zip(color, BACKGROUND, strict=True))
+        return red, green, blue
+
+    return [color if stands_out(fate) else dimmed(color) for fate, color in FATE_COLORS.items()]
+
+
+OTHERS = 0.18
+"""How much is left of the colours of other fates than the one that is to stand out."""
+
 FATE_NAMES: dict[Fate, str] = {
     Fate.NONE: "not known yet",
     Fate.FACES_AWAY: "faces away",

@@ -16,6 +16,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, has_shadow_mode
 from tracer.shading.screen import to_screen
 from viewer.state.marks import wipe_column
@@ -29,7 +30,6 @@ from viewer.state.views import (
     CELL_LINE,
     CERTIFICATE_COLORS,
     FAINT_LINE,
-    FATE_COLORS,
     GREY,
     MOVING_SHADOW_COLORS,
     OCCLUSION_COLORS,
@@ -42,6 +42,7 @@ from viewer.state.views import (
     WIPE_LINE,
     WRONG,
     View,
+    fate_palette,
 )
 from viewer.window.frame_textures import NAMES, TABLE_WIDTH, DisplayError, FrameTextures
 from viewer.window.passes import Passes
@@ -60,7 +61,7 @@ class Look:
     `shares` makes shares of the counts in maps of work; `beneath` is the brightness of the picture
     beneath the difference.  Pictures have a `tone`, and stripes where they are cut off if that is to be seen
     (`clipping`); maps of numbers go over `span`, or, where that is None, over what the frame has; `cut` is the slice
-    that is shown of space."""
+    that is shown of space, and `fate` the one of shadow rays that stands out among the others."""
 
     view: View = View.COLOR
     light: int = 0
@@ -78,6 +79,7 @@ class Look:
     tone: Tone = NEUTRAL
     clipping: bool = False
     span: tuple[float, float] | None = None
+    fate: Fate | None = None
     cut: Slice = MIDDLE
 
     @property
@@ -215,7 +217,7 @@ class Display:
             View.PENUMBRA: list(ARRIVAL_COLORS.values()),
             View.VOXELS: list(VOXEL_COLORS.values()),
             View.TREE: list(TREE_WAITS),
-            View.FATE: list(FATE_COLORS.values()),
+            View.FATE: fate_palette(look.fate),
             View.MOVING_SHADOW: list(MOVING_SHADOW_COLORS.values()),
         }
         values: dict[str, Any] = {

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from viewer.services.controller import Controller
+from viewer.state.missing import missing
 from viewer.state.parts import parts_of
 from viewer.state.savings import comparison_in_words
 from viewer.window import comparing, previewing
@@ -51,7 +53,7 @@ def draw(ui: Ui) -> None:
     if part is not None and now is not None:
         display.know_parts(ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives]))
     look = look_of(ui, picked.primitive if picked is not None else -1)
-    look = look if part is None else replace(look, selected_part=part)
+    look = replace(look if part is None else replace(look, selected_part=part), fate=ui.fate_shown)
     display.draw(look)
     comparing.draw(ui, look)
     comparing.magnify(ui, look)
@@ -81,13 +83,21 @@ def look_of(ui: Ui, selected: int = -1) -> Look:
 
 
 def capture(ui: Ui) -> None:
-    """Save the picture, or copy it, if that was asked for and it has come."""
-    c = ui.controller
+    """Save the picture, or copy it, if that was asked for and it has come; where it will not come, say why."""
+    c, wanted = ui.controller, ui.capture_wanted
+    if wanted not in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD):
+        ui.capture_view = None
+        return
+    view = ui.capture_view = ui.capture_view or c.session.view
+    why = _why_none(c) if view is c.session.view else "another view was chosen before it came"
+    if why:
+        ui.capture_wanted = ui.capture_view = None
+        c.notices.say(f"no picture of the view {view.label}: {why}", error=True)
+        return
     shown = c.tracing.drawn_view is c.session.view
     ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
-    wanted = ui.capture_wanted
-    if wanted in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD) and ui.display is not None and ready:
-        ui.capture_wanted = None
+    if ui.display is not None and ready:
+        ui.capture_wanted = ui.capture_view = None
         look = look_of(ui, selected=-1)  # the mark is for the user, not for the picture
         ui.display.draw(look)
         pixels = ui.display.read() if ui.display.drawn(look) else None
@@ -103,3 +113,16 @@ def capture(ui: Ui) -> None:
             c.pictures.copy(pixels, c.frame, described, recipe)
         else:
             c.captures.capture(c.frame, pixels, described, recipe)
+
+
+def _why_none(c: Controller) -> str:
+    """Why there is no picture in the chosen view, and none is on its way; nothing where there is, or may be."""
+    frame, view, run = c.frame, c.session.view, c.runs.current
+    if frame is None or c.tracing.drawn_view is view:
+        return ""
+    if run is not None and (lacks := run.lacks(view)):
+        return f"the {run.name} {lacks}"
+    if run is None and (c.tracing.awaits or c.renderer.busy):
+        return ""
+    found = missing(view, frame, c.preferences.work_shares)
+    return found.text if found is not None else ""

@@ -12,6 +12,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
+from tracer.culling.fate import Fate
 from viewer.output.capture import FIELDS
 from viewer.output.legend_parts import named_light
 from viewer.services.controller import Controller
@@ -23,6 +24,7 @@ from viewer.state.pixels import Pixels, Point
 from viewer.state.placing import Rect
 from viewer.state.preferences import default_screenshot_folder
 from viewer.state.preview_geometry import PreviewGeometry
+from viewer.state.views import View
 from viewer.window.command import Command, is_key, key_label
 from viewer.window.compared import Compared
 from viewer.window.display import Display
@@ -67,7 +69,8 @@ class Ui:
     being drawn, and `drawn_text` the words that are typed there, `pointed_light` which light it is on in the inspector;
     `light_filters` is what is typed above each list of lights; `screening` is the recorded picture that is shown in the
     picture's place; `legend_shown` says whether the picture shows its legend, `legend_place` where that is on the
-    screen, `legend_held` where the pointer holds it; `key_wanted` names the command that waits for a key to be pressed;
+    screen, `legend_held` where the pointer holds it; `fate_shown` is the fate of
+    shadow rays whose pixels are to stand out; `key_wanted` names the command that waits for a key to be pressed;
     `editing` is the list and the place in it of a name that is being edited, `edited` that name; `tour_height` is what
     the picture leaves free below it for the tour, `tour_place` where that is: left, top and width. `gesture` is what a
     drag does that moves no camera, from `gesture_at` on, a point of the picture; `menu_at` is the point that the menu
@@ -77,7 +80,7 @@ class Ui:
     below its list of lights, `held_light` the light that the pointer drags, and `changed_shown` says that changed
     pixels are to be seen. `find_focus` asks for the keyboard above the table of what is in the scene, of which
     `find_drawn` rows were drawn last, each `find_height` pixels high, in the order `find_order`. `chorded` are the keys
-    that steer which were pressed with Ctrl, Alt or Super."""
+    that steer which were pressed with Ctrl, Alt or Super. `capture_view` is the view that a picture is wanted of."""
 
     controller: Controller
     display: Display | None = None
@@ -86,9 +89,11 @@ class Ui:
     fold: Fold = field(default_factory=Fold)
     full_screen: FullScreen = field(default_factory=FullScreen)
     capture_wanted: CaptureKind | None = None
+    capture_view: View | None = None
     save_as_open: bool = False
     shortcuts_open: bool = False
     keyboard: Keyboard = field(default_factory=Keyboard)
+    fate_shown: Fate | None = None
     key_wanted: str = ""
     finder: Finder = field(default_factory=Finder)
     presets_open: bool = False

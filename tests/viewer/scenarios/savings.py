@@ -5,7 +5,9 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
+from tracer.culling.fate import Fate
 from viewer.state.savings import bar_of, in_words, sentence
+from viewer.state.views import View
 from viewer.util.numbers import percent
 from viewer.util.resources import default_scene
 from viewer.window.command import chord
@@ -35,6 +37,7 @@ def savings(d: Driver) -> None:
     d.wait(lambda: d.c.baseline.measured.settled, "the comparison to end", 120.0)
     bar = {part.fate.name: part.rays for part in bar_of(d.c.frame).parts}
     assert bar == {"CULLED": shadow.culled, "DYNAMIC_ONLY": shadow.dynamic_only, "TRACED": shadow.traced}
+    _pixels(d)
     traced, modes, edges = d.c.history.frames, d.c.frame.modes, d.picture_edges()
     d.frames(10)
     assert d.c.history.frames == traced, "measuring has shown a picture"
@@ -66,6 +69,30 @@ def savings(d: Driver) -> None:
     d.press(chord("Shift+B"))
     d.settle()
     assert d.picture_edges() == edges
+
+
+def _pixels(d: Driver) -> None:
+    """A click on a part of the bar shows its pixels, another one those of all parts again."""
+    d.context.item_click("//Picture/traced##savings")
+    d.settle()
+    assert d.c.tracing.drawn_view is View.FATE
+    d.context.item_click("//Picture/traced##savings")
+    d.frames(2)
+    assert d.ui.fate_shown is None
+    all_bright = d.shown().astype(int).sum(-1)
+    d.context.item_click("//Picture/culled##savings")
+    d.frames(2)
+    assert d.ui.fate_shown is Fate.CULLED
+    culled, now = d.c.frame.fate(d.c.session.light) == Fate.CULLED, d.shown().astype(int).sum(-1)
+    others = (d.c.frame.primitive >= 0) & ~culled
+    assert (
+        culled.any()
+        and (now[culled] == all_bright[culled]).all()
+        and now[others].mean() < all_bright[others].mean() / 2
+    )
+    d.press(KEY._1)
+    d.settle()
+    assert d.ui.fate_shown is None
 
 
 def _is_whole(d: Driver, size: tuple[int, int]) -> None:

@@ -21,6 +21,7 @@ from viewer.state.comparison import Way
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 from viewer.window.panels import save_as
+from viewer.window.ui import CaptureKind
 
 KEY = imgui.Key
 CTRL, ALT = int(KEY.mod_ctrl), int(KEY.mod_alt)
@@ -68,6 +69,7 @@ def taking(d: Driver) -> None:
     recipe = from_json(*capture.read_with_size(saved), capture.read_data(saved)["picture"])
     assert recipe.style.annotations == tuple(drawn)
 
+    _nothing_to_save(d)
     _save_as(d)
     _copy(d)
     d.c.preferences.tev = "127.0.0.1:1"
@@ -77,6 +79,34 @@ def taking(d: Driver) -> None:
     next(c for c in d.ui.commands if c.name == "Clear drawings").run()
     assert not drawn
     d.settle()
+
+
+def _nothing_to_save(d: Driver) -> None:
+    """A view that has no picture is not saved later as another one, nor one that was left before its picture came."""
+    before = sorted((d.folder / "pictures").iterdir())
+    for keys in (KEY.f12, int(KEY.c) | CTRL):
+        d.press(KEY._0)
+        d.settle()
+        assert d.c.tracing.drawn_view is not View.CERTIFICATE
+        d.press(keys)
+        d.frames(2)
+        assert d.ui.capture_wanted is None
+        said = d.c.notices.message
+        assert said.error and "Certificates" in said.text and "The method paper makes no certificates" in said.text
+        d.press(KEY._1)
+        d.settle()
+        assert not d.c.captures.busy and not d.c.pictures.jobs
+    d.ui.capture_wanted = CaptureKind.PICTURE
+    d.c.settings.set_view(View.DIFFERENCE)
+    d.wait(lambda: d.ui.capture_wanted is None, "the picture that was asked for")
+    d.settle()
+    d.c.settings.set_view(View.COLOR)
+    d.settle()
+    assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1, "one that comes is waited for"
+    d.ui.capture_wanted, d.ui.capture_view = CaptureKind.PICTURE, View.DIFFERENCE
+    d.frames(3)
+    assert d.ui.capture_wanted is d.ui.capture_view is None and "another view was chosen" in d.c.notices.message.text
+    assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1
 
 
 def _save_as(d: Driver) -> None:

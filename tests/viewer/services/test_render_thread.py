@@ -109,6 +109,27 @@ def test_where_a_motion_ended_comes_before_what_is_under_way_and_once(thread):
     assert [at for at, _ in renderer.asked] == [0.0, 1.0]
 
 
+def test_what_has_set_modes_is_handed_out_once_and_in_order(thread):
+    """A picture that was left, as it was shown last, and one that became whole; one that nothing was shown of is not
+    among them."""
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    renderer.pause_after = 0.25
+    left = request(1.0, parts=(4, 16), quick=True)
+    thread.submit(left)
+    assert taken(thread).frame.time == 1.0
+    thread.submit(request(2.0, parts=(8, 16), samples=2))
+    wait_until_cancelled(renderer)
+    renderer.go.set()
+    idle(thread)
+    learnt = thread.take_learnt()
+    assert [(one.frame.time, one.frame.statistics.part, one.fresh) for one in learnt] == [
+        (1.0, 0.25, True),
+        (2.0, 1.0, False),
+    ]
+    assert thread.take_learnt() == []
+
+
 def test_the_same_request_again_does_not_cancel_itself():
     running = request(0.0)
     assert not request(0.0).supersedes(running)
@@ -357,9 +378,10 @@ def test_a_question_about_another_scene_is_dropped_and_one_that_fails_is_told_of
     thread.ask(failing)
     assert failing.answered.wait(5.0)
     end = time.monotonic() + 5.0
-    while (failed := thread.take_failure()) is None:
+    while not (told := thread.take_complaints()):
         assert time.monotonic() < end
-    assert failed.text == "no answer: no such light"
+    assert [one.text for one in told] == ["no answer: no such light"]
+    assert thread.take_failure() is None, "no frame has failed"
     thread.submit(request(3.0))
     assert taken(thread).frame.time == 3.0, "it goes on"
 

@@ -28,8 +28,9 @@ from tracer.simd import (
     store,
 )
 
-WIDEST = np.float32(4)  # slopes of sixteen rays that differ by more are not worth a frustum
-WIDEST_NEAREST = np.float32(1)  # when nearest hits are asked for: without one, rays take less time then (`stream`)
+# Slopes of sixteen rays that differ by more are not worth a frustum: each ray goes its own way in less time.  Any hits
+# of one light's rays in random order take 295 ns at 4, 205 at 2, 123 at 1 and at 0.5 (Kitchen, 14 s, one thread).
+WIDEST = np.float32(1)
 NARROW = np.float32(0.02)  # by less, and the frustum alone will do
 HUGE = np.float32(1e18)
 
@@ -71,15 +72,15 @@ def _slopes(memory, v, axis, way):
 
 
 @inlined
-def _width(u0, u1, v0, v1, widest):
+def _width(u0, u1, v0, v1):
     """By how much slopes differ; HUGE if that is too much for a frustum, or not a number."""
-    return maximum(u1 - u0, v1 - v0) if u1 - u0 <= widest and v1 - v0 <= widest else HUGE
+    return maximum(u1 - u0, v1 - v0) if u1 - u0 <= WIDEST and v1 - v0 <= WIDEST else HUGE
 
 
 @subkernel
-def lead_of(memory, v, widest):
+def lead_of(memory, v):
     """The axis that suits the v-th vector best, the way along it (1 or -1), and whether its frustum is worth having,
-    for its slopes differ by no more than `widest`."""
+    for its slopes differ by no more than WIDEST."""
     best, axis, way = ZERO, 0, ZERO
     for k in range(3):
         d = _along(memory, DX, v, k)
@@ -89,7 +90,7 @@ def lead_of(memory, v, widest):
         if down > best:
             best, axis, way = down, k, np.float32(-1)
     u0, u1, v0, v1 = _slopes(memory, v, axis, way)
-    return axis, way, _width(u0, u1, v0, v1, widest) <= widest
+    return axis, way, _width(u0, u1, v0, v1) <= WIDEST
 
 
 @inlined
@@ -128,11 +129,11 @@ def put_reaches(memory, vectors, axes):
 
 
 @inlined
-def _put_frustum(memory, v, axes, widest):
+def _put_frustum(memory, v, axes):
     """Store the frustum of the v-th vector if it is worth having; by how much its slopes differ."""
     u0, u1, v0, v1 = _slopes(memory, v, axes.along, axes.way)
-    width = _width(u0, u1, v0, v1, widest)
-    if width > widest:
+    width = _width(u0, u1, v0, v1)
+    if width > WIDEST:
         return width
     u0, u1 = wider(u0, u1)
     v0, v1 = wider(v0, v1)
@@ -180,9 +181,9 @@ def _least_and_greatest(memory, row, vectors):
 
 
 @subkernel
-def group_of(memory, vectors, axis, way, widest):
+def group_of(memory, vectors, axis, way):
     """The group of those vectors, of some given as bits, that can go together along an axis, for their slopes differ by
-    no more than `widest`; at least one can."""
+    no more than WIDEST; at least one can."""
     for row in (START, START + 2, START + 4, SLOPE, SLOPE + 2):  # bounds of no ray: they leave others' as they are
         store(memory + FRUSTA + 32 * row, f32x8(HUGE))
         store(memory + FRUSTA + 32 * row + 32, f32x8(-HUGE))
@@ -193,8 +194,8 @@ def group_of(memory, vectors, axis, way, widest):
     while rest != 0:
         v = lowest_bit(rest)
         rest &= rest - 1
-        width = _put_frustum(memory, v, axes, widest)
-        members |= np.int64(width <= widest) << v
+        width = _put_frustum(memory, v, axes)
+        members |= np.int64(width <= WIDEST) << v
         wide |= np.int64(width > NARROW) << v
     dx = _least_and_greatest(memory, DX, members)
     dy = _least_and_greatest(memory, DY, members)

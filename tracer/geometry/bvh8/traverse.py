@@ -20,7 +20,7 @@ from tracer.geometry.bvh8.packet import (
     mark_static,
     open_vectors,
 )
-from tracer.geometry.bvh8.packet_group import WIDEST, WIDEST_NEAREST, group_of, lead_of
+from tracer.geometry.bvh8.packet_group import group_of, lead_of
 from tracer.geometry.bvh8.packet_tree import STACK, any_in_tree, closest_in_tree
 from tracer.geometry.bvh8.placed import MOVING_TREE, TOGETHER, TREES, tree_of, trees_asked
 from tracer.geometry.bvh8.single_ray import ROOM, SINGLE_MEMORY, any_one_by_one
@@ -59,7 +59,7 @@ def _trace(data, batch, first, last, counts, nearest):
     `nearest` is a constant, so that either query is compiled without the other."""
     memory, stack, count = local_memory(MEMORY), local_memory(STACK), i64_at(counts)
     stream = local_memory(STREAM_MEMORY) if nearest else local_memory(SINGLE_MEMORY)
-    which, widest = load_i64(batch + WHICH), WIDEST_NEAREST if nearest else WIDEST
+    which = load_i64(batch + WHICH)
     trees = load_i64(data + TREES) if nearest else trees_asked(data, which)
     together_at_most = load_i64(data + TOGETHER)
     size = PACKET if together_at_most == 1 else together_at_most  # rays that go alone are read as many at a time
@@ -74,7 +74,7 @@ def _trace(data, batch, first, last, counts, nearest):
         while todo != 0:
             # Leave the first vector for later, or trace its rays one by one, if they have no direction in common.
             v = lowest_bit(todo)
-            axis, way, together = lead_of(memory, v, widest)
+            axis, way, together = lead_of(memory, v)
             if not (finite and together and together_at_most > 1):
                 if nearest:
                     apart |= np.int64(1) << v
@@ -83,7 +83,7 @@ def _trace(data, batch, first, last, counts, nearest):
                 todo &= todo - 1
                 continue
             # Send it through each tree, with all vectors that go the same way.
-            group = group_of(memory, todo, axis, way, widest)
+            group = group_of(memory, todo, axis, way)
             rest = trees
             while rest != 0:
                 number = lowest_bit(rest)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from tracer.culling.fate import Fate
 from viewer.output.legend_layout import BACKDROP, TEXT
 from viewer.services.controller import Controller
 from viewer.state import terms
 from viewer.state.savings import LONGEST, Bar, Clause, Part, Standing, Tone, bar_of, sentence
-from viewer.state.views import FATE_COLORS, Color, label_color
+from viewer.state.views import FATE_COLORS, Color, View, label_color
 from viewer.util.numbers import count
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, tooltip
@@ -26,7 +27,9 @@ def standing(c: Controller) -> Standing:
     proves = ""
     if frame is not None and tracing.certifies:
         made, _ = terms.made(frame.settings.method)
-        proves = f"{terms.things(made)} still being proved: {count(frame.statistics.certificates)} in this picture"
+        at, most = tracing.refinement.progress
+        far = f", picture {at} of at most {most}" if most else ""
+        proves = f"{terms.things(made)} still being proved: {count(frame.statistics.certificates)} made{far}"
     return Standing(
         baseline.measured,
         baseline.moving,
@@ -58,11 +61,13 @@ def show(ui: Ui, width: float) -> None:
     frame = c.frame
     if frame is None or c.session.scene is None:
         return
+    if c.session.view is not View.FATE:
+        ui.fate_shown = None
     start, lines = imgui.get_cursor_pos(), _lines(ui, width)
     _write(sentence(frame, standing(c)), start, width, lines)
     imgui.set_cursor_pos(ImVec2(start.x, start.y + lines * imgui.get_text_line_height() + em(_GAP)))
     bar = ui.cached("savings", frame, 0, lambda: bar_of(frame))
-    _draw(bar, width)
+    _draw(ui, bar, width)
 
 
 def _write(clauses: tuple[Clause, ...], start: ImVec2, width: float, lines: int) -> None:
@@ -91,7 +96,7 @@ def _write(clauses: tuple[Clause, ...], start: ImVec2, width: float, lines: int)
         tooltip("\n".join(filter(None, (clause.text if shown != text else "", clause.tip))))
 
 
-def _draw(bar: Bar, width: float) -> None:
+def _draw(ui: Ui, bar: Bar, width: float) -> None:
     """The parts beside each other, each as wide as its share."""
     corner, high = imgui.get_cursor_screen_pos(), _bar_height()
     draw, done = imgui.get_window_draw_list(), 0
@@ -101,13 +106,26 @@ def _draw(bar: Bar, width: float) -> None:
         done += part.rays
         at, end = ImVec2(round(left), corner.y), ImVec2(max(round(right), round(left) + 1.0), corner.y + high)
         imgui.set_cursor_screen_pos(at)
-        imgui.invisible_button(f"{part.name}##savings", ImVec2(end.x - at.x, high))
+        if imgui.invisible_button(f"{part.name}##savings", ImVec2(end.x - at.x, high)):
+            _show_pixels(ui, part.fate, bar.would)
         hovered = imgui.is_item_hovered()
         _fill(draw, FATE_COLORS[part.fate], at, end, bar.would)
         if hovered:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+        if hovered or ui.fate_shown is part.fate:
             draw.add_rect(at, end, imgui.get_color_u32(imgui.Col_.text), 0.0, thickness=2.0)
-        tooltip(part.in_words(bar.would))
+        tooltip(
+            f"{part.in_words(bar.would)}\nClick: the pixels whose rays to the chosen light these are. Next light (L)"
+        )
         _label(draw, part, at, end, bar.would)
+
+
+def _show_pixels(ui: Ui, fate: Fate, would: bool) -> None:
+    """Show which pixels' rays to the chosen light became that, or, where these stand out already, all again; where they
+    only would, the modes by which they would."""
+    shown = ui.fate_shown is fate
+    ui.fate_shown = None if shown or would else fate
+    ui.controller.settings.set_view(View.SHADOW if would else View.FATE)
 
 
 def _fill(draw: imgui.ImDrawList, color: Color, at: ImVec2, end: ImVec2, hatched: bool) -> None:
