@@ -221,7 +221,7 @@ def with_cell_lights(frame: Frame) -> Frame:
 
 def in_part(frame: Frame) -> Frame:
     """The frame while every second column has been shaded: nothing is known of what lights send to the others."""
-    shaded = np.asarray(np.indices(frame.primitive.shape)[1] % 2 == 0)
+    shaded = np.indices(frame.primitive.shape)[1] % 2 == 0
     asked, reached = (samples * shaded[..., None].astype(np.uint16) for samples in (frame.asked, frame.reached))
     return replace(frame, asked=asked, reached=reached, shaded=shaded)
 
