@@ -201,9 +201,10 @@ class CubesBuilt:
         found.numbers[inside] = (((i + 64) << 14) + ((j + 64) << 7) + k + 64)[inside]
         found.owners[inside & (i >= 4)] = 3
         found.levels[inside] = np.where(k >= 0, 6, 3)[inside]
-        found.built[inside] = (i % 2 == 0)[inside]
+        even: NDArray[np.bool_] = np.asarray(i % 2 == 0)
+        found.built[inside] = even[inside]
         found.widths[inside] = 0.25
-        found.held[inside & (i % 2 == 0)] = 2
+        found.held[inside & even] = 2
         return found
 
 
