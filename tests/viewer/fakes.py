@@ -195,7 +195,7 @@ class CubesBuilt:
         if not self.alive:
             return None
         with np.errstate(invalid="ignore"):
-            inside = ((points >= self.extent[:3]) & (points < self.extent[3:])).all(1)
+            inside = np.asarray(((points >= self.extent[:3]) & (points < self.extent[3:])).all(1))
             i, j, k = np.where(inside[:, None], np.floor(4.0 * points), 0).astype(np.int64).T
         found = nothing_at(len(points))
         found.numbers[inside] = (((i + 64) << 14) + ((j + 64) << 7) + k + 64)[inside]
