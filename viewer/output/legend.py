@@ -76,6 +76,7 @@ def _classes(rows: list[LegendRow], units: str) -> tuple[Entry, ...]:
             row.color,
             (f"{100.0 * row.pixel_share:.1f} %", count(row.units)),
             f"{row.name}: {row.meaning}. {count(row.pixels)} pixels; {100.0 * row.unit_share:.2f} % of all {units}.",
+            stripes=row.stripes,
         )
         for row in rows
     )

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling import modes
-from tracer.culling.modes import OcclusionMode
+from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from viewer.output.legend_counts import certificates_of
 from viewer.state.marks import Mark, wipe_column, wrong_marks
@@ -24,6 +24,7 @@ from viewer.state.readings import (
     samples_of,
     span_of,
     tree_of,
+    untrusted,
     voxels_of,
     whole_of,
     work_of,
@@ -51,6 +52,7 @@ from viewer.state.views import (
     SHADOW_COLORS,
     TOO_BRIGHT,
     TREE_WAITS,
+    UNTRUSTED_STRIPE,
     VOXEL_COLORS,
     WIPE_LINE,
     WRONG,
@@ -134,7 +136,10 @@ def picture(
         table = {View.OCCLUSION: _occlusion, View.PRIMITIVE: _primitive, View.PIXEL_COUNT: _pixel_count}
         entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
         numbers = frame.primitive if view is View.PRIMITIVE else frame.unit
-        colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
+        flat = _per_pixel(numbers, entries)
+        if view is View.SHADOW:
+            flat[_untrusted_stripes(frame, light)] = SHADOW_COLORS[ShadowMode.INIT]
+        colors = _on_background(frame, _shaded(frame, flat, shading))
     if outlines and not (view.needs_verify or view.has_slice):  # those draw over the borders
         colors = _outlined(frame, colors)
     return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
@@ -187,6 +192,13 @@ def _shadow(frame: Frame, light: int) -> NDArray:
         mode = np.zeros(len(frame.modes), np.uint8)
     mode[modes.occlusion_mode(frame.modes) == OcclusionMode.DYNAMIC] = len(palette) - 1
     return palette[mode]
+
+
+def _untrusted_stripes(frame: Frame, light: int) -> NDArray[np.bool_]:
+    """(h, w): every second stripe of what has a shadow mode that is not trusted."""
+    y, x = np.indices(frame.unit.shape)
+    stripes = (x + y) // UNTRUSTED_STRIPE % 2 == 1
+    return untrusted(frame, light)[np.maximum(frame.unit, 0)] & stripes if len(frame.modes) else np.zeros_like(stripes)
 
 
 def _certificate(frame: Frame, light: int, shading: float) -> NDArray:

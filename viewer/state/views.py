@@ -168,7 +168,8 @@ _ALSO = {
 _EXPLANATIONS = {
     View.COLOR: "The traced picture.",
     View.OCCLUSION: "How much of each primitive the camera has seen: only fully rendered ones are culled.",
-    View.SHADOW: "What the shadow rays of each primitive have met on the way to the chosen light.",
+    View.SHADOW: "What the shadow rays of each primitive have met on the way to the chosen light. Stripes: the "
+    "primitive is not fully rendered, so that its mode is not trusted, and its rays are traced.",
     View.PRIMITIVE: "Every primitive in a colour of its own.",
     View.DEPTH: "Distance from the camera along the ray.",
     View.NORMAL: "The shading normal: x, y, z as red, green, blue.",
@@ -258,6 +259,20 @@ SHADOW_MEANING = {
     ShadowMode.NON_SHADOW: "no shadow ray was blocked: tested against dynamic objects only once fully rendered",
     ShadowMode.PARTIAL_SHADOW: "some were blocked: always traced",
 }
+
+TRUSTED_MEANING = {
+    ShadowMode.FULL_SHADOW: "fully rendered, and every shadow ray so far was blocked: culled",
+    ShadowMode.NON_SHADOW: "fully rendered, and no shadow ray so far was blocked: tested against dynamic objects only",
+}
+"""Of the shadow modes that are trusted where the primitive is fully rendered, and striped in their view elsewhere."""
+
+UNTRUSTED_MEANING = {
+    ShadowMode.FULL_SHADOW: "every shadow ray so far was blocked, but it is not fully rendered: traced",
+    ShadowMode.NON_SHADOW: "no shadow ray so far was blocked, but it is not fully rendered: traced",
+}
+
+UNTRUSTED_STRIPE = 3
+"""Pixels across which a stripe goes where a shadow mode is not trusted, and the grey one of INIT beside it."""
 
 CERTIFICATE_MEANING = {
     Certificate.NONE: "nothing is proven, or the light is behind it: its shadow rays are traced",
