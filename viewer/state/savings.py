@@ -164,7 +164,7 @@ _HOW = (
     "The same picture is traced by none and by the chosen method in turn, again and again, while nothing else is to do."
 )
 
-_IN_MOTION = "Stop, and this picture is traced by both in turn. The panel Experiment compares methods on the scene's path."
+_IN_MOTION = "Stop, and this picture is traced by both in turn. The panel Experiment compares methods on a whole path."
 
 
 def _answered(shadow: ShadowCounts) -> int:
