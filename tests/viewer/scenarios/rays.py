@@ -13,6 +13,7 @@ KEY = imgui.Key
 
 def rays(d: Driver) -> None:
     """A click on a pixel lists its rays; rows and keys go through them."""
+    d.c.preferences.savings = False  # its words come and go while lines are counted
     d.settle()
     c = d.c
     assert not c.rays.visible, "another panel is in front at first"

@@ -11,6 +11,7 @@ import pytest
 
 from tests.viewer.colors import luminance
 from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
+from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
 from tracer.statistics import SampleCounts
@@ -150,6 +151,18 @@ def test_the_line_of_a_wipe_reaches_both_edges():
 def test_mode_colours_can_be_told_apart_without_red_green_vision(palette):
     for a, b in itertools.combinations(palette.values(), 2):
         assert np.linalg.norm(dichromat(a) - dichromat(b)) > 0.15
+
+
+def test_one_fate_stands_out_and_words_can_be_read_on_each():
+    colors = views.FATE_COLORS
+    assert views.fate_palette() == list(colors.values())
+    traced = views.fate_palette(Fate.TRACED)
+    assert [color == colors[fate] for fate, color in zip(colors, traced)] == [fate.is_traced for fate in colors]
+    culled = views.fate_palette(Fate.CULLED)
+    assert [fate for fate, color in zip(colors, culled) if color == colors[fate]] == [Fate.CULLED]
+    for color in colors.values():
+        light, dark = sorted((luminance(color), luminance(views.label_color(color))), reverse=True)
+        assert (light + 0.05) / (dark + 0.05) >= 3.0, color
 
 
 def test_the_colour_map_grows_lighter_all_the_way():
