@@ -34,10 +34,9 @@ SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
         views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, fates, savings, certifying,
-        explaining, rays, flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
-        figure1, zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
-        reviving, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,
-        previewing,
+        explaining, rays, flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing,
+        experimenting, figure1, zooming, asking, finding, filmstrip, filming, hunting, taking, failing, reviving,
+        panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if, previewing,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip
