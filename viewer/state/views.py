@@ -133,7 +133,7 @@ _TITLES = {
     View.DIFFERENCE: "Difference",
     View.WIPE: "Wipe",
     View.CERTIFICATE: "Certificates",
-    View.SAVED: "Shadow rays saved",
+    View.SAVED: "Untraced shadow rays",
     View.COST: "Rays traced",
     View.PENUMBRA: "Penumbra",
     View.LIGHTS: "Lights due",
@@ -179,8 +179,8 @@ _EXPLANATIONS = {
     "the line.",
     View.CERTIFICATE: "What is proven for each cell and the chosen light; lines are the borders of cells. Each "
     "frame proves more: T traces one more, K keeps tracing.",
-    View.SAVED: "Shadow rays of each pixel, at all bounces, that culling saves tracing through the whole scene: how "
-    "many, or which share of those due.",
+    View.SAVED: "Shadow rays of each pixel, at all bounces, that need not be traced through the whole scene: saved "
+    "ones, and with some methods candidates and cache hits. How many, or which share of those due.",
     View.COST: "Rays traced for each pixel, of all kinds, at all bounces: how many, or which share of those that are "
     "traced without culling.",
     View.PENUMBRA: "How many samples of the chosen light reach each pixel: all are lit, none is dark, and between them "

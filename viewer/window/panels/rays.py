@@ -18,7 +18,7 @@ _LIGHT = 7.0  # ems of width, at least, for the name of a light
 _SHOWN_TIPS = {
     Shown.ALL: "every shadow ray, and those that were not asked",
     Shown.TRACED: "shadow rays that were traced through the scene",
-    Shown.CULLED: "shadow rays that were not, though they are due",
+    Shown.UNTRACED: "shadow rays that were not, though they are due: culled, dynamic only, candidates and cache",
     Shown.BLOCKED: "shadow rays that do not reach their light",
     Shown.WRONG: "shadow rays whose answer is not true",
 }
