@@ -144,7 +144,7 @@ def _clauses(frame: Frame, standing: Standing) -> Iterator[Clause]:
     if method.culls and (_answered(s.shadow) or s.cuts is not None):
         yield _wrong(frame, method)
     if standing.moving:
-        yield Clause("speed not measurable while moving", _HOW, Tone.QUIET, compares=True)
+        yield Clause("speed not measurable while moving", _IN_MOTION, Tone.QUIET, compares=True)
     elif standing.proves:
         yield Clause(
             standing.proves, "what is proved now saves rays later, and its time is none of theirs", Tone.QUIET, True
@@ -163,6 +163,8 @@ def _clauses(frame: Frame, standing: Standing) -> Iterator[Clause]:
 _HOW = (
     "The same picture is traced by none and by the chosen method in turn, again and again, while nothing else is to do."
 )
+
+_IN_MOTION = "Stop, and this picture is traced by both in turn. The panel Experiment compares methods on a whole path."
 
 
 def _answered(shadow: ShadowCounts) -> int:
