@@ -117,7 +117,7 @@ def picture(
         fates = np.asarray(list(FATE_COLORS.values()), np.float32)[frame.fate(light)]
         colors = _on_background(frame, _shaded(frame, fates, shading))
     elif view is View.MOVING_SHADOW:
-        colors = _on_background(frame, _moving_shadow(frame, light, shading, tone))
+        colors = _on_background(frame, _moving_shadow(frame, light, shading))
     elif view is View.LIGHTS:
         colors = _on_background(frame, _counted(lights_due(frame), span or span_of(frame, view)))
     elif view is View.CUTS:
@@ -220,11 +220,11 @@ def _penumbra(frame: Frame, light: int) -> NDArray:
     return np.where(between[..., None], ramp, palette[found])
 
 
-def _moving_shadow(frame: Frame, light: int, shading: float, tone: Tone) -> NDArray:
-    """Shadows of moving objects over the paled picture in greys, tinted where rays ask these only, and on these."""
+def _moving_shadow(frame: Frame, light: int, shading: float) -> NDArray:
+    """Moving shadows over the paled picture in greys, tinted where rays ask dynamic objects only, and on these."""
     found = moving_shadows(frame, light)
     flat = np.asarray(list(MOVING_SHADOW_COLORS.values()), np.float32)[found]
-    paled = (PALE + (1.0 - PALE) * (np.clip(toned(frame.color, tone), 0.0, 1.0) @ _LUMINANCE))[..., None]
+    paled = (PALE + (1.0 - PALE) * (np.clip(frame.color, 0.0, 1.0) @ _LUMINANCE))[..., None]
     shadow = (found == MovingShadow.DARK) | (found == MovingShadow.TRACED)
     return np.where(shadow[..., None], _shaded(frame, flat, shading), paled * flat)
 

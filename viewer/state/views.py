@@ -95,7 +95,7 @@ class View(StrEnum):
     @property
     def shows_picture(self) -> bool:
         """Whether it shows traced colours, by the tone that is chosen."""
-        return self in (View.COLOR, View.DIFFERENCE, View.WIPE, View.VOXELS, View.TREE, View.MOVING_SHADOW)
+        return self in (View.COLOR, View.DIFFERENCE, View.WIPE, View.VOXELS, View.TREE)
 
     @property
     def has_slice(self) -> bool:
@@ -142,7 +142,7 @@ _TITLES = {
     View.CELL_LIGHTS: "Lights per cell",
     View.TREE: "Tree built",
     View.FATE: "Fate of shadow rays",
-    View.MOVING_SHADOW: "Shadows of moving objects",
+    View.MOVING_SHADOW: "Moving shadows",
 }
 
 _KEYS = {
@@ -162,7 +162,7 @@ _KEYS = {
 
 _ALSO = {
     View.FATE: "why traced culled dynamic reason",
-    View.MOVING_SHADOW: "dynamic only NON_SHADOW darkened",
+    View.MOVING_SHADOW: "dynamic only NON_SHADOW darkened objects",
 }
 
 _EXPLANATIONS = {
