@@ -9,6 +9,6 @@ void main() {
     ivec2 p = pixel();
     if (primitive_at(p) < 0) { finish(background); return; }
     uint code = texelFetch(moving_buffer, p, 0).r;
-    float paled = mix(luminance(displayed(texelFetch(color_buffer, p, 0).rgb)), 1.0, pale);
+    float paled = mix(luminance(clamp(texelFetch(color_buffer, p, 0).rgb, 0.0, 1.0)), 1.0, pale);
     finish(code == DARK || code == TRACED ? shaded(palette[code]) : paled * palette[code]);
 }

@@ -94,11 +94,15 @@ class State:
 
     def history(self, settings: Settings, first: NDArray[np.int32], workers: int) -> ModeHistory:
         """The modes at this resolution and by these lamps, of primitives or of cells; made, or given room for more
-        workers, where need be.  first (primitives + 1,) are the first units of primitives, or empty."""
+        workers, where need be.  first (primitives + 1,) are the first units of primitives, or empty.  They begin with
+        what is known at the resolution of the last frame, if that was finer."""
         key = settings.width, settings.height, len(first) > 0, settings.lamp_radius, settings.lamp_samples
+        last = next(reversed(self.histories), key)
         history = self.histories.pop(key, None)
         if history is None:
             history = ModeHistory(self.world.object_of, len(self.scene.lights), workers, first)
+        if last[2:] == key[2:] and last[1] > key[1] and self.histories[last].light_positions is not None:
+            history.take_finer(self.histories[last], (key[1] / last[1]) ** 2)
         self.histories[key] = history  # the newest last
         if len(self.histories) > HISTORIES:
             del self.histories[next(iter(self.histories))]

@@ -121,13 +121,38 @@ def test_fully_rendered_outlives_later_occlusion():
     assert (occlusion_mode(cut.modes)[at_edge[whole[at_edge]]] != OcclusionMode.PARTIALLY_OCCLUDED).all()
 
 
-def test_modes_learnt_at_one_resolution_do_not_speak_at_another():
+def test_modes_learnt_at_one_resolution_do_not_speak_at_a_finer_one():
     renderer = tracer.Renderer(shadow_scene(), SETTINGS)
     renderer.render()
     renderer.settings = replace(SETTINGS, width=96, height=96)
     assert renderer.render().statistics.shadow.culled == 0
+    assert renderer.render().statistics.shadow.culled > 0
     renderer.settings = SETTINGS
     assert renderer.render().statistics.shadow.culled > 0
+
+
+def test_a_coarser_resolution_begins_with_what_a_finer_one_has_seen_whole():
+    fine, coarse = replace(SETTINGS, width=96, height=96), replace(SETTINGS, width=32, height=32)
+    renderer = tracer.Renderer(scene(floor(), lights=[LIGHT]), fine)
+    before = renderer.render()
+    renderer.settings = coarse
+    first = renderer.render()
+    assert first.statistics.shadow.saved > 0
+    middle = before.primitive[48, 48]
+    assert first.highest_count[middle] == round(before.pixel_count[middle] / 9)
+    for distance, mode in ((6.0, OcclusionMode.FULLY_RENDERED), (4.0, OcclusionMode.INIT)):  # 2.8, 6.3 times as many
+        near = renderer.render(camera=Camera((0.0, 0.0, distance), (0.0, 0.0, -1.0), angle=40.0))
+        assert occlusion_mode(near.modes)[middle] == mode
+
+
+def test_of_a_light_that_has_moved_a_coarser_resolution_takes_over_nothing():
+    still = scene(floor(), lights=[LIGHT])
+    renderer = tracer.Renderer(still, replace(SETTINGS, width=96, height=96))
+    for _ in range(2):
+        saved = renderer.render().statistics.shadow.saved
+    renderer.settings = replace(SETTINGS, width=32, height=32)
+    renderer.scene = replace(still, lights=(replace(still.lights[0], position=(1.0, 2.0, 9.0)),))
+    assert saved > 0 == renderer.render().statistics.shadow.saved
 
 
 def test_of_many_resolutions_the_latest_are_remembered():

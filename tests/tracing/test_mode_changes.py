@@ -63,9 +63,8 @@ def test_random_words_are_counted_alike_by_any_number_of_threads(count, word, se
 def test_frames_say_how_their_modes_changed(walk: Walk, method: str, threads: int):
     renderer = tracer.Renderer(walk.scene, replace(SETTINGS, method=method, modes=True, threads=threads))
     for time, camera in walk.frames:
-        frame = renderer.render(time, camera)
-        done = renderer.work_on(frame)
-        assert frame.statistics.mode_changes == by_one(done.words, frame.modes)
+        for frame in renderer.refine(time, camera, parts=(1, 8, 16)):
+            assert frame.statistics.mode_changes == by_one(frame.modes_before, frame.modes)
 
 
 def test_a_first_frame_teaches_and_a_second_of_the_same_changes_nothing():
@@ -85,6 +84,26 @@ def test_what_the_screen_cuts_off_becomes_partially_occluded_once():
     assert second.partially_occluded == 0 and second.units == first.units
 
 
+def test_a_picture_that_is_left_says_what_its_part_has_taught():
+    """The whole one, refined from it, says at least that; the next one begins with what was known when it was left."""
+    renderer = tracer.Renderer(shadow_scene(), replace(SETTINGS, width=128, height=96))
+    frames = renderer.refine(parts=(1, 16))
+    part = next(frames)
+    frames.close()
+    assert 0 < part.statistics.part < 1.0 and part.statistics.mode_changes.gained > 0
+    whole = renderer.render()
+    assert np.array_equal(whole.modes_before, part.modes)
+    known = part.statistics.mode_changes.shadow_modes["non_shadow"]
+    changes = whole.statistics.mode_changes
+    assert changes.shadow_modes["non_shadow"] == known + changes.non_shadow - _became_partial(
+        part.modes, whole.modes, 2
+    )
+
+
+def _became_partial(before: np.ndarray, after: np.ndarray, was: int) -> int:
+    return int(((shadow_mode(before, 0) == was) & (shadow_mode(after, 0) == ShadowMode.PARTIAL_SHADOW)).sum())
+
+
 def test_figure_4_examines_primitives_anew():
     """The camera comes nearer: what covers many more pixels than before is INIT again, and seen whole a frame later."""
     world = tracer.load_scene(FIGURE_4)
@@ -92,8 +111,8 @@ def test_figure_4_examines_primitives_anew():
     anew, whole = [], []
     for number in range(0, world.frames, 4):
         frame = renderer.render(world.frame_time(number))
-        changes, done = frame.statistics.mode_changes, renderer.work_on(frame)
-        assert changes == by_one(done.words, frame.modes)
+        changes = frame.statistics.mode_changes
+        assert changes == by_one(frame.modes_before, frame.modes)
         anew.append(changes.examined_anew)
         whole.append(changes.fully_rendered)
     assert sum(anew) > 0

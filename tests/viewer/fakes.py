@@ -195,15 +195,16 @@ class CubesBuilt:
         if not self.alive:
             return None
         with np.errstate(invalid="ignore"):
-            inside = ((points >= self.extent[:3]) & (points < self.extent[3:])).all(1)
+            inside = np.asarray(((points >= self.extent[:3]) & (points < self.extent[3:])).all(1))
             i, j, k = np.where(inside[:, None], np.floor(4.0 * points), 0).astype(np.int64).T
         found = nothing_at(len(points))
         found.numbers[inside] = (((i + 64) << 14) + ((j + 64) << 7) + k + 64)[inside]
         found.owners[inside & (i >= 4)] = 3
         found.levels[inside] = np.where(k >= 0, 6, 3)[inside]
-        found.built[inside] = (i % 2 == 0)[inside]
+        even: NDArray[np.bool_] = np.asarray(i % 2 == 0)
+        found.built[inside] = even[inside]
         found.widths[inside] = 0.25
-        found.held[inside & (i % 2 == 0)] = 2
+        found.held[inside & even] = 2
         return found
 
 

@@ -1,6 +1,7 @@
 """The modes and pixel counts of all units, from one frame to the next (§2.2 of the paper).
 
-A pixel count means nothing at another resolution, so each resolution has a history of its own.
+A pixel count means something at one resolution only, so each resolution has a history of its own.  A coarser one takes
+over what a finer one has seen whole: more pixels have spoken for it than the coarser picture has.
 """
 
 from __future__ import annotations
@@ -60,6 +61,26 @@ class ModeHistory:
             if isinstance(value, np.ndarray):
                 setattr(copied, name, value.copy())
         return copied
+
+    def take_finer(self, finer: ModeHistory, ratio: float) -> None:
+        """Know what a finer resolution, used just before, has seen whole; `ratio` is how many of its pixels, a number
+        below 1, a unit covers here for each there."""
+        highest = np.maximum(np.rint(finer.highest_count * ratio), 1).astype(np.int32)
+        if not self._knows_of_the_same(finer):
+            self.words, self.highest_count, self.taught = finer.words.copy(), highest, np.zeros_like(self.taught)
+            self.light_positions, self._lamps, self._resting = finer.light_positions, finer._lamps, finer._resting
+            return
+        whole = modes.occlusion_mode(finer.words) == modes.FULLY_RENDERED
+        known = modes.occlusion_mode(self.words) == modes.FULLY_RENDERED
+        self.highest_count[whole] = np.where(known, np.maximum(highest, self.highest_count), highest)[whole]
+        self.words[whole] = (self.words[whole] & ~self.words.dtype.type(3)) | finer.words[whole]
+
+    def _knows_of_the_same(self, other: ModeHistory) -> bool:
+        """Whether lights, and what rests, were alike when the last frames of both were rendered."""
+        if self.light_positions is None or other.light_positions is None or self._lamps is not other._lamps:
+            return False
+        same = np.array_equal(self._resting.since, other._resting.since)
+        return same and np.array_equal(self.light_positions, other.light_positions)
 
     def make_room(self, workers: int) -> None:
         """For what so many workers gain."""

@@ -124,7 +124,7 @@ def explain() -> Parser:
     add("--size", type=size, default=(512, 512), metavar="WxH", help="width and height in pixels (default: 512x512)")
     help_ = f"how shadow rays are culled: {methods()} (default: {DEFAULT_METHOD})"
     add("--method", type=method, metavar="M", help=help_)
-    only = ("all", "traced", "culled", "blocked", "wrong")
+    only = ("all", "traced", "untraced", "blocked", "wrong")
     add("--only", choices=only, default="all", help="which shadow rays are listed (default: all)")
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
     add("--json", action="store_true", help="all rays as JSON on standard output")

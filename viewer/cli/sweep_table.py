@@ -18,7 +18,7 @@ from viewer.util.messages import printable
 if TYPE_CHECKING:  # this needs pyarrow
     from viewer.output.sweep_summary import Line
 
-LEAST_WANTED = ("frames", "known", "tests\nsaved", "wrong")
+LEAST_WANTED = ("frames", "saved", "tests\nsaved", "wrong")
 """Columns that are left out, one after another, where there is no room for all."""
 
 
@@ -54,15 +54,15 @@ def _of_part(part: list[Line], lines: list[Line], left: Sequence[str]) -> Table:
 
 def _table(title: str, shown: list[Line], lines: list[Line], left: Sequence[str] = (), where: bool = True) -> Table:
     """A section for each scene, size and combination of settings, a row for each method."""
-    from viewer.output.sweep_summary import COLUMNS, KNOWN
+    from viewer.output.sweep_summary import COLUMNS, SAVED
 
     verified = all(line.verified for line in lines)
-    known = f"\n{KNOWN}: shadow rays that are culled, or tested against dynamic objects only" * (KNOWN not in left)
+    saved = f"\n{SAVED}: shadow rays that are culled, or tested against dynamic objects only" * (SAVED not in left)
     table = Table(title=printable(title), title_justify="left", title_style="bold", caption_justify="left")
     table.caption = (
         f"saved against {REFERENCE}, certificates included; times are processor time of one thread"
         + (", with verifying" if verified else "; verify = true counts wrong answers")
-        + known
+        + saved
     )
     settings = where and any(line.settings for line in lines)
     for heading in (*(("scene", "size") if where else ()), *(["settings"] if settings else []), "method"):

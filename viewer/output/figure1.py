@@ -15,6 +15,7 @@ from tracer.frame import Frame
 from tracer.method import Method
 from tracer.statistics import FrameStatistics
 from viewer.state import terms
+from viewer.state.methods import BY_MODES
 from viewer.state.savings import bar_of
 from viewer.state.views import (
     FATE_COLORS,
@@ -111,12 +112,11 @@ def _units(method: Method) -> str:
 
 
 def _notes(s: FrameStatistics, method: Method, by_modes: bool) -> Iterator[str]:
+    """Short ones: the window has one line for them."""
     if s.part < 1.0:
-        yield f"{100.0 * s.part:.0f} % of the pixels are shaded so far: shadow rays, and modes gained, are of these."
+        yield f"{100.0 * s.part:.0f} % of pixels shaded so far."
     if by_modes and not method.culls:
-        yield "Nothing is culled; modes say what the paper's method would do (outlined squares)."
-    elif not method.culls:
-        yield "Nothing is culled, and no modes are kept."
+        yield f"Outlined: what {BY_MODES} would do."
     if s.decision:
         yield s.decision
 
@@ -203,7 +203,7 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
     flows = [
         Flow(
             _WOULD[fate] if bar.would and by_modes else FATE_NAMES[fate], number, percent(number, s.shadow.due),
-            FATE_COLORS[fate], bar.would and fate.is_saved, FATE_MEANING[fate], _FATE_VIEW,
+            FATE_COLORS[fate], bar.would and fate.is_saved, FATE_MEANING[fate], View.FATE,
         )
         for fate, number in sorted(rays.items())
     ]  # fmt: skip
@@ -224,11 +224,10 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
         tuple(flows),
         parts,
         "shadow rays by what became of them",
-        _FATE_VIEW,
+        View.FATE,
     )
 
 
-_FATE_VIEW = View.SHADOW
 _WOULD = {
     Fate.CULLED: "would be culled",
     Fate.DYNAMIC_ONLY: "… dynamic only",

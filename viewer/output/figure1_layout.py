@@ -6,16 +6,16 @@ All lengths are those of the unit in which `measure` gives the width of a text; 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
+from functools import cache
 from itertools import combinations, pairwise
 
 from viewer.output.figure1 import Figure, Flow, Part, Stage
+from viewer.output.figure1_shapes import Area, Arrow, Box, Drawing, Point, Tone, Words
 from viewer.output.legend_layout import wrapped
-from viewer.state.views import Color, View
 
 Measure = Callable[[str], float]
-Point = tuple[float, float]
 
 # All in lines' heights.
 _ARROW, _ROWS = 0.7, 1.35  # from a box's left edge to the arrow that leaves it, and to the rows beside this
@@ -37,104 +37,25 @@ class Detail(Enum):
     LEAST = 0.17, 1.05
 
 
-class Tone(Enum):
-    """How a text, or a line, is meant."""
-
-    PLAIN = "plain"
-    STRONG = "strong"
-    QUIET = "quiet"
-
-
-@dataclass(frozen=True)
-class Words:
-    """A line of text; its upper left corner, or the upper right one where it is aligned to the `right`."""
-
-    x: float
-    y: float
-    text: str
-    tone: Tone = Tone.PLAIN
-    right: bool = False
-
-
-@dataclass(frozen=True)
-class Box:
-    """A rectangle: the frame of a stage where it has no colour, else filled with it, or, `hollow`, outlined."""
-
-    x: float
-    y: float
-    width: float
-    height: float
-    color: Color | None = None
-    hollow: bool = False
-
-
-@dataclass(frozen=True)
-class Arrow:
-    """A line from point to point, with a head at its end or none."""
-
-    points: tuple[Point, ...]
-    head: bool = True
-
-    def head_of(self, size: float) -> tuple[Point, Point, Point]:
-        """The corners of its head; the last part of an arrow goes along an axis."""
-        (x0, y0), (x, y) = self.points[-2:]
-        along = ((x > x0) - (x < x0), (y > y0) - (y < y0))
-        back = x - 2.0 * size * along[0], y - 2.0 * size * along[1]
-        side = size * along[1], size * along[0]
-        return (x, y), (back[0] + side[0], back[1] + side[1]), (back[0] - side[0], back[1] - side[1])
-
-
-@dataclass(frozen=True)
-class Area:
-    """A rectangle that is about something: what is said of it, and the view that shows it."""
-
-    x: float
-    y: float
-    width: float
-    height: float
-    tip: str
-    view: View | None = None
-
-    def holds(self, x: float, y: float) -> bool:
-        return self.x <= x < self.x + self.width and self.y <= y < self.y + self.height
-
-
-@dataclass
-class Drawing:
-    """All of a figure, laid out: its size, and what is drawn, in this order; areas that come later lie above."""
-
-    width: float
-    height: float = 0.0
-    boxes: list[Box] = field(default_factory=list)
-    bars: list[Box] = field(default_factory=list)
-    times: list[Box] = field(default_factory=list)
-    arrows: list[Arrow] = field(default_factory=list)
-    words: list[Words] = field(default_factory=list)
-    areas: list[Area] = field(default_factory=list)
-
-    def at(self, x: float, y: float) -> Area | None:
-        """What lies at a point, above all else."""
-        return next((area for area in reversed(self.areas) if area.holds(x, y)), None)
-
-
 def lay_out(figure: Figure, measure: Measure, line: float, width: float, height: float, strong: float = 1.0) -> Drawing:
     """The figure in so much room, in lines of text so high; `strong` letters are so many times as wide as others.
 
     As much is written out as finds room, in as few columns.  Where nothing finds room, the figure is as low as can be,
     and higher than that."""
-    lowest: Drawing | None = None
+    known = cache(measure)
+    lowest: _Sheet | None = None
     for detail in Detail:
-        texts = _Texts(measure, line, detail, strong)
+        texts = _Texts(known, line, detail, strong)
         most = int((width + (_GUTTER - _LOOP) * line) / (texts.least_column(figure) + _GUTTER * line))
         most = max(1, min(len(figure.stages), most))
         for columns in range(min(most, max(1, int(width / (_WIDEST * line)))), most + 1):
-            drawing = _Sheet(figure, texts, width, columns).drawing
-            if drawing.height <= height:
-                return drawing
-            if lowest is None or drawing.height < lowest.height:
-                lowest = drawing
+            sheet = _Sheet(figure, texts, width, columns)
+            if sheet.height <= height:
+                return sheet.drawn()
+            if lowest is None or sheet.height < lowest.height:
+                lowest = sheet
     assert lowest is not None
-    return lowest
+    return lowest.drawn()
 
 
 @dataclass(frozen=True)
@@ -167,22 +88,18 @@ class _Texts:
     def number(self, flow: Flow) -> str:
         return _short(flow.number) if self.detail is Detail.LEAST else f"{flow.number:,}"
 
-    def share(self, flow: Flow) -> str:
-        return "" if self.detail is Detail.LEAST else flow.share
-
     def shares(self, flows: Sequence[Flow]) -> float:
-        """The room of the shares of flows, with what is before them; 0 where they have none."""
-        widest = max((self.measure(self.share(flow)) for flow in flows), default=0.0)
-        return widest + _BETWEEN * self.line if widest else 0.0
+        """The room of the shares of flows, with what is before them; 0 where they have none, or all are tips."""
+        widest = max((self.measure(flow.share) for flow in flows), default=0.0)
+        return widest + _BETWEEN * self.line if widest and self.detail is not Detail.LEAST else 0.0
 
     def before_names(self, flows: Sequence[Flow]) -> float:
         """From a column's left edge to the names of what leaves a stage."""
         return (_ROWS + (_SQUARE + 0.35 if any(flow.color for flow in flows) else 0.0)) * self.line
 
-    def beside_names(self, flows: Sequence[Flow]) -> float:
-        """From the end of these names to the column's right edge."""
-        numbers = max((self.wide(self.number(flow)) for flow in flows), default=0.0)
-        return _BETWEEN * self.line + numbers + self.shares(flows)
+    def numbers(self, flows: Sequence[Flow]) -> float:
+        """The room of the numbers of flows, with what is before them."""
+        return max((self.wide(self.number(flow)) for flow in flows), default=0.0) + _BETWEEN * self.line
 
     def fits_one_line(self, stage: Stage, column: float) -> bool:
         """Whether the name of a stage and its time find room beside each other."""
@@ -197,7 +114,10 @@ class _Texts:
             for stage in figure.stages
         )
         rows = (
-            self.before_names(stage.flows) + self.measure(flow.name) + self.beside_names(stage.flows)
+            self.before_names(stage.flows)
+            + self.measure(flow.name)
+            + self.numbers(stage.flows)
+            + self.shares(stage.flows)
             for stage in figure.stages
             for flow in stage.flows
         )
@@ -229,23 +149,27 @@ def shortened(text: str, measure: Measure, room: float) -> str:
 
 
 class _Sheet:
-    """A figure being laid out, in so many columns."""
+    """A figure being laid out, in so many columns: how high it is, and, once that is known, all of it."""
 
     def __init__(self, figure: Figure, texts: _Texts, width: float, columns: int) -> None:
-        self._texts, self._line = texts, texts.line
+        self._figure, self._texts, self._line = figure, texts, texts.line
         self._column = (width - (_LOOP + (columns - 1) * _GUTTER) * texts.line) / columns
-        self.drawing = Drawing(width)
-        top = self._title(figure, width)
-        self._columns(figure, top, _split([self._height(stage) for stage in figure.stages], columns))
+        self._title = wrapped(figure.title, texts.wide, width) if figure.title else []
+        self._top = len(self._title) * texts.step + 0.3 * texts.line if self._title else 1.0
+        heights = [self._height(stage) for stage in figure.stages]
+        self._spans = _split(heights, columns)
+        self._bottom = self._top + max(sum(heights[first:last]) for first, last in self._spans) + 0.15 * texts.line
+        said = " ".join((figure.next_frame, *figure.notes))
+        self._last = wrapped(said, texts.measure, width - _LOOP * texts.line)
+        self.height = self._bottom + 0.2 * texts.line + len(self._last) * texts.step
+        self.drawing = Drawing(width, self.height)
 
-    def _title(self, figure: Figure, width: float) -> float:
-        """The title at the top; where it ends."""
-        if not figure.title:
-            return 1.0
-        lines = wrapped(figure.title, self._texts.wide, width)
-        for number, text in enumerate(lines):
+    def drawn(self) -> Drawing:
+        """All of it."""
+        for number, text in enumerate(self._title):
             self.drawing.words.append(Words(0.0, number * self._texts.step, text, Tone.STRONG))
-        return len(lines) * self._texts.step + 0.3 * self._line
+        self._columns()
+        return self.drawing
 
     def _rule(self, stage: Stage) -> list[str]:
         if self._texts.detail is not Detail.RULES:
@@ -262,33 +186,31 @@ class _Sheet:
         rows = max(len(stage.flows) * self._texts.step, 0.4 * self._line)
         return self._box_height(stage) + 2 * self._texts.pad + rows
 
-    def _columns(self, figure: Figure, top: float, spans: Sequence[tuple[int, int]]) -> None:
+    def _columns(self) -> None:
         """All stages, from column to column, and the way from the last back to the first."""
-        line, ends = self._line, []
-        entrance = top + self._texts.pad + 0.5 * line
-        for number, (first, last) in enumerate(spans):
-            x, y = _LOOP * line + number * (self._column + _GUTTER * line), top
-            for at, stage in enumerate(figure.stages[first:last], first):
+        line, stages, end = self._line, self._figure.stages, (0.0, 0.0)
+        entrance = self._top + self._texts.pad + 0.5 * line
+        for number, (first, last) in enumerate(self._spans):
+            x, y = _LOOP * line + number * (self._column + _GUTTER * line), self._top
+            for at, stage in enumerate(stages[first:last], first):
                 self._stage(stage, x, y)
                 leaves = x + _ARROW * line, y + self._box_height(stage)
                 y += self._height(stage)
-                self.drawing.arrows.append(Arrow((leaves, (leaves[0], y)), head=at + 1 < last))
-            ends.append((leaves[0], y))
-            if last < len(figure.stages):
+                end = leaves[0], y
+                self.drawing.arrows.append(Arrow((leaves, end), head=at + 1 < last))
+            if last < len(stages):
                 right = x + self._column + _GUTTER * line
                 turn = right - 0.5 * _GUTTER * line
-                self.drawing.arrows.append(Arrow((ends[-1], (turn, y), (turn, entrance), (right, entrance))))
-        self._next(figure, ends[-1], max(y for _, y in ends), entrance)
+                self.drawing.arrows.append(Arrow((end, (turn, y), (turn, entrance), (right, entrance))))
+        self._next(end, entrance)
 
-    def _next(self, figure: Figure, end: Point, bottom: float, entrance: float) -> None:
+    def _next(self, end: Point, entrance: float) -> None:
         """The way back to the first stage, with what the next frame begins with, and notes."""
-        line, left, x, y = self._line, 0.35 * self._line, _LOOP * self._line, bottom + 0.15 * self._line
+        left, x, y = 0.35 * self._line, _LOOP * self._line, self._bottom
         self.drawing.arrows.append(Arrow((end, (end[0], y), (left, y), (left, entrance), (x, entrance))))
-        y += 0.2 * line
-        for note in wrapped(" ".join((figure.next_frame, *figure.notes)), self._texts.measure, self.drawing.width - x):
-            self.drawing.words.append(Words(x, y, note, Tone.QUIET))
-            y += self._texts.step
-        self.drawing.height = y
+        for number, text in enumerate(self._last):
+            place = y + 0.2 * self._line + number * self._texts.step
+            self.drawing.words.append(Words(x, place, text, Tone.QUIET))
 
     def _stage(self, stage: Stage, x: float, y: float) -> None:
         """A box, and the rows beside the arrow that leaves it."""
@@ -317,15 +239,18 @@ class _Sheet:
         """What leaves a stage: square, name, number and share, below each other."""
         drawing, line, texts = self.drawing, self._line, self._texts
         left, right = x + texts.before_names(flows), x + self._column
-        room = right - left - texts.beside_names(flows)
+        room, shares = right - left - texts.numbers(flows), texts.shares(flows)
+        if room - shares < max((texts.measure(flow.name) for flow in flows), default=0.0):
+            shares = 0.0  # they are tips, then
+        room -= shares
         for flow in flows:
             at = x + _ROWS * line
             if flow.color is not None:
                 square = _SQUARE * line
                 drawing.bars.append(Box(at, y + 0.5 * (line - square), square, square, flow.color, flow.hollow))
             drawing.words.append(Words(left, y, shortened(flow.name, texts.measure, room)))
-            drawing.words.append(Words(right - texts.shares(flows), y, texts.number(flow), Tone.STRONG, True))
-            if texts.share(flow):
+            drawing.words.append(Words(right - shares, y, texts.number(flow), Tone.STRONG, True))
+            if shares and flow.share:
                 drawing.words.append(Words(right, y, flow.share, Tone.QUIET, True))
             tip = f"{flow.name}: {flow.number:,}" + (f" ({flow.share})" if flow.share else "") + f"\n{flow.tip}"
             drawing.areas.append(Area(at, y, right - at, texts.step, tip, flow.view))

@@ -76,6 +76,7 @@ def _classes(rows: list[LegendRow], units: str) -> tuple[Entry, ...]:
             row.color,
             (f"{100.0 * row.pixel_share:.1f} %", count(row.units)),
             f"{row.name}: {row.meaning}. {count(row.pixels)} pixels; {100.0 * row.unit_share:.2f} % of all {units}.",
+            stripes=row.stripes,
         )
         for row in rows
     )
@@ -197,7 +198,7 @@ def _work(frame: Frame, view: View, chosen: Chosen) -> Legend:
         scale = Scale(f"{low:.4g}", f"{high:.4g} and more", f"{(low + high) / 2.0:.3g}")
         return Legend(view.label, (), (), scale, tuple(facts), notes=notes)
     title = (
-        "Share of the shadow rays due that is saved" if saved else "Share of the rays without culling that is traced"
+        "Share of the shadow rays due that is untraced" if saved else "Share of the rays without culling that is traced"
     )
     entries = (Entry("no shadow ray is due", GREY),) if saved else ()
     return Legend(title, (), entries, Scale("0 %", "100 %", "50 %"), tuple(facts), notes=notes)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from viewer.state.readings import (
     lights_top,
     moving_shadows,
     samples_of,
+    untrusted,
     voxels_of,
     whole_of,
     work_of,
@@ -34,6 +35,8 @@ from viewer.state.views import (
     OCCLUSION_MEANING,
     SHADOW_COLORS,
     SHADOW_MEANING,
+    TRUSTED_MEANING,
+    UNTRUSTED_MEANING,
     Arrival,
     Certificate,
     Color,
@@ -46,7 +49,8 @@ from viewer.state.views import (
 class LegendRow:
     """One colour of a legend: what it means, and how much of the frame it is (counts, and fractions of all).
 
-    Units are what carries modes, primitives or cells, or the cells that are seen."""
+    Units are what carries modes, primitives or cells, or the cells that are seen.  It may have `stripes` of another
+    colour."""
 
     name: str
     color: Color
@@ -55,6 +59,7 @@ class LegendRow:
     pixels: int
     unit_share: float
     pixel_share: float
+    stripes: Color | None = None
 
 
 def occlusion_legend(frame: Frame) -> list[LegendRow]:
@@ -65,16 +70,24 @@ def occlusion_legend(frame: Frame) -> list[LegendRow]:
 
 
 def shadow_legend(frame: Frame, light: int) -> list[LegendRow]:
-    """Units and primary pixels in each shadow mode of a light; those that move are counted apart.
+    """Units and primary pixels in each shadow mode of a light.  Those that move are counted apart, and so are those
+    whose mode is not trusted, as they are not fully rendered.
 
     Empty for a light that culling does not cover."""
     if not modes.has_shadow_mode(frame.modes, light):
         return []
     classes = modes.shadow_mode(frame.modes, light)
     classes[modes.occlusion_mode(frame.modes) == OcclusionMode.DYNAMIC] = len(ShadowMode)
-    rows = [(mode.name, SHADOW_COLORS[mode], SHADOW_MEANING[mode]) for mode in ShadowMode]
+    striped = untrusted(frame, light)
+    classes[striped] += len(ShadowMode)
+    rows = [(mode.name, SHADOW_COLORS[mode], (SHADOW_MEANING | TRUSTED_MEANING)[mode]) for mode in ShadowMode]
     rows.append(("DYNAMIC", OCCLUSION_COLORS[OcclusionMode.DYNAMIC], OCCLUSION_MEANING[OcclusionMode.DYNAMIC]))
-    return _rows(frame, classes, rows)
+    rows += [(f"{mode.name}, untrusted", SHADOW_COLORS[mode], UNTRUSTED_MEANING[mode]) for mode in UNTRUSTED_MEANING]
+    found = _rows(frame, classes, rows)
+    stripes = SHADOW_COLORS[ShadowMode.INIT]
+    init, full, non, partial, dynamic, *doubted = found
+    full_too, non_too = (replace(row, stripes=stripes) for row in doubted)
+    return [init, full, full_too, non, non_too, partial, dynamic]
 
 
 def certificate_legend(frame: Frame, light: int) -> list[LegendRow]:

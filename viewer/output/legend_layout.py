@@ -35,8 +35,8 @@ class Words:
 
 @dataclass(frozen=True)
 class Swatch:
-    """A rectangle of a colour, or, where that is None, of the colour map, which may go from last to first, or that of a
-    signed difference."""
+    """A rectangle of a colour, maybe with `stripes` of another, or, where that is None, of the colour map, which may go
+    from last to first, or that of a signed difference."""
 
     x: float
     y: float
@@ -45,6 +45,7 @@ class Swatch:
     color: Color | None
     reverse: bool = False
     signed: bool = False
+    stripes: Color | None = None
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,8 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
         y += step
     for row in rows:
         if row.color is not None:
-            swatches.append(Swatch(pad, y + 0.12 * line, 0.76 * line, 0.76 * line, row.color))
+            side = 0.76 * line
+            swatches.append(Swatch(pad, y + 0.12 * line, side, side, row.color, stripes=row.stripes))
         words.append(Words(pad + _indent(row, indent), y, row.name, TEXT if row.color is not None else QUIET))
         words += values(row.values, QUIET if row.quiet else TEXT)
         if row.meaning:

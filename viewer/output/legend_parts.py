@@ -35,13 +35,14 @@ class Tone(Enum):
 class Entry:
     """A line: a colour, or none, what it stands for, a value for each of the legend's columns, and more in words.
 
-    Where it is `quiet`, its values name what is below them."""
+    Where it is `quiet`, its values name what is below them; the colour may have `stripes` of another."""
 
     name: str
     color: Color | None = None
     values: tuple[str, ...] = ()
     meaning: str = ""
     quiet: bool = False
+    stripes: Color | None = None
 
 
 @dataclass(frozen=True)

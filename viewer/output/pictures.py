@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling import modes
-from tracer.culling.modes import OcclusionMode
+from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from viewer.output.legend_counts import certificates_of
 from viewer.state.marks import Mark, wipe_column, wrong_marks
@@ -24,6 +24,7 @@ from viewer.state.readings import (
     samples_of,
     span_of,
     tree_of,
+    untrusted,
     voxels_of,
     whole_of,
     work_of,
@@ -51,6 +52,7 @@ from viewer.state.views import (
     SHADOW_COLORS,
     TOO_BRIGHT,
     TREE_WAITS,
+    UNTRUSTED_STRIPE,
     VOXEL_COLORS,
     WIPE_LINE,
     WRONG,
@@ -115,7 +117,7 @@ def picture(
         fates = np.asarray(list(FATE_COLORS.values()), np.float32)[frame.fate(light)]
         colors = _on_background(frame, _shaded(frame, fates, shading))
     elif view is View.MOVING_SHADOW:
-        colors = _on_background(frame, _moving_shadow(frame, light, shading, tone))
+        colors = _on_background(frame, _moving_shadow(frame, light, shading))
     elif view is View.LIGHTS:
         colors = _on_background(frame, _counted(lights_due(frame), span or span_of(frame, view)))
     elif view is View.CUTS:
@@ -134,7 +136,10 @@ def picture(
         table = {View.OCCLUSION: _occlusion, View.PRIMITIVE: _primitive, View.PIXEL_COUNT: _pixel_count}
         entries = _shadow(frame, light) if view is View.SHADOW else table[view](frame)
         numbers = frame.primitive if view is View.PRIMITIVE else frame.unit
-        colors = _on_background(frame, _shaded(frame, _per_pixel(numbers, entries), shading))
+        flat = _per_pixel(numbers, entries)
+        if view is View.SHADOW:
+            flat[_untrusted_stripes(frame, light)] = SHADOW_COLORS[ShadowMode.INIT]
+        colors = _on_background(frame, _shaded(frame, flat, shading))
     if outlines and not (view.needs_verify or view.has_slice):  # those draw over the borders
         colors = _outlined(frame, colors)
     return np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
@@ -189,6 +194,13 @@ def _shadow(frame: Frame, light: int) -> NDArray:
     return palette[mode]
 
 
+def _untrusted_stripes(frame: Frame, light: int) -> NDArray[np.bool_]:
+    """(h, w): every second stripe of what has a shadow mode that is not trusted."""
+    y, x = np.indices(frame.unit.shape)
+    stripes = (x + y) // UNTRUSTED_STRIPE % 2 == 1
+    return untrusted(frame, light)[np.maximum(frame.unit, 0)] & stripes if len(frame.modes) else np.zeros_like(stripes)
+
+
 def _certificate(frame: Frame, light: int, shading: float) -> NDArray:
     """By the certificate of each pixel's cell, what moves as moving, and darker lines between cells."""
     palette = np.asarray([*CERTIFICATE_COLORS.values(), OCCLUSION_COLORS[OcclusionMode.DYNAMIC]], np.float32)
@@ -208,11 +220,11 @@ def _penumbra(frame: Frame, light: int) -> NDArray:
     return np.where(between[..., None], ramp, palette[found])
 
 
-def _moving_shadow(frame: Frame, light: int, shading: float, tone: Tone) -> NDArray:
-    """Shadows of moving objects over the paled picture in greys, tinted where rays ask these only, and on these."""
+def _moving_shadow(frame: Frame, light: int, shading: float) -> NDArray:
+    """Moving shadows over the paled picture in greys, tinted where rays ask dynamic objects only, and on these."""
     found = moving_shadows(frame, light)
     flat = np.asarray(list(MOVING_SHADOW_COLORS.values()), np.float32)[found]
-    paled = (PALE + (1.0 - PALE) * (np.clip(toned(frame.color, tone), 0.0, 1.0) @ _LUMINANCE))[..., None]
+    paled = (PALE + (1.0 - PALE) * (np.clip(frame.color, 0.0, 1.0) @ _LUMINANCE))[..., None]
     shadow = (found == MovingShadow.DARK) | (found == MovingShadow.TRACED)
     return np.where(shadow[..., None], _shaded(frame, flat, shading), paled * flat)
 

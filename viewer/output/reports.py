@@ -60,15 +60,15 @@ def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
     settings = results.settings
     if settings.get("verify"):
         return ["times include verifying, which traces culled rays, too: no speed-up is told"]
-    said = ["traced beside the window, which draws meanwhile: bench has the processor for itself"] if in_window else []
+    said = ["the window draws meanwhile: bench has the processor for itself"] if in_window else []
     if "accelerator" in settings:
-        said.append(f"times are those of {settings['accelerator']}: another tree has other speed-ups")
+        said.append(f"by {settings['accelerator']}: another tree has other speed-ups")
     for method, seconds in results.build_seconds.items():
         share = sum(seconds) / max(sum(results.methods[method]["frame_seconds"]), 1e-9)
         if share >= PREPARING:
             said.append(f"{share:.0%} of the time of {method} is preparing")
     if len(results.frames) > 1:
-        said.append("±: twice the standard error over the frames")
+        said.append("±: two standard errors over the frames")
     return said
 
 

@@ -127,12 +127,12 @@ def _saved(value: float, spread: float = NOTHING) -> str:
     return "" if value != value else saved(value, spread if spread == spread else None)
 
 
-KNOWN = "known"
+SAVED = "saved"
 COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
     ("frames", lambda line: f"{line.frames:,}"),
     ("steps\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.steps, line.spread)),
     ("tests\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.tests)),
-    (KNOWN, lambda line: "" if line.method == REFERENCE else f"{line.known:.1%}"),
+    (SAVED, lambda line: "" if line.method == REFERENCE else f"{line.known:.1%}"),
     ("wrong", lambda line: f"{line.wrong:,}" if line.verified else ""),
     ("frame,\nmedian\nms", lambda line: "" if line.seconds != line.seconds else f"{1000 * line.seconds:,.1f}"),
     ("speed-\nup, all\nframes", lambda line: "" if line.speed_up != line.speed_up else f"{line.speed_up:.2f}"),

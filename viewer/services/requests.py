@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tracer.frame import Frame, Settings
+from tracer.frame import Settings
 from tracer.method import Method
 from viewer.services.render_request import RenderRequest
 from viewer.state.methods import NO_CULLING, with_base
@@ -53,19 +53,6 @@ def as_asked(settings: Settings, asked: Settings) -> Settings:
 def recording(settings: Settings, other: Settings) -> Settings:
     """Settings with as much recorded as others."""
     return replace(settings, **{name: getattr(other, name) for name in RECORDS})
-
-
-def with_modes_of(known: Frame | None, frame: Frame) -> Frame:
-    """The frame with the modes and counts of another, that knows them, by the same method."""
-    if known is None or not known.settings.keeps_modes or len(known.modes) != len(frame.modes):
-        return frame
-    return replace(
-        frame,
-        modes=known.modes,
-        pixel_count=known.pixel_count,
-        highest_count=known.highest_count,
-        statistics=replace(frame.statistics, by_modes=known.statistics.by_modes),
-    )
 
 
 def lacks(had: Settings, wanted: Settings) -> bool:

@@ -18,7 +18,7 @@ from viewer.services.governor import AT_ONCE, Governor, Plan, divided
 from viewer.services.lamps import LampSteps
 from viewer.services.refinement import Refinement
 from viewer.services.render_request import Pictures, RenderRequest, Traced
-from viewer.services.requests import as_asked, fulfils, lacks, settings_for, with_modes_of
+from viewer.services.requests import as_asked, fulfils, lacks, settings_for
 from viewer.services.runs import Run
 from viewer.state.learnt import Learnt
 from viewer.state.methods import NO_CULLING, with_base
@@ -73,8 +73,6 @@ class Tracing:
         self._locked, self._wake, self._forgotten = locked, wake, forgotten
         self.now = Conditions()
         self.traced: Traced | None = None
-        self._known: Frame | None = None  # the last that was whole and of the window's resolution
-        self._known_second: Frame | None = None  # the same by the second method
         self.governor = governor or Governor()
         self.refinement = Refinement()
         self.lamps = LampSteps(session)
@@ -94,7 +92,7 @@ class Tracing:
 
     def forget(self) -> None:
         """Begin with another scene: it has no frame yet, and its pixels cost something else."""
-        self.traced = self._known = self._known_second = self._asked = None
+        self.traced = self._asked = None
         self._new = True
         self.learnt.forget()
         self.refinement.forget()
@@ -105,7 +103,7 @@ class Tracing:
 
         If they have not, the newest frame means nothing any more."""
         if not same:
-            self.traced = self._known = None
+            self.traced = None
         self._asked = None
         self.learnt.confuse()
         self.refinement.forget()
@@ -131,7 +129,6 @@ class Tracing:
             self._renderer.reset_modes()
             self._forgotten()
             self.learnt.forget()
-            self._known = self._known_second = None
             self.refinement.forget()
             self.again()
 
@@ -154,16 +151,7 @@ class Tracing:
             if not traced.request.refinement_seconds:  # else it took its time for certificates, not for its pixels
                 pixels = traced.frame.width * traced.frame.height
                 self.governor.observe(traced.first, pixels, self.lamps.most(traced.request.settings))
-        self.traced = self._with_modes(traced)
-        return self.traced
-
-    def _with_modes(self, traced: Traced) -> Traced:
-        """Modes are those of a resolution: what is coarser than the window shows what its last whole picture knew."""
-        if traced.request.divisor > 1:
-            second = traced.second and with_modes_of(self._known_second, traced.second)
-            return replace(traced, frame=with_modes_of(self._known, traced.frame), second=second)
-        if traced.whole:
-            self._known, self._known_second = traced.frame, traced.second
+        self.traced = traced
         return traced
 
     def ask(self, now: Conditions) -> None:
@@ -208,7 +196,6 @@ class Tracing:
         to come after these, and no further one that would know more.  It stays at `one_sample` a pixel if that is so,
         until something else is looked at, or asked for."""
         self.learnt.forget()
-        self._known = None
         self.refinement.forget()
         session = self._session
         samples = session.settings.samples if one_sample else None

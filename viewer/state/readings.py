@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate
-from tracer.culling.modes import OcclusionMode, occlusion_mode
+from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode, occlusion_mode, shadow_mode
 from tracer.culling.voxels.tell import VoxelStates
 from tracer.frame import EVERYWHERE, Frame, Region
 from tracer.geometry.tree_parts import TreeParts
@@ -81,6 +81,15 @@ def depth_range(frame: Frame) -> tuple[float, float]:
         return 0.0, 1.0
     low, high = np.percentile(sample, (1.0, 99.0))
     return float(low), float(max(high, low * (1.0 + 1e-6) + 1e-12))
+
+
+def untrusted(frame: Frame, light: int) -> NDArray[np.bool_]:
+    """(units,): whether a unit has a shadow mode of a light by which it would be culled if it were fully rendered."""
+    if not has_shadow_mode(frame.modes, light):
+        return np.zeros(len(frame.modes), np.bool_)
+    shadow, occlusion = shadow_mode(frame.modes, light), occlusion_mode(frame.modes)
+    culls = (shadow == ShadowMode.FULL_SHADOW) | (shadow == ShadowMode.NON_SHADOW)
+    return culls & (occlusion != OcclusionMode.FULLY_RENDERED) & (occlusion != OcclusionMode.DYNAMIC)
 
 
 def has_modes_of_cells(frame: Frame) -> bool:

@@ -144,7 +144,7 @@ def _clauses(frame: Frame, standing: Standing) -> Iterator[Clause]:
     if method.culls and (_answered(s.shadow) or s.cuts is not None):
         yield _wrong(frame, method)
     if standing.moving:
-        yield Clause("speed not measurable while moving", _HOW, Tone.QUIET, compares=True)
+        yield Clause("speed not measurable while moving", _IN_MOTION, Tone.QUIET, compares=True)
     elif standing.proves:
         yield Clause(
             standing.proves, "what is proved now saves rays later, and its time is none of theirs", Tone.QUIET, True
@@ -164,6 +164,8 @@ _HOW = (
     "The same picture is traced by none and by the chosen method in turn, again and again, while nothing else is to do."
 )
 
+_IN_MOTION = "Stop, and this picture is traced by both in turn. The panel Experiment compares methods on a whole path."
+
 
 def _answered(shadow: ShadowCounts) -> int:
     """Rays that were not traced through the whole scene."""
@@ -181,7 +183,7 @@ def _saved(frame: Frame, learns: bool) -> Clause:
         return Clause(f"{name}: no shadow ray is due here", terms.MEANINGS[terms.DUE])
     if not Method.parse(name).culls:
         said = s.by_modes_in_all
-        share = percent(said.full_shadow + said.non_shadow, shadow.due)
+        share = percent(said.saved, shadow.due)
         would = f"; {BY_MODES} would save {share}" if said.due else ""
         return Clause(f"{name}: every shadow ray is traced{would}{part}", "what the modes that are kept now would save")
     if not _answered(shadow):

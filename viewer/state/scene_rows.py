@@ -47,8 +47,8 @@ class Column:
 _LIGHT = "for the chosen light, or for all of them together"
 _AT_PIXELS = "at the pixels that show it, of all bounces"
 _DUE = Column("due", "Due", f"shadow rays that are due {_AT_PIXELS}")
-_SAVED = Column("saved", "Saved", f"shadow rays saved {_AT_PIXELS}: they did not traverse static geometry")
-_SHARE = Column("share", "Share", "part of the shadow rays that are due which is saved, in per cent")
+_SAVED = Column("saved", "Untraced", f"shadow rays {_AT_PIXELS} that were not traced through the whole scene")
+_SHARE = Column("share", "Share", "part of the shadow rays that are due which is untraced, in per cent")
 _WRONG = Column("wrong", "Wrong", "wrong shadow answers at its pixels; known while frames are verified (V)")
 _PIXELS = Column("pixels", "Pixels", "pixels that show it now")
 COLUMNS: dict[Level, tuple[Column, ...]] = {

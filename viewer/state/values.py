@@ -22,6 +22,7 @@ from viewer.state.readings import (
     moving_shadows,
     samples_of,
     tree_of,
+    untrusted,
     voxels_of,
     whole_of,
     work_of,
@@ -149,7 +150,8 @@ def _shadow(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:
         return _spoken(OcclusionMode.DYNAMIC.name)
     if not has_shadow_mode(frame.modes, light):
         return ("not", "culled")
-    return _spoken(ShadowMode(int(modes.shadow_mode(word, light))).name)
+    said = _spoken(ShadowMode(int(modes.shadow_mode(word, light))).name)
+    return (*said, "untrusted") if untrusted(frame, light)[frame.unit[y, x]] else said
 
 
 def _certificate(frame: Frame, light: int, x: int, y: int) -> tuple[str, ...]:

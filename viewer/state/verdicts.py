@@ -16,9 +16,9 @@ SAID: dict[Verdict, str] = {
     Verdict.AWAY: "not asked: faces away",
     Verdict.PASSED_OVER: "passed over",
     Verdict.FULL_SHADOW: "culled by FULL_SHADOW",
-    Verdict.NON_SHADOW: "culled by NON_SHADOW",
+    Verdict.NON_SHADOW: "dynamic only by NON_SHADOW",
     Verdict.CERTIFIED_FULL: "culled by certificate full",
-    Verdict.CERTIFIED_LIT: "culled by certificate lit",
+    Verdict.CERTIFIED_LIT: "dynamic only by certificate lit",
     Verdict.CANDIDATES: "candidates only",
     Verdict.BEAM: "culled by a beam",
     Verdict.CACHED: "cached occluder",
@@ -41,7 +41,7 @@ class Shown(StrEnum):
 
     ALL = "all"
     TRACED = "traced"
-    CULLED = "culled"
+    UNTRACED = "untraced"
     BLOCKED = "blocked"
     WRONG = "wrong"
 
@@ -57,7 +57,7 @@ class Filter(NamedTuple):
         kept = {
             Shown.ALL: np.ones(len(rays.light), np.bool_),
             Shown.TRACED: rays.verdict == TRACED,
-            Shown.CULLED: (rays.verdict != TRACED) & (rays.verdict != AWAY),
+            Shown.UNTRACED: (rays.verdict != TRACED) & (rays.verdict != AWAY),
             Shown.BLOCKED: (rays.verdict != AWAY) & ~rays.lit,
             Shown.WRONG: rays.wrong,
         }[self.shown]

@@ -95,7 +95,7 @@ class View(StrEnum):
     @property
     def shows_picture(self) -> bool:
         """Whether it shows traced colours, by the tone that is chosen."""
-        return self in (View.COLOR, View.DIFFERENCE, View.WIPE, View.VOXELS, View.TREE, View.MOVING_SHADOW)
+        return self in (View.COLOR, View.DIFFERENCE, View.WIPE, View.VOXELS, View.TREE)
 
     @property
     def has_slice(self) -> bool:
@@ -133,7 +133,7 @@ _TITLES = {
     View.DIFFERENCE: "Difference",
     View.WIPE: "Wipe",
     View.CERTIFICATE: "Certificates",
-    View.SAVED: "Shadow rays saved",
+    View.SAVED: "Untraced shadow rays",
     View.COST: "Rays traced",
     View.PENUMBRA: "Penumbra",
     View.LIGHTS: "Lights due",
@@ -142,7 +142,7 @@ _TITLES = {
     View.CELL_LIGHTS: "Lights per cell",
     View.TREE: "Tree built",
     View.FATE: "Fate of shadow rays",
-    View.MOVING_SHADOW: "Shadows of moving objects",
+    View.MOVING_SHADOW: "Moving shadows",
 }
 
 _KEYS = {
@@ -162,13 +162,14 @@ _KEYS = {
 
 _ALSO = {
     View.FATE: "why traced culled dynamic reason",
-    View.MOVING_SHADOW: "dynamic only NON_SHADOW darkened",
+    View.MOVING_SHADOW: "dynamic only NON_SHADOW darkened objects",
 }
 
 _EXPLANATIONS = {
     View.COLOR: "The traced picture.",
     View.OCCLUSION: "How much of each primitive the camera has seen: only fully rendered ones are culled.",
-    View.SHADOW: "What the shadow rays of each primitive have met on the way to the chosen light.",
+    View.SHADOW: "What the shadow rays of each primitive have met on the way to the chosen light. Stripes: the "
+    "primitive is not fully rendered, so that its mode is not trusted, and its rays are traced.",
     View.PRIMITIVE: "Every primitive in a colour of its own.",
     View.DEPTH: "Distance from the camera along the ray.",
     View.NORMAL: "The shading normal: x, y, z as red, green, blue.",
@@ -178,8 +179,8 @@ _EXPLANATIONS = {
     "the line.",
     View.CERTIFICATE: "What is proven for each cell and the chosen light; lines are the borders of cells. Each "
     "frame proves more: T traces one more, K keeps tracing.",
-    View.SAVED: "Shadow rays of each pixel, at all bounces, that culling saves tracing through the whole scene: how "
-    "many, or which share of those due.",
+    View.SAVED: "Shadow rays of each pixel, at all bounces, that need not be traced through the whole scene: saved "
+    "ones, and with some methods candidates and cache hits. How many, or which share of those due.",
     View.COST: "Rays traced for each pixel, of all kinds, at all bounces: how many, or which share of those that are "
     "traced without culling.",
     View.PENUMBRA: "How many samples of the chosen light reach each pixel: all are lit, none is dark, and between them "
@@ -258,6 +259,20 @@ SHADOW_MEANING = {
     ShadowMode.NON_SHADOW: "no shadow ray was blocked: tested against dynamic objects only once fully rendered",
     ShadowMode.PARTIAL_SHADOW: "some were blocked: always traced",
 }
+
+TRUSTED_MEANING = {
+    ShadowMode.FULL_SHADOW: "fully rendered, and every shadow ray so far was blocked: culled",
+    ShadowMode.NON_SHADOW: "fully rendered, and no shadow ray so far was blocked: tested against dynamic objects only",
+}
+"""Of the shadow modes that are trusted where the primitive is fully rendered, and striped in their view elsewhere."""
+
+UNTRUSTED_MEANING = {
+    ShadowMode.FULL_SHADOW: "every shadow ray so far was blocked, but it is not fully rendered: traced",
+    ShadowMode.NON_SHADOW: "no shadow ray so far was blocked, but it is not fully rendered: traced",
+}
+
+UNTRUSTED_STRIPE = 3
+"""Pixels across which a stripe goes where a shadow mode is not trusted, and the grey one of INIT beside it."""
 
 CERTIFICATE_MEANING = {
     Certificate.NONE: "nothing is proven, or the light is behind it: its shadow rays are traced",

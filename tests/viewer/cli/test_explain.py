@@ -90,7 +90,7 @@ def test_the_first_example_shows_culling_at_work(capfd: pytest.CaptureFixture[st
     code, out, _ = run(capfd, *example.split())
     assert code == 0 and "method paper" in out
     (rays,) = (line for line in out.splitlines() if "shadow rays that are due" in line)
-    assert all(f" culled by {mode}" in rays for mode in ("FULL_SHADOW", "NON_SHADOW"))
+    assert all(f" {what}" in rays for what in ("culled by FULL_SHADOW", "dynamic only by NON_SHADOW"))
     assert "traced (PARTIAL_SHADOW)" in out
 
 

@@ -13,7 +13,8 @@ import tracer
 from tests.tracing.shades import roof, shadow_scene
 from tests.tracing.worlds import moved
 from viewer.output.figure1 import Figure, Flow, figure_of
-from viewer.output.figure1_layout import Drawing, lay_out
+from viewer.output.figure1_layout import lay_out
+from viewer.output.figure1_shapes import Drawing
 from viewer.output.figure1_svg import svg
 from viewer.state.views import View
 
@@ -117,10 +118,10 @@ def test_a_picture_of_which_a_part_is_shaded_says_so_and_wrong_answers_are_count
     frame = frame_by("paper", verify=True)
     frame.statistics.part = 0.38
     figure = figure_of(frame)
-    assert any("38 % of the pixels" in note for note in figure.notes)
+    assert any("38 % of pixels shaded" in note for note in figure.notes)
     assert flows_of(figure)["wrong answers"].number == frame.statistics.wrong.answers
     frame.statistics.part = 1.0
-    assert not any("pixels" in note for note in figure_of(frame).notes)
+    assert not figure_of(frame).notes
 
 
 @pytest.mark.parametrize("method", ["cells", "cache", "lightcuts", "voxels", "lie-exact", "lightbuffer", "auto"])
@@ -166,6 +167,25 @@ def test_what_finds_room_is_written_out_and_the_rest_are_tips():
     assert low.height <= 260
     high = lay_out(figure, measure, LINE, 340, 100)
     assert high.height > 100, "it is scrolled, not cut"
+
+
+@pytest.mark.parametrize("method, part", [("paper", 1.0), ("paper", 0.04), ("none", 0.04)])
+def test_it_fits_the_place_that_its_panel_has_at_first(method, part):
+    """In a window of 1280 x 800, also in motion, so that boxes stay where they are when it begins and ends."""
+    frame = frame_by(method, modes=True)
+    frame.statistics.part = part
+    frame.statistics.mode_changes.units["init"] = 80_000
+    figure = replace(figure_of(frame), title="")
+    drawing = lay_out(figure, lambda text: 5.8 * len(text), LINE, 670, 191)
+    assert drawing.height <= 191
+    assert len(drawing.boxes) == 7 and len({box.x for box in drawing.boxes}) == 3
+
+
+@pytest.mark.parametrize("height", [1200, 600, 300])
+def test_no_word_is_cut_in_a_narrow_panel(height):
+    for method in ("paper", "none", "certified"):
+        drawing = lay_out(figure_of(frame_by(method, modes=True)), measure, LINE, 340, height)
+        assert not any(words.text.endswith("…") for words in drawing.words)
 
 
 def test_what_lies_at_a_point_opens_its_view():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
@@ -28,15 +29,17 @@ from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend import legend_of
-from viewer.output.legend_counts import work_legend
+from viewer.output.legend_counts import occlusion_legend, shadow_legend, work_legend
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT, TONES, fitting, lay_out, wrapped
 from viewer.output.legend_parts import Chosen, Legend, Tone, light_in_words
 from viewer.output.legend_picture import with_legend
+from viewer.output.pictures import picture
 from viewer.state.readings import voxels_of
 from viewer.state.slices import Slice
 from viewer.state.views import (
     FATE_COLORS,
     FATE_NAMES,
+    GREY,
     OCCLUSION_COLORS,
     WRONG,
     Certificate,
@@ -131,6 +134,29 @@ def test_a_scene_has_the_same_dynamic_primitives_by_every_method(method: str):
         counts = {name: int(told.get(name, "0").replace(",", "")) for name in ("dynamic", "dynamic, at rest")}
         assert sum(counts.values()) == dynamic > 0, counts
         assert (counts["dynamic"] == 0) == (method not in ("paper", "none"))
+
+
+def test_in_motion_legends_count_the_modes_that_are_drawn():
+    """Also of pictures of which only a part is shaded, from places where the camera has not been, and coarser ones."""
+    scene = loaded(embedded_scenes()["default"])
+    renderer, seen = Renderer(scene, Settings(128, 96, depth=0, threads=2)), set()
+    for number, (width, height) in enumerate([(128, 96), (128, 96), (64, 48), (128, 96), (64, 48)]):
+        renderer.settings = replace(renderer.settings, width=width, height=height)
+        time = 1.0 + number / 8.0
+        with closing(renderer.refine(time, scene.camera_at(4.0 * time), parts=(2, 16))) as refining:
+            frame = next(refining)
+        assert frame.shaded is not None and not frame.shaded.all()
+        hit = (frame.primitive >= 0).sum()
+        for view, rows in ((View.OCCLUSION, occlusion_legend(frame)), (View.SHADOW, shadow_legend(frame, 2))):
+            drawn = picture(frame, view, 2, shading=0.0).reshape(-1, 3)
+            for color in {row.color for row in rows} - {GREY}:  # which is that of stripes, too
+                solid = sum(row.pixels for row in rows if row.color == color and row.stripes is None)
+                striped = sum(row.pixels for row in rows if row.color == color and row.stripes is not None)
+                found = (drawn == np.round(255.0 * np.array(color))).all(axis=1).sum()
+                assert solid <= found <= solid + striped and (found > solid or striped < 40), (view, color)
+            assert sum(row.pixels for row in rows) == hit
+            seen |= {row.name for row in rows if row.pixels}
+    assert seen >= {"PARTIALLY_OCCLUDED", "FULLY_RENDERED", "DYNAMIC", "FULL_SHADOW", "FULL_SHADOW, untrusted"}
 
 
 @pytest.mark.parametrize("light", [0, 1, 2])
@@ -311,7 +337,7 @@ def test_in_little_room_less_is_said_and_in_none_nothing(frame: Frame):
     narrower = fitting(legend, measure, LINE, whole.width - 1.0, whole.height)
     texts = {words.text for words in narrower.words}
     assert "pixels" in texts and "primitives" not in texts and "full shadow" in texts
-    bare = fitting(legend, measure, LINE, 125.0, whole.height)
+    bare = fitting(legend, measure, LINE, 150.0, whole.height)
     assert {words.text for words in bare.words} >= {"full shadow"} and len(bare.words) < len(narrower.words)
     assert fitting(legend, measure, LINE, 50.0, whole.height) is None
     assert fitting(legend, measure, LINE, whole.width, 30.0) is None

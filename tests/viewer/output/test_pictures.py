@@ -146,18 +146,32 @@ def test_occlusion_modes_have_their_colours(frame: Frame) -> None:
 
 @pytest.mark.parametrize("light", [0, 1])
 def test_shadow_modes_have_their_colours(frame: Frame, light: int) -> None:
+    word = frame.modes.dtype.type
+    rest = np.where(frame.modes & word(3) == word(OcclusionMode.DYNAMIC), word(3), word(OcclusionMode.INIT))
+    for shown, untrusted in ((frame, False), (replace(frame, modes=frame.modes & ~word(3) | rest), True)):
+        assert_shadow_modes_drawn(shown, light, untrusted)
+
+
+def assert_shadow_modes_drawn(frame: Frame, light: int, untrusted: bool) -> None:
     drawn = picture(frame, View.SHADOW, light, shading=0.0)
     moving = frame.occlusion_mode == OcclusionMode.DYNAMIC
     assert (drawn[moving] == to_bytes(OCCLUSION_COLORS[OcclusionMode.DYNAMIC])).all()
+    culls, doubted = (ShadowMode.FULL_SHADOW, ShadowMode.NON_SHADOW), 0
+    y, x = np.indices(moving.shape)
     for mode in ShadowMode:
         there = (frame.shadow_mode[..., light] == mode) & ~moving
-        assert (drawn[there] == to_bytes(SHADOW_COLORS[mode])).all()
+        striped = there & (frame.occlusion_mode != OcclusionMode.FULLY_RENDERED) & (mode in culls)
+        doubted += striped.sum()
+        striped &= (x + y) // 3 % 2 == 1
+        assert (drawn[there & ~striped] == to_bytes(SHADOW_COLORS[mode])).all()
+        assert (drawn[striped] == to_bytes(SHADOW_COLORS[ShadowMode.INIT])).all(), "not trusted"
+    assert (doubted > 50) == untrusted
 
 
 def test_modes_of_cells_are_those_that_are_drawn(frame: Frame) -> None:
     cells = in_cells(frame)
     drawn = picture(cells, View.SHADOW, 0, shading=0.0)
-    still = (cells.primitive >= 0) & (frame.occlusion_mode != OcclusionMode.DYNAMIC)
+    still = (cells.primitive >= 0) & (frame.occlusion_mode == OcclusionMode.FULLY_RENDERED)
     mode = (cells.modes[cells.cells] >> 2) & 3
     for one in ShadowMode:
         assert (drawn[still & (mode == one)] == to_bytes(SHADOW_COLORS[one])).all()

@@ -51,7 +51,7 @@ def test_each_ray_has_one_row(tmp_path: Path) -> None:
     assert totals(tree).startswith(f"{len(tree.rays)} rays and {tree.due} shadow rays that are due")
 
 
-@pytest.mark.parametrize("shown", [Shown.TRACED, Shown.CULLED, Shown.BLOCKED, Shown.WRONG])
+@pytest.mark.parametrize("shown", [Shown.TRACED, Shown.UNTRACED, Shown.BLOCKED, Shown.WRONG])
 def test_filters_keep_what_they_name(tmp_path: Path, shown: Shown) -> None:
     scene, tree = tree_of(tmp_path / "a.aff", method="certified", lamp_radius=0.3, lamp_samples=8)
     kept = set(singles(RayRows(tree, scene, Filter(shown, 1))))
@@ -61,7 +61,7 @@ def test_filters_keep_what_they_name(tmp_path: Path, shown: Shown) -> None:
             traced, away = s.verdict[place] == TRACED, s.verdict[place] == AWAY
             says = {
                 Shown.TRACED: traced,
-                Shown.CULLED: not traced and not away,
+                Shown.UNTRACED: not traced and not away,
                 Shown.BLOCKED: not away and not s.lit[place],
                 Shown.WRONG: bool(s.wrong[place]),
             }[shown] and s.light[place] == 1

@@ -7,6 +7,7 @@ from tests.viewer.scenarios.comparing import comparing
 from tests.viewer.scenarios.culling import certifying, culling, explaining
 from tests.viewer.scenarios.drawing import difference, views, wiping
 from tests.viewer.scenarios.failing import failing
+from tests.viewer.scenarios.fates import fates
 from tests.viewer.scenarios.figure1 import figure1
 from tests.viewer.scenarios.files import browsing, cancelling, capturing, dropping, reopening
 from tests.viewer.scenarios.film import filmstrip
@@ -28,14 +29,15 @@ from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
 from tests.viewer.scenarios.trees import trees
 from tests.viewer.scenarios.what_if import what_if
+from tests.viewer.scenarios.why import why
 
 SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
-        views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, savings, certifying, explaining,
-        rays, flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing, experimenting,
-        figure1, zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
-        reviving, panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if,
+        views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, fates, savings, certifying,
+        explaining, rays, flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing,
+        experimenting, figure1, zooming, asking, finding, filmstrip, filming, hunting, taking, failing, reviving,
+        panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if, why,
         previewing,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )

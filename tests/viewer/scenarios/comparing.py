@@ -10,6 +10,7 @@ from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
 from viewer.output.compared import GAP, composed, signed_picture
 from viewer.output.pictures import picture
+from viewer.state.columns import rows
 from viewer.state.comparison import Source, Way
 from viewer.state.marks import wipe_column
 from viewer.state.tone import Curve, Tone
@@ -166,6 +167,10 @@ def _two_methods(d: Driver) -> None:
     assert frame.statistics.shadow.dynamic_only > 0 == second.statistics.shadow.dynamic_only
     assert frame.statistics.shadow.due == second.statistics.shadow.due
     d.c.comparing.trace_by("certified")
+    d.settle()
+    d.wait(lambda: d.c.baseline.measured is not None and d.c.baseline.measured.tells, "times of frames in turn", 60.0)
+    times = {row.name: row for row in rows(d.c.traced.second, d.c.frame, d.c.baseline.measured)}
+    assert times["Frame"].a > times["  shading"].a > 0.0 and times["Frame"].b > times["  shading"].b > 0.0
     d.press(KEY.h)
     d.settle()
     assert d.c.session.view is View.SAVED and d.c.traced.second.settings.method == "certified"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
-from viewer.output.figure1_layout import Drawing
+from viewer.output.figure1_shapes import Drawing
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 
@@ -41,12 +41,14 @@ def figure1(d: Driver) -> None:
     for name, view in (
         ("Occlusion testing", View.OCCLUSION),
         ("→ examined anew", View.PIXEL_COUNT),
+        ("Shadow testing", View.FATE),
         ("Shadow-mode setting", View.SHADOW),
         ("Occlusion-mode setting", View.OCCLUSION),
         ("primary rays", View.PRIMITIVE),
     ):
         _click(d, name)
         assert d.c.session.view is view, name
+        d.settle()
     d.c.settings.set_view(View.COLOR)
 
     # Without culling it says what modes would do; with certificates these stand in the place of modes.

@@ -8,9 +8,7 @@ from itertools import count
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
-
-from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
+from tests.viewer.fakes import FakeRenderer, make_scene
 from tracer.frame import Settings
 from tracer.scene.model import Camera, Cancelled
 from viewer.services.controller import Controller
@@ -43,34 +41,6 @@ class Pictures:
 
     def reset_modes(self) -> None:
         self.resets += 1
-
-
-def _traced(divisor: int, modes: list[int], part: float = 1.0) -> Traced:
-    frame = make_frame(Settings(16 // divisor, 8 // divisor))
-    statistics = replace(frame.statistics, part=part)
-    frame = replace(frame, modes=np.array(modes, np.uint32), settings=replace(frame.settings, modes=True))
-    settings = replace(frame.settings, width=frame.width, height=frame.height)
-    return Traced(RenderRequest(0.0, CAMERA, settings, divisor), replace(frame, statistics=statistics), statistics)
-
-
-def test_a_coarser_picture_shows_the_modes_of_the_last_whole_one():
-    """Those of its own resolution know little of what the user has been looking at."""
-    pictures = Pictures()
-    tracing = Tracing(Session(), Preferences(), pictures)
-    for traced, shown in (
-        (_traced(2, [0, 0, 1]), [0, 0, 1]),
-        (_traced(1, [5, 6, 7]), [5, 6, 7]),
-        (_traced(1, [5, 6, 9], part=0.25), [5, 6, 9]),
-        (_traced(2, [0, 0, 1], part=0.25), [5, 6, 7]),
-        (_traced(2, [0, 0]), [0, 0]),
-    ):
-        pictures.next = traced
-        assert tracing.take().frame.modes.tolist() == shown
-        assert tracing.frame.modes.tolist() == shown
-    tracing.reset_modes()
-    assert pictures.resets == 1
-    pictures.next = _traced(2, [0, 0, 1])
-    assert tracing.take().frame.modes.tolist() == [0, 0, 1]
 
 
 def test_pictures_are_asked_for_once_and_again_after_a_run():

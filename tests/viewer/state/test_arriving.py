@@ -30,7 +30,7 @@ LAMPS = {"lamp_radius": 0.1, "lamp_samples": 16}
         (View.CERTIFICATE, "certified+voxels", 6, LAMPS, View.CERTIFICATE, "it answers no ray."),
         (View.VOXELS, "voxels", 40, {}, View.VOXELS, "Of 40 lights, voxels answers for the first 31; rays to the"),
         (View.SHADOW, "paper", 0, {}, View.COLOR, "The view is Colour, not Shadow mode, as there are no lights."),
-        (View.SAVED, "paper", 0, {}, View.COLOR, "not Shadow rays saved, as there are no lights."),
+        (View.SAVED, "paper", 0, {}, View.COLOR, "not Untraced shadow rays, as there are no lights."),
         (View.DIFFERENCE, "paper", 0, {}, View.COLOR, "not Difference, as there are no lights."),
         (View.SAVED, "paper", 6, {}, View.SAVED, ""),
         (View.COST, "paper", 0, {}, View.COST, ""),  # rays that are reflected make it of several colours

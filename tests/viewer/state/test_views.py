@@ -11,6 +11,7 @@ import pytest
 
 from tests.viewer.colors import luminance
 from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
+from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
 from tracer.statistics import SampleCounts
@@ -33,7 +34,18 @@ def test_the_occlusion_legend_counts_primitives_and_pixels():
 
 def test_the_shadow_legend_counts_what_moves_apart():
     rows = {r.name: r.units for r in legend_counts.shadow_legend(make_frame(), 0)}
-    assert rows == {"INIT": 2, "FULL_SHADOW": 1, "NON_SHADOW": 1, "PARTIAL_SHADOW": 1, "DYNAMIC": 2}
+    assert rows == {
+        "INIT": 2, "FULL_SHADOW": 1, "FULL_SHADOW, untrusted": 0, "NON_SHADOW": 1, "NON_SHADOW, untrusted": 0,
+        "PARTIAL_SHADOW": 1, "DYNAMIC": 2,
+    }  # fmt: skip
+    frame = make_frame()
+    doubted = replace(
+        frame, modes=frame.modes & ~np.uint32(3) | np.where(frame.modes & 3 == 3, np.uint32(3), np.uint32(1))
+    )
+    rows = {r.name: (r.units, r.stripes is not None) for r in legend_counts.shadow_legend(doubted, 0)}
+    assert rows["FULL_SHADOW"] == rows["NON_SHADOW"] == (0, False)
+    assert rows["FULL_SHADOW, untrusted"] == rows["NON_SHADOW, untrusted"] == (1, True)
+    assert rows["PARTIAL_SHADOW"] == (1, False) and rows["DYNAMIC"] == (2, False)
     assert legend_counts.shadow_legend(make_frame(), 31) == []
     assert legend_counts.shadow_legend(make_frame(), 15) == []
 
@@ -73,7 +85,7 @@ def test_wide_words_reach_light_30():
     words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
     frame = replace(frame, modes=words)
     rows = {r.name: r.units for r in legend_counts.shadow_legend(frame, 30)}
-    assert rows["NON_SHADOW"] == 5
+    assert rows["NON_SHADOW"] + rows["NON_SHADOW, untrusted"] == 5
     assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
     assert shadow_mode_of(frame, 0, 31) is None
 
@@ -139,6 +151,18 @@ def test_the_line_of_a_wipe_reaches_both_edges():
 def test_mode_colours_can_be_told_apart_without_red_green_vision(palette):
     for a, b in itertools.combinations(palette.values(), 2):
         assert np.linalg.norm(dichromat(a) - dichromat(b)) > 0.15
+
+
+def test_one_fate_stands_out_and_words_can_be_read_on_each():
+    colors = views.FATE_COLORS
+    assert views.fate_palette() == list(colors.values())
+    traced = views.fate_palette(Fate.TRACED)
+    assert [color == colors[fate] for fate, color in zip(colors, traced)] == [fate.is_traced for fate in colors]
+    culled = views.fate_palette(Fate.CULLED)
+    assert [fate for fate, color in zip(colors, culled) if color == colors[fate]] == [Fate.CULLED]
+    for color in colors.values():
+        light, dark = sorted((luminance(color), luminance(views.label_color(color))), reverse=True)
+        assert (light + 0.05) / (dark + 0.05) >= 3.0, color
 
 
 def test_the_colour_map_grows_lighter_all_the_way():

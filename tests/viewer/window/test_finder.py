@@ -38,7 +38,7 @@ def test_every_item_has_a_name_of_its_own(ui):
         ("paper as", "preset As in the paper"), ("figure4", None), ("reload", "Reload"),
         ("embree", "Copy camera for Embree"), ("occulsion", "Occlusion mode"),
         ("why traced", "Fate of shadow rays"), ("culled view", "Fate of shadow rays"),
-        ("dynamic darkened", "Shadows of moving objects"),
+        ("dynamic darkened", "Moving shadows"),
         ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"), ("dead zone", "setting Dead zone of sticks"),
     ],
 )  # fmt: skip

@@ -41,7 +41,7 @@ def show(ui: Ui, run: Experiment | None, results: Results | None) -> None:
     if run is None or results is None:
         return
     rows, figures = _rows(ui, results), _figures(run)
-    said = "; ".join(caveats(results, in_window=True))
+    said = in_window_style("; ".join(caveats(results, in_window=True)))
     paragraph(f"{said[:1].upper()}{said[1:]}.", QUIET)
     widths = [max(_text_width(r.method), *(_text_width(_figure_cell(f, r)[0]) for f in figures)) for r in rows]
     gaps = (len(rows) + 1) * 2.0 * imgui.get_style().cell_padding.x + imgui.get_style().scrollbar_size
@@ -58,8 +58,8 @@ def _rows(ui: Ui, results: Results) -> list[Row]:
 
 def _figures(run: Experiment) -> list[Figure]:
     """What is told of each method, in the order in which it is read."""
-    short = {heading: short for (heading, _), short in zip(LINES, _SHORT, strict=True)}
-    figures = [(heading, short[heading], cell) for heading, cell in lines(run.settings.verify)]
+    meant = lines(run.settings.verify)
+    figures = [(line[0], short, line[1]) for line, short in zip(LINES, _SHORT, strict=True) if line in meant]
     return sorted(figures, key=lambda figure: COMPARED.index(figure[1]) if figure[1] in COMPARED else len(COMPARED))
 
 

@@ -8,7 +8,8 @@ from itertools import pairwise
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.output.figure1 import figure_of
-from viewer.output.figure1_layout import Area, Arrow, Box, Drawing, Tone, lay_out
+from viewer.output.figure1_layout import lay_out
+from viewer.output.figure1_shapes import Area, Arrow, Box, Drawing, Tone
 from viewer.state.views import Color
 from viewer.window.palette import BLUE
 from viewer.window.panels import coming

@@ -121,6 +121,8 @@ def _fill(draw: imgui.ImDrawList, swatch: Swatch, at: ImVec2) -> None:
     x, y, bottom = at.x + swatch.x, at.y + swatch.y, at.y + swatch.y + swatch.height
     if swatch.color is not None:
         draw.add_rect_filled(ImVec2(x, y), ImVec2(x + swatch.width, bottom), _packed(swatch.color), em(0.15))
+        if swatch.stripes is not None:
+            _stripe(draw, _packed(swatch.stripes), ImVec2(x, y), ImVec2(x + swatch.width, bottom))
         return
     colors = (signed_map if swatch.signed else color_map)(_STEPS + 1)
     packed = [_packed((float(r), float(g), float(b))) for r, g, b in (colors[::-1] if swatch.reverse else colors)]
@@ -128,6 +130,16 @@ def _fill(draw: imgui.ImDrawList, swatch: Swatch, at: ImVec2) -> None:
         start, stop = (x + swatch.width * k / _STEPS for k in (i, i + 1))
         left, right = packed[i], packed[i + 1]
         draw.add_rect_filled_multi_color(ImVec2(start, y), ImVec2(stop, bottom), left, right, right, left)
+
+
+def _stripe(draw: imgui.ImDrawList, color: int, at: ImVec2, end: ImVec2) -> None:
+    """Three slanted stripes over a square."""
+    side = end.x - at.x
+    draw.push_clip_rect(at, end, True)
+    for third in (1.0, 3.0, 5.0):
+        x = at.x + third * side / 3.0
+        draw.add_line(ImVec2(x, at.y), ImVec2(x - side, end.y), color, 0.22 * side)
+    draw.pop_clip_rect()
 
 
 def _tell(layout: Layout, at: ImVec2) -> None:
