@@ -399,7 +399,16 @@ class FrameInProgress:
                 statistics=replace(whole.statistics, wrong=self._wrong()),
             )
 
-    # --- what became of one pixel's rays (`tracer.ray_tree`) --------------------------------------------
+    # --- what became of one pixel's rays (`tracer.ray_tree`, `tracer.why`) ------------------------------
+
+    def has_shaded(self, x: int, y: int) -> bool:
+        """Whether a pixel has been shaded by now."""
+        shaded = None if self._parts is None else self._parts.pixels
+        return shaded is None or bool(shaded[y, x])
+
+    def taught(self, unit: int) -> int:
+        """How many pixels have set modes of a unit that is seen whole, and not FULLY_RENDERED yet."""
+        return int((self.history.taught if self._learnt is None else self._learnt.taught)[unit])
 
     def stages_now(self) -> list[tuple[ShadowMethod, Stage]]:
         """The stages that answered shadow rays of this frame, with the methods that they are of; they learn nothing any

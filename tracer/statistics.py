@@ -48,7 +48,8 @@ class ShadowCounts(RayCounts):
     culled : int
         Those that were not traced at all.
     dynamic_only : int
-        Those that were tested against dynamic objects only.
+        Those that were tested against dynamic objects only; where there are none, or all of them rest and the method
+        takes what rests for static, nothing is asked, and no ray is counted.
     candidates_only : int
         Those that were tested against a few candidates instead of the static tree.
     cache_hits : int
@@ -130,6 +131,11 @@ class SaidByModes:
     due: int = 0
     full_shadow: int = 0
     non_shadow: int = 0
+
+    @property
+    def saved(self) -> int:
+        """Those that it would not ask the static scene about."""
+        return self.full_shadow + self.non_shadow
 
 
 @dataclass

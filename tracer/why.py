@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.fate import Fate
+from tracer.culling.fate import Fate, by_modes
 from tracer.culling.modes import (
     MAX_CULLED_LIGHTS,
     OcclusionMode,
@@ -137,16 +137,15 @@ _FATES = {
     Verdict.CACHED: Fate.CACHED,
     Verdict.TRACED: Fate.TRACED,
 }
-_RULE_FATES = {
-    Rule.FULL_SHADOW: Fate.CULLED,
-    Rule.NON_SHADOW: Fate.DYNAMIC_ONLY,
-    Rule.DYNAMIC: Fate.DYNAMIC,
-    Rule.PARTLY_OCCLUDED: Fate.PARTLY_OCCLUDED,
-    Rule.NOT_SEEN_WHOLE: Fate.NOT_SEEN_WHOLE,
-    Rule.PARTIAL_SHADOW: Fate.PARTIAL_SHADOW,
-    Rule.NO_SHADOW_MODE: Fate.NOT_SEEN_WHOLE,
-    Rule.FACES_AWAY: Fate.FACES_AWAY,
+_RULES = {
+    Fate.CULLED: Rule.FULL_SHADOW,
+    Fate.DYNAMIC_ONLY: Rule.NON_SHADOW,
+    Fate.PARTLY_OCCLUDED: Rule.PARTLY_OCCLUDED,
+    Fate.PARTIAL_SHADOW: Rule.PARTIAL_SHADOW,
+    Fate.NOT_SEEN_WHOLE: Rule.NOT_SEEN_WHOLE,
+    Fate.DYNAMIC: Rule.DYNAMIC,
 }
+"""Of the paper's method, by what it does with a ray (`tracer.culling.fate.by_modes`)."""
 
 
 @dataclass(frozen=True)
@@ -181,14 +180,16 @@ class Reason:
         How many shadow rays this holds for, of how many to the light.
     lit : int
         How many of them reach the light.
-    wrong : bool
-        Whether the answer is not true.
+    wrong : int
+        How many answers for the light are not true.
     blocker : int
         The primitive that is truly in the way, -1 for none.
     shadow : ShadowMode
         The shadow mode by which the ray was decided about.
     occlusion, occlusion_after : OcclusionMode
         The occlusion mode by which it was, and the one that the frame leaves.
+    taught_pixels : int
+        How many pixels have set its modes, where that is too few to trust them.
     occluded : OccludedBy or None
         Where this frame finds the primitive partly occluded.
     named : tuple of int
@@ -214,12 +215,13 @@ class Reason:
     rays: int = 1
     samples: int = 1
     lit: int = 0
-    wrong: bool = False
+    wrong: int = 0
     blocker: int = -1
     shadow: ShadowMode = ShadowMode.INIT
     occlusion: OcclusionMode = OcclusionMode.INIT
     occlusion_after: OcclusionMode = OcclusionMode.INIT
     occluded: OccludedBy | None = None
+    taught_pixels: int = 0
     named: tuple[int, ...] = ()
     dynamic_objects: int = 0
     limit: int = MAX_CULLED_LIGHTS
@@ -233,7 +235,8 @@ class Reason:
 class Coverage:
     """How a pixel's unit, a primitive or a cell of one, stands in occlusion-mode setting (§2.6): its mode before the
     frame and after it, the pixels that it covers and those that it covered when it was examined last, how many times
-    those it may cover, where it is partly occluded, and the frame that saw it whole."""
+    those it may cover, where it is partly occluded, how many pixels have set its modes where these are too few yet, and
+    the frame that saw it whole."""
 
     before: OcclusionMode
     after: OcclusionMode
@@ -242,6 +245,7 @@ class Coverage:
     zoom_factor: float
     in_cells: bool
     occluded: OccludedBy | None = None
+    taught_pixels: int = 0
     taught: TaughtBy | None = None
 
 
@@ -296,7 +300,7 @@ def why(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = No
     pixel = _Pixel(renderer, work, frame, x, y)
     shadows = None if tree is None else tree.rays[0].shadows
     if shadows is None:
-        reasons = tuple(pixel.not_shaded(one) for one in explain(renderer, frame, x, y))
+        reasons = tuple(pixel.in_part(one) for one in explain(renderer, frame, x, y))
     else:
         reasons = tuple(pixel.reason(shadows, light) for light in range(frame.lights))
     compared = references(pixel.seen, (x, y)) if frame.settings.keeps_modes else ()
@@ -320,6 +324,7 @@ class _Pixel:
         present = renderer.world.pose(frame.time).present
         self._dynamic_objects = int(np.count_nonzero(present[1:] & (work.resting.since[1:] == 0)))
         self._lamps = np.diff(work.shading.lamps.first)
+        self._shaded, self._taught = work.has_shaded(x, y), work.taught(unit) if self._by_modes else 0
         self._occluded = None
         if self._by_modes and self._after is OcclusionMode.PARTIALLY_OCCLUDED:
             self._occluded = occluded_by(self.seen, unit, (x, y))
@@ -327,7 +332,7 @@ class _Pixel:
         if self._by_modes:
             self.coverage = Coverage(
                 self._before, self._after, int(frame.pixel_count[unit]), int(frame.highest_count[unit]),
-                settings.zoom_factor, self._method.uses_cells, self._occluded,
+                settings.zoom_factor, self._method.uses_cells, self._occluded, self._taught,
             )  # fmt: skip
 
     def reason(self, s: ShadowRays, light: int) -> Reason:
@@ -346,7 +351,7 @@ class _Pixel:
             rays=len(those),
             samples=len(places),
             lit=int(s.lit[those].sum()),
-            wrong=bool(s.wrong[those].any()),
+            wrong=int(s.wrong[places].sum()),
             blocker=int(s.blocker[place]),
             named=s.named.get(place, ()),
             dynamic_objects=self._dynamic_objects,
@@ -363,7 +368,7 @@ class _Pixel:
         }
         return replace(told, rule=rules.get(verdict, Rule.KNOWN))
 
-    def not_shaded(self, one: Explanation) -> Reason:
+    def in_part(self, one: Explanation) -> Reason:
         """What is truly in a light's way, and what the modes say, where a picture is shaded in part so far."""
         told = Reason(
             light=one.light,
@@ -377,26 +382,30 @@ class _Pixel:
             method=self._frame.settings.method,
             **self._modes(one.light),
         )
-        return replace(told, instead=self._by_paper(told)) if one.due and self._method.uses_modes else told
+        if not one.due or not self._method.uses_modes:
+            return told
+        by_paper = self._by_paper(told)
+        return by_paper if self._shaded else replace(told, instead=by_paper)
 
     def _modes(self, light: int) -> dict:
         if not self._by_modes:
             return {}
         shadow = ShadowMode(int(shadow_mode(self._word, light)[0]))
         return {
-            "shadow": shadow, "occlusion": self._before, "occlusion_after": self._after, "occluded": self._occluded
+            "shadow": shadow, "occlusion": self._before, "occlusion_after": self._after, "occluded": self._occluded,
+            "taught_pixels": self._taught,
         }  # fmt: skip
 
     def _traced(self, told: Reason, known: str) -> Reason:
         """Why a ray was traced."""
         method, light = self._method, told.light
-        by_modes = self._by_paper(told) if self._by_modes else None
-        if method.uses_modes and by_modes is not None:
-            return replace(by_modes, fate=_RULE_FATES.get(by_modes.rule, Fate.TRACED))
+        by_paper = self._by_paper(told) if self._by_modes else None
+        if method.uses_modes and by_paper is not None:
+            return by_paper
         if method.clusters:
             return replace(told, rule=Rule.CLUSTERS)
         if not method.culls:
-            return replace(told, rule=Rule.OFF, instead=by_modes)
+            return replace(told, rule=Rule.OFF, instead=by_paper)
         limit = max(kind.answers for kind in method.kinds if kind.culls)
         if light >= limit:
             return replace(told, rule=Rule.NO_ROOM, limit=limit)
@@ -408,21 +417,12 @@ class _Pixel:
     def _by_paper(self, told: Reason) -> Reason:
         """What the paper's method makes of the modes that shadow testing read."""
         if not has_shadow_mode(self._word, told.light):
-            rule = Rule.NO_ROOM
-        elif told.occlusion is OcclusionMode.DYNAMIC:
-            rule = Rule.DYNAMIC
-        elif told.occlusion is OcclusionMode.PARTIALLY_OCCLUDED:
-            rule = Rule.PARTLY_OCCLUDED
-        elif told.occlusion is OcclusionMode.INIT:
-            rule = Rule.NOT_SEEN_WHOLE
-        else:
-            rule = {
-                ShadowMode.INIT: Rule.NO_SHADOW_MODE,
-                ShadowMode.FULL_SHADOW: Rule.FULL_SHADOW,
-                ShadowMode.NON_SHADOW: Rule.NON_SHADOW,
-                ShadowMode.PARTIAL_SHADOW: Rule.PARTIAL_SHADOW,
-            }[told.shadow]
-        return replace(told, rule=rule)
+            return replace(told, rule=Rule.NO_ROOM, fate=Fate.TRACED)
+        fate = Fate(int(by_modes(np.array([Fate.TRACED], np.uint8), self._word, told.light)[0]))
+        rule = _RULES[fate]
+        if rule is Rule.NOT_SEEN_WHOLE and told.occlusion is OcclusionMode.FULLY_RENDERED:
+            rule = Rule.NO_SHADOW_MODE
+        return replace(told, rule=rule, fate=fate)
 
 
 def _most(s: ShadowRays, places: NDArray[np.int64]) -> tuple[Verdict, str, NDArray[np.int64]]:

@@ -69,6 +69,8 @@ class Words:
         if reason.fate is Fate.FACES_AWAY:
             return ()
         blocked = reason.lit < reason.rays
+        if reason.wrong and reason.samples > 1:
+            return (f"{reason.wrong} of the answers for its {reason.samples} samples are wrong.",)
         if reason.wrong:
             truth = (
                 (self.primitive(reason.blocker), " is in its way")
@@ -86,12 +88,15 @@ class Words:
             return ("In shadow: its own surface is in the way, as the light grazes it.",)
         return ("In shadow: blocked by ", self.primitive(reason.blocker), ".")
 
-    def coverage(self, unit: Coverage) -> Sentence:
-        """Say what keeps a unit from being fully rendered, or how far it is from being examined anew."""
+    def coverage(self, unit: Coverage, told: OccludedBy | None = None) -> Sentence:
+        """Say what keeps a unit from being fully rendered, or how far it is from being examined anew; `told` is what
+        has just been said to hide it."""
         covers = f"{'Its cell covers' if unit.in_cells else 'Covers'} {_pixels(unit.pixels)}"
         if unit.after is OcclusionMode.DYNAMIC:
             return (f"{covers}. Dynamic: it has no modes ", *_section("2.2"), ".")
         if unit.after is OcclusionMode.PARTIALLY_OCCLUDED:
+            if unit.occluded is not None and unit.occluded == told:
+                return (f"{covers}; not fully rendered, as it is partly occluded there ", *_section("2.6"), ".")
             return (covers, ". Not fully rendered: ", *self._occluded(unit.occluded), ".")
         if unit.after is OcclusionMode.INIT and unit.before is OcclusionMode.FULLY_RENDERED:
             return (
@@ -99,7 +104,10 @@ class Words:
                 "anew ", *_section("2.6"), ".",
             )  # fmt: skip
         if unit.after is OcclusionMode.INIT:
-            return (f"{covers}. Not fully rendered: no frame has seen it whole yet ", *_section("2.6"), ".")
+            so_far = (
+                f"{covers}, of which {unit.taught_pixels:,} have set its shadow modes so far. Fully rendered once all "
+            )
+            return (so_far, "have ", *_section("2.6"), ".")
         since: Sentence = (" since ", _frame(unit.taught)) if unit.taught is not None else ()
         if unit.before is not OcclusionMode.FULLY_RENDERED:
             return (covers, ". Fully rendered from this frame on: nothing hides any of it ", *_section("2.6"), ".")
@@ -163,7 +171,7 @@ class Words:
         trusted = (", so its shadow mode is not trusted ", *_section("2.4"))
         if reason.occluded is not None:
             return (*self._occluded(reason.occluded), *trusted)
-        return ("partly occluded in the frame before ", *_section("2.3"), *trusted, "; this frame sees it whole")
+        return ("partly occluded in the frame before ", *_section("2.3"), *trusted, "; this frame finds it so no more")
 
     def _not_seen_whole(self, reason: Reason) -> Sentence:
         return (self._traced(reason), *self._not_whole(reason), ".")
@@ -174,6 +182,8 @@ class Words:
             return (*said, ", and now ", *self._occluded(reason.occluded))
         if reason.occlusion_after is OcclusionMode.FULLY_RENDERED:
             return (*said, ", which sees it so: its shadow mode counts from the next one on ", *_section("2.4"))
+        if reason.occlusion_after is OcclusionMode.INIT:
+            return ("seen whole, but too few of its pixels have set its shadow modes so far ", *_section("2.6"))
         return said
 
     def _partial_shadow(self, reason: Reason) -> Sentence:
@@ -216,7 +226,11 @@ class Words:
     def _not_shaded(self, reason: Reason) -> Sentence:
         if reason.instead is None:
             return ("This picture is shaded in part so far: what became of the ray is said of whole pictures.",)
-        return ("This picture is shaded in part so far. A ray from here is ", *self._instead(reason.instead, ": "), ".")
+        return (
+            "Not shaded yet, but filled in from pixels nearby. A ray from here is ",
+            *self._instead(reason.instead, ": "),
+            ".",
+        )
 
     def _instead(self, reason: Reason, then: str) -> Sentence:
         """What the paper's method makes of the modes, after "would have" or "is"."""

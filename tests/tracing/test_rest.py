@@ -17,6 +17,7 @@ from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
 from tests.tracing.worlds import random_corners, scene, triangles
+from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
 from tracer.culling.rest import Changed, Rest, changes
 from tracer.scene.animation import Animation, TrackSet
@@ -235,3 +236,23 @@ def test_kitchens_car_starts_and_stops_and_no_picture_differs(bart: Path, accele
         assert np.array_equal(culled.reference, expected.color)
         rests.append(bool(paper.state.rest.now.since[1]))
     assert rests == still and 0 < sum(np.diff(np.int8(rests)) > 0) < sum(np.diff(np.int8(rests)) != 0)
+
+
+def test_rays_to_dynamic_objects_only_are_counted_alike_by_modes_and_by_certificates_and_not_where_all_rest():
+    """Nothing static is in any ray's way, so that all steps are those of the tree of what moves."""
+    tracks = Animation({"sails": going([(0, -1.5), (8, 1.5)])})
+    made = scene(floor(), dynamic=(kite("sails"),), animation=tracks, lights=[(0, 0, 20)])
+    eager = CostModel(2, 4, 3, 48, True, 1)
+    told = {}
+    for method in ("none", "paper", "certified"):
+        settings = tracer.Settings(width=64, height=64, method=method, accelerator="kdtree", threads=1)
+        renderer = tracer.Renderer(made, settings, cost_model=eager)
+        moving = [renderer.render(time) for time in range(1, 8)][-1].statistics.shadow
+        still = [renderer.render(7.0) for _ in range(3)][-1].statistics.shadow
+        told[method] = moving, still
+    counted = {(moving.due, moving.rays, moving.traversal_steps) for moving, _ in told.values()}
+    assert len(counted) == 1 and told["none"][0].rays == told["none"][0].due > 0
+    assert told["none"][0].dynamic_only == 0 and min(told[m][0].dynamic_only for m in ("paper", "certified")) > 1000
+    paper, certified = told["paper"][1], told["certified"][1]
+    assert paper.rays == paper.due, "by the paper, a dynamic object is one also while it rests"
+    assert certified.rays == certified.traced < certified.due, "what rests is static: nothing dynamic is left to ask"

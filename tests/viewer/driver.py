@@ -180,8 +180,8 @@ class Driver:
         self.frames(2)
 
     def picture_centre(self) -> tuple[float, float]:
-        window = imgui.internal.find_window_by_name("Picture")
-        return window.pos.x + 0.5 * window.size.x, window.pos.y + 0.45 * window.size.y
+        left, top, right, bottom = self.picture_edges()
+        return 0.5 * (left + right), 0.5 * (top + bottom)
 
     def picture_edges(self) -> tuple[float, float, float, float]:
         """Left, top, right and bottom of the picture inside its window."""

@@ -105,20 +105,20 @@ def _rows(stage: Stage, other: Stage | None) -> Iterator[tuple[str, ...]]:
     """A stage and its numbers; of those by `none`, where it has them."""
     theirs = {flow.name: flow for flow in other.flows} if other is not None else {}
     name = f"[bold]{stage.name}[/bold] {stage.section}"
-    yield name, stage.time, stage.part, other.time if other is not None else "", ""
+    yield name, stage.time, _as_here(stage.part), other.time if other is not None else "", ""
     for flow in stage.flows:
         known = theirs.get(flow.name)
-        yield f"  {flow.name}", f"{flow.number:,}", flow.share, f"{known.number:,}" if known else "", ""
+        yield f"  {flow.name}", f"{flow.number:,}", _as_here(flow.share), f"{known.number:,}" if known else "", ""
 
 
 def _in_all(ours: FrameStatistics, theirs: FrameStatistics) -> Iterator[tuple[str, ...]]:
     """What the whole frame took."""
-    yield "Shadow rays saved", f"{ours.shadow.saved:,}", percent(ours.shadow.saved, ours.shadow.due), "", ""
+    yield "Shadow rays saved", f"{ours.shadow.saved:,}", _as_here(percent(ours.shadow.saved, ours.shadow.due)), "", ""
     for name in ("traversal_steps", "intersection_tests"):
         mine, its = getattr(ours.shadow, name), getattr(theirs.shadow, name)
-        yield f"  {name.replace('_', ' ')}", f"{mine:,}", "", f"{its:,}", saved(1.0 - mine / max(its, 1))
+        yield f"  {name.replace('_', ' ')}", f"{mine:,}", "", f"{its:,}", saved(1.0 - mine / its) if its else ""
     seconds = (f"{1e3 * s.seconds:,.1f} ms" for s in (ours, theirs))
-    yield "Frame", next(seconds), "", next(seconds), saved(1.0 - ours.seconds / max(theirs.seconds, 1e-9))
+    yield "Frame", next(seconds), "", next(seconds), ""  # one frame's time says nothing of speed
 
 
 def _caption(frame: Frame, all_traced: Frame) -> str:
@@ -126,8 +126,11 @@ def _caption(frame: Frame, all_traced: Frame) -> str:
     differ, pixels = int((frame.color != all_traced.color).any(-1).sum()), frame.width * frame.height
     lines = [f"{differ:,} of {pixels:,} pixels ({percent(differ, pixels)}) differ from those by {NO_CULLING}."]
     if frame.settings.accelerator == BVH8:
-        lines.append(
-            "Steps and tests are counted for whole packets of rays; bench --accelerator kdtree counts each ray's."
-        )
-    lines.append("Times are of one frame each, and vary; bench tells the speed-up over many.")
+        lines.append("Steps and tests are those of packets of rays; bench --accelerator kdtree counts each ray's.")
+    lines.append("Times are of one frame each: bench tells the speed-up, over many.")
     return "\n".join(lines)
+
+
+def _as_here(share: str) -> str:
+    """A share as tables of commands write it: 20.5%."""
+    return share.replace(" %", "%")

@@ -158,7 +158,9 @@ class Controller:
         self.undo.follow()
         self.editing.follow(run is not None, self.tracing.shows_edits or not self.renderer.busy)
         traced = self.traced if run is None else None  # edits may have left the newest frame behind
-        self.rays.follow(traced)  # before the next frame is asked for
+        # Before the next frame is asked for:
+        self.inspector.follow(self.frame if run is None else None, not motion.lively)
+        self.rays.follow(traced, None if self.inspector.why is None else self.inspector.why.tree)
         self.table.follow(traced, motion.lively)
         edits, focus = self.editing.at_work, self.selection.hovered
         scene, settings = self.session.scene, self.session.settings
@@ -170,7 +172,6 @@ class Controller:
             self._follow_before_edits()
             if self.traced is not None and self.traced.whole:
                 self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
-        self.inspector.follow(self.frame if run is None else None, not motion.lively)
         whole = run is None and self.traced is not None and self.traced.whole
         wanted = whole and self.tracing.drawn_view is View.CUTS
         self.cuts.follow(self.frame if wanted else None, not motion.lively)

@@ -1,7 +1,7 @@
 """What became of the rays of the pixel that was clicked, and the way of one of them through the trees.
 
-Both are asked of the render thread, which alone may touch the world, and answered between two frames; the window never
-waits.  Nothing is asked unless the panel that shows it is there to be seen.
+The rays come with the reasons of the shadow inspector.  The way of one is asked of the render thread, which alone may
+touch the world, and answered between two frames; the window never waits.  Rays are listed only where they are seen.
 """
 
 from __future__ import annotations
@@ -14,40 +14,18 @@ from tracer.frame import Frame
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.geometry.visits import Visit
 from tracer.geometry.world import World
-from tracer.ray_tree import ray_tree, visits_of
+from tracer.ray_tree import visits_of
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
 from tracer.told_rays import RayTree
 from viewer.output.ray_rows import Key, RayRows, Row, unfolded
 from viewer.services.render_request import Question, Traced, Traces
 from viewer.services.selection import Selection
-from viewer.state.picking import pixel_of
 from viewer.state.ray_lines import RayLine, ray_lines
 from viewer.state.session import Session
 from viewer.state.verdicts import Filter
 
 STEP_SECONDS = 0.25  # that each step is shown while they are played
-
-
-class RayQuestion:
-    """The rays of a pixel of a frame: `found`, once there is an answer, or `late` if the renderer has gone on."""
-
-    def __init__(self, frame: Frame, x: int, y: int) -> None:
-        self.frame, self.x, self.y = frame, x, y
-        self.found: RayTree | None = None
-        self.late = self.dropped = False
-
-    @property
-    def time(self) -> float:
-        return self.frame.time
-
-    def answer(self, renderer: Traces) -> None:
-        try:
-            self.found = ray_tree(cast(Renderer, renderer), self.frame, self.x, self.y, lambda: self.dropped)
-        except LookupError:
-            self.late = True
-        except Cancelled:
-            pass
 
 
 class OtherWorlds:
@@ -115,13 +93,11 @@ class RayInspector:
         self.shown = Filter()
         self.accelerator = ""
         self.pointed: Row | None = None
+        self._steps: StepsQuestion | None = None
         self._forget()
 
     def _forget(self) -> None:
-        self._drop()
-        self._asked: RayQuestion | None = None
         self.tree: RayTree | None = None
-        self._taken: RayTree | None = None
         self.rows: RayRows | None = None
         self._toggled: set[Key] = set()
         self._selected: Key | None = None
@@ -131,14 +107,10 @@ class RayInspector:
         self._forget_steps()
 
     def _forget_steps(self) -> None:
-        self._steps: StepsQuestion | None = None
+        if self._steps is not None:
+            self._steps.dropped = True
+        self._steps = None
         self.step, self.playing, self._stepped = 0, False, 0.0
-
-    def _drop(self) -> None:
-        """Let the render thread leave what has been asked."""
-        for question in (getattr(self, "_asked", None), getattr(self, "_steps", None)):
-            if question is not None:
-                question.dropped = True
 
     # --- one frame of the window -----------------------------------------------------------------
 
@@ -146,32 +118,21 @@ class RayInspector:
         """Somebody looks at the rays in this frame of the window."""
         self._seen = True
 
-    def follow(self, traced: Traced | None) -> None:
-        """Take up answers, and ask about the clicked pixel in the newest frame, None where it must not be asked about,
-        if all of that is there."""
+    def follow(self, traced: Traced | None, tree: RayTree | None) -> None:
+        """Take up the rays that are known of the clicked pixel, if somebody looks; `traced` is the newest frame, None
+        where nothing may be asked."""
         self.visible, self._seen = self._seen, False
         picked = self._selection.picked
         if picked is None or traced is None or not self.visible:
             if self.tree is not None and (picked is None or traced is None):
                 self._forget()
             return
-        frame, at = traced.frame, pixel_of(picked, traced.frame)
-        if self._asked is not None and self._asked.found is not self._taken:
-            self._take(self._asked.found)
-        if self.tree is not None and _is_outdated(self.tree, frame):
-            self.tree = self.rows = None
-        asked = self._asked
-        if traced.whole and at is not None and (asked is None or not _is_about(asked, frame, at)):
-            self._drop()
-            self._asked = RayQuestion(frame, *at)
-            self._renderer.ask(self._asked)
-        self._follow_steps()
-
-    def _take(self, tree: RayTree | None) -> None:
-        self._taken = tree
-        if tree is not None:
+        if tree is not None and tree is not self.tree:
             self.tree = tree
             self.refilter(self.shown)
+        if self.tree is not None and _is_outdated(self.tree, traced.frame):
+            self.tree = self.rows = None
+        self._follow_steps()
 
     def refilter(self, shown: Filter) -> None:
         """Show these shadow rays."""
@@ -273,8 +234,3 @@ def _is_outdated(tree: RayTree, frame: Frame) -> bool:
     """Whether a tree is of another moment than a frame, or of what another method did."""
     then = tree.frame
     return then.time != frame.time or then.settings.method != frame.settings.method
-
-
-def _is_about(asked: RayQuestion, frame: Frame, at: tuple[int, int]) -> bool:
-    """Whether it was asked about a pixel of this frame, or of the same with fewer samples."""
-    return asked.frame.primitive is frame.primitive and (asked.x, asked.y) == at

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
@@ -20,7 +21,8 @@ from numpy.typing import NDArray
 from tracer.explanation import Explanation, explain, outline
 from tracer.frame import Frame
 from tracer.renderer import Renderer
-from viewer.services.frame_answers import NONE_WRONG, WrongAnswers, wrong_answers
+from tracer.scene.model import Cancelled
+from tracer.why import Why, why
 from viewer.services.render_request import Question, Traces
 from viewer.services.selection import Selection
 from viewer.state.picking import pixel_at, pixel_of
@@ -32,20 +34,26 @@ MOST_LIGHTS = 40  # that are drawn, and listed at once
 
 @dataclass(frozen=True)
 class Answer:
-    """What was found for a pixel of a frame: an explanation for each light, outlines of what they name, and what the
-    frame itself has answered, where that is `wrong`."""
+    """What was found for a pixel of a frame: an explanation for each light, outlines of what they name, and `why` its
+    shadow rays were culled or traced, None where the renderer has gone on to another frame."""
 
     frame: Frame
     x: int
     y: int
     lights: tuple[Explanation, ...]
     outlines: dict[int, tuple[NDArray[np.float64], ...]]
-    wrong: WrongAnswers = NONE_WRONG
+    why: Why | None = None
 
     @cached_property
     def drawn(self) -> tuple[Explanation, ...]:
         """Lights whose ways are drawn."""
         return drawn_lights(self.lights)
+
+    @cached_property
+    def wrong_beyond(self) -> int:
+        """How many answers are wrong at what is mirrored at the pixel, or seen through it."""
+        rays = () if self.why is None or self.why.tree is None else self.why.tree.rays[1:]
+        return sum(int(np.count_nonzero(ray.shadows.wrong)) for ray in rays if ray.shadows is not None)
 
 
 class Part(Enum):
@@ -71,6 +79,7 @@ class PixelQuestion:
     def __init__(self, frame: Frame, x: int, y: int) -> None:
         self.frame, self.x, self.y = frame, x, y
         self.found: Answer | None = None
+        self.dropped = False
 
     @property
     def time(self) -> float:
@@ -81,8 +90,10 @@ class PixelQuestion:
         lights = explain(real, self.frame, self.x, self.y)
         numbers = {number for one in drawn_lights(lights) for number in drawn_primitives(one)}
         outlines = {number: outline(real.world, number) for number in numbers}
-        wrong = wrong_answers(real, self.frame, self.x, self.y)
-        self.found = Answer(self.frame, self.x, self.y, lights, outlines, wrong)
+        reasons = None
+        with suppress(LookupError, Cancelled):
+            reasons = why(real, self.frame, self.x, self.y, lambda: self.dropped)
+        self.found = Answer(self.frame, self.x, self.y, lights, outlines, reasons)
 
 
 class Answers(Protocol):
@@ -92,11 +103,13 @@ class Answers(Protocol):
 
 
 class ShadowInspector:
-    """`answer` is what is known of the pixel that the inspector shows, None while nothing is."""
+    """`answer` is what is known of the pixel that the inspector shows, None while nothing is, and `why` the newest
+    reasons that are."""
 
     def __init__(self, selection: Selection, renderer: Answers) -> None:
         self._selection, self._renderer = selection, renderer
         self.answer: Answer | None = None
+        self.why: Why | None = None
         self._subject: object = None
         self._asked: PixelQuestion | None = None
         self._drawn: tuple[Answer, Frame, list[DrawnLine]] | None = None
@@ -116,12 +129,14 @@ class ShadowInspector:
             self._subject = subject
         if self._asked is not None and self._asked.found is not None:
             self.answer = self._asked.found
+            self.why = self.answer.why or self.why
         at = pixel_of(kept, frame) if kept is not None else self._pointed_at(frame, idle)
         if at is None and kept is None:
             self._forget()
         if self.answer is not None and _is_outdated(self.answer, frame):
-            self.answer = None
+            self.answer = self.why = None
         if at is not None and not self._has_asked(frame, *at):
+            self._drop()
             self._asked = PixelQuestion(frame, *at)
             self._renderer.ask(self._asked)
 
@@ -135,11 +150,20 @@ class ShadowInspector:
         return self._drawn[2]
 
     def _forget(self) -> None:
-        self.answer = self._asked = self._drawn = None
+        self._drop()
+        self.answer = self.why = self._asked = self._drawn = None
+
+    def _drop(self) -> None:
+        """Let the render thread leave what has been asked."""
+        if self._asked is not None:
+            self._asked.dropped = True
 
     def _has_asked(self, frame: Frame, x: int, y: int) -> bool:
+        """Whether it was asked about this pixel of the frame, or of the same with fewer samples."""
         asked = self._asked
-        return asked is not None and asked.frame is frame and (asked.x, asked.y) == (x, y)
+        if asked is None or asked.frame.primitive is not frame.primitive or (asked.x, asked.y) != (x, y):
+            return False
+        return (asked.frame.statistics.part < 1.0) == (frame.statistics.part < 1.0)
 
     def _pointed_at(self, frame: Frame, idle: bool) -> tuple[int, int] | None:
         """The pixel under the pointer, while nothing moves and it shows something."""

@@ -157,6 +157,11 @@ class Teachers:
         known = self._known.get(number)
         return None if known is None else known.get((light, lit), Teacher(0, None))
 
+    @property
+    def answered(self) -> int:
+        """How many frames have been asked about."""
+        return len(self._known)
+
     def follow(self, shown: Traced | None) -> None:
         """Take up an answer, and ask about the next frame that taught; `shown` is None where nothing may be asked."""
         pick = self._selection.picked

@@ -183,7 +183,7 @@ def _saved(frame: Frame, learns: bool) -> Clause:
         return Clause(f"{name}: no shadow ray is due here", terms.MEANINGS[terms.DUE])
     if not Method.parse(name).culls:
         said = s.by_modes_in_all
-        share = percent(said.full_shadow + said.non_shadow, shadow.due)
+        share = percent(said.saved, shadow.due)
         would = f"; {BY_MODES} would save {share}" if said.due else ""
         return Clause(f"{name}: every shadow ray is traced{would}{part}", "what the modes that are kept now would save")
     if not _answered(shadow):

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tracer.culling.fate import Fate
+from tracer.why_in_words import Link
 from viewer.output.capture import FIELDS
 from viewer.output.legend_parts import named_light
 from viewer.services.controller import Controller
@@ -66,7 +67,8 @@ class Fold:
 class Ui:
     """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill, `picture_size` the
     one that it fills; `wiping` says that the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is
-    being drawn, and `drawn_text` the words that are typed there, `pointed_light` which light it is on in the inspector;
+    being drawn, and `drawn_text` the words that are typed there, `pointed_light` and `pointed_link`
+    which light and which name it is on in the inspector, whose rays are to unfold where `rays_wanted`;
     `light_filters` is what is typed above each list of lights; `screening` is the recorded picture that is shown in the
     picture's place; `legend_shown` says whether the picture shows its legend, `legend_place` where that is on the
     screen, `legend_held` where the pointer holds it; `fate_shown` is the fate of
@@ -137,6 +139,8 @@ class Ui:
     log_errors_only: bool = False
     zoom_all_steps: bool = False
     pointed_light: int | None = None
+    pointed_link: Link | None = None
+    rays_wanted: bool = False
     what_if_drawn: int = -9
     what_if_below: float = 0.0
     held_light: int | None = None
@@ -180,6 +184,11 @@ class Ui:
         """A light as every panel calls it: by its number in the scene as it was read, and its name if it has one."""
         scene = self.controller.session.scene
         return named_light(scene.lights if scene is not None else (), light)
+
+    def show_rays(self) -> None:
+        """Show the rays of the clicked pixel."""
+        self.rays_wanted = True
+        self.show_panel("Inspector")
 
     def take_commands(self, commands: list[Command]) -> None:
         """Make these the commands, with the keys that the user has chosen for them."""

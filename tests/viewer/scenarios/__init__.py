@@ -29,6 +29,7 @@ from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
 from tests.viewer.scenarios.trees import trees
 from tests.viewer.scenarios.what_if import what_if
+from tests.viewer.scenarios.why import why
 
 SCENARIOS = {
     scenario.__name__: scenario
@@ -36,7 +37,8 @@ SCENARIOS = {
         views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, fates, savings, certifying,
         explaining, rays, flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing,
         experimenting, figure1, zooming, asking, finding, filmstrip, filming, hunting, taking, failing, reviving,
-        panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if, previewing,
+        panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if, why,
+        previewing,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip

@@ -112,12 +112,12 @@ def _to_a_find(d: Driver) -> None:
     assert c.frame.settings.samples == 1 and c.session.settings.samples == 4, "refined, it is not as it was found"
     left, top, right, bottom = c.session.zoom.shown()
     assert right - left < 0.3 and left < find.x / 96 < right and top < find.y / 96 < bottom, "its pixel is too small"
-    d.wait(lambda: c.inspector.answer is not None, "what the lights do there", 20.0)
-    wrong = c.inspector.answer.wrong
-    assert wrong.count == c.frame.wrong[find.y, find.x]
+    d.wait(lambda: c.inspector.why is not None, "what the lights do there", 20.0)
+    reasons, answer = c.inspector.why.reasons, c.inspector.answer
+    assert sum(one.wrong for one in reasons) + answer.wrong_beyond == c.frame.wrong[find.y, find.x]
     if find.bounces == 0:
-        one, truth = wrong.lights[find.light], c.inspector.answer.lights[find.light]
-        assert (one.lit > 0) == find.lit and (truth.reached > 0) != find.lit
+        one, truth = reasons[find.light], answer.lights[find.light]
+        assert one.wrong == 1 and (one.lit > 0) == find.lit and (truth.reached > 0) != find.lit
     d.context.item_click(f"//Hunt/**/{icons.ICON_FA_CODE_BRANCH}  Rays")
     d.wait(lambda: c.rays.tree is not None, "its rays", 20.0)
     assert any(ray.shadows is not None and ray.shadows.wrong.any() for ray in c.rays.tree.rays)

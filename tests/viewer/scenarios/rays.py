@@ -16,7 +16,7 @@ def rays(d: Driver) -> None:
     d.c.preferences.savings = False  # its words come and go while lines are counted
     d.settle()
     c = d.c
-    assert not c.rays.visible, "another panel is in front at first"
+    assert not c.rays.visible, "they are folded at first"
     c.settings.change(method="paper")
     d.settle()
     for _ in range(2):
@@ -24,7 +24,7 @@ def rays(d: Driver) -> None:
         d.settle()
     d.press(KEY.x)
     d.frames(4)
-    assert c.rays.visible and c.rays.tree is None
+    assert c.rays.tree is None, "nothing is clicked"
     traced = c.history.frames
     left, top, right, bottom = d.picture_edges()
     x, y = _shaded(d)
@@ -40,22 +40,22 @@ def rays(d: Driver) -> None:
 
     # Filters hide rows and lines.
     everything = len(c.rays.seen)
-    d.context.item_click("//Rays/wrong")
+    d.context.item_click("//Inspector/wrong")
     d.frames(3)
     assert c.rays.shown.shown is Shown.WRONG and len(c.rays.seen) < everything and _lines_drawn(d) < drawn
-    d.context.item_click("//Rays/all")
+    d.context.item_click("//Inspector/all")
     d.frames(3)
     assert len(c.rays.seen) == everything
 
     # A row that the pointer is on is picked out; a click selects it, and its steps are listed.
     row = next(row for _, row in c.rays.seen if len(row.places) == 1 and "traced" in row.text)
-    d.context.mouse_move(f"//Rays/**/{row.key}/##row")
+    d.context.mouse_move(f"//Inspector/**/{row.key}/##row")
     d.frames(3)
     assert c.rays.pointed is not None and c.rays.pointed.key == row.key
-    places = _tops(d, "//Rays/wrong", f"//Rays/**/{row.key}/##row")
-    d.context.item_click(f"//Rays/**/{row.key}/##row")
+    places = _tops(d, "//Inspector/wrong", f"//Inspector/**/{row.key}/##row")
+    d.context.item_click(f"//Inspector/**/{row.key}/##row")
     d.wait(lambda: c.rays.walked, "the nodes that the ray enters", 20.0)
-    assert _tops(d, "//Rays/wrong", f"//Rays/**/{row.key}/##row") == places, "rows move when the steps come"
+    assert _tops(d, "//Inspector/wrong", f"//Inspector/**/{row.key}/##row") == places, "rows move when the steps come"
     assert c.rays.selected.key == row.key and c.rays.structure == "bvh8"
     shadows = tree.rays[row.ray].shadows
     place = int(row.places[0])
@@ -66,7 +66,7 @@ def rays(d: Driver) -> None:
     assert c.rays.step == min(1, steps - 1)
     d.press(KEY.comma)
     assert c.rays.step == 0
-    d.context.item_click("//Rays/**/kdtree")
+    d.context.item_click("//Inspector/**/kdtree")
     d.wait(lambda: c.rays.walked and c.rays.structure == "kdtree", "the same in the other structure", 30.0)
     assert any(visit.hits for visit in c.rays.visits) != shadows.lit[place]
     d.press(int(KEY.period) | int(KEY.mod_shift))
@@ -81,8 +81,6 @@ def rays(d: Driver) -> None:
     d.press(KEY.escape)
     d.frames(3)
     assert c.rays.tree is None
-    d.ui.show_panel("Plots")
-    d.frames(5)
     assert not c.rays.visible
 
 

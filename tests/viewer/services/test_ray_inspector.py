@@ -1,4 +1,4 @@
-"""The clicked pixel's rays are looked into on the render thread, while somebody looks, and stay true."""
+"""The clicked pixel's rays are listed while somebody looks, and stay true."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def middle(desk: Desk) -> tuple[float, float]:
     return (x + 0.5) / frame.width, (y + 0.5) / frame.height
 
 
-def test_nothing_is_asked_unless_the_panel_is_seen(desk: Desk) -> None:
+def test_nothing_is_listed_unless_it_is_seen(desk: Desk) -> None:
     desk.c.selection.select(middle(desk))
     desk.rest()
     assert desk.c.rays.tree is None

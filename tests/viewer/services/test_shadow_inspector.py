@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tracer.culling.fate import Fate
 from tracer.explanation import NO_CERTIFICATE, Explanation, explain
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info
@@ -17,7 +18,7 @@ from viewer.services.controller import Controller
 from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, drawn_lights, drawn_lines
 from viewer.state import navigation
 from viewer.state.preferences import Preferences
-from viewer.window.panels.explanation import said, sentences, summary, unanswered
+from viewer.window.panels.why import summary, unanswered
 from viewer.window.ui import Ui
 
 SIZE = (64, 48)
@@ -167,22 +168,19 @@ def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out
     assert drawn.count(Part.OCCLUDER) == MOST_OCCLUDERS - 1
 
 
-def test_what_blocks_is_named_once_and_as_what_it_is(desk: Desk):
-    ui = Ui(desk.c)
+def test_reasons_come_with_the_answer_and_say_what_the_frame_did(desk: Desk):
+    desk.c.settings.change(method="paper")
+    desk.until(lambda: not desk.c.active)
     desk.c.selection.select(desk.shadow)
     answer = desk.answered()
-    found = next(one for one in answer.lights if one.blocked_at is not None)
-    stopped = replace(found, certificate="none", named=())
-    receiver = int(answer.frame.primitive[answer.y, answer.x])
-    by = f"blocked by sphere {stopped.blocker} of tiny"
-    assert sentences(ui, stopped, receiver)[0].startswith(by) and len(sentences(ui, stopped, receiver)) == 1
-    among = replace(stopped, certificate="candidates", named=(stopped.blocker, 0, receiver))
-    first, others = sentences(ui, among, receiver)
-    assert first.startswith(by) and first.endswith("one of its candidates")
-    assert others.startswith("other candidates: ") and f"sphere {stopped.blocker}" not in others
-    assert "its own surface" in others
-    (own,) = sentences(ui, replace(stopped, blocker=receiver), receiver)
-    assert own.startswith("blocked by its own surface: this triangle shadows itself")
+    assert answer.why is not None and answer.why is desk.c.inspector.why
+    tree = answer.why.tree
+    assert tree is not None and (tree.x, tree.y) == (answer.x, answer.y) == desk.c.selection.pixel
+    assert [one.lit for one in answer.why.reasons] == [one.reached for one in answer.lights]
+    assert [one.fate is not Fate.FACES_AWAY for one in answer.why.reasons] == [one.due for one in answer.lights]
+    assert answer.wrong_beyond == 0
+    desk.c.selection.picked = None
+    desk.until(lambda: desk.c.inspector.why is None)
 
 
 def _explained(light: int, samples: int = 16, reached: int = 16, due: bool = True, far: float = 1.0) -> Explanation:
@@ -191,18 +189,7 @@ def _explained(light: int, samples: int = 16, reached: int = 16, due: bool = Tru
                        samples=samples, reached=reached)  # fmt: skip
 
 
-def test_lights_are_told_by_the_samples_that_arrive():
-    told = [said(_explained(0, *counts)) for counts in ((16, 16), (16, 5), (16, 9), (16, 0), (1, 1), (1, 0))]
-    assert [text for text, _ in told] == [
-        "lit, all 16 samples",
-        "in the penumbra: 5 of 16 samples reach it",
-        "in the penumbra: 9 of 16 samples reach it",
-        "in shadow, all 16 samples",
-        "lit",
-        "in shadow",
-    ]
-    assert len({color for _, color in told[:4]}) == 4
-    assert said(_explained(0, due=False))[0].startswith("in its own shadow")
+def test_lights_are_summed_up_by_the_samples_that_arrive():
     lights = [_explained(0), _explained(1, 16, 3), _explained(2, due=False), _explained(3, 16, 0), _explained(4, 4, 0)]
     assert summary(lights) == "1 lit, 1 in part, 2 in shadow, 1 behind it"
 

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from tests.viewer.fakes import make_frame, make_scene
+from viewer.services.record import Record
+from viewer.services.render_request import RenderRequest, Traced
+from viewer.state.history import History
 from viewer.state.rate import Rate
+from viewer.state.session import Session
 
 
 def test_as_many_as_came_within_the_last_second() -> None:
@@ -16,6 +21,17 @@ def test_as_many_as_came_within_the_last_second() -> None:
     for n in range(20):
         rate.count(7.0 + 0.1 * n)
     assert rate.per_second(9.0) == pytest.approx(10.0), "what came before that second does not count"
+
+
+def test_a_picture_counts_once_however_often_more_of_it_comes() -> None:
+    now = iter(0.1 * n for n in range(1000))
+    record = Record(Session(make_scene()), History(), clock=lambda: next(now))
+    for n in range(6):
+        frame = make_frame(time=float(n))
+        request = RenderRequest(frame.time, frame.camera, frame.settings)
+        for _ in range(3):
+            record.add([], Traced(request, frame, frame.statistics), 0.01)
+    assert record.pictures_a_second == pytest.approx(10.0), "the clock ticks at each picture, not at its parts"
 
 
 def test_slow_pictures_count_by_their_distance_and_none_that_have_ended() -> None:

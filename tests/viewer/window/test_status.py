@@ -9,8 +9,8 @@ from tests.viewer.fakes import make_frame, with_certificates
 from viewer.state import terms
 from viewer.window.panels import loading
 from viewer.window.panels.coming import first_picture
-from viewer.window.panels.explanation import unanswered
 from viewer.window.panels.status import doing
+from viewer.window.panels.why import unanswered
 
 
 def test_a_start_says_one_thing_until_it_is_over() -> None:
@@ -87,11 +87,11 @@ def test_without_a_picture_it_is_said_what_goes_on() -> None:
 def test_what_was_asked_says_what_it_waits_for() -> None:
     """Nothing moves while samples are added, and an answer comes all the same only after one."""
     for changes, said in (
-        ({}, "being traced ..."),
-        ({"adds_samples": True}, "traced after this sample"),
-        ({"refines_lamps": True}, "traced after the samples of lamps"),
-        ({"renderer": SimpleNamespace(busy=True)}, "traced after this picture"),
-        ({"motion": SimpleNamespace(lively=True)}, "traced when nothing moves"),
+        ({}, "looking into it ..."),
+        ({"adds_samples": True}, "answered after this sample"),
+        ({"refines_lamps": True}, "answered after the samples of lamps"),
+        ({"renderer": SimpleNamespace(busy=True)}, "answered after this picture"),
+        ({"motion": SimpleNamespace(lively=True)}, "answered when nothing moves"),
     ):
         assert unanswered(SimpleNamespace(controller=_idle(**changes))) == said
 

@@ -14,7 +14,6 @@ from viewer.window.panels.method_choice import method_list
 from viewer.window.panels.runs import side_by_side, start_or_progress
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
-    GOOD,
     QUIET,
     clipped,
     em,
@@ -101,7 +100,7 @@ def _finds(ui: Ui, hunts: HuntController, size: ImVec2) -> None:
         elif scene is None or not hunts.hunt.is_of(scene):
             paragraph(f"The last hunt was made {hunts.hunt.made_in(scene)}.", QUIET)
         else:
-            paragraph(in_window_style(found.summary), QUIET if found.wrong_pixels else GOOD)
+            paragraph(in_window_style(found.summary), QUIET)
             if found.finds:
                 _table(ui, hunts, found, scene)
     imgui.end_child()
@@ -182,7 +181,7 @@ def _details(ui: Ui, hunts: HuntController, number: int, find: Find, scene: Scen
     imgui.end_disabled()
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_CODE_BRANCH}  Rays"):
-        ui.show_panel("Rays")
+        ui.show_rays()
     tooltip_above("what became of each ray of the pixel (X)")
     _colors(find)
     for sentence in (*finds.in_words(find, scene), finds.in_its_frame(find)):

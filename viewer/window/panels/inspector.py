@@ -1,29 +1,44 @@
-"""One pixel, and the primitive it shows: why it is culled, or not."""
+"""One pixel: why its shadow rays are culled or traced, the modes of its primitive, its rays, and what it shows."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
+from tracer.why_in_words import Words
 from viewer.state.picking import Pick, pixel_of
 from viewer.state.readings import can_draw, cell_lights
 from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING, View
-from viewer.window.panels import explanation, teaching
+from viewer.window.panels import rays, teaching, why
+from viewer.window.panels.links import sentence
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, count, fact, heading, highest_count, paragraph, properties, swatch, tooltip
+from viewer.window.widgets import (
+    QUIET,
+    clipped,
+    count,
+    fact,
+    heading,
+    highest_count,
+    paragraph,
+    properties,
+    swatch,
+    tooltip,
+)
 
 
 def show(ui: Ui) -> None:
     """The panel: what was clicked, else what the pointer is on."""
     c = ui.controller
     if c.selection.picked is not None:
-        at = c.selection.pixel
-        where = f"pixel {at[0]}, {at[1]}, clicked" if at is not None else "clicked, not visible from here"
-        imgui.text_colored(QUIET, where)
+        at, named = c.selection.pixel, f"{c.selection.picked.object_name} ({c.selection.picked.kind})"
+        where = f"pixel {at[0]}, {at[1]}: {named}" if at is not None else f"{named}, not visible from here"
+        clipped(where, QUIET)
         imgui.same_line()
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
             c.selection.picked = None
@@ -33,22 +48,26 @@ def show(ui: Ui) -> None:
         return
     found = c.selection.at(c.selection.hovered)
     if found is None:
-        paragraph("Point at the picture to inspect a pixel; click to keep it here and draw its shadow rays.", QUIET)
+        paragraph(
+            "Point at the picture to inspect a pixel; click to keep it here. Why are its shadow rays culled, or not?",
+            QUIET,
+        )
     elif found.primitive < 0:
         paragraph(f"Pixel {found.x}, {found.y}: nothing but background.", QUIET)
     else:
-        imgui.text_colored(QUIET, f"pixel {found.x}, {found.y}, under the pointer")
+        clipped(f"pixel {found.x}, {found.y} under the pointer: {found.object_name} ({found.kind})", QUIET)
         _details(ui, found)
 
 
 def _details(ui: Ui, pick: Pick) -> None:
     frame = ui.controller.frame
     by_modes = frame is None or frame.settings.keeps_modes
-    explanation.rows(ui)  # first, as it is what a click asks
+    why.show(ui)  # first, as it is what a click asks
     if by_modes:
         heading("Modes of its cell" if pick.in_cells else "Modes")
         _modes(ui, pick)
-        paragraph(_verdict(pick), QUIET)
+        _references(ui)
+    rays.section(ui)
     heading("Surface")
     with properties("primitive", 5.8) as shown:
         if shown:
@@ -61,7 +80,7 @@ def _details(ui: Ui, pick: Pick) -> None:
             asks = _cell_asks(frame, pick)
             if asks:
                 fact("Its cell", asks, "of the octree of this method: all but those that it knows to be hidden")
-            tip = "that it covers now; the highest count is the most it covered while fully rendered"
+            tip = "that it covers now; the highest count is what it covered when it was examined last (§2.6)"
             fact("Pixels", f"{count(pick.pixels)} now{f', {highest_count(pick.highest)}' if by_modes else ''}", tip)
             if pick.wrong is not None:
                 answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
@@ -72,6 +91,16 @@ def _details(ui: Ui, pick: Pick) -> None:
                 fact("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
             if pick.normal is not None:
                 fact("Normal", ", ".join(f"{along:z.2f}" for along in pick.normal))
+
+
+def _references(ui: Ui) -> None:
+    """What became of the occlusion tests of the pixel against its two neighbours."""
+    found, scene = ui.controller.inspector.why, ui.controller.session.scene
+    if found is None or scene is None:
+        return
+    words = Words(scene, found)
+    for number, one in enumerate(found.references):
+        sentence(ui, words.reference(one), f"reference {number}", QUIET)
 
 
 def _cell_asks(frame: Frame | None, pick: Pick) -> str:
@@ -85,7 +114,7 @@ def _cell_asks(frame: Frame | None, pick: Pick) -> str:
 
 def _modes(ui: Ui, pick: Pick) -> None:
     """The occlusion mode, and the shadow mode per light."""
-    with explanation.light_rows("modes") as shown:
+    with _rows() as shown:
         if not shown:
             return
         if pick.occlusion is not None:
@@ -100,6 +129,20 @@ def _modes(ui: Ui, pick: Pick) -> None:
     uncovered = sum(mode is None for mode in pick.shadows)
     if uncovered:
         paragraph(f"{uncovered} more {'light is' if uncovered == 1 else 'lights are'} not culled", QUIET)
+
+
+@contextmanager
+def _rows() -> Iterator[bool]:
+    """A table of two columns that wrap, a light on the left and its mode; yields whether it is visible."""
+    shown = imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_prop))
+    if shown:
+        imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
+        imgui.table_setup_column("mode", int(imgui.TableColumnFlags_.width_stretch), 1.5)
+    try:
+        yield shown
+    finally:
+        if shown:
+            imgui.end_table()
 
 
 def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str) -> None:
@@ -117,22 +160,3 @@ def _describe(pick: Pick) -> str:
     text = "diffuse ({:.3g}, {:.3g}, {:.3g}), specular ({:.3g}, {:.3g}, {:.3g})".format(*m.diffuse, *m.specular)
     text += f", exponent {m.exponent:.4g}"
     return text + (f", transmission {m.transmission:.3g}, index {m.ior:.3g}" if m.transmission else "")
-
-
-def _verdict(pick: Pick) -> str:
-    """In words: which shadow rays of this primitive the paper's method saves by its modes."""
-    if pick.occlusion is OcclusionMode.DYNAMIC:
-        return "It moves, so its shadow rays are always traced."
-    if pick.occlusion is not OcclusionMode.FULLY_RENDERED:
-        return "Not fully rendered yet, so its shadow rays are traced."
-    lights = len(pick.shadows)
-    full = sum(mode is ShadowMode.FULL_SHADOW for mode in pick.shadows)
-    free = sum(mode is ShadowMode.NON_SHADOW for mode in pick.shadows)
-    if not full and not free:
-        return "Fully rendered, but partly lit by each light, so its shadow rays are traced."
-    saved = (f"{full} of {lights} lights are culled" if full else "", _dynamic_only(free, lights) if free else "")
-    return f"By its modes, shadow rays to {' and those to '.join(filter(None, saved))}."
-
-
-def _dynamic_only(free: int, lights: int) -> str:
-    return f"{free} of {lights} lights are tested against dynamic objects only"

@@ -38,6 +38,7 @@ from viewer.window.panels import (
     timeline,
     tour,
     unseen,
+    why_overlay,
     wipe,
     worst_pixels,
 )
@@ -122,6 +123,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
             ray_overlay.show(ui, area.whole, area.whole_end)
         else:
             explanation.show(ui, area.whole, area.whole_end)
+        why_overlay.show(ui, area)
         unseen.show(ui, area.whole, area.whole_end)
         cut_overlay.show(ui, area.whole, area.whole_end)
     _pointer(ui, area)

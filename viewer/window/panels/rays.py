@@ -1,4 +1,4 @@
-"""What became of the rays of the clicked pixel: a tree that folds, with filters, beside the way of the selected ray."""
+"""What became of the rays of the clicked pixel: a tree that folds, with filters, and the way of the selected ray."""
 
 from __future__ import annotations
 
@@ -10,10 +10,16 @@ from viewer.state.ray_lines import MOST_DRAWN
 from viewer.state.verdicts import Shown
 from viewer.window.panels import lights, ray_steps
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip
+from viewer.window.widgets import QUIET, checkbox, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip
 
 _SIDE_BY_SIDE = 38.0  # ems of width that leave room for both
 _TREE_SHARE = 0.48
+_ROWS = 14  # lines of the tree, and of the steps
+_DRAWN = (
+    "in the picture, the shadow rays of the clicked point (I): yellow as far as light comes, then blue; outlined in "
+    "red is what blocks it, in orange what a certificate names; dashes are hidden. In the colour of partly occluded, "
+    "what hides its primitive; three squares are the pixel and the two that it is compared with (Figure 3)"
+)
 _LIGHT = 7.0  # ems of width, at least, for the name of a light
 _SHOWN_TIPS = {
     Shown.ALL: "every shadow ray, and those that were not asked",
@@ -24,28 +30,40 @@ _SHOWN_TIPS = {
 }
 
 
-def show(ui: Ui) -> None:
-    """The panel."""
-    rays = ui.controller.rays
+def section(ui: Ui) -> None:
+    """A part of the panel that folds; rays are listed, and drawn in the picture, where it is open."""
+    rays, p = ui.controller.rays, ui.controller.preferences
+    wanted, ui.rays_wanted = ui.rays_wanted, False
+    imgui.dummy(ImVec2(0.0, em(0.15)))
+    if wanted:
+        imgui.set_next_item_open(True)
+    opened = imgui.collapsing_header("Rays")
+    tooltip("what became of each ray of the clicked pixel (X)")
+    if wanted:
+        imgui.set_scroll_here_y(0.0)
+    checkbox("Draw for a click", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), _DRAWN)
+    if not opened:
+        return
     rays.watch()
     rays.pointed = None
     if rays.rows is None:
         paragraph(_why_nothing(ui), QUIET)
         return
     _filters(ui, rays)  # across the whole panel, so that they stay where they are when the steps come
-    room = imgui.get_content_region_avail()
-    wide = room.x >= em(_SIDE_BY_SIDE)
+    wide = imgui.get_content_region_avail().x >= em(_SIDE_BY_SIDE)
     row = rays.selected
-    if row is None or not row.single:
-        _tree(rays)
-        return
-    size = ImVec2(_TREE_SHARE * room.x, 0.0) if wide else ImVec2(0.0, 0.5 * room.y)
-    if imgui.begin_child("tree", size):
+    steps = row is not None and row.single
+    height = _ROWS * imgui.get_text_line_height_with_spacing()
+    if imgui.begin_child(
+        "tree", ImVec2(_TREE_SHARE * imgui.get_content_region_avail().x if wide and steps else 0.0, height)
+    ):
         _tree(rays)
     imgui.end_child()
+    if not steps:
+        return
     if wide:
         imgui.same_line()
-    if imgui.begin_child("steps", ImVec2(0.0, 0.0)):
+    if imgui.begin_child("steps", ImVec2(0.0, height)):
         ray_steps.show(ui)
     imgui.end_child()
 
@@ -53,12 +71,12 @@ def show(ui: Ui) -> None:
 def _why_nothing(ui: Ui) -> str:
     c = ui.controller
     if c.runs.current is not None:
-        return f"Rays are looked into when the {c.runs.current.name} has ended."
+        return f"Rays are listed when the {c.runs.current.name} has ended."
     if c.selection.picked is None:
-        return "Click a pixel to see what became of each of its rays: asked, culled or traced, and why."
+        return "Click a pixel to see what became of each of its rays."
     if c.selection.pixel is None:
         return "The clicked point is not visible from here."
-    return "The rays are looked into when the picture is whole."
+    return "The rays are listed when the picture is whole."
 
 
 def _tree(rays: RayInspector) -> None:

@@ -1,0 +1,192 @@
+"""Why is this shadow ray culled, or traced?  A sentence for a click, whose links lead on."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from imgui_bundle import imgui
+from PIL import Image
+
+from tests.viewer.driver import Driver
+from tracer.culling.fate import Fate
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.why import Reason, Rule, Why
+from tracer.why_in_words import Words, plain
+from viewer.state import navigation
+
+KEY = imgui.Key
+FULLY, PARTLY = OcclusionMode.FULLY_RENDERED, OcclusionMode.PARTIALLY_OCCLUDED
+ROOM = Path(__file__).resolve().parents[3] / "assets" / "scenes" / "default.aff"
+
+
+def why(d: Driver) -> None:
+    """A culled shadow, a primitive that is partly occluded, and one at the screen's edge: each click is answered by one
+    sentence, at the top of the Inspector, and the names in it are links."""
+    d.settle()
+    d.c.settings.change(method="paper")
+    d.drop(ROOM)
+    d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path == ROOM, "the room")
+    d.settle()
+    for _ in range(3):
+        d.c.tracing.trace_again()
+        d.settle()
+    _culled(d)
+    _occluded(d)
+    _at_the_edge(d)
+    _taught(d)
+
+
+def _culled(d: Driver) -> None:
+    """The pixel's light is chosen by a click on its line, and the fate is said first."""
+    one = _click(d, _of(d, FULLY, ShadowMode.FULL_SHADOW), lambda one: one.rule is Rule.FULL_SHADOW)
+    d.c.settings.set_light((one.light + 1) % len(d.c.session.scene.lights))
+    d.frames(3)
+    d.context.item_click(f"//Inspector/$${one.light}/{d.ui.light_name(one.light)}##light")
+    d.frames(3)
+    assert d.c.session.light == one.light
+    assert _said(d, one) == "Culled: fully rendered, and every shadow ray so far was blocked (§2.4)."
+    assert one.fate is Fate.CULLED and not one.lit
+    _shot(d, "culled")
+    blocker = f"//Inspector/answer/{_named(d, one.blocker)}##0"
+    assert d.context.item_exists(blocker), "what is in the way is a link"
+    d.context.item_click(blocker)
+    d.frames(3)
+    assert d.c.selection.picked.primitive == one.blocker
+
+
+def _occluded(d: Driver) -> None:
+    """What hides it is named and outlined, and the pixel at which it does is a link, as the thing is."""
+    inside = _of(d, PARTLY) & ~_at_border(d)
+    one = _click(d, inside, _by_something)
+    d.c.settings.set_light(one.light)
+    d.frames(3)
+    text, hider = _said(d, one), _named(d, one.occluded.primitive)
+    assert f"partly occluded by {hider} at " in text and text.endswith("so its shadow mode is not trusted (§2.4).")
+    _shot(d, "occluded")
+    by, drawn = d.c.inspector.why.coverage.occluded, _drawn(d)
+    d.context.mouse_move(f"//Inspector/reason/{hider}##0")
+    d.frames(3)
+    assert _drawn(d) > drawn, "a name that the pointer is on is outlined"
+    d.press(KEY.i)
+    assert _drawn(d) < drawn, "no outline of what hides it, and no squares"
+    d.press(KEY.i)
+    d.context.item_click(f"//Inspector/reason/{hider}##0")
+    d.frames(3)
+    assert d.c.selection.picked.primitive == one.occluded.primitive
+    one = _click(d, inside, _by_something)
+    link = next(part for part in _words(d).reason(one) if not isinstance(part, str) and part.pixel is not None)
+    assert link.pixel == by.pixel
+    d.context.item_click(f"//Inspector/reason/{link.text}##1")
+    d.frames(3)
+    assert (d.c.selection.picked.x, d.c.selection.picked.y) == by.pixel
+
+
+def _at_the_edge(d: Driver) -> None:
+    one = _click(
+        d, _of(d, PARTLY) & _at_border(d), lambda one: one.rule is Rule.PARTLY_OCCLUDED and one.occluded.at_edge
+    )
+    d.c.settings.set_light(one.light)
+    d.frames(3)
+    assert "clipped by the screen's edge at " in _said(d, one)
+    _shot(d, "edge")
+
+
+def _taught(d: Driver) -> None:
+    """Who taught a shadow mode is named, and the link leads back to that picture."""
+    one = _click(d, _of(d, FULLY, ShadowMode.PARTIAL_SHADOW), lambda one: one.rule is Rule.PARTIAL_SHADOW)
+    d.c.settings.set_light(one.light)
+    d.wait(lambda: d.c.teachers.answered > 0, "the pixels that taught", 30.0)
+    d.frames(3)
+    taught = d.c.record.taught(d.c.selection.picked)
+    number = max(taught.lights[one.light])
+    assert d.context.item_exists(f"//Inspector/reason/picture {number}##0")
+    _shot(d, "taught")
+    d.press(KEY.x)
+    d.wait(lambda: d.c.rays.rows is not None, "the rays", 20.0)
+    d.frames(3)
+    _shot(d, "rays")
+    left = d.c.session.camera
+    d.c.motion.move(navigation.look(left, 0.02, 0.0, d.c.motion.world_up))
+    d.settle()
+    assert d.c.session.camera != left
+    d.context.item_click(f"//Inspector/reason/picture {number}##0")
+    d.settle()
+    assert d.c.session.camera == left, "it goes back to that picture, and selects its pixel there"
+    assert d.c.selection.picked is not None
+
+
+def _by_something(one: Reason) -> bool:
+    return one.rule is Rule.PARTLY_OCCLUDED and not one.occluded.at_edge and one.occluded.primitive >= 0
+
+
+def _click(d: Driver, here: np.ndarray, wanted: Callable[[Reason], bool]) -> Reason:
+    """Click a pixel of those that are `here`, with the like around it, that has such a reason, and return the first."""
+    frame = d.c.frame
+    for shift in (-2, 2):  # a hand is not that steady
+        for axis in (0, 1):
+            here = here & (np.roll(frame.primitive, shift, axis) == frame.primitive)
+    here[:3], here[-3:], here[:, :3], here[:, -3:] = False, False, False, False
+    rows, columns = np.nonzero(here)
+    near = np.argsort(np.hypot(rows - frame.height / 2, columns - frame.width / 2))
+    for i in near[:: max(1, len(near) // 20)].tolist():
+        _click_at(d, int(columns[i]), int(rows[i]))
+        found = next((one for one in d.c.inspector.why.reasons if wanted(one)), None)
+        if found is not None:
+            return found
+    raise AssertionError("no pixel has such a reason")
+
+
+def _of(d: Driver, occlusion: OcclusionMode, shadow: ShadowMode | None = None) -> np.ndarray:
+    """Where primitives have such modes, for any light."""
+    frame = d.c.frame
+    here = frame.occlusion_mode == occlusion
+    return here if shadow is None else here & (frame.shadow_mode == shadow).any(-1)
+
+
+def _at_border(d: Driver) -> np.ndarray:
+    """Where primitives are seen that the screen's edge cuts off."""
+    seen = d.c.frame.primitive
+    return np.isin(seen, np.concatenate([seen[0], seen[-1], seen[:, 0], seen[:, -1]]))
+
+
+def _known(d: Driver) -> Why:
+    """What is found of the pixel that has just been selected."""
+    d.frames(2)
+    d.wait(lambda: d.c.inspector.why is not None, "the reasons", 20.0)
+    return d.c.inspector.why
+
+
+def _click_at(d: Driver, x: int, y: int) -> None:
+    left, top, right, bottom = d.picture_edges()
+    u, v = (x + 0.5) / d.c.frame.width, (y + 0.5) / d.c.frame.height
+    d.c.selection.clear()
+    d.frames(2)
+    d.context.mouse_move_to_pos((left + u * (right - left), top + v * (bottom - top)))
+    d.context.mouse_click(0)
+    _known(d)
+    d.frames(3)
+
+
+def _words(d: Driver) -> Words:
+    return Words(d.c.session.scene, d.c.inspector.why)
+
+
+def _said(d: Driver, one: Reason) -> str:
+    return plain(_words(d).reason(one))
+
+
+def _named(d: Driver, primitive: int) -> str:
+    return _words(d).primitive(primitive).text
+
+
+def _drawn(d: Driver) -> int:
+    return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()
+
+
+def _shot(d: Driver, name: str) -> None:
+    folder = os.environ.get("WHY_SHOTS")
+    if folder:
+        Image.fromarray(np.asarray(d.window())).save(f"{folder}/{name}.png")

@@ -1,0 +1,142 @@
+"""Sentences with links: words that wrap at the panel's edge, and what a click on a name does."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from tracer.why import SECTIONS
+from tracer.why_in_words import Link, Sentence
+from viewer.state.pixels import Point
+from viewer.window import closer
+from viewer.window.finding import fly_to_selected
+from viewer.window.panels import going_back
+from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, fitted, tooltip
+
+_Word = tuple[str, Link | None]
+_TRAILING = re.compile(r"\S+\s*|\s+")
+
+
+def sentence(ui: Ui, said: Sentence, key: str, color: ImVec4 | None = None) -> None:
+    """Write a sentence that wraps at the panel's edge; `key` tells its links from those of other sentences."""
+    imgui.push_id(key)
+    gap = imgui.get_style().item_spacing
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0.0, 0.25 * gap.y))
+    left, room = imgui.get_cursor_screen_pos().x, imgui.get_content_region_avail().x
+    number, at = 0, left
+    for group in _groups(said):
+        width = sum(imgui.calc_text_size(text).x for text, _ in group)
+        needed = width - imgui.calc_text_size(" ").x * group[-1][0].endswith(" ")
+        if at > left and at + needed <= left + room:
+            imgui.same_line(0.0, 0.0)
+        else:
+            at = left
+        for place, (text, link) in enumerate(group):
+            if place:
+                imgui.same_line(0.0, 0.0)
+            if link is None:
+                _plain(text, color)
+            else:
+                _link(ui, link, fitted(text, left + room - at), number)
+                number += 1
+        at += width
+    imgui.pop_style_var()
+    imgui.dummy(ImVec2(0.0, 0.0))
+    imgui.pop_id()
+
+
+def _groups(said: Sentence) -> Iterator[list[_Word]]:
+    """What stays together in a line: a break may come after a blank between words, but in no link."""
+    group: list[_Word] = []
+    for part in said:
+        words: list[_Word] = (
+            [(part.text, part)] if isinstance(part, Link) else [(w, None) for w in _TRAILING.findall(part)]
+        )
+        for word in words:
+            group.append(word)
+            if word[1] is None and word[0][-1].isspace():
+                yield group
+                group = []
+    if group:
+        yield group
+
+
+def _plain(text: str, color: ImVec4 | None) -> None:
+    if color is not None:
+        imgui.text_colored(color, text)
+    else:
+        imgui.text_unformatted(text)
+
+
+def _link(ui: Ui, link: Link, text: str, number: int) -> None:
+    """A name: a click leads to what it stands for, and the right button offers more."""
+    if link.section:
+        imgui.text_colored(QUIET, text)
+        tooltip(f"{link.text}  {SECTIONS[link.section]}")
+        return
+    if imgui.text_link(f"{text}##{number}"):
+        follow(ui, link)
+    if imgui.is_item_hovered():
+        ui.pointed_link = link
+    tooltip(f"{_about(ui, link)}\n\nThe right button offers more.")
+    if imgui.begin_popup_context_item(f"more {number}"):
+        _menu(ui, link)
+        imgui.end_popup()
+
+
+def follow(ui: Ui, link: Link) -> None:
+    """Go to the frame, or select the pixel or the primitive, that a link stands for."""
+    c = ui.controller
+    if link.frame is not None:
+        c.travel.go(link.frame, point=_point(ui, link))
+    elif link.pixel is not None:
+        point = _point(ui, link)
+        if point is not None:
+            c.selection.select(point)
+    elif link.primitive is not None and c.session.edited is not None:
+        c.selection.select_primitive(int(c.session.edited.primitives[link.primitive]))
+
+
+def _about(ui: Ui, link: Link) -> str:
+    if link.frame is not None:
+        kept = ui.controller.record.moments.get(link.frame) is not None
+        return f"Go to {going_back.in_words(ui, link.frame)}" if kept else "This picture is no longer kept."
+    return "Select this pixel" if link.pixel is not None else "Select it; resting here outlines it in the picture"
+
+
+def _menu(ui: Ui, link: Link) -> None:
+    """What can be done with what a link stands for."""
+    c = ui.controller
+    if link.frame is not None:
+        if imgui.menu_item(f"{icons.ICON_FA_CLOCK}  Go there", "", False)[0]:
+            follow(ui, link)
+        if imgui.menu_item(f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Go there with its modes", "", False)[0]:
+            c.travel.go(link.frame, modes=True, point=_point(ui, link))
+    elif link.pixel is not None:
+        if imgui.menu_item(f"{icons.ICON_FA_ARROW_POINTER}  Select", "", False)[0]:
+            follow(ui, link)
+        if imgui.menu_item(f"{icons.ICON_FA_MAP_PIN}  Mark and watch it", ui.key("Watch pixel").strip(" ()"), False)[0]:
+            closer.pin(ui, _point(ui, link))
+    elif link.primitive is not None:
+        if imgui.menu_item(f"{icons.ICON_FA_ARROW_POINTER}  Select", "", False)[0]:
+            follow(ui, link)
+        if imgui.menu_item(f"{icons.ICON_FA_PLANE}  Fly there", ui.key("Focus").strip(" ()"), False)[0]:
+            follow(ui, link)
+            fly_to_selected(ui)
+
+
+def _point(ui: Ui, link: Link) -> Point | None:
+    """The pixel of a link as a point of the picture, or of the picture that taught."""
+    if link.pixel is None:
+        return None
+    frame, moment = ui.controller.frame, None
+    if link.frame is not None:
+        moment = ui.controller.record.moments.get(link.frame)
+    width, height = (frame.width, frame.height) if frame is not None else (1, 1)
+    if moment is not None:
+        width, height = moment.settings.width, moment.settings.height
+    return (link.pixel[0] + 0.5) / width, (link.pixel[1] + 0.5) / height
