@@ -443,6 +443,7 @@ class FrameInProgress:
         statistics.part = 1.0 if self._parts is None else self._parts.share
         if settings.keeps_modes:
             statistics.mode_changes = mode_changes(self.words, learnt.words, self.workers)
+        statistics.resting = self._resting_primitives()
         if settings.record_lights:
             statistics.samples = sample_counts(buffers.asked, buffers.reached)
         built = self._state.world.built()
@@ -490,6 +491,10 @@ class FrameInProgress:
             structures=structures,
             statistics=statistics,
         )
+
+    def _resting_primitives(self) -> int:
+        primitives, rests = self._state.world.primitives, self.resting.since > 0
+        return int((np.diff(primitives.triangle_starts) + np.diff(primitives.quadric_starts))[rests].sum())
 
     def _wrong(self) -> WrongCounts | None:
         """What verifying has found in all samples so far."""

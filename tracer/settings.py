@@ -31,8 +31,8 @@ class Settings:
     zoom_factor : float
         A primitive that covers more than this many times its highest pixel count is judged again (§2.6).
     modes : bool
-        Keep the paper's modes also beside a method that does not cull by them: exactly those that "paper+rest" would
-        have. Objects that rest then count as static for every method.
+        Keep the paper's modes also beside a method that does not cull by them: exactly those that "paper" would have,
+        or "paper+rest" beside methods for which objects that rest count as static.
     verify : bool
         Trace every culled answer as well, count the wrong ones, and fill `Frame.reference` and `Frame.wrong`.
     lamp_radius : float or None

@@ -283,6 +283,8 @@ class FrameStatistics:
         For each light that has modes; empty if none are kept.
     mode_changes : ModeChanges or None
         How modes changed in this frame; None if none are kept.
+    resting : int
+        Primitives of dynamic objects that rest, by a method for which these count as static: they carry modes.
     phases : dict of str to float
         Seconds of each phase of Figure 1.
     """
@@ -304,6 +306,7 @@ class FrameStatistics:
     seconds: float = 0.0
     by_modes: list[SaidByModes] = field(default_factory=list)
     mode_changes: ModeChanges | None = None
+    resting: int = 0
     phases: dict[str, float] = field(default_factory=dict)
 
     def add_made(self, made: Counts) -> None:

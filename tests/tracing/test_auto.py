@@ -173,7 +173,7 @@ def test_pictures_and_modes_are_right_whatever_is_decided(whimsical: str, accele
                 world=world,
                 cost_model=model,
             )
-            for m in ("none", whimsical)
+            for m in ("none+rest", whimsical)
         )
         for number, (time, camera) in enumerate(walk.frames):
             expected, frame = none.render(time, camera), auto.render(time, camera)

@@ -176,7 +176,7 @@ def test_a_reason_speaks_of_the_modes_that_the_frame_before_left(room: tracer.Sc
 
 def test_without_culling_it_is_said_what_the_paper_would_have_done(scene_file: Path):
     plain_one = Renderer(load_scene(scene_file), Settings(32, 24, method="none", threads=1, modes=True))
-    paper = Renderer(load_scene(scene_file), Settings(32, 24, method="paper+rest", threads=1))
+    paper = Renderer(load_scene(scene_file), Settings(32, 24, method="paper", threads=1))
     for time in (5.0, 5.5, 6.0):
         frame, other = plain_one.render(time), paper.render(time)
     for x, y in pixels(frame, 2):

@@ -63,7 +63,7 @@ class Auto(ShadowMethod):
             self._certified.begin(frame)
 
     def follows_rest(self) -> bool:
-        return self._plan.needs_certificates or self._certified.store is not None
+        return True  # in every frame, as modes that are kept beside would come and go with the plan
 
     @contextmanager
     def _paid(self) -> Iterator[None]:

@@ -91,6 +91,3 @@ class ModesBeside(Paper):
     """Sets the modes that the paper's method would have, beside a method that does not cull by them."""
 
     culls = False
-
-    def follows_rest(self) -> bool:
-        return True

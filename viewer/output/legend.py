@@ -82,6 +82,15 @@ def _classes(rows: list[LegendRow], units: str) -> tuple[Entry, ...]:
     )
 
 
+def _at_rest(frame: Frame) -> tuple[Entry, ...]:
+    """The primitives of dynamic objects that are not counted as dynamic, so that none is missed."""
+    resting = frame.statistics.resting
+    if not resting:
+        return ()
+    meaning = f"{count(resting)} primitives of dynamic objects that rest: with {frame.settings.method} they count as "
+    return (Entry("dynamic, at rest", None, ("", count(resting)), f"{meaning}static, and are in the rows above"),)
+
+
 def _units(frame: Frame) -> str:
     return "cells" if has_modes_of_cells(frame) else "primitives"
 
@@ -120,7 +129,7 @@ def _of_part(frame: Frame) -> str:
 
 def _occlusion(frame: Frame, view: View, chosen: Chosen) -> Legend:
     units = _units(frame)
-    entries = _classes(occlusion_legend(frame), units)
+    entries = (*_classes(occlusion_legend(frame), units), *_at_rest(frame))
     return Legend(view.label, ("pixels", units), entries, facts=_by_modes(frame))
 
 
@@ -139,7 +148,7 @@ def _of_light(frame: Frame, view: View, chosen: Chosen) -> Legend:
             title,
             notes=(Note("This light is not culled, as there are too many: all its rays are traced.", Tone.WARNING),),
         )
-    return Legend(title, ("pixels", units), _classes(rows, units), facts=facts)
+    return Legend(title, ("pixels", units), (*_classes(rows, units), *_at_rest(frame)), facts=facts)
 
 
 def _primitives(frame: Frame, view: View, chosen: Chosen) -> Legend:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.scenes import loaded
+from tests.tracing.nasty_worlds import nasty_walk
 from tests.viewer.colors import luminance
 from tests.viewer.fakes import (
     in_cells,
@@ -117,6 +118,22 @@ def test_modes_come_with_shares_and_counts(frame: Frame):
     by_name = {entry.name: entry.values for entry in legend.entries}
     assert by_name["fully rendered"] == ("42.9 %", "3") and by_name["dynamic"] == ("28.6 %", "2")
     assert of(in_cells(make_frame(SETTINGS)), View.OCCLUSION).columns == ("pixels", "cells")
+
+
+@pytest.mark.parametrize("method", ["paper", "none", "auto", "certified", "paper+rest"])
+def test_a_scene_has_the_same_dynamic_primitives_by_every_method(method: str):
+    """Those that rest, in the second picture of one moment, carry modes where the method says so; none is missed."""
+    walk = nasty_walk(7, frames=1)
+    time, camera = walk.frames[0]
+    dynamic = sum(len(one.triangles) + len(one.quadrics) for one in walk.scene.objects[1:])
+    renderer = Renderer(walk.scene, Settings(30, 24, 2, method, modes=True, threads=1))
+    renderer.render(time, camera)
+    frame = renderer.render(time, camera)
+    for view in (View.OCCLUSION, View.SHADOW):
+        told = {entry.name: entry.values[1] for entry in of(frame, view).entries}
+        counts = {name: int(told.get(name, "0").replace(",", "")) for name in ("dynamic", "dynamic, at rest")}
+        assert sum(counts.values()) == dynamic > 0, counts
+        assert (counts["dynamic"] == 0) == (method not in ("paper", "none"))
 
 
 def test_in_motion_legends_count_the_modes_that_are_drawn():

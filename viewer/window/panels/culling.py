@@ -29,10 +29,7 @@ def show(ui: Ui) -> None:
     c = ui.controller
     s, p = c.session.settings, c.preferences
     _method(ui)
-    frame = c.frame
-    if frame is not None and frame.settings.method == c.session.settings.method and c.runs.current is None:
-        if frame.statistics.decision:
-            paragraph(frame.statistics.decision, QUIET)
+    paragraph(trust(c), QUIET)
     clusters = Method.parse(s.method).clusters
     if not clusters:  # which keep no modes
         tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
@@ -102,8 +99,16 @@ def _method(ui: Ui) -> None:
         if shown:
             row("Method", "which shadow rays are not traced, and what that trusts; C turns culling off and on")
             method_list(ui, "##method", name, lambda chosen: c.settings.change(method=chosen))
-    for kind in Method.parse(name).kinds:
-        paragraph(kind.summary if kind.name == name else f"{kind.name}: {kind.summary}", QUIET)
+
+
+def trust(c: Controller) -> str:
+    """What the chosen method trusts and whether it is exact, then what it does in the newest picture, and why."""
+    frame, name = c.frame, c.session.settings.method
+    kinds = Method.parse(name).kinds
+    said = [kind.summary if len(kinds) == 1 else f"{kind.name}: {kind.summary}" for kind in kinds]
+    if frame is not None and frame.settings.method == name and c.runs.current is None:
+        said.append(frame.statistics.decision)
+    return " ".join(filter(None, said))
 
 
 def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
