@@ -172,8 +172,8 @@ class Parts:
         return np.where(known, own, (rows * self._width + columns).astype(np.int32))
 
     def stretch_records(self, frame: Frame, shaded: NDArray[np.float32]) -> None:
-        """Let pixels that have not been shaded show the work, and the fates of rays, of the nearest that have, or of one
-        that sees the same primitive where these see another.
+        """Let pixels that have not been shaded show the work, and the fates of rays, of the nearest that have, or of
+        one that sees the same primitive where these see another.
 
         What is wrong, due or lit there is not known yet.
 
