@@ -142,7 +142,7 @@ def test_a_picture_of_which_a_part_is_shaded_says_what_the_modes_of_each_pixel_s
             assert np.array_equal(fates[guessed], final[guessed])
             assert np.count_nonzero(part.moving_shadow(light) != whole.moving_shadow(light)) < 0.05 * fates.size
         apart.append(np.mean([part.fate(light) != whole.fate(light) for light in range(whole.lights)]))
-    assert apart[1] < apart[0] < 0.15
+    assert apart[0] < 0.15 and apart[1] < 0.06, "most of them have seen their own primitive"
 
 
 def test_of_a_lamp_the_sample_that_asked_most_counts() -> None:
