@@ -172,7 +172,8 @@ class Parts:
         return np.where(known, own, (rows * self._width + columns).astype(np.int32))
 
     def stretch_records(self, frame: Frame, shaded: NDArray[np.float32]) -> None:
-        """Let pixels that have not been shaded show the work, and the fates of shadow rays, of the nearest that have.
+        """Let pixels that have not been shaded show the work, and the fates of rays, of the nearest that have, or of
+        one that sees the same primitive where these see another.
 
         What is wrong, due or lit there is not known yet.
 
@@ -182,7 +183,7 @@ class Parts:
             frame.asked, frame.reached = frame.asked.copy(), frame.reached.copy()
         if frame.reference is None and frame.fates is None and frame.saved is None:
             return
-        sources = self._sources()
+        sources = _of_own(frame.primitive, frame.shaded, self._sources())
         if frame.reference is not None and frame.wrong is not None:
             frame.reference = frame.color + _taken(frame.reference - shaded, sources)
             frame.wrong = frame.wrong.copy()
@@ -192,6 +193,17 @@ class Parts:
             frame.saved, frame.cost, frame.due_rays = (
                 _taken(work, sources) for work in (frame.saved, frame.cost, frame.due_rays)
             )
+
+
+def _of_own(primitive: NDArray[np.int32], known: NDArray[np.bool_], sources: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The sources, but a known pixel of the same primitive, where there is one, for those that are of another."""
+    other = np.flatnonzero((primitive != _taken(primitive, sources)) & (primitive >= 0))
+    seen, numbers = np.flatnonzero(known & (primitive >= 0)), primitive.reshape(-1)
+    some = np.full(int(numbers.max(initial=-1)) + 1, -1, np.int32)
+    some[numbers[seen]] = seen
+    found = some[numbers[other]]
+    sources.reshape(-1)[other[found >= 0]] = found[found >= 0]
+    return sources
 
 
 def _taken(values: NDArray, sources: NDArray[np.int32]) -> NDArray:
