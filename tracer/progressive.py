@@ -158,33 +158,57 @@ class Parts:
 
     def stretched(self, values: NDArray) -> NDArray:
         """values (height, width, ...) of the pixels that have been shaded, those of the nearest at the others."""
+        return _taken(values, self._sources())
+
+    def _sources(self) -> NDArray[np.int32]:
+        """(height, width): the number of the pixel whose values each shows, its own where it has been shaded."""
         known = pixels_of(self.shaded, self._width, self._height)
         y, x = np.argwhere(self._first == BAYER)[0]
         rows, columns = np.ix_(nearest(self._height, int(y)), nearest(self._width, int(x)))
         if self._width > BLOCK:  # every other block may have none: then what the one beside it has
             beside = np.where(columns + BLOCK < self._width, columns + BLOCK, columns - BLOCK)
             columns = np.where(known[rows, columns], columns, beside)
-        known = known.reshape(known.shape + (1,) * (values.ndim - 2))
-        return np.where(known, values, values[rows, columns])
+        own = np.arange(known.size, dtype=np.int32).reshape(known.shape)
+        return np.where(known, own, (rows * self._width + columns).astype(np.int32))
 
     def stretch_records(self, frame: Frame, shaded: NDArray[np.float32]) -> None:
-        """Let pixels that have not been shaded show the work of the nearest that have.
+        """Let pixels that have not been shaded show the work, and the fates of rays, of the nearest that have, or of
+        one that sees the same primitive where these see another.
 
         What is wrong, due or lit there is not known yet.
 
         shaded (height, width, 3) are the colours before the others were filled in."""
-        if frame.reference is not None and frame.wrong is not None:
-            frame.reference = frame.color + self.stretched(frame.reference - shaded)
-            frame.wrong = frame.wrong.copy()
         frame.shaded = pixels_of(self.shaded, self._width, self._height)
         if frame.asked is not None and frame.reached is not None:
             frame.asked, frame.reached = frame.asked.copy(), frame.reached.copy()
+        if frame.reference is None and frame.fates is None and frame.saved is None:
+            return
+        sources = _of_own(frame.primitive, frame.shaded, self._sources())
+        if frame.reference is not None and frame.wrong is not None:
+            frame.reference = frame.color + _taken(frame.reference - shaded, sources)
+            frame.wrong = frame.wrong.copy()
         if frame.fates is not None:
-            frame.fates = self.stretched(frame.fates)
+            frame.fates = _taken(frame.fates, sources)
         if frame.saved is not None and frame.cost is not None and frame.due_rays is not None:
             frame.saved, frame.cost, frame.due_rays = (
-                self.stretched(work) for work in (frame.saved, frame.cost, frame.due_rays)
+                _taken(work, sources) for work in (frame.saved, frame.cost, frame.due_rays)
             )
+
+
+def _of_own(primitive: NDArray[np.int32], known: NDArray[np.bool_], sources: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The sources, but a known pixel of the same primitive, where there is one, for those that are of another."""
+    other = np.flatnonzero((primitive != _taken(primitive, sources)) & (primitive >= 0))
+    seen, numbers = np.flatnonzero(known & (primitive >= 0)), primitive.reshape(-1)
+    some = np.full(int(numbers.max(initial=-1)) + 1, -1, np.int32)
+    some[numbers[seen]] = seen
+    found = some[numbers[other]]
+    sources.reshape(-1)[other[found >= 0]] = found[found >= 0]
+    return sources
+
+
+def _taken(values: NDArray, sources: NDArray[np.int32]) -> NDArray:
+    """values (height, width, ...) of the pixels with these numbers (height, width)."""
+    return np.take(values.reshape(-1, *values.shape[2:]), sources, axis=0)
 
 
 def _with_neighbours(blocks: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -64,9 +64,8 @@ def explain(path: Path, options: Namespace) -> None:
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, options.camera, work.cancelled)
         found = why(renderer, frame, x, y, work.cancelled)
-        if not options.json:
-            work.count("asking which frames have taught it", len(before), len(before) + 1)
-            found = _with_teachers(found, renderer, frame, ledger, before)
+        work.count("asking which frames have taught it", len(before), len(before) + 1)
+        found = _with_teachers(found, renderer, frame, ledger, before)
     tree = found.tree
     assert tree is not None
     if options.json:
@@ -105,7 +104,7 @@ def _with_teachers(found: Why, renderer: Renderer, frame: Frame, ledger: Ledger,
         return found
 
     def name(number: int) -> str:
-        return f"frame {number + 1} of the {len(before)} before"
+        return "the frame before" if len(before) == 1 else f"frame {number + 1} of the {len(before)} before"
 
     @cache
     def answers(number: int) -> Answers | None:

@@ -32,7 +32,7 @@ from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
 from viewer.services.lamps import LampSamples
 from viewer.state import terms
-from viewer.state.methods import CERTIFIED, SHOWN_BY, default_for
+from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
 from viewer.state.readings import MOST_RECORDED
 from viewer.state.slices import MIDDLE
 from viewer.state.tone import Tone
@@ -228,6 +228,9 @@ def check_view(settings: Settings, view: View, option: str = "--method") -> None
     if view is View.CUTS and not method.clusters:
         why = f"the method {settings.method} makes no clusters of lights"
         raise ValueError(f"--view {view.value}: {why}; give {option} {SHOWN_BY[view]}")
+    if view.needs_fates and method.clusters:
+        why = f"the method {settings.method} shades by clusters of lights, and single lights have no rays"
+        raise ValueError(f"--view {view.value}: {why}; give {option} {BY_MODES}")
     shows = {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}.get(view)
     if shows is not None and not any(name == method.base or method.has(name) for name in shows):
         raise ValueError(f"--view {view.value}: not with the method {settings.method}; give {option} {shows[0]}")

@@ -12,6 +12,7 @@ from tracer.culling import modes
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
+from tracer.method import Method
 from viewer.state.readings import (
     CUT_BOUND,
     arrivals,
@@ -65,8 +66,17 @@ class LegendRow:
 def occlusion_legend(frame: Frame) -> list[LegendRow]:
     """Units and primary pixels in each occlusion mode."""
     classes = modes.occlusion_mode(frame.modes)
-    rows = [(mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode]) for mode in OcclusionMode]
+    meaning = OCCLUSION_MEANING | {OcclusionMode.DYNAMIC: _dynamic(frame)}
+    rows = [(mode.name, OCCLUSION_COLORS[mode], meaning[mode]) for mode in OcclusionMode]
     return _rows(frame, classes, rows)
+
+
+def _dynamic(frame: Frame) -> str:
+    """What DYNAMIC means to the method: some take what rests for static, and so do modes beside a method."""
+    method = Method.parse(frame.settings.method)
+    if method.uses_modes and not method.has("rest"):
+        return "of an object that can move, also while it rests: never culled"
+    return "it moves now: not culled; what can move but rests counts as static"
 
 
 def shadow_legend(frame: Frame, light: int) -> list[LegendRow]:
@@ -81,7 +91,7 @@ def shadow_legend(frame: Frame, light: int) -> list[LegendRow]:
     striped = untrusted(frame, light)
     classes[striped] += len(ShadowMode)
     rows = [(mode.name, SHADOW_COLORS[mode], (SHADOW_MEANING | TRUSTED_MEANING)[mode]) for mode in ShadowMode]
-    rows.append(("DYNAMIC", OCCLUSION_COLORS[OcclusionMode.DYNAMIC], OCCLUSION_MEANING[OcclusionMode.DYNAMIC]))
+    rows.append(("DYNAMIC", OCCLUSION_COLORS[OcclusionMode.DYNAMIC], _dynamic(frame)))
     rows += [(f"{mode.name}, untrusted", SHADOW_COLORS[mode], UNTRUSTED_MEANING[mode]) for mode in UNTRUSTED_MEANING]
     found = _rows(frame, classes, rows)
     stripes = SHADOW_COLORS[ShadowMode.INIT]

@@ -160,7 +160,8 @@ class Controller:
         traced = self.traced if run is None else None  # edits may have left the newest frame behind
         # Before the next frame is asked for:
         self.inspector.follow(self.frame if run is None else None, not motion.lively)
-        self.rays.follow(traced, None if self.inspector.why is None else self.inspector.why.tree)
+        known = self.inspector.answer.why if self.inspector.answer is not None else None
+        self.rays.follow(traced, None if known is None else known.tree)
         self.table.follow(traced, motion.lively)
         edits, focus = self.editing.at_work, self.selection.hovered
         scene, settings = self.session.scene, self.session.settings

@@ -134,7 +134,9 @@ class ShadowInspector:
         if at is None and kept is None:
             self._forget()
         if self.answer is not None and _is_outdated(self.answer, frame):
-            self.answer = self.why = None
+            self.answer = None
+            if at is None or self._asked is None or self._asked.frame.settings.method != frame.settings.method:
+                self.why = None  # else the next comes at once
         if at is not None and not self._has_asked(frame, *at):
             self._drop()
             self._asked = PixelQuestion(frame, *at)

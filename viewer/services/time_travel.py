@@ -145,7 +145,8 @@ class TimeTravel:
         earlier = [n for n in numbers or [] if n < moment.number]
         kept = [self._record.moments.get(n) for n in earlier]
         if numbers is None or (numbers and moment.number < numbers[0]) or not all(kept):
-            self._notices.say(f"the modes of picture {moment.number} were forgotten since, and cannot be learnt again")
+            why = "were forgotten since, or learnt in motion, and cannot be learnt again"
+            self._notices.say(f"the modes of picture {moment.number} {why}")
             return None
         if len(kept) > MOST_REPLAYED:
             self._notices.say(f"it took {len(kept):,} pictures, and {MOST_REPLAYED:,} at most are traced again")

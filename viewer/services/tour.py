@@ -284,8 +284,8 @@ STEPS = (
     Step(
         "Click a shadow",
         lambda c, key: (
-            "Click a dark spot in the picture. The Inspector says which light is blocked there and by what, and "
-            "lines show the shadow rays."
+            "Click a dark spot in the picture. The Inspector says in a sentence why its shadow ray is culled or "
+            "traced, and lines show the shadow rays."
         ),
         _has_clicked_a_shadow,
         _click_a_shadow,

@@ -338,7 +338,7 @@ FATE_COLORS: dict[Fate, Color] = {
     Fate.CULLED: SHADOW_COLORS[ShadowMode.FULL_SHADOW],
     Fate.DYNAMIC_ONLY: SHADOW_COLORS[ShadowMode.NON_SHADOW],
     Fate.CANDIDATES: _hex("56B4E9"),
-    Fate.CACHED: _hex("A9DAF5"),
+    Fate.CACHED: _hex("8ACBF3"),
     Fate.PARTLY_OCCLUDED: OCCLUSION_COLORS[OcclusionMode.PARTIALLY_OCCLUDED],
     Fate.PARTIAL_SHADOW: SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW],
     Fate.NOT_SEEN_WHOLE: OCCLUSION_COLORS[OcclusionMode.INIT],
@@ -396,7 +396,8 @@ FATE_MEANING: dict[Fate, str] = {
     Fate.CACHED: "blocked by what blocked the last ray from here",
     Fate.PARTLY_OCCLUDED: "traced: something hides a part of the primitive, or the screen's edge cuts it off (§2.3)",
     Fate.PARTIAL_SHADOW: "traced: some shadow rays of the primitive were blocked and some were not (§2.5)",
-    Fate.NOT_SEEN_WHOLE: "traced: the primitive was not seen whole before, or is examined anew (§2.2, §2.6)",
+    Fate.NOT_SEEN_WHOLE: "traced: the primitive was not seen whole before, too few of its pixels have set its modes, "
+    "or it is examined anew (§2.2, §2.6)",
     Fate.DYNAMIC: "traced: the primitive belongs to a dynamic object, which is never culled (§2.2)",
     Fate.TRACED: "traced through the whole scene",
 }

@@ -68,7 +68,7 @@ class Ui:
     """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill, `picture_size` the
     one that it fills; `wiping` says that the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is
     being drawn, and `drawn_text` the words that are typed there, `pointed_light` and `pointed_link`
-    which light and which name it is on in the inspector, whose rays are to unfold where `rays_wanted`;
+    which light and which name it is on in the inspector, whose rays are to unfold for `rays_wanted` frames;
     `light_filters` is what is typed above each list of lights; `screening` is the recorded picture that is shown in the
     picture's place; `legend_shown` says whether the picture shows its legend, `legend_place` where that is on the
     screen, `legend_held` where the pointer holds it; `fate_shown` is the fate of
@@ -140,7 +140,7 @@ class Ui:
     zoom_all_steps: bool = False
     pointed_light: int | None = None
     pointed_link: Link | None = None
-    rays_wanted: bool = False
+    rays_wanted: int = 0
     what_if_drawn: int = -9
     what_if_below: float = 0.0
     held_light: int | None = None
@@ -187,7 +187,7 @@ class Ui:
 
     def show_rays(self) -> None:
         """Show the rays of the clicked pixel."""
-        self.rays_wanted = True
+        self.rays_wanted = 3  # until what is to be scrolled is laid out
         self.show_panel("Inspector")
 
     def take_commands(self, commands: list[Command]) -> None:

@@ -413,6 +413,10 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--view", "heat"], "'heat' is not a view"),
         (["-o", "OUT/x.png", "--view", "certificat"], "'certificat' is not a view: did you mean certificate:LIGHT?"),
         (
+            ["-o", "OUT/x.png", "--view", "fate:0", "--method", "lightcuts"],
+            "single lights have no rays; give --method paper",
+        ),
+        (
             ["-o", "OUT/x.png", "--view", "cuts", "--method", "auto"],
             "auto makes no clusters of lights; give --method light",
         ),

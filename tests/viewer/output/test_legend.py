@@ -264,6 +264,15 @@ def test_heat_maps_say_whether_they_count_or_share(frame: Frame):
     assert "without culling" in of(frame, View.COST, shares=True).title
 
 
+@pytest.mark.parametrize("method, rests", [("paper", False), ("paper+rest", True), ("auto", True), ("none", True)])
+@pytest.mark.parametrize("view", [View.OCCLUSION, View.SHADOW])
+def test_what_is_dynamic_says_whether_what_rests_is(view: View, method: str, rests: bool):
+    frame = make_frame(Settings(width=16, height=8, method=method, modes=True))
+    (dynamic,) = (entry for entry in of(frame, view).entries if entry.name == "dynamic")
+    assert ("rests counts as static" in dynamic.meaning) == rests
+    assert ("also while it rests" in dynamic.meaning) != rests
+
+
 def test_work_of_a_picture_in_part_is_counted_where_it_was_done():
     """Pixels that are not shaded yet show what the nearest has, and are no part of the counts."""
     scene = loaded(embedded_scenes()["default"])

@@ -18,6 +18,7 @@ SOME = 12  # pictures in motion that are looked at
 
 def fates(d: Driver) -> None:
     """The keys of the views of fates; another light asks for no frame; colours and legends agree in motion."""
+    d.settle()
     d.c.loader.open(embedded_scenes()["default"])
     d.fix_resolution(320, 180)
     d.c.settings.change(method="paper", samples=1)

@@ -37,6 +37,7 @@ def why(d: Driver) -> None:
     _occluded(d)
     _at_the_edge(d)
     _taught(d)
+    _in_motion(d)
 
 
 def _culled(d: Driver) -> None:
@@ -116,6 +117,28 @@ def _taught(d: Driver) -> None:
     d.settle()
     assert d.c.session.camera == left, "it goes back to that picture, and selects its pixel there"
     assert d.c.selection.picked is not None
+
+
+def _in_motion(d: Driver) -> None:
+    """While the film plays, the sentences are those of picture after picture."""
+    _click(d, _of(d, PARTLY) & ~_at_border(d), _by_something)
+    seen: list[Why] = []
+    missing = 0
+    d.c.motion.toggle_play()
+
+    def others() -> bool:
+        nonlocal missing
+        found = d.c.inspector.why
+        missing += found is None
+        if found is not None and not any(found is one for one in seen):
+            seen.append(found)
+        return len(seen) > 5
+
+    d.wait(others, "reasons of pictures in motion", 60.0)
+    d.c.motion.toggle_play()
+    d.settle()
+    assert missing == 0, "they came and went"
+    assert any(one.tree is None for one in seen), "none was of a picture in part"
 
 
 def _by_something(one: Reason) -> bool:

@@ -93,7 +93,10 @@ def show(ui: Ui) -> None:
     if history.values("built").any():
         plots = (*plots, _OF_TREE)
     even = [n for n in _ROOM if len(plots) % n == 0]  # so that no row has an empty place
-    columns = next((n for n in even if room.x > em(_ROOM[n])), 1)
+    bar = (
+        imgui.get_style().scrollbar_size if imgui.get_scroll_max_y() > 0.0 else 0.0
+    )  # which fewer rows may need no more
+    columns = next((n for n in even if room.x + bar > em(_ROOM[n])), 1)
     width = room.x - (columns - 1) * spacing
     for number, (title, series) in enumerate(plots):
         if number % columns:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE, LAZY
@@ -23,6 +23,8 @@ _COLUMNS = {  # with their widths in ems, 0 for what is left, and what they are
     "tests": (2.6, "primitives that the ray is tested against there"),
     "hits": (0.0, "what it hits there, and how far from {origin}"),
 }
+_PLAYER = 12.0  # ems of width that its buttons and the slider need
+_TABLE = 28.0  # and the columns
 _LEGEND = (
     "in the picture: the box of the chosen node, red where the ray hits something in it, and in white the part of the "
     "ray that lies in the box"
@@ -43,6 +45,8 @@ def show(ui: Ui) -> None:
         imgui.new_line()
         paragraph("This ray enters no node.", QUIET)
         return
+    if imgui.get_content_region_avail().x < em(_PLAYER):
+        imgui.new_line()
     _player(rays)
     text, why = ray_way.summary(tree, row, rays.visits, rays.structure)
     clipped(text, QUIET)
@@ -102,7 +106,9 @@ def _player(rays: RayInspector) -> None:
 def _list(rays: RayInspector, rows: RayRows, length: float, origin: str) -> None:
     """All steps; a click goes to one.  Distances are from `origin`, of rays of this length."""
     flags = imgui.TableFlags_.scroll_y | imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_fixed_fit
-    if not imgui.begin_table("visits", len(_COLUMNS), int(flags)):
+    flags |= imgui.TableFlags_.scroll_x  # where the panel is narrow
+    inner = max(imgui.get_content_region_avail().x - imgui.get_style().scrollbar_size, em(_TABLE))
+    if not imgui.begin_table("visits", len(_COLUMNS), int(flags), ImVec2(0.0, 0.0), inner):
         return
     imgui.table_setup_scroll_freeze(0, 1)
     for name, (width, _) in _COLUMNS.items():

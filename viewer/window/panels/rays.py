@@ -14,7 +14,7 @@ from viewer.window.widgets import QUIET, checkbox, clipped, em, fitted, paragrap
 
 _SIDE_BY_SIDE = 38.0  # ems of width that leave room for both
 _TREE_SHARE = 0.48
-_ROWS = 14  # lines of the tree, and of the steps
+_ROWS, _ROWS_ABOVE = 14, 6  # lines of the tree, and of the steps; and of the tree above these
 _DRAWN = (
     "in the picture, the shadow rays of the clicked point (I): yellow as far as light comes, then blue; outlined in "
     "red is what blocks it, in orange what a certificate names; dashes are hidden. In the colour of partly occluded, "
@@ -33,7 +33,7 @@ _SHOWN_TIPS = {
 def section(ui: Ui) -> None:
     """A part of the panel that folds; rays are listed, and drawn in the picture, where it is open."""
     rays, p = ui.controller.rays, ui.controller.preferences
-    wanted, ui.rays_wanted = ui.rays_wanted, False
+    wanted, ui.rays_wanted = ui.rays_wanted, max(ui.rays_wanted - 1, 0)
     imgui.dummy(ImVec2(0.0, em(0.15)))
     if wanted:
         imgui.set_next_item_open(True)
@@ -41,29 +41,33 @@ def section(ui: Ui) -> None:
     tooltip("what became of each ray of the clicked pixel (X)")
     if wanted:
         imgui.set_scroll_here_y(0.0)
+    if opened:
+        _list(ui, rays)
     checkbox("Draw for a click", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), _DRAWN)
-    if not opened:
-        return
+
+
+def _list(ui: Ui, rays: RayInspector) -> None:
+    """The tree, and the steps of the selected ray: beside it where there is room, else below, and the tree in fewer
+    lines."""
     rays.watch()
     rays.pointed = None
     if rays.rows is None:
         paragraph(_why_nothing(ui), QUIET)
         return
     _filters(ui, rays)  # across the whole panel, so that they stay where they are when the steps come
-    wide = imgui.get_content_region_avail().x >= em(_SIDE_BY_SIDE)
+    room, line = imgui.get_content_region_avail().x, imgui.get_text_line_height_with_spacing()
     row = rays.selected
-    steps = row is not None and row.single
-    height = _ROWS * imgui.get_text_line_height_with_spacing()
-    if imgui.begin_child(
-        "tree", ImVec2(_TREE_SHARE * imgui.get_content_region_avail().x if wide and steps else 0.0, height)
-    ):
+    steps, wide = row is not None and row.single, room >= em(_SIDE_BY_SIDE)
+    most = _ROWS if wide or not steps else _ROWS_ABOVE
+    lines = _ROWS if wide and steps else min(len(rays.seen) + 1.3, most)
+    if imgui.begin_child("tree", ImVec2(_TREE_SHARE * room if wide and steps else 0.0, lines * line)):
         _tree(rays)
     imgui.end_child()
     if not steps:
         return
     if wide:
         imgui.same_line()
-    if imgui.begin_child("steps", ImVec2(0.0, height)):
+    if imgui.begin_child("steps", ImVec2(0.0, _ROWS * line)):
         ray_steps.show(ui)
     imgui.end_child()
 
