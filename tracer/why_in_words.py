@@ -9,8 +9,8 @@ from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.method import Method
 from tracer.occluded_by import OccludedBy, Pixel, Reference
+from tracer.reasons import MEANING, WHY_TRACED, Coverage, Reason, Rule, TaughtBy, Why
 from tracer.scene.model import CONE, Scene
-from tracer.why import MEANING, WHY_TRACED, Coverage, Reason, Rule, TaughtBy, Why
 
 MOST_NAMED = 3  # primitives of an answer that are named
 

@@ -18,11 +18,11 @@ from tracer.geometry.rays import ray_batch
 from tracer.methods.payoff import Payoff, Plan
 from tracer.ray_reasons import unused
 from tracer.ray_tree import ray_tree
+from tracer.reasons import WHY_TRACED
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Cancelled
 from tracer.told_rays import TRACED, RayKind, RayTree
-from tracer.why import WHY_TRACED
 
 WIDTH, HEIGHT = 16, 12
 METHODS = ("none", "paper", "cells", "certified", "paper+cache", "auto")

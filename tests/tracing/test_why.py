@@ -23,10 +23,11 @@ from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shad
 from tracer.culling.verdicts import Verdict
 from tracer.frame import Frame, Settings
 from tracer.occluded_by import OccludedBy, Reference, Seen, occluded_by
+from tracer.reasons import Coverage, Reason, Rule, TaughtBy, Why
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Camera
-from tracer.why import Coverage, Reason, Rule, TaughtBy, Why, why
+from tracer.why import why
 from tracer.why_in_words import Link, Words, named, plain
 
 ASSETS = Path("assets/scenes")

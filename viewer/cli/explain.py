@@ -17,11 +17,12 @@ from rich.tree import Tree
 
 from tracer.frame import Frame
 from tracer.method import DEFAULT_METHOD, Method
+from tracer.reasons import Why
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from tracer.told_rays import RayTree
-from tracer.why import Why, why
+from tracer.why import why
 from viewer.cli.console import working
 from viewer.cli.edit_options import edited_scene, light_index
 from viewer.cli.mesh_arguments import mesh_options

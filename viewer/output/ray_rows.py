@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
+from tracer.reasons import MEANING, WHY_TRACED
 from tracer.scene.model import Scene
 from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
-from tracer.why import MEANING, WHY_TRACED
 from viewer.output.legend_parts import named_light
 from viewer.state.picking import primitive_in_words
 from viewer.state.verdicts import SAID, Filter, color_of, color_of_all

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from tracer.reasons import Why
 from tracer.scene.model import Scene
-from tracer.why import Why
 from tracer.why_in_words import Words, plain
 from viewer.output.legend_parts import named_light
 

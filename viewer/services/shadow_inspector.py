@@ -20,9 +20,10 @@ from numpy.typing import NDArray
 
 from tracer.explanation import Explanation, explain, outline
 from tracer.frame import Frame
+from tracer.reasons import Why
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
-from tracer.why import Why, why
+from tracer.why import why
 from viewer.services.render_request import Question, Traces
 from viewer.services.selection import Selection
 from viewer.state.picking import pixel_at, pixel_of

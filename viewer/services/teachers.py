@@ -16,10 +16,10 @@ import numpy as np
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, shadow_mode
 from tracer.explanation import explain
 from tracer.frame import Frame
+from tracer.reasons import TaughtBy, Why
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera
 from tracer.settings import Settings
-from tracer.why import TaughtBy, Why
 from viewer.services.record import Record
 from viewer.services.render_request import Question, Traced, Traces
 from viewer.services.selection import Selection

@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from tracer.why import Reason, Rule, Why
+from tracer.reasons import Reason, Rule, Why
 from tracer.why_in_words import Words, plain
 from viewer.state import navigation
 

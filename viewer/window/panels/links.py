@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.why import SECTIONS
+from tracer.reasons import SECTIONS
 from tracer.why_in_words import Link, Sentence
 from viewer.state.pixels import Point
 from viewer.window import closer

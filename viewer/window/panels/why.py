@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from imgui_bundle import ImVec2, imgui
 
 from tracer.explanation import Explanation
-from tracer.why import Reason, Rule, Why
+from tracer.reasons import Reason, Rule, Why
 from tracer.why_in_words import Words, plain
 from viewer.services.shadow_inspector import MOST_LIGHTS, nearest_first
 from viewer.services.teachers import with_teachers
