@@ -191,8 +191,12 @@ class Frame:
         """
         hit = self.primitive[where] >= 0
         fates = np.where(hit, self._recorded_fates(light, where) & np.uint8(FATE), np.uint8(Fate.NONE))
-        if Method.parse(self.settings.method).uses_modes:
-            fates[hit] = by_modes(fates[hit], self.modes_before[self.unit[where][hit]], light)
+        method = Method.parse(self.settings.method)
+        if method.uses_modes:
+            recorded, said = fates[hit], by_modes(fates[hit], self.modes_before[self.unit[where][hit]], light)
+            if any(kind.culls for kind in method.added):  # one of these may have answered what modes have not
+                said = np.where((recorded < Fate.TRACED) & (said >= Fate.PARTLY_OCCLUDED), recorded, said)
+            fates[hit] = said
         return fates
 
     def moving_shadow(self, light: int, where: Region = EVERYWHERE) -> NDArray[np.bool_]:

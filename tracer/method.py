@@ -267,7 +267,7 @@ _TABLE: tuple[tuple[str, str, dict[str, Any], str], ...] = (
     ("certified", "certified:certified", _PROVES,
      "Trusts only what is proven of the cells of triangles. Exact."),
     ("auto", "auto:Auto", {**_PROVES, "adaptive": True},
-     "Trusts certificates where they are measured to save time. Exact."),
+     "Trusts certificates where they measurably save time. Exact."),
     ("free", "free:Free", {"measures": True},
      "Trusts the answers of the same frame, traced before: no culling can be faster. Exact."),
     ("lightcuts", "lightcuts:Lightcuts", _CUTS,

@@ -409,7 +409,7 @@ class _Pixel:
         limit = max(kind.answers for kind in method.kinds if kind.culls)
         if light >= limit:
             return replace(told, rule=Rule.NO_ROOM, limit=limit)
-        if self._lamps[light] > 1 and not any(kind.lamps for kind in method.kinds if kind.culls):
+        if self._lamps[light] > 1 and not any(kind.lamps or kind.in_part for kind in method.kinds if kind.culls):
             return replace(told, rule=Rule.NOT_ANSWERED)
         decision = self._frame.statistics.decision if method.adaptive else ""
         return replace(told, rule=Rule.UNKNOWN, told=known or decision)

@@ -105,7 +105,7 @@ def test_when_they_no_longer_pay_they_are_left():
     machine = Machine(lambda known: (0.3 if pays[0] else -0.1) * known, 0.05)
     payoff = Payoff(0.01, False)
     payoff.made_ready()
-    assert payoff.reason == "Every shadow ray is traced: too few trials tell yet whether certificates would save time."
+    assert payoff.reason == "Every shadow ray is traced: certificates have had too few trials yet."
     rng, wrong = np.random.default_rng(3), 0
     for frame in range(600):
         pays[0] = frame < 300
@@ -116,7 +116,7 @@ def test_when_they_no_longer_pay_they_are_left():
         payoff.finish(0.1, 0.1, trials)
         wrong += plan.looks_up and not pays[0]
         assert frame != 299 or plan.looks_up
-    assert wrong < 30 and not payoff.looks_up and "longer" in payoff.reason
+    assert wrong < 30 and not payoff.looks_up and "slower" in payoff.reason
 
 
 def test_nothing_is_bought_that_the_purse_cannot_pay():
@@ -124,7 +124,7 @@ def test_nothing_is_bought_that_the_purse_cannot_pay():
     for _ in range(1000):
         assert payoff.plan(TILES) == Plan()
         payoff.finish(0.1, 0.1, [])
-    assert "setting certificates up" in payoff.reason
+    assert "not worth setting up yet" in payoff.reason
     assert payoff.plan(TILES, patience=0.4) == Plan(False, 0.4, 8), "where nobody waits it costs nothing"
 
 

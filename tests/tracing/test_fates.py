@@ -17,7 +17,10 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from viewer.util.resources import embedded_scenes
 
 SETTINGS = tracer.Settings(48, 40, depth=0, threads=2, record_fates=True)
-METHODS = ("paper", "cells", "certified", "auto", "paper+cache", "lightbuffer", "voxels", "lie-exact", "none")
+METHODS = (
+    *("paper", "cells", "certified", "auto", "paper+cache", "paper+lightbuffer", "lightbuffer", "voxels", "lie-exact"),
+    *("none", "certified+cache", "paper+rest"),
+)
 BY_MODES = {Fate.PARTLY_OCCLUDED, Fate.PARTIAL_SHADOW, Fate.NOT_SEEN_WHOLE, Fate.DYNAMIC}
 
 

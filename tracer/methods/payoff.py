@@ -168,16 +168,16 @@ class Payoff:
         """What is done now, and why, in a sentence."""
         saved, doubt = self.saving
         if not self._ready:
-            return "Every shadow ray is traced: setting certificates up takes longer than they would save soon."
+            return "Every shadow ray is traced: certificates are not worth setting up yet."
         if self.looks_up:
             if math.isinf(doubt):
                 return "Certificates are looked up: tracing is slow here, so they should save time; trials will tell."
             return f"Certificates are looked up: that saves {100.0 * saved:.0f} % of the shading time."
         if math.isinf(doubt):
-            return "Every shadow ray is traced: too few trials tell yet whether certificates would save time."
+            return "Every shadow ray is traced: certificates have had too few trials yet."
         if saved < 0.0:
-            return f"Every shadow ray is traced: with certificates, shading would take {-100.0 * saved:.0f} % longer."
-        return f"Every shadow ray is traced: certificates would save only {100.0 * saved:.0f} % of the shading time."
+            return f"Every shadow ray is traced: certificates would make shading {-100.0 * saved:.0f} % slower."
+        return f"Every shadow ray is traced: certificates would save only {100.0 * saved:.0f} % of shading."
 
 
 def _saving(pairs: list[Trial]) -> tuple[float, float]:

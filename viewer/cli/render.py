@@ -100,11 +100,19 @@ def render(path: Path, options: Namespace) -> None:
             tev.send(options.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
     title = f"{path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
     by_beams = terms.asks_by_beams(frame, LampSamples().any(scene.lights, frame.settings))
-    beams = terms.BY_BEAMS if by_beams else ""
-    print_table(statistics_table(frame.statistics, title, frame.settings, beams))
+    remarks = " ".join(filter(None, (terms.BY_BEAMS if by_beams else "", _first(wanted))))
+    print_table(statistics_table(frame.statistics, title, frame.settings, remarks))
     for written in (options.output, options.buffers, options.figure1):
         if written is not None:
             print(printable(written))
+
+
+def _first(wanted: Recipe) -> str:
+    """Why a method that culls by what earlier frames have shown has culled nothing, where there were none."""
+    method = wanted.settings.method
+    if wanted.before or wanted.warmup or wanted.repeats or not Method.parse(method).uses_modes:
+        return ""
+    return f"{method} culls by what earlier frames have shown, and this is the first: give --warmup N, or --repeat N."
 
 
 def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) -> Recipe:

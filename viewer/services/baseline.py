@@ -27,6 +27,10 @@ STILL = 0.7
 """Seconds that the picture must have rested before anything is measured."""
 FIRST = 2
 """Frames of each method that do not count, at least: the first finds memory and caches cold, and learns."""
+PROVING = 2.0
+"""Seconds that each of these may spend on certificates, which takes fewer frames than where each is shown."""
+MOST_PROVING = round(refinement.MOST_FRAMES * refinement.SECONDS / PROVING)
+"""Frames that do not count, at most: as much time for certificates as the window's own take at rest."""
 MOST = 40
 """Rounds, each of one frame by every method."""
 NARROW, CLEAR = 0.01, 0.25
@@ -57,7 +61,7 @@ def subject_of(traced: Traced, second: str = "") -> Subject | None:
         return None
     settings = replace(
         recording(frame.settings, Settings()), method=NO_CULLING, samples=1, modes=False,
-        certificate_seconds=refinement.SECONDS, patient=True,
+        certificate_seconds=traced.request.settings.certificate_seconds, patient=False,
     )  # fmt: skip
     return Subject(frame.time, frame.camera, settings, methods)
 
@@ -96,18 +100,21 @@ class Rounds:
 
     def _prepare(self, renderer: Traces, method: str, cancelled: Callable[[], bool]) -> None:
         """A frame that does not count: until nothing is left to be made for the picture."""
-        made = self._trace(renderer, method, cancelled).certificates
+        made = self._trace(renderer, method, cancelled, proves=True).certificates
         done = self._prepared.get(method, 0) + 1
-        ready = done >= FIRST and (not made or done >= refinement.MOST_FRAMES)
+        ready = done >= FIRST and (not made or done >= MOST_PROVING)
         self._prepared[method] = -1 if ready else done
 
-    def _trace(self, renderer: Traces, method: str, cancelled: Callable[[], bool]) -> FrameStatistics:
+    def _trace(
+        self, renderer: Traces, method: str, cancelled: Callable[[], bool], proves: bool = False
+    ) -> FrameStatistics:
         subject = self.subject
         if method not in self._renderers:
             self._renderers[method] = renderer.beside()
             self._renderers[method].take_modes(renderer)
         own = self._renderers[method]
-        own.settings = replace(subject.settings, method=method)
+        seconds = PROVING if proves else subject.settings.certificate_seconds
+        own.settings = replace(subject.settings, method=method, certificate_seconds=seconds, patient=proves)
         return own.render(subject.time, subject.camera, cancelled).statistics
 
     def _end_round(self) -> None:

@@ -179,8 +179,8 @@ def _toggle_culling(c: Controller, show_panel: Callable[[str], None]) -> Iterato
 
 def _how_to_toggle(c: Controller, key: Key) -> str:
     method, toggle = Method.parse(c.session.settings.method), key("Shadow culling")
-    seen = "The picture looks the same, but without culling every shadow ray is traced: compare the row Traced in the "
-    seen += "Statistics panel."
+    seen = "The picture looks the same, but without culling every shadow ray is traced: see the bar above the picture, "
+    seen += "hatched while culling is off, and the row Traced in the Statistics panel."
     if method.adaptive:
         return (
             f"Choose {BY_MODES}, the published method, at the top of the Culling panel, and then press {toggle} twice. "
@@ -268,8 +268,8 @@ STEPS = (
         _how_to_toggle,
         _has_toggled_culling,
         _toggle_culling,
-        "Culling is on, then off, so that every shadow ray is traced, and then on again, as it stays: compare the row "
-        "Traced in the Statistics panel. The picture looks the same.",
+        "Culling is on, then off, so that every shadow ray is traced, and on again, as it stays. The picture looks the "
+        "same: see the bar above it, hatched while culling is off, and the row Traced in the Statistics panel.",
     ),
     Step(
         "See the modes",

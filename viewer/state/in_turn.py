@@ -86,11 +86,8 @@ class InTurn:
         return Spread.of(one[its].seconds / one[mine].seconds for one in self.rounds)
 
     def steps(self, method: str) -> int | None:
-        """Nodes that all rays of a frame enter, and what methods make: of the last frame; None before there is one."""
-        return all_steps(self.rounds[-1][self.methods.index(method)]) if self.rounds else None
-
-
-def all_steps(statistics: FrameStatistics) -> int:
-    """Steps of rays of all kinds, and those of what the method makes."""
-    parts = statistics.primary, statistics.secondary, statistics.shadow
-    return sum(part.traversal_steps for part in parts) + statistics.certificate_steps
+        """Nodes that rays of all kinds enter in a frame, the last; None before there is one."""
+        if not self.rounds:
+            return None
+        last = self.rounds[-1][self.methods.index(method)]
+        return sum(rays.traversal_steps for rays in (last.primary, last.secondary, last.shadow))

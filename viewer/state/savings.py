@@ -139,9 +139,10 @@ def _clauses(frame: Frame, standing: Standing) -> Iterator[Clause]:
     if measured is not None and frame.settings.method not in measured.methods:
         measured = None  # it is of another picture
     tells = measured is not None and measured.tells
-    if measured is not None and not standing.moving:
+    culls = bool(_answered(s.shadow)) or s.cuts is not None
+    if measured is not None and culls and not standing.moving:
         yield from _steps(measured, frame)
-    if method.culls and (_answered(s.shadow) or s.cuts is not None):
+    if method.culls and culls:
         yield _wrong(frame, method)
     if standing.moving:
         yield Clause("speed not measurable while moving", _IN_MOTION, Tone.QUIET, compares=True)
@@ -228,16 +229,13 @@ def _speed(measured: InTurn, frame: Frame, method: Method) -> Iterator[Clause]:
     speed = measured.speed(frame.settings.method, NO_CULLING)
     if speed is None:
         return
-    besides = [f"± {max(speed.margin, 0.01):.2f}"]
-    if method.has_certificates or method.makes:
-        besides.append("proofs not counted" if not method.makes or "certificates made" in method.makes else
-                       "preparing not counted")  # fmt: skip
+    besides = ["within noise" if speed.is_one else f"± {max(speed.margin, 0.01):.2f}"]
+    if method.makes and _answered(frame.statistics.shadow):
+        besides.append("proofs not counted" if "certificates made" in method.makes else "preparing not counted")
     tree = "" if frame.settings.accelerator == BVH8 else f" in the {frame.settings.accelerator}"
     tip = _tip(measured, speed, frame.settings.method)
-    if speed.is_one:
-        yield Clause(f"as fast as none{tree} ({', '.join(['within noise', *besides[1:]])})", tip, compares=True)
-    else:
-        yield Clause(f"{speed.median:.2f} × as fast as none{tree} ({', '.join(besides)})", tip, compares=True)
+    times = "as fast" if speed.is_one else f"{speed.median:.2f} × as fast"
+    yield Clause(f"{times} as none{tree} ({', '.join(besides)})", tip, compares=True)
 
 
 def _tip(measured: InTurn, speed: Spread, method: str) -> str:

@@ -104,6 +104,13 @@ def _presets(d: Driver) -> None:
     d.context.item_click("//Presets/As in the paper/As in the paper")
     d.settle()
     assert d.c.session.settings.method == "paper" and (d.c.frame.width, d.c.frame.height) == (512, 512)
+    d.c.history.clear()
+    d.c.session.playing = True
+    d.wait(lambda: d.c.history.frames > 4, "some frames of the animation")
+    d.c.session.playing = False
+    d.settle()
+    assert (d.c.history.values("pixels") == 512 * 512).all(), "each is traced in full, and learns from the one before"
+    assert (d.c.history.values("culled") + d.c.history.values("dynamic_only") > 0)[1:].all()
     d.context.item_click("//Presets/$$0/" + _PEN)
     d.frames(2)
     d.context.key_chars("ours")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from imgui_bundle import imgui
+from PIL import Image
 
 from tests.viewer.driver import Driver
 from tracer.culling.fate import Fate
+from viewer.output import capture
 from viewer.state.savings import bar_of, in_words, sentence
 from viewer.state.views import View
 from viewer.util.numbers import percent
@@ -37,6 +39,7 @@ def savings(d: Driver) -> None:
     d.wait(lambda: d.c.baseline.measured.settled, "the comparison to end", 120.0)
     bar = {part.fate.name: part.rays for part in bar_of(d.c.frame).parts}
     assert bar == {"CULLED": shadow.culled, "DYNAMIC_ONLY": shadow.dynamic_only, "TRACED": shadow.traced}
+    _saved(d)
     _pixels(d)
     traced, modes, edges = d.c.history.frames, d.c.frame.modes, d.picture_edges()
     d.frames(10)
@@ -69,6 +72,20 @@ def savings(d: Driver) -> None:
     d.press(chord("Shift+B"))
     d.settle()
     assert d.picture_edges() == edges
+
+
+def _saved(d: Driver) -> None:
+    """A saved picture carries both, with what is known of steps and time."""
+    p = d.c.preferences
+    p.savings_in_pictures, folder = True, p.picture_folder
+    d.press(KEY.f12)
+    d.wait(lambda: not d.c.captures.busy and any(folder.glob("*.png")), "the saved picture")
+    saved, frame = next(folder.glob("*.png")), d.c.frame
+    with Image.open(saved) as picture:
+        assert picture.width == frame.width and frame.height < picture.height < 1.5 * frame.height
+    style = capture.read_data(saved)["picture"]["style"]
+    assert " steps, " in style["savings"] and "fast as none (" in style["savings"], style
+    p.savings_in_pictures = False
 
 
 def _pixels(d: Driver) -> None:

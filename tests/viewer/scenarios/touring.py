@@ -85,6 +85,7 @@ def _tour(d: Driver) -> None:
     d.wait(lambda: tour.at == 1, "the flight that is shown", 90.0)
     assert d.c.session.camera != camera
     d.c.settings.change(method="auto")
+    d.settle()  # there is more to read then, and the button lies higher
     d.context.item_click(show)
     d.wait(lambda: tour.at == 2, "culling off and on", 90.0)
     assert d.c.session.settings.method == "paper" and d.c.frame.statistics.shadow.dynamic_only > 0, "it stays so"

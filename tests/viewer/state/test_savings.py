@@ -82,7 +82,7 @@ def test_what_a_figure_leaves_out_stands_beside_it():
 
 def test_nothing_is_praised_that_culls_nothing():
     words = said(frame_by("auto"), measured=in_turn("auto", 1.0, (1000, 1000)))
-    assert words == "auto: culls nothing here, as many steps, as fast as none (within noise, proofs not counted)"
+    assert words == "auto: culls nothing here, as fast as none (within noise)"
     assert said(frame_by("paper"), learns=True).startswith("paper: nothing saved yet")
     assert said(frame_by("paper", due=0)) == "paper: no shadow ray is due here"
 

@@ -24,7 +24,6 @@ from viewer.window.widgets import (
     count,
     fact,
     heading,
-    highest_count,
     paragraph,
     properties,
     swatch,
@@ -80,8 +79,8 @@ def _details(ui: Ui, pick: Pick) -> None:
             asks = _cell_asks(frame, pick)
             if asks:
                 fact("Its cell", asks, "of the octree of this method: all but those that it knows to be hidden")
-            tip = "that it covers now; the highest count is what it covered when it was examined last (§2.6)"
-            fact("Pixels", f"{count(pick.pixels)} now{f', {highest_count(pick.highest)}' if by_modes else ''}", tip)
+            if not by_modes:  # else it is said above
+                fact("Pixels", f"{count(pick.pixels)} now")
             if pick.wrong is not None:
                 answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
                 fact("Wrong here", answers, "for any light, at any bounce: what is seen in mirrors counts too")
