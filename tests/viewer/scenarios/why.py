@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from imgui_bundle import imgui
-from PIL import Image
 
 from tests.viewer.driver import Driver
 from tracer.culling.fate import Fate
@@ -50,7 +48,6 @@ def _culled(d: Driver) -> None:
     assert d.c.session.light == one.light
     assert _said(d, one) == "Culled: fully rendered, and every shadow ray so far was blocked (§2.4)."
     assert one.fate is Fate.CULLED and not one.lit
-    _shot(d, "culled")
     blocker = f"//Inspector/answer/{_named(d, one.blocker)}##0"
     assert d.context.item_exists(blocker), "what is in the way is a link"
     d.context.item_click(blocker)
@@ -66,7 +63,6 @@ def _occluded(d: Driver) -> None:
     d.frames(3)
     text, hider = _said(d, one), _named(d, one.occluded.primitive)
     assert f"partly occluded by {hider} at " in text and text.endswith("so its shadow mode is not trusted (§2.4).")
-    _shot(d, "occluded")
     by, drawn = d.c.inspector.why.coverage.occluded, _drawn(d)
     d.context.mouse_move(f"//Inspector/reason/{hider}##0")
     d.frames(3)
@@ -92,7 +88,6 @@ def _at_the_edge(d: Driver) -> None:
     d.c.settings.set_light(one.light)
     d.frames(3)
     assert "clipped by the screen's edge at " in _said(d, one)
-    _shot(d, "edge")
 
 
 def _taught(d: Driver) -> None:
@@ -104,11 +99,9 @@ def _taught(d: Driver) -> None:
     taught = d.c.record.taught(d.c.selection.picked)
     number = max(taught.lights[one.light])
     assert d.context.item_exists(f"//Inspector/reason/picture {number}##0")
-    _shot(d, "taught")
     d.press(KEY.x)
     d.wait(lambda: d.c.rays.rows is not None, "the rays", 20.0)
     d.frames(3)
-    _shot(d, "rays")
     left = d.c.session.camera
     d.c.motion.move(navigation.look(left, 0.02, 0.0, d.c.motion.world_up))
     d.settle()
@@ -207,9 +200,3 @@ def _named(d: Driver, primitive: int) -> str:
 
 def _drawn(d: Driver) -> int:
     return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()
-
-
-def _shot(d: Driver, name: str) -> None:
-    folder = os.environ.get("WHY_SHOTS")
-    if folder:
-        Image.fromarray(np.asarray(d.window())).save(f"{folder}/{name}.png")
