@@ -113,12 +113,8 @@ class FrameInProgress:
         yield
         seconds = self._state.clock() - start
         self.phases[name] = self.phases.get(name, 0.0) + seconds
-        if name in OF_MODES and not self._culls_by_modes:
+        if name in OF_MODES and self.settings.modes_beside:
             self._paused += seconds
-
-    @property
-    def _culls_by_modes(self) -> bool:
-        return Method.parse(self.settings.method).uses_modes
 
     def _empty_buffers(self, progressive: bool = False, records: bool = True) -> Buffers:
         """Those of the first sample of each pixel, or of others, of which there are no `records` of lights and work."""
@@ -438,7 +434,7 @@ class FrameInProgress:
         buffers, settings, learnt = self.buffers, self.settings, self._learnt
         assert learnt is not None
         shape, lights = buffers.primitive.shape, len(self._state.scene.lights)
-        tests = int(self._occlusion_tests.sum()) if self._culls_by_modes else 0
+        tests = int(self._occlusion_tests.sum()) if not settings.modes_beside else 0
         statistics = gather(self._counts, tests, lights if settings.keeps_modes else 0)
         statistics.part = 1.0 if self._parts is None else self._parts.share
         if settings.keeps_modes:

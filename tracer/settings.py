@@ -104,6 +104,11 @@ class Settings:
         """Whether frames keep modes. Frames of methods that cull by modes always do."""
         return self.modes or Method.parse(self.method).uses_modes
 
+    @property
+    def modes_beside(self) -> bool:
+        """Whether frames keep modes only to be looked at, beside a method that does not cull by them."""
+        return self.modes and not Method.parse(self.method).uses_modes
+
     def validated(self) -> Settings:
         """Return these settings, checked.
 

@@ -84,7 +84,7 @@ class State:
         Methods that are not used are dropped, with all that they know, once the scene has moved on: what they know is
         no longer true, and would hold memory."""
         method = Method.parse(settings.method)
-        beside = (MODES_BESIDE,) if settings.modes and not method.uses_modes else ()
+        beside = (MODES_BESIDE,) if settings.modes_beside else ()
         chosen = [self._of_kind(kind) for kind in (*method.kinds, *beside)]
         if time != self._time:
             used = {*chosen, *(part for one in chosen for part in one.parts)}

@@ -19,6 +19,7 @@ from rich.table import Table
 from rich.text import Text
 
 from tracer.scene.model import Cancelled
+from tracer.settings import Settings
 from tracer.statistics import FrameStatistics
 from viewer.state import terms
 from viewer.util.messages import in_one_line, printable, say
@@ -128,7 +129,7 @@ def terminal_width() -> int | None:
     return console.width if console.is_terminal else None
 
 
-def statistics_table(statistics: FrameStatistics, title: str, method: str, remark: str = "") -> Table:
+def statistics_table(statistics: FrameStatistics, title: str, settings: Settings, remark: str = "") -> Table:
     """The counters of a frame by a method, primary, secondary and shadow rays apart; what is wrong where it was
     verified."""
     caption = "\n".join(filter(None, (statistics.decision, remark))) or None
@@ -163,12 +164,12 @@ def statistics_table(statistics: FrameStatistics, title: str, method: str, remar
         table.add_row(f"{name}{of}", f"{wrong.pixels / max(wrong.shaded, 1):.3%}", "", f"{wrong.pixels:,}")
     if shadow.passed_over:
         table.add_row(f"samples {terms.PASSED_OVER}", "", "", f"{shadow.passed_over:,}")
-    if statistics.certificates and terms.made(method)[0]:
-        table.add_row(terms.made(method)[0], "", "", f"{statistics.certificates:,}")
+    if statistics.certificates and terms.made(settings.method)[0]:
+        table.add_row(terms.made(settings.method)[0], "", "", f"{statistics.certificates:,}")
         table.add_row("  traversal steps", "", "", f"{statistics.certificate_steps:,}")
         table.add_row("  intersection tests", "", "", f"{statistics.certificate_tests:,}")
     table.add_row("occlusion tests", f"{statistics.occlusion_tests:,}", "", "", end_section=True)
     for name, seconds in statistics.phases.items():
-        table.add_row(terms.PHASES.get(name, (name,))[0], f"{1000.0 * seconds:,.1f} ms", "", "")
+        table.add_row(terms.phase(name, settings)[0], f"{1000.0 * seconds:,.1f} ms", "", "")
     table.add_row("frame", f"{1000.0 * statistics.seconds:,.1f} ms", "", "")
     return table

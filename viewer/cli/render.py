@@ -101,7 +101,7 @@ def render(path: Path, options: Namespace) -> None:
     title = f"{path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
     by_beams = terms.asks_by_beams(frame, LampSamples().any(scene.lights, frame.settings))
     remarks = " ".join(filter(None, (terms.BY_BEAMS if by_beams else "", _first(wanted))))
-    print_table(statistics_table(frame.statistics, title, frame.settings.method, remarks))
+    print_table(statistics_table(frame.statistics, title, frame.settings, remarks))
     for written in (options.output, options.buffers, options.figure1):
         if written is not None:
             print(printable(written))

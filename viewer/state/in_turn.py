@@ -13,11 +13,9 @@ import numpy as np
 
 from tracer.statistics import FrameStatistics
 
-NOTCH = 1.57
-"""Times the quartiles' distance by the root of the number: medians that are farther apart than both margins differ at
-the level of 95 % (McGill, Tukey, Larsen: Variations of Box Plots, 1978)."""
-
-
+TWO_ERRORS = 2.0 * 1.2533 / 1.349
+"""Twice the standard error of a median, as a part of the quartiles' distance by the root of the number: normal numbers
+have quartiles 1.349 standard deviations apart, and medians with 1.2533 times the error of the mean."""
 LEAST = 8
 """Rounds from which on a median tells something."""
 
@@ -40,7 +38,8 @@ class Spread:
 
     @property
     def margin(self) -> float:
-        return NOTCH * (self.high - self.low) / self.count**0.5
+        """Twice the standard error of the median."""
+        return TWO_ERRORS * (self.high - self.low) / self.count**0.5
 
     @property
     def is_one(self) -> bool:

@@ -6,8 +6,10 @@ JSON and CSV have names of their own, which do not change.
 from __future__ import annotations
 
 from tracer.frame import Frame
+from tracer.frame_in_progress import OF_MODES
 from tracer.geometry.accelerators import BVH8, KD_TREE, LAZY
 from tracer.method import Method
+from tracer.settings import Settings
 
 DUE = "due"
 CULLED = "culled"
@@ -66,6 +68,15 @@ PHASES = {
     "mode setting": ("modes", "setting the modes of primitives by what this frame has found"),
 }
 """The phases of a frame, in their order: the name of each, and what happens in it."""
+
+
+def phase(name: str, settings: Settings) -> tuple[str, str]:
+    """The name of a phase of a frame, and what happens in it; of modes that are only looked at, which is no part of the
+    frame's time."""
+    label, tip = PHASES.get(name, (name, ""))
+    if name in OF_MODES and settings.modes_beside:
+        return f"{label} beside", f"{tip}, beside the method, which culls by no modes: no part of the frame's time"
+    return label, tip
 
 
 TREES = {

@@ -69,7 +69,10 @@ def run(rounds: Rounds, renderer: Timed) -> int:
 def test_medians_quartiles_and_the_margin():
     spread = Spread.of([1.0, 9.0, 2.0, 3.0, 4.0])
     assert (spread.low, spread.median, spread.high, spread.count) == (2.0, 3.0, 4.0, 5)
-    assert spread.margin == pytest.approx(1.57 * 2.0 / 5**0.5)
+    assert spread.margin == pytest.approx(1.858 * 2.0 / 5**0.5, rel=1e-3)
+    lots = np.random.default_rng(7).normal(1.0, 0.1, (400, 25))
+    near = [abs(one.median - 1.0) <= one.margin for one in map(Spread.of, lots)]
+    assert 0.9 < np.mean(near) < 0.99, "the margin is that of about 19 in 20"
     assert Spread(1.03, 0.9, 1.1, 4).is_one and not Spread(1.03, 1.025, 1.035, 16).is_one
     assert Spread(1.004, 1.004, 1.004, 40).is_one, "written as 1.00"
 

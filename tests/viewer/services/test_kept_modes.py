@@ -69,6 +69,23 @@ def test_a_picture_after_others_is_made_again_to_the_bit(
     assert code == 0 and "true: 64 × 48, bit for bit" in said, said
 
 
+def test_a_picture_after_others_in_motion_of_which_some_pixels_taught_is_made_again_to_the_bit(
+    desk: Desk, capfd: pytest.CaptureFixture[str]
+) -> None:
+    c = desk.c
+    c.preferences.dynamic_resolution, c.preferences.target_fps = True, 5000.0
+    c.settings.change(method="paper")
+    c.session.playing = True
+    desk.came.clear()
+    desk.until(lambda: len(desk.came) > 20)
+    parts = {frame.statistics.part < 1.0 for frame in desk.came}
+    c.session.playing = False
+    desk.rest()
+    assert True in parts, "no picture was shaded in part"
+    code, said = check(capfd, saved(desk, View.SAVED, "after-motion.png"))
+    assert code == 0 and "bit for bit" in said, said
+
+
 def test_without_its_modes_a_picture_is_held_against_that_with_every_ray_traced(
     desk: Desk, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -6,6 +6,7 @@ import time
 from types import SimpleNamespace
 
 from tests.viewer.fakes import make_frame, with_certificates
+from tracer.settings import Settings
 from viewer.state import terms
 from viewer.window.panels import loading
 from viewer.window.panels.coming import first_picture
@@ -108,3 +109,14 @@ def test_a_run_before_its_first_frame_shows_none() -> None:
     assert doing(c).startswith("experiment is starting")
     run.traced, run.label = 1, "frame 1 of 5, none"
     assert doing(c).startswith("experiment, traced: frame 1 of 5, none")
+
+
+def test_modes_that_are_only_looked_at_are_named_as_no_part_of_the_time() -> None:
+    for name in ("occlusion testing", "mode setting"):
+        label, tip = terms.phase(name, Settings(method="paper", modes=True))
+        beside, why = terms.phase(name, Settings(method="none", modes=True))
+        assert (label, tip) == terms.PHASES[name]
+        assert beside == f"{label} beside" and why.startswith(tip) and "no part of the frame's time" in why
+        assert terms.phase(name, Settings(method="none")) == terms.PHASES[name]
+    assert terms.phase("shading", Settings(modes=True)) == terms.PHASES["shading"]
+    assert terms.phase("new", Settings()) == ("new", "")

@@ -69,7 +69,7 @@ def show(ui: Ui) -> None:
             amount("Frame", _milliseconds(s.seconds), "from the request to the picture; below, its parts")
             for name in [*terms.PHASES, *(n for n in s.phases if n not in terms.PHASES)]:
                 if name in s.phases and (prepares or name != "certification"):
-                    label, tip = terms.PHASES.get(name, (name, ""))
+                    label, tip = terms.phase(name, frame.settings)
                     amount(f"  {label}", _milliseconds(s.phases[name]), tip)
             amount("Window drawn in", _milliseconds(c.drawn_seconds), "what the window needs for one of its own frames")
 
