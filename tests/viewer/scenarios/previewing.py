@@ -56,7 +56,8 @@ def previewing(d: Driver) -> None:
     first = _read(d)
     assert len(np.unique(first.reshape(-1, 3), axis=0)) > 100, "a shaded sphere"
     home = d.c.session.camera
-    d.drag(d.picture_centre(), (60.0, 10.0))
+    window = imgui.internal.find_window_by_name("Picture")
+    d.drag((window.pos.x + 0.5 * window.size.x, window.pos.y + 0.5 * window.size.y), (60.0, 10.0))
     assert d.c.session.camera != home, "the pointer has not turned the camera"
     d.hold(KEY.d, 0.1)
     flown = d.c.session.camera
