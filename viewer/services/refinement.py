@@ -20,24 +20,28 @@ SECONDS = 0.4
 
 
 class Refinement:
-    """Decides, each time a whole picture has come, whether one more of the same view is worth tracing."""
+    """Decides, each time a whole picture has come, whether one more of the same view is worth tracing.  `ended_early`
+    says that none is to come though more certificates could be made."""
 
     def __init__(self) -> None:
         self._considered: RenderRequest | None = None  # the last picture that was decided about
         self._settled: RenderRequest | None = None  # the view that `_left` speaks of
         self._left = 0  # frames of it that may still follow
         self._certificates_shown = False
+        self.ended_early = False
 
     def forget(self) -> None:
         """Start again: modes or certificates were lost, or the scene is another."""
         self._considered = self._settled = None
+        self.ended_early = False
 
     def wants_another(self, newest: Traced | None, view: View, keep_tracing: bool) -> bool:
         """Whether one more frame should follow the newest; true once for each."""
         if newest is None:
             return False
         shows, self._certificates_shown = self._certificates_shown, view is View.CERTIFICATE
-        if self._certificates_shown and not shows and newest.frame.statistics.certificates:
+        chosen = _is_about_certificates(newest.request, View.COLOR)
+        if self._certificates_shown and not shows and newest.frame.statistics.certificates and not chosen:
             self.forget()  # more can be made for this view to show
         if not newest.whole or newest.request is self._considered:
             return False
@@ -48,7 +52,10 @@ class Refinement:
             self._left = MOST_FRAMES if _is_about_certificates(newest.request, view) else 1
         elif newest.frame.statistics.certificates == 0:
             self._left = 0
-        if not (keep_tracing or (refines and self._left > 0)):
+        makes = newest.frame.statistics.certificates > 0 and _is_about_certificates(newest.request, view)
+        another = keep_tracing or (refines and self._left > 0)
+        self.ended_early = makes and refines and not another
+        if not another:
             return False
         self._left -= 1
         return True

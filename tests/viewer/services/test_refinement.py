@@ -74,3 +74,14 @@ def test_frames_go_on_where_the_user_says_so_and_coarse_ones_teach_nothing():
     coarse = RenderRequest(0.0, ELSEWHERE, Settings(8, 8, method="paper"), 2)
     assert not refinement.wants_another(traced(coarse, 0), View.COLOR, keep_tracing=False)
     assert not refinement.wants_another(None, View.COLOR, keep_tracing=True)
+
+
+def test_it_is_known_that_certificates_are_left_to_make():
+    refinement = Refinement()
+    frames(refinement, [9] * 2 * MOST_FRAMES, method="certified")
+    assert refinement.ended_early
+    assert frames(refinement, [9] * 2 * MOST_FRAMES, view=View.CERTIFICATE, method="certified") == 1, "seen otherwise"
+    assert refinement.ended_early
+    for made, method in (([9, 0], "certified"), ([9] * 9, "auto"), ([0] * 9, "paper")):
+        frames(refinement, made, ELSEWHERE, method=method)
+        assert not refinement.ended_early
