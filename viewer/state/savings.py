@@ -20,7 +20,7 @@ from viewer.state import terms, verified
 from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import BY_MODES, NO_CULLING
 from viewer.state.views import FATE_MEANING, FATE_NAMES
-from viewer.util.numbers import count, percent
+from viewer.util.numbers import count, percent, whole_percent
 
 LONGEST = ": 29.6 % of shadow rays saved, 15 % fewer steps, not verified, 1.08 × as fast as none (± 0.02)"
 """As long as the sentence usually is, after the method's name: what room there should be for it."""
@@ -176,7 +176,7 @@ def _answered(shadow: ShadowCounts) -> int:
 def _saved(frame: Frame, learns: bool) -> Clause:
     s, name = frame.statistics, frame.settings.method
     shadow = s.shadow
-    part = f" (of the {s.part:.0%} shaded)" if s.part < 1.0 else ""
+    part = f" (of the {whole_percent(s.part)} shaded)" if s.part < 1.0 else ""
     if s.cuts is not None:
         text = f"{name}: {s.cuts.mean:.0f} clusters for {count(s.cuts.lights)} lights"
         return Clause(f"{text}{part}", "of the lights that each block of points is shaded by, on average")
