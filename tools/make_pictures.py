@@ -81,17 +81,17 @@ def film(d: Driver) -> None:
 
 
 def still(d: Driver) -> None:
-    """The window with a clicked pixel, after some frames of certifying."""
+    """The window with a clicked pixel, after some frames from which culling has learnt."""
     _begin(d)
     d.press(KEY.right_arrow, STILL - 1)
     d.settle()
-    d.c.settings.change(method="certified")
     d.press(KEY.right_arrow)
     d.settle()
     d.c.settings.change(samples=SAMPLES)
     d.wait(lambda: d.c.frame.settings.samples == SAMPLES, "all samples")
     d.c.selection.select(CLICKED)
     d.wait(lambda: d.c.inspector.answer is not None, "the pixel's shadow rays")
+    d.wait(lambda: (known := d.c.baseline.measured) is not None and known.settled, "the speed beside none")
     d.settle()
     Image.fromarray(d.window()).save(FOLDER / "viewer.png", optimize=True)
 
@@ -100,7 +100,6 @@ def _begin(d: Driver) -> None:
     """Whole pictures only, from the first frame on, and the pointer out of the way, as it is drawn, too."""
     d.c.preferences.dynamic_resolution = False
     d.context.mouse_move_to_pos((SIZE[0] - 1.0, SIZE[1] - 1.0))
-    d.c.settings.change(method="paper")
     d.settle()
     d.press(KEY.home)
 

@@ -21,6 +21,7 @@ from viewer.state.views import (
     FATE_COLORS,
     FATE_MEANING,
     FATE_NAMES,
+    FATE_WOULD,
     OCCLUSION_COLORS,
     OCCLUSION_MEANING,
     SHADOW_COLORS,
@@ -209,7 +210,7 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
         rule = "All rays are traced."
     flows = [
         Flow(
-            _WOULD[fate] if bar.would and by_modes else FATE_NAMES[fate], number, percent(number, s.shadow.due),
+            FATE_WOULD[fate] if bar.would and by_modes else FATE_NAMES[fate], number, percent(number, s.shadow.due),
             FATE_COLORS[fate], bar.would and fate.is_saved, FATE_MEANING[fate], View.FATE,
         )
         for fate, number in sorted(rays.items())
@@ -234,13 +235,6 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
         "shadow rays by what became of them",
         View.FATE,
     )
-
-
-_WOULD = {
-    Fate.CULLED: "would be culled",
-    Fate.DYNAMIC_ONLY: "… dynamic only",
-    Fate.TRACED: "traced in any case",
-}
 
 
 _GAINED = {

@@ -87,7 +87,12 @@ class Run(ABC, Generic[Results]):
     @property
     def showing(self) -> str:
         """Which of its frames is the picture, in words, or that none has been yet."""
-        return f"showing {self.label_shown}" if self.label_shown != STARTING else f"the {self.name} is starting"
+        return f"showing {self.label_shown}" if self.is_shown else f"the {self.name} is starting"
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether the picture is one of its frames."""
+        return self.label_shown != STARTING
 
     @property
     def verifies(self) -> bool:

@@ -57,9 +57,15 @@ class SettingsController:
         self._session.light = light % lights if lights else 0
 
     def toggle_culling(self) -> None:
-        """Off, and on again by the method that culled last, with what was added to it while it was off."""
+        """Off, and on again."""
+        self.change(method=self.switched_off or NO_CULLING)
+
+    @property
+    def switched_off(self) -> str:
+        """The method that comes back when culling is turned on: that which culled last, with what was added to it while
+        it was off; nothing while it is on."""
         now = Method.parse(self._session.settings.method)
-        self.change(method=NO_CULLING if now.culls else with_additions(self._preferences.method, now.additions))
+        return "" if now.culls else with_additions(self._preferences.method, now.additions)
 
     def reset(self, kept: Collection[str]) -> None:
         """Set everything to its default, except these fields of the preferences."""

@@ -386,6 +386,13 @@ FATE_NAMES: dict[Fate, str] = {
     Fate.TRACED: terms.TRACED,
 }
 
+FATE_WOULD: dict[Fate, str] = {
+    Fate.CULLED: "would be culled",
+    Fate.DYNAMIC_ONLY: "… dynamic only",
+    Fate.TRACED: "traced in any case",
+}
+"""What fates that rays would have by the paper's method are called where nothing is culled."""
+
 FATE_MEANING: dict[Fate, str] = {
     Fate.NONE: "this pixel has not been shaded yet",
     Fate.FACES_AWAY: "no shadow ray is due: the surface faces away from the light",

@@ -54,7 +54,7 @@ def savings(d: Driver) -> None:
     d.press(KEY.v)
     d.press(KEY.c)
     d.settle()
-    assert said(d).startswith("none: every shadow ray is traced; paper would save "), said(d)
+    assert said(d).startswith("none: every shadow ray is traced; the paper's modes would save "), said(d)
     would = bar_of(d.c.frame)
     assert would.would and would.parts[0].rays == d.c.frame.statistics.by_modes_in_all.full_shadow > 0
     assert d.picture_edges() == edges, "the picture has moved"

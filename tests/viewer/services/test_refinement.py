@@ -7,10 +7,11 @@ from typing import Any
 
 import pytest
 
+from tracer.culling.mode_changes import ModeChanges
 from tracer.frame import Settings
 from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
-from viewer.services.refinement import MOST_FRAMES, Refinement
+from viewer.services.refinement import MOST_FRAMES, MOST_LEARNING, Refinement
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.views import View
 
@@ -59,6 +60,25 @@ def test_frames_follow_as_long_as_they_know_more(method: str, made: list[int], e
     assert frames(refinement, made, ELSEWHERE, method=method) == expected, "what was known is lost"
 
 
+def test_frames_follow_until_modes_no_longer_change():
+    """As where many primitives are examined anew: one frame says so, one learns, and one shows what that saves."""
+    changes = [ModeChanges(examined_anew=3), ModeChanges(fully_rendered=3, full_shadow=2), ModeChanges(), ModeChanges()]
+    refinement, count = Refinement(), 0
+    for k, changed in enumerate([ModeChanges(fully_rendered=9), *changes]):
+        whole = traced(RenderRequest(0.0, CAMERA, Settings(8, 8, method="paper"), 1, k), 0)
+        whole.frame.statistics.mode_changes = changed
+        count += 1
+        if not refinement.wants_another(whole, View.COLOR, False):
+            break
+    assert count == 4
+    for k in range(20):  # however often they change
+        whole = traced(RenderRequest(0.0, ELSEWHERE, Settings(8, 8, method="paper"), 1, k), 0)
+        whole.frame.statistics.mode_changes = ModeChanges(full_shadow=1)
+        if not refinement.wants_another(whole, View.COLOR, False):
+            break
+    assert k == MOST_LEARNING
+
+
 def test_the_view_of_certificates_asks_for_more_of_them():
     refinement = Refinement()
     assert frames(refinement, [9] * 20, method="auto") == 2
@@ -74,3 +94,14 @@ def test_frames_go_on_where_the_user_says_so_and_coarse_ones_teach_nothing():
     coarse = RenderRequest(0.0, ELSEWHERE, Settings(8, 8, method="paper"), 2)
     assert not refinement.wants_another(traced(coarse, 0), View.COLOR, keep_tracing=False)
     assert not refinement.wants_another(None, View.COLOR, keep_tracing=True)
+
+
+def test_it_is_known_that_certificates_are_left_to_make():
+    refinement = Refinement()
+    frames(refinement, [9] * 2 * MOST_FRAMES, method="certified")
+    assert refinement.ended_early
+    assert frames(refinement, [9] * 2 * MOST_FRAMES, view=View.CERTIFICATE, method="certified") == 1, "seen otherwise"
+    assert refinement.ended_early
+    for made, method in (([9, 0], "certified"), ([9] * 9, "auto"), ([0] * 9, "paper")):
+        frames(refinement, made, ELSEWHERE, method=method)
+        assert not refinement.ended_early

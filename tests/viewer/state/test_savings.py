@@ -11,7 +11,7 @@ from tracer.culling.fate import Fate
 from tracer.frame import Frame, Settings
 from tracer.statistics import CutErrors, FrameStatistics, RayCounts, SaidByModes, ShadowCounts, WrongCounts
 from viewer.state.in_turn import LEAST, InTurn
-from viewer.state.savings import Standing, Tone, bar_of, in_words, sentence
+from viewer.state.savings import Standing, Tone, bar_of, fitting, in_words, sentence
 
 
 def frame_by(method: str, verify: bool = False, part: float = 1.0, **counts: int) -> Frame:
@@ -21,11 +21,14 @@ def frame_by(method: str, verify: bool = False, part: float = 1.0, **counts: int
     return replace(frame, statistics=FrameStatistics(shadow=shadow, part=part, wrong=found if verify else None))
 
 
-def in_turn(method: str, speed: float, steps: tuple[int, int] = (850, 1000), noise: float = 0.0) -> InTurn:
+def in_turn(
+    method: str, speed: float, steps: tuple[int, int] = (850, 1000), noise: float = 0.0, saved: int = 100
+) -> InTurn:
     """So many rounds as tell something, of which half are that much slower by the method, half that much faster."""
 
     def took(seconds: float, steps: int) -> FrameStatistics:
-        return FrameStatistics(primary=RayCounts(traversal_steps=steps), seconds=seconds)
+        shadow = ShadowCounts(due=1000, culled=saved)
+        return FrameStatistics(primary=RayCounts(traversal_steps=steps), shadow=shadow, seconds=seconds)
 
     sides = [1.0 + noise * (-1) ** i for i in range(LEAST)]
     rounds = tuple((took(speed, steps[1]), took(side, steps[0])) for side in sides)
@@ -66,9 +69,41 @@ def test_what_is_not_known_is_said_and_no_figure_is_given():
     words = said(frame, measured=few)
     assert "15 % fewer steps" in words and words.endswith("measuring speed ..."), "counters need one frame only"
     assert "fast" not in said(frame, measured=InTurn(("none", "paper"))) and "steps" not in said(frame, moving=True)
-    proving = said(frame_by("certified", culled=1), proves="certificates still being proved", measured=measured)
-    assert proving.endswith("certificates still being proved") and "fast" not in proving
+    proving = said(frame_by("certified", culled=1), proves="proving: 7 made in the last", measured=measured)
+    assert proving.endswith("proving: 7 made in the last") and "fast" not in proving
     assert said(frame, why_not="no").endswith("speed not measured")
+    tip = sentence(frame, Standing(moving=True))[-1].tip
+    assert "Experiment" in tip and "bench" in tip and "at rest" in tip, "where there is a figure"
+
+
+def test_steps_are_those_of_frames_that_save_as_much():
+    frame, other = frame_by("certified", culled=340), in_turn("certified", 1.0, saved=400)
+    assert "steps" not in said(frame, measured=replace(other, settled=False)), "of other frames than the saved share"
+    assert "15 % fewer steps" in said(frame, measured=replace(in_turn("certified", 1.0, saved=340), settled=False))
+    steps = next(one for one in sentence(frame, Standing(measured=other)) if "steps" in one.text)
+    assert "40.0 %" in steps.tip, "no others will come: it is said of which they are"
+
+
+def test_proving_that_has_ended_early_is_said():
+    frame = frame_by("certified", culled=340)
+    assert "not all is proved yet, keep tracing (K)" in said(frame, unproved=True)
+    assert "proved" not in said(frame, unproved=True, moving=True) and "proved" not in said(frame)
+    assert "proved" not in said(frame_by("paper", culled=340), unproved=True)
+
+
+def test_a_run_is_named():
+    words = said(frame_by("certified", culled=340), run="experiment", measured=in_turn("certified", 1.2), moving=True)
+    assert words == "Experiment, certified: 34.0 % of shadow rays saved, exact", "its panel has the speed"
+
+
+@pytest.mark.parametrize("room", [20, 60, 75, 100, 108, 200])
+def test_a_sentence_that_is_too_long_keeps_its_figures(room):
+    frame = frame_by("lightbuffer", culled=832)
+    whole = sentence(frame, Standing(measured=in_turn("lightbuffer", 1.0, (2200, 1000), saved=832)))
+    told = in_words(fitting(whole, lambda clauses: len(in_words(clauses)) <= room))
+    assert len(told) <= max(room, len("lightbuffer: 83.2 % saved, exact, as fast as none (within noise)"))
+    assert "83.2 %" in told and "as fast as none (within noise" in told and "exact" in told
+    assert (told == in_words(whole)) is (len(in_words(whole)) <= room), "nothing is shortened without need"
 
 
 def test_what_a_figure_leaves_out_stands_beside_it():
@@ -90,11 +125,14 @@ def test_nothing_is_praised_that_culls_nothing():
 def test_without_culling_the_bar_is_what_would_be_culled():
     frame = frame_by("none")
     frame.statistics.by_modes = [SaidByModes(600, 200, 50), SaidByModes(400, 0, 46)]
-    assert said(frame) == "none: every shadow ray is traced; paper would save 29.6 %"
+    told = "none: every shadow ray is traced; the paper's modes would save 29.6 %"
+    assert said(frame) == told
+    assert said(frame, back="certified") == f"{told}, turn certified on again (C)", "what would save is not that"
     bar = bar_of(frame)
     assert bar.would and [(p.fate, p.rays) for p in bar.parts] == [
         (Fate.CULLED, 200), (Fate.DYNAMIC_ONLY, 96), (Fate.TRACED, 704),
     ]  # fmt: skip
+    assert [part.name for part in bar.parts] == ["would be culled", "… dynamic only", "traced in any case"]
     frame.statistics.by_modes = []
     assert said(frame) == "none: every shadow ray is traced"
     assert [part.fate for part in bar_of(frame).parts] == [Fate.TRACED]
@@ -108,7 +146,7 @@ def test_the_parts_of_the_bar_are_all_rays_that_are_due():
         ("culled", "10.0 %"), ("dynamic only", "5.0 %"), ("candidates", "30.0 %"), ("cache hits", "2.0 %"),
         ("traced", "53.0 %"),
     ]  # fmt: skip
-    assert "(§2.4)" in bar.parts[0].in_words(would=False)
+    assert "(§2.4)" in bar.parts[0].in_words()
     assert bar_of(frame_by("paper", due=0)).parts == ()
 
 

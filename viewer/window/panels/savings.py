@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.culling.fate import Fate
 from viewer.output.legend_layout import BACKDROP, TEXT
 from viewer.services.controller import Controller
-from viewer.state import terms
-from viewer.state.savings import LONGEST, Bar, Clause, Part, Standing, Tone, bar_of, sentence
+from viewer.state.savings import LONGEST, Bar, Clause, Part, Standing, Tone, bar_of, fitting, sentence
 from viewer.state.views import FATE_COLORS, Color, View, label_color
 from viewer.util.numbers import count
 from viewer.window.ui import Ui
@@ -23,19 +24,21 @@ _COLORS = {Tone.PLAIN: None, Tone.QUIET: QUIET, Tone.WRONG: ERROR}
 
 def standing(c: Controller) -> Standing:
     """What is known of the newest frame beside its counters."""
-    tracing, baseline, frame = c.tracing, c.baseline, c.frame
+    tracing, baseline, frame, run = c.tracing, c.baseline, c.frame, c.runs.current
     proves = ""
     if frame is not None and tracing.certifies:
-        made, _ = terms.made(frame.settings.method)
         at, most = tracing.refinement.progress
-        far = f", picture {at} of at most {most}" if most else ""
-        proves = f"{terms.things(made)} still being proved: {count(frame.statistics.certificates)} made{far}"
+        far = f" (picture {at} of at most {most})" if most else ""
+        proves = f"proving{far}: {count(frame.statistics.certificates)} made in the last"
     return Standing(
         baseline.measured,
         baseline.moving,
         baseline.moving or tracing.awaits or c.renderer.busy,
         proves,
+        tracing.refinement.ended_early and not proves,
         baseline.why_not,
+        run.name if run is not None and run.is_shown else "",
+        "" if run is not None else c.settings.switched_off,
     )
 
 
@@ -64,24 +67,41 @@ def show(ui: Ui, width: float) -> None:
     if c.session.view is not View.FATE:
         ui.fate_shown = None
     start, lines = imgui.get_cursor_pos(), _lines(ui, width)
-    _write(sentence(frame, standing(c)), start, width, lines)
+    told = sentence(frame, standing(c))
+    _write(tuple(_with_keys(ui, clause) for clause in told), start, width, lines)
     imgui.set_cursor_pos(ImVec2(start.x, start.y + lines * imgui.get_text_line_height() + em(_GAP)))
     bar = ui.cached("savings", frame, 0, lambda: bar_of(frame))
     _draw(ui, bar, width)
 
 
-def _write(clauses: tuple[Clause, ...], start: ImVec2, width: float, lines: int) -> None:
-    """Clause after clause, in so many lines, the last of which is that above the bar; what is too long ends in an
-    ellipsis."""
+def _with_keys(ui: Ui, clause: Clause) -> Clause:
+    short = clause.short and ui.with_keys(clause.short)
+    return replace(clause, text=ui.with_keys(clause.text), short=short)
+
+
+def _places(clauses: tuple[Clause, ...], width: float, lines: int) -> list[tuple[float, int, str]]:
+    """Where each clause begins, in which of so many lines, and its text with what is between it and the next."""
     places: list[tuple[float, int, str]] = []
-    x, line = 0.0, 0
-    for number, clause in enumerate(clauses):
-        text = clause.text + (", " if number + 1 < len(clauses) else "")
+    x, line, told = 0.0, 0, [clause for clause in clauses if clause.text]
+    for number, clause in enumerate(told):
+        text = clause.text + (", " if number + 1 < len(told) else "")
         if x and line + 1 < lines and x + imgui.calc_text_size(text.rstrip()).x > width:
             x, line = 0.0, line + 1
         places.append((x, line, text))
         x += imgui.calc_text_size(text).x
-    below = start.y + (lines - 1 - line) * imgui.get_text_line_height()
+    return places
+
+
+def _write(clauses: tuple[Clause, ...], start: ImVec2, width: float, lines: int) -> None:
+    """Clause after clause, the last line above the bar; as much of the sentence in short as must be, and what is too
+    long then ends in an ellipsis."""
+
+    def fits(told: tuple[Clause, ...]) -> bool:
+        return all(x + imgui.calc_text_size(text.rstrip()).x <= width for x, _, text in _places(told, width, lines))
+
+    clauses = fitting(clauses, fits)
+    places = _places(clauses, width, lines)
+    below = start.y + (lines - 1 - places[-1][1]) * imgui.get_text_line_height()
     for clause, (x, line, text) in zip(clauses, places, strict=True):
         if x >= width:
             return  # what comes before has ended in an ellipsis
@@ -114,9 +134,7 @@ def _draw(ui: Ui, bar: Bar, width: float) -> None:
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         if hovered or ui.fate_shown is part.fate:
             draw.add_rect(at, end, imgui.get_color_u32(imgui.Col_.text), 0.0, thickness=2.0)
-        tooltip(
-            f"{part.in_words(bar.would)}\nClick: the pixels whose rays to the chosen light these are. Next light (L)"
-        )
+        tooltip(f"{part.in_words()}\nClick: the pixels whose rays to the chosen light these are. Next light (L)")
         _label(draw, part, at, end, bar.would)
 
 

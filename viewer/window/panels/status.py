@@ -39,6 +39,10 @@ def show(ui: Ui) -> None:
     if right:
         imgui.same_line(left + max(0.0, room - width + em(0.5)))
         imgui.text_colored(QUIET, right)
+        tooltip(
+            "the picture that is shown: its size, and the time of its first sample a pixel, with all that the view "
+            "has counted or verified beside it; above the picture are medians of many frames without that"
+        )
 
 
 def _hints(ui: Ui) -> str:
