@@ -42,7 +42,8 @@ def of_fates(frame: Frame, view: View, chosen: Chosen) -> Legend:
         Entry("saved", None, ("", percent(found.saved, found.due)), "culled, or asked dynamic objects only"),
         Entry("traced", None, ("", percent(found.traced, found.due)), "through the whole scene, for whatever reason"),
     )
-    return Legend(_title(view, chosen), ("pixels", "of due"), entries, facts=facts, notes=_filled_in(frame))
+    title = f"{view.label}, first hits, {light_in_words(chosen.number, chosen.light_name)}"
+    return Legend(title, ("pixels", "of due"), entries, facts=facts, notes=_filled_in(frame))
 
 
 def of_moving_shadows(frame: Frame, view: View, chosen: Chosen) -> Legend:

@@ -186,7 +186,8 @@ def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
 def test_fates_come_with_shares_of_pixels_and_of_the_rays_that_are_due(frame: Frame, light: int, method: str):
     frame = replace(frame, settings=replace(SETTINGS, method=method))
     legend, hit = of(frame, View.FATE, light=light, light_name="lamp"), frame.primitive >= 0
-    assert legend.title == f"Fate of shadow rays, light {light} (lamp)" and legend.columns == ("pixels", "of due")
+    assert legend.title == f"Fate of shadow rays, first hits, light {light} (lamp)"
+    assert legend.columns == ("pixels", "of due")
     fates = frame.fate(light)[hit]
     due = (fates >= Fate.CULLED).sum()
     by_name = {entry.name: entry for entry in legend.entries}
@@ -309,7 +310,7 @@ def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame
     assert [fact.values for fact in wrong.facts[:2]] == [("2",), ("26 of 255",)]
     found, known = frame.statistics.wrong, frame.statistics
     known.wrong = replace(found, samples=4)
-    assert of(frame, View.DIFFERENCE).entries[0].name == "wrong pixels, all 4 samples"
+    assert of(frame, View.DIFFERENCE).entries[0].name == "wrong pixels, 4 samples"
     known.wrong, known.part = found, 0.12
     assert of(frame, View.DIFFERENCE).notes[0].text == "in the 12.0 % of the picture that is shaded"
     right = replace(frame, wrong=np.zeros_like(frame.wrong))
