@@ -21,7 +21,7 @@ from rich.text import Text
 from tracer.scene.model import Cancelled
 from tracer.settings import Settings
 from tracer.statistics import FrameStatistics
-from viewer.state import terms
+from viewer.state import terms, verified
 from viewer.util.messages import in_one_line, printable, say
 from viewer.util.time_left import TimeLeft
 
@@ -139,7 +139,8 @@ def statistics_table(statistics: FrameStatistics, title: str, settings: Settings
     for name in ("primary", "secondary", "shadow"):
         table.add_column(name, justify="right")
     kinds = (statistics.primary, statistics.secondary, statistics.shadow)
-    table.add_row("rays traced", *(f"{kind.rays:,}" for kind in kinds))
+    traced = (statistics.primary.rays, statistics.secondary.rays, statistics.shadow.traced)
+    table.add_row("rays traced", *(f"{rays:,}" for rays in traced))
     table.add_row("traversal steps", *(f"{kind.traversal_steps:,}" for kind in kinds))
     table.add_row("intersection tests", *(f"{kind.intersection_tests:,}" for kind in kinds), end_section=True)
     shadow = statistics.shadow
@@ -157,11 +158,11 @@ def statistics_table(statistics: FrameStatistics, title: str, settings: Settings
     table.add_row(f"  {terms.TRACED}", f"{shadow.traced / due:.1%}", "", f"{shadow.traced:,}")
     wrong = statistics.wrong
     if wrong is not None:
-        of = f", all {wrong.samples} samples" if wrong.samples > 1 else ""
         if statistics.cuts is None:
-            table.add_row(f"{terms.WRONG}{of}", f"{wrong.answers / max(wrong.due, 1):.3%}", "", f"{wrong.answers:,}")
-        name = terms.WRONG_PIXELS if statistics.cuts is None else terms.BEYOND
-        table.add_row(f"{name}{of}", f"{wrong.pixels / max(wrong.shaded, 1):.3%}", "", f"{wrong.pixels:,}")
+            name, share = verified.named(terms.WRONG, wrong), f"{wrong.answers / max(wrong.due, 1):.3%}"
+            table.add_row(name, share, "", f"{wrong.answers:,}")
+        name = verified.named(terms.WRONG_PIXELS if statistics.cuts is None else terms.BEYOND, wrong)
+        table.add_row(name, f"{wrong.pixels / max(wrong.shaded, 1):.3%}", "", f"{wrong.pixels:,}")
     if shadow.passed_over:
         table.add_row(f"samples {terms.PASSED_OVER}", "", "", f"{shadow.passed_over:,}")
     if statistics.certificates and terms.made(settings.method)[0]:

@@ -14,7 +14,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from tracer.method import Method
 from tracer.statistics import FrameStatistics
-from viewer.state import terms
+from viewer.state import terms, verified
 from viewer.state.methods import BY_MODES
 from viewer.state.savings import bar_of
 from viewer.state.views import (
@@ -30,7 +30,7 @@ from viewer.state.views import (
     Color,
     View,
 )
-from viewer.util.numbers import count, percent
+from viewer.util.numbers import count, percent, whole_percent
 
 TITLE = "Figure 1"
 WITHIN = "in shading"
@@ -115,22 +115,30 @@ def _units(method: Method) -> str:
 def _notes(s: FrameStatistics, method: Method, by_modes: bool) -> Iterator[str]:
     """Short ones: the window has one line for them."""
     if s.part < 1.0:
-        yield f"{100.0 * s.part:.0f} % of pixels shaded so far."
+        yield f"{whole_percent(s.part)} of pixels shaded so far."
     if by_modes and not method.culls:
-        yield f"Outlined: what {BY_MODES} would do."
+        brackets = f"; in brackets: {terms.FOR_DISPLAY}" if s.part == 1.0 else ""  # for which there is room
+        yield f"Outlined: what {BY_MODES} would do{brackets}."
     if s.decision:
         yield s.decision
 
 
 def _stage(
-    s: FrameStatistics, name: str, rule: str, phases: tuple[str, ...], section: str = "", **more: object
+    s: FrameStatistics,
+    name: str,
+    rule: str,
+    phases: tuple[str, ...],
+    section: str = "",
+    counted: bool = True,
+    **more: object,
 ) -> Stage:
-    """A stage with the time of some phases of the frame; without any, its time is not the frame's."""
-    if not phases:
-        return Stage(name, section, rule, "not counted", "", 0.0, **more)  # type: ignore[arg-type]
+    """A stage with the time of some phases of the frame; where that is not `counted`, it is no part of the frame's."""
     seconds = sum(s.phases.get(phase, 0.0) for phase in phases)
-    part = percent(seconds, s.seconds)
-    return Stage(name, section, rule, f"{1e3 * seconds:.1f} ms", part, min(seconds / max(s.seconds, 1e-9), 1.0), **more)  # type: ignore[arg-type]
+    time, part, share = f"{1e3 * seconds:.1f} ms", percent(seconds, s.seconds), min(seconds / max(s.seconds, 1e-9), 1.0)
+    if not counted:
+        rule, share = f"{rule} This is done {terms.WHY_FOR_DISPLAY}.", 0.0
+        time, part = "", f"({time})"
+    return Stage(name, section, rule, time, part, share, **more)  # type: ignore[arg-type]
 
 
 def _placing(s: FrameStatistics, changes: ModeChanges | None, units: str) -> Stage:
@@ -157,8 +165,8 @@ def _occlusion_testing(s: FrameStatistics, counted: bool) -> Stage:
     rule += "the other: a hit shows that this primitive is partially occluded."
     tip = "rays tested once more, each against one primitive"
     flows = (Flow("extra tests", s.occlusion_tests, tip=tip, view=View.OCCLUSION),) if counted else ()
-    phases = ("occlusion testing",) if counted else ()
-    return _stage(s, "Occlusion testing", rule, phases, "§2.3", flows=flows, view=View.OCCLUSION)
+    phases = ("occlusion testing",)
+    return _stage(s, "Occlusion testing", rule, phases, "§2.3", counted, flows=flows, view=View.OCCLUSION)
 
 
 _SHOW_WHAT_IS_MADE = {
@@ -209,8 +217,9 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
         for fate, number in sorted(rays.items())
     ]  # fmt: skip
     if s.wrong is not None and s.cuts is None:
-        tip = f"{terms.MEANINGS[terms.WRONG]}, of {count(s.wrong.due)} due"
-        flows.append(Flow(terms.WRONG, s.wrong.answers, "", WRONG, False, tip, View.DIFFERENCE))
+        tip, wrong = f"{terms.MEANINGS[terms.WRONG]}: {verified.share(s.wrong)}", s.wrong
+        name = verified.named("wrong", wrong) if wrong.samples > 1 else terms.WRONG
+        flows.append(Flow(name, wrong.answers, percent(wrong.answers, wrong.due), WRONG, False, tip, View.DIFFERENCE))
     due = max(s.shadow.due, 1)
     parts = tuple(
         Part(number / due, FATE_COLORS[fate], bar.would and fate.is_saved) for fate, number in sorted(rays.items())
@@ -271,8 +280,7 @@ def _occlusion_mode_setting(s: FrameStatistics, changes: ModeChanges, frame: Fra
     parts = tuple(Part(changes.units[m.name.lower()] / total, OCCLUSION_COLORS[m]) for m in modes)
     now = ", ".join(f"{count(changes.units[m.name.lower()])} {m.name}" for m in modes)
     more = {"flows": flows, "bar": parts, "bar_tip": f"all {units} by their occlusion modes now: {now}"}
-    phases = ("mode setting",) if counted else ()
-    return _stage(s, "Occlusion-mode setting", rule, phases, "§2.6", view=View.OCCLUSION, **more)
+    return _stage(s, "Occlusion-mode setting", rule, ("mode setting",), "§2.6", counted, view=View.OCCLUSION, **more)
 
 
 def _next(s: FrameStatistics, changes: ModeChanges | None, method: Method) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 
 from tracer.frame import Frame
 from tracer.method import Method
+from tracer.scene.lights import number_of
 from tracer.statistics import CutErrors
 from viewer.output.legend_counts import (
     LegendRow,
@@ -24,7 +25,7 @@ from viewer.output.legend_counts import (
 )
 from viewer.output.legend_of_fates import of_fates, of_moving_shadows
 from viewer.output.legend_of_space import of_cell_lights, of_cuts, of_tree, of_voxels
-from viewer.output.legend_parts import ARRIVAL_NAMES, AS_USUAL, Chosen, Entry, Legend, Note, Scale, Tone, light_in_words
+from viewer.output.legend_parts import ARRIVAL_NAMES, AS_USUAL, Chosen, Entry, Legend, Note, Scale, Tone
 from viewer.state import terms, verified
 from viewer.state.readings import can_draw, has_modes_of_cells, span_of
 from viewer.state.tone import clipped
@@ -103,9 +104,9 @@ def _by_modes(frame: Frame, light: int | None = None, number: int | None = None)
     if light is not None and light < len(said) > 1:
         columns = {f"light {number}": said[light]} | columns
     culls = Method.parse(frame.settings.method).uses_modes
-    parts = columns.values()
+    name, parts = "shadow rays, all bounces", columns.values()
     return (
-        Entry(f"shadow rays{'' if culls else ', if by modes'}{_of_part(frame)}", None, tuple(columns), _BY_MODES, True),
+        Entry(f"{name}{'' if culls else ', if by modes'}{_of_part(frame)}", None, tuple(columns), _BY_MODES, True),
         Entry(
             terms.CULLED,
             None,
@@ -134,12 +135,12 @@ def _occlusion(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 
 def _of_light(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    title = f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
+    title = f"{view.label}, {chosen.light_in_words}"
     if view is View.SHADOW:
         rows, units, facts = (
             shadow_legend(frame, chosen.light),
             _units(frame),
-            _by_modes(frame, chosen.light, chosen.number),
+            _by_modes(frame, chosen.light, number_of(chosen.lights, chosen.light)),
         )
     else:
         rows, units, facts = certificate_legend(frame, chosen.light), "cells", ()
@@ -205,7 +206,7 @@ def _work(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 
 def _penumbra(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    title = f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
+    title = f"{view.label}, {chosen.light_in_words}"
     found = penumbra_legend(frame, chosen.light)
     entries = tuple(
         Entry(ARRIVAL_NAMES[one], ARRIVAL_COLORS[one], (percent(pixels, found.seen),), f"{ARRIVAL_MEANING[one]}. "
@@ -233,9 +234,9 @@ def _lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
 def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     """What is wrong in the frame, or of what it is said that nothing is."""
     statistics, found = frame.statistics, verified.counts_of(frame.statistics)
-    colored, samples = view is View.DIFFERENCE or chosen.marked, found.samples
-    name = "around wrong pixels" if colored and view is not View.DIFFERENCE else "wrong pixels"
-    name += f", all {samples} samples" if samples > 1 else ""
+    colored = view is View.DIFFERENCE or chosen.marked
+    name = "around wrong pixels" if colored and view is not View.DIFFERENCE else terms.WRONG_PIXELS
+    name = verified.named(name, found)
     pixels = f"{count(found.pixels)} ({percent(found.pixels, found.shaded)})"
     entries = (Entry(name, WRONG if colored else None, (pixels,), terms.MEANINGS[terms.WRONG_PIXELS]),)
     largest, seen = verified.largest_difference(frame)
@@ -248,7 +249,8 @@ def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
         return Legend(view.label, (), entries, facts=(*of_pixels, *_cut_errors(cuts.errors)))
     if found.answers:
         answers = f"{count(found.answers)} ({percent(found.answers, found.due)} of those due)"
-        facts = (*of_pixels, Entry(terms.WRONG, None, (answers,), terms.MEANINGS[terms.WRONG]))
+        tip = f"{terms.MEANINGS[terms.WRONG]}: {verified.share(found)}"
+        facts = (*of_pixels, Entry(verified.named(terms.WRONG, found), None, (answers,), tip))
         notes = (Note(verified.of_what(statistics)),) if statistics.part < 1.0 else ()
         return Legend(view.label, (), entries, facts=facts, notes=notes)
     said = f"{verified.in_words(statistics)}."
@@ -272,6 +274,9 @@ _ERRORS = (
 _SHARE = "of the samples that pixels in the penumbra face, those that reach them"
 _BY_MODES = "of this frame, at all bounces, by the modes after the frame before: what the paper's method saves"
 _IN_ALL_SAVED = "of the first sample of each pixel; the share is of the shadow rays due"
-_IN_ALL = "of the first sample of each pixel; the share is of the rays traced without culling"
+_IN_ALL = (
+    "of the first sample of each pixel, through the whole scene: shadow rays that asked dynamic objects or a few "
+    "candidates alone are not among them; the share is of the rays traced without culling"
+)
 _LOOK_OTHERWISE = "than with every answer right; one deep in reflections may change nothing that a screen shows"
 _LARGEST = "between a channel of a wrong pixel's colour and the right one, also where both are too bright for a screen"

@@ -33,6 +33,7 @@ from viewer.state.slices import Slice
 from viewer.state.values import Values, values_of
 from viewer.state.views import View
 from viewer.state.worst import Spot, worst_spots
+from viewer.util.numbers import whole_percent
 
 
 @dataclass(frozen=True)
@@ -162,7 +163,7 @@ class Comparing:
         self.state.kept, self.state.source = b, Source.KEPT
         self._follow_second()
         part = b.frame.statistics.part
-        coarse = f", of which {part:.0%} of the pixels are shaded yet" if part < 1.0 else ""
+        coarse = f", of which {whole_percent(part)} of the pixels are shaded yet" if part < 1.0 else ""
         self._notices.say(f"kept as A: {b.method}, {b.view.label.lower()}, frame {b.number}{coarse}")
 
     def forget(self) -> None:

@@ -20,7 +20,7 @@ from viewer.state import terms, verified
 from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import BY_MODES, NO_CULLING
 from viewer.state.views import FATE_MEANING, FATE_NAMES, FATE_WOULD
-from viewer.util.numbers import count, percent
+from viewer.util.numbers import count, percent, whole_percent
 
 LONGEST = ": 29.6 % of shadow rays saved, 15 % fewer steps, not verified, 1.08 × as fast as none (± 0.02)"
 """As long as the sentence usually is, after the method's name: what room there should be for it."""
@@ -212,7 +212,7 @@ def _saved(frame: Frame, standing: Standing) -> Clause:
     shadow, culls = s.shadow, Method.parse(name).culls
     if standing.run:
         name = f"{standing.run[0].upper()}{standing.run[1:]}, {name}"
-    part = f" (of the {s.part:.0%} shaded)" if s.part < 1.0 else ""
+    part = f" (of the {whole_percent(s.part)} shaded)" if s.part < 1.0 else ""
     if s.cuts is not None:
         text = f"{name}: {s.cuts.mean:.0f} clusters for {count(s.cuts.lights)} lights"
         return Clause(f"{text}{part}", "of the lights that each block of points is shaded by, on average")

@@ -10,6 +10,8 @@ from tracer.frame_in_progress import OF_MODES
 from tracer.geometry.accelerators import BVH8, KD_TREE, LAZY
 from tracer.method import Method
 from tracer.settings import Settings
+from tracer.statistics import ShadowCounts
+from viewer.util.numbers import count
 
 DUE = "due"
 CULLED = "culled"
@@ -44,10 +46,12 @@ MEANINGS = {
     TRACED: "nothing was known: traced through the whole scene",
     PASSED_OVER: "samples of lights, at all points, that are proven not to reach them: not even looked at, and not due",
     BUILT: "of the tree, which is built where rays arrive: primitives in nodes that are built",
-    WRONG: "shadow rays for which culling and tracing disagree, in all samples",
-    WRONG_PIXELS: "with a wrong answer to any light, at any bounce, in any sample",
+    WRONG: "shadow rays for which culling and tracing disagree, in all samples so far",
+    WRONG_PIXELS: "with a wrong answer to any light, at any bounce, in any sample so far",
     BEYOND: "pixels that differ from the picture by all lights by more than clusters of lights may be wrong by",
 }
+
+ALL_RAYS = "of all kinds; rays as the view Rays traced counts them"
 
 MADE = {
     "certificates made": "proofs for parts of surfaces, made in this frame",
@@ -70,12 +74,17 @@ PHASES = {
 """The phases of a frame, in their order: the name of each, and what happens in it."""
 
 
+FOR_DISPLAY = "for display"
+WHY_FOR_DISPLAY = "beside the method, which culls by no modes, so that they can be shown: no part of the frame's time"
+"""Of phases whose modes are only looked at."""
+
+
 def phase(name: str, settings: Settings) -> tuple[str, str]:
     """The name of a phase of a frame, and what happens in it; of modes that are only looked at, which is no part of the
     frame's time."""
     label, tip = PHASES.get(name, (name, ""))
     if name in OF_MODES and settings.modes_beside:
-        return f"{label} beside", f"{tip}, beside the method, which culls by no modes: no part of the frame's time"
+        return f"{label} ({FOR_DISPLAY})", f"{tip}: {WHY_FOR_DISPLAY}"
     return label, tip
 
 
@@ -85,6 +94,16 @@ TREES = {
     LAZY: "a kd-tree that is built where rays arrive",
 }
 """What rays are traced through, and what it is."""
+
+
+def traced_shadow_rays(shadow: ShadowCounts) -> str:
+    """Which shadow rays count as traced, and how many others asked something, in a sentence or two."""
+    others = shadow.rays - shadow.traced
+    text = "traced through the whole scene"
+    if others > 0:
+        text += f"; {count(others)} others asked dynamic objects or a few candidates alone: they are no traced rays, "
+        text += "but their steps and tests are counted here"
+    return text
 
 
 def made(method: str) -> tuple[str, str]:

@@ -1,6 +1,7 @@
 """What verifying has found in a frame, in words: said alike by legend, panels, status bar and command line.
 
-All of it is of all samples of all pixels that are shaded (`tracer.statistics.WrongCounts`).
+All of it is of all samples of all pixels that are shaded (`tracer.statistics.WrongCounts`), while other counters are of
+the first sample: numbers that grow as samples are added say of how many they are.
 """
 
 from __future__ import annotations
@@ -32,7 +33,21 @@ def in_short(statistics: FrameStatistics) -> str:
         return ""
     if statistics.cuts is not None:
         return f"{count(found.pixels)} {terms.BEYOND}" if statistics.cuts.errors is not None else ""
-    return several(found.answers, "wrong answer")
+    return f"{several(found.answers, 'wrong answer')}{_in_samples(found)}"
+
+
+def named(term: str, found: WrongCounts) -> str:
+    """A term of what was found, with the samples that it is of where these are several."""
+    return f"{term}, {found.samples} samples" if found.samples > 1 else term
+
+
+def share(found: WrongCounts) -> str:
+    """Of how many answers those that are wrong are, and which part: 0.015 % of 49,121,744 due in 16 samples."""
+    return f"{percent(found.answers, found.due)} of {count(found.due)} due{_in_samples(found)}"
+
+
+def _in_samples(found: WrongCounts) -> str:
+    return f" in {found.samples} samples" if found.samples > 1 else ""
 
 
 def is_wrong(statistics: FrameStatistics) -> bool:
@@ -47,7 +62,8 @@ def in_words(statistics: FrameStatistics) -> str:
         return f"{in_short(statistics)}{_of_what(statistics)}" if statistics.cuts.errors is not None else NOT_YET
     if found.answers:
         pixels = several(found.pixels, "pixel")
-        return f"{in_short(statistics)} ({percent(found.answers, found.due)}) at {pixels}{_of_what(statistics)}"
+        answers = several(found.answers, "wrong answer")
+        return f"{answers} ({percent(found.answers, found.due)}) at {pixels}{_of_what(statistics)}"
     if not found.untraced:
         return ALL_TRACED
     known = f"{several(found.untraced, 'answer')} known without tracing ({percent(found.untraced, found.due)})"
@@ -57,7 +73,7 @@ def in_words(statistics: FrameStatistics) -> str:
 def of_what(statistics: FrameStatistics) -> str:
     """Of which samples and pixels that is, where these are not one of each; else nothing."""
     samples = counts_of(statistics).samples
-    words = [f"all {samples} samples"] if samples > 1 else []
+    words = [f"in {samples} samples"] if samples > 1 else []
     if statistics.part < 1.0:
         words.append(f"in the {percent(statistics.part, 1.0)} of the picture that is shaded")
     return ", ".join(words)

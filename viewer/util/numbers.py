@@ -16,6 +16,11 @@ def percent(part: float, whole: float) -> str:
     return f"{share:.2g} %" if 0.0 < share < 0.05 else f"{share:.1f} %"
 
 
+def whole_percent(part: float) -> str:
+    """A part of 1 in whole per cents: 38 %."""
+    return f"{100.0 * part:.0f} %"
+
+
 MOST_PERCENT = 10.0
 """Parts of a whole past which something is so many times as many, as nobody reads -119360 %."""
 

@@ -112,7 +112,7 @@ def test_what_a_figure_leaves_out_stands_beside_it():
     frame = frame_by("paper", culled=100)
     frame = replace(frame, settings=replace(frame.settings, accelerator="kdtree"))
     assert said(frame, measured=in_turn("paper", 1.2)).endswith("1.20 × as fast as none in the kdtree (± 0.01)")
-    assert said(frame_by("paper", part=0.25, culled=100)).startswith("paper: 10.0 % of shadow rays saved (of the 25%")
+    assert said(frame_by("paper", part=0.25, culled=100)).startswith("paper: 10.0 % of shadow rays saved (of the 25 %")
 
 
 def test_nothing_is_praised_that_culls_nothing():

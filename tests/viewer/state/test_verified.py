@@ -20,8 +20,12 @@ def statistics(part: float = 1.0, **found: int) -> FrameStatistics:
 def test_wrong_answers_have_their_share_their_pixels_and_their_samples() -> None:
     assert verified.in_words(statistics(answers=3, pixels=2)) == "3 wrong answers (0.3 %) at 2 pixels"
     assert verified.in_words(statistics(answers=1, pixels=1, samples=4)) == (
-        "1 wrong answer (0.1 %) at 1 pixel, all 4 samples"
+        "1 wrong answer (0.1 %) at 1 pixel, in 4 samples"
     )
+    several = statistics(answers=1, pixels=1, samples=4)
+    assert verified.in_short(several) == "1 wrong answer in 4 samples", "a number that grows with the samples says so"
+    assert verified.named("wrong", several.wrong) == "wrong, 4 samples"
+    assert verified.share(several.wrong) == "0.1 % of 1,000 due in 4 samples"
     assert verified.in_short(statistics(answers=3, pixels=2)) == "3 wrong answers"
     assert verified.is_wrong(statistics(answers=3, pixels=2)) and not verified.is_wrong(statistics())
 

@@ -116,7 +116,7 @@ def test_modes_that_are_only_looked_at_are_named_as_no_part_of_the_time() -> Non
         label, tip = terms.phase(name, Settings(method="paper", modes=True))
         beside, why = terms.phase(name, Settings(method="none", modes=True))
         assert (label, tip) == terms.PHASES[name]
-        assert beside == f"{label} beside" and why.startswith(tip) and "no part of the frame's time" in why
+        assert beside == f"{label} (for display)" and why.startswith(tip) and "no part of the frame's time" in why
         assert terms.phase(name, Settings(method="none")) == terms.PHASES[name]
     assert terms.phase("shading", Settings(modes=True)) == terms.PHASES["shading"]
     assert terms.phase("new", Settings()) == ("new", "")

@@ -44,9 +44,6 @@ def show(ui: Ui) -> None:
         same_line_for("Verify")
     tip = "trace every culled shadow ray as well, and count wrong answers (V)"
     checkbox("Verify", s.verify, lambda on: c.settings.change(verify=on), tip)
-    said = wrong_answers(c)
-    if said is not None:
-        paragraph(*said)
     with properties("culling", 8.2 if Method.parse(s.method).has_certificates else 6.5) as shown:
         if shown and not clusters:
             with _of_modes(s.method) as besides:
@@ -98,6 +95,9 @@ def show(ui: Ui) -> None:
         keep,
         "trace frame after frame, to watch how modes are set and certificates made (K)",
     )
+    said = wrong_answers(c)
+    if said is not None:  # at the end, where it moves nothing
+        paragraph(*said)
 
 
 @contextmanager

@@ -9,6 +9,7 @@ from imgui_bundle import imgui, implot
 
 from tracer.experiment import REFERENCE, Results
 from viewer.services.runs import Experiment
+from viewer.util.numbers import whole_percent
 from viewer.window.palette import GREY
 from viewer.window.ui import Ui
 
@@ -37,7 +38,7 @@ def handle(ui: Ui, plot: str, number: int | None, values: list[str]) -> None:
     said = []
     if moment is not None:
         width, height, part = moment.settings.width, moment.settings.height, c.history.shaded_of(moment.number)
-        shaded = f", {part:.0%} shaded" if part < 1.0 else ""
+        shaded = f", {whole_percent(part)} shaded" if part < 1.0 else ""
         said = [f"{moment.time:.3f} s, {moment.settings.method}, {width} x {height}{shaded}"]
     named = in_words(ui, number) if number is not None else ""
     _menu(ui, plot, number, named, [*said, *values], lambda chosen, modes: c.travel.go(chosen, modes))

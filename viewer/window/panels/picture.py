@@ -16,6 +16,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from viewer.state import navigation, pads, verified
 from viewer.state.comparison import Way
 from viewer.state.picking import point_at
+from viewer.util.numbers import whole_percent
 from viewer.window import comparing
 from viewer.window.camera_commands import pivot_of
 from viewer.window.palette import ON_PICTURE_ERROR
@@ -300,7 +301,7 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
     if request.divisor > 1:
         text += f"   1/{request.divisor}"
     if frame.statistics.part < 1.0:
-        text += f"   {frame.statistics.part:.0%} shaded"
+        text += f"   {whole_percent(frame.statistics.part)} shaded"
     elif request.samples > 1:
         text += f"   {c.tracing.samples_shown} of {request.samples} samples"
     if not c.session.zoom.fits:

@@ -10,7 +10,9 @@ from imgui_bundle import imgui
 from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
-from viewer.state import terms
+from tracer.statistics import FrameStatistics, RayCounts
+from viewer.state import terms, verified
+from viewer.util.numbers import whole_percent
 from viewer.window.panels import coming
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -42,17 +44,18 @@ def show(ui: Ui) -> None:
     s = frame.statistics
     pixels = max(round(s.part * frame.width * frame.height), 1)  # that have been shaded
     divisor = c.traced.request.divisor
-    coarse = f" (1/{divisor} of the window)" if divisor > 1 else ""
-    part = f"{s.part:.0%} of " if s.part < 1.0 else ""
-    clipped(f"for {part}{frame.width} x {frame.height} pixels{coarse}")
-    clipped(f"method {frame.settings.method}")
-    if c.tracing.outdated:
-        paragraph("These are for the previous settings; a new frame is being traced.", QUIET)
+    coarse = f", 1/{divisor} size" if divisor > 1 else ""
+    part = f"{whole_percent(s.part)} of " if s.part < 1.0 else ""
+    clipped(f"{part}{frame.width} x {frame.height} pixels{coarse}")
+    tooltip("of the first sample of each pixel that is shaded; primary rays and proofs are those of all pixels")
+    old = c.tracing.outdated  # said in a line that is there anyway, so that nothing moves
+    clipped(f"method {frame.settings.method}{', before the change' if old else ''}", QUIET if old else None)
+    if old:
+        tooltip("These are for the previous settings; a new frame is being traced.")
     certifies, prepares = Method.parse(frame.settings.method).has_certificates, terms.made(frame.settings.method)[0]
     _shadow_rays(frame, pixels, certifies)
+    _verified(s)
     heading("Work")
-    if s.part < 1.0:
-        paragraph(f"Of all pixels for primary rays, else of the {s.part:.0%} that are shaded.", QUIET)
     _work(ui)
     if s.built is not None:
         with _amounts("tree") as shown:
@@ -104,12 +107,6 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
         if Method.parse(frame.settings.method).has("cache") or shadow.cache_hits:
             fate(terms.CACHE_HITS, shadow.cache_hits)
         fate(terms.TRACED, shadow.traced)
-        wrong = s.wrong
-        if wrong is not None and s.cuts is not None:
-            amount(terms.BEYOND.capitalize(), count(wrong.pixels), terms.MEANINGS[terms.BEYOND])
-        elif wrong is not None:
-            fate(terms.WRONG, wrong.answers, wrong.due)
-            fate(terms.WRONG_PIXELS, wrong.pixels, wrong.shaded)
         if shadow.passed_over:
             tip = f"{terms.MEANINGS[terms.PASSED_OVER]} ({count(shadow.passed_over)})"
             amount(terms.PASSED_OVER.capitalize(), number(shadow.passed_over), tip)
@@ -125,6 +122,29 @@ def _shadow_rays(frame: Frame, pixels: int, certifies: bool) -> None:
             amount(made.capitalize(), count(s.certificates), meaning, wraps=True)
 
 
+def _verified(s: FrameStatistics) -> None:
+    """What is wrong, of the rays due in all samples, while the rows above are of the first."""
+    found = s.wrong
+    if found is None:
+        return
+    heading(verified.named("Verified", found))
+    with _amounts("verified", em(_PART)) as shown:
+        if not shown:
+            return
+
+        def wrong(term: str, part: int, whole: int) -> None:
+            amount(term.capitalize(), count(part), f"{terms.MEANINGS[term]} ({percent(part, whole)} of {count(whole)})")
+            imgui.table_next_column()
+            right(percent(part, whole))
+
+        if s.cuts is not None:
+            wrong(terms.BEYOND, found.pixels, found.shaded)
+            return
+        amount(terms.DUE.capitalize(), short(found.due), f"{terms.MEANINGS[terms.DUE]} ({count(found.due)})")
+        wrong(terms.WRONG, found.answers, found.due)
+        wrong(terms.WRONG_PIXELS, found.pixels, found.shaded)
+
+
 @contextmanager
 def _amounts(name: str, shares: float = 0.0) -> Iterator[bool]:
     """A table of names and numbers, and a column of shares where that has a width."""
@@ -133,7 +153,7 @@ def _amounts(name: str, shares: float = 0.0) -> Iterator[bool]:
         if shares:
             imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(_NAMES))
         else:
-            imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 1.8)
+            imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 2.4)
         imgui.table_setup_column("number", int(imgui.TableColumnFlags_.width_stretch), 1.0)
         if shares:
             imgui.table_setup_column("share", int(imgui.TableColumnFlags_.width_fixed), shares)
@@ -153,28 +173,39 @@ def _work(ui: Ui) -> None:
     frame = ui.controller.frame
     assert frame is not None
     s = frame.statistics
-    rows: list[tuple[str, tuple[int, ...]]] = [
-        (name, (part.rays, part.traversal_steps, part.intersection_tests))
-        for name, part in (("primary", s.primary), ("secondary", s.secondary), ("shadow", s.shadow))
+    shaded = f", at the {percent(s.part, 1.0)} of the pixels that is shaded" if s.part < 1.0 else ""
+    rows: list[_Row] = [
+        _row("primary", s.primary, s.primary.rays, "from the camera, through all pixels"),
+        _row("secondary", s.secondary, s.secondary.rays, f"reflected and refracted{shaded}"),
+        _row("shadow", s.shadow, s.shadow.traced, f"{terms.traced_shadow_rays(s.shadow)}{shaded}"),
     ]
-    made, _ = terms.made(frame.settings.method)
+    made, meaning = terms.made(frame.settings.method)
     if made:
-        rows.append((terms.things(made), (0, s.certificate_steps, s.certificate_tests)))
-    rows.append(("all", tuple(sum(numbers[n] for _, numbers in rows) for n in range(3))))
-    meaning = "steps: nodes of the tree that rays enter; tests: rays against primitives"
+        rows.append((terms.things(made), (0, s.certificate_steps, s.certificate_tests), meaning))
+    rows.append(("all", tuple(sum(numbers[n] for _, numbers, _ in rows) for n in range(3)), terms.ALL_RAYS))
+    means = "Steps: nodes of the tree that rays enter; tests: rays against primitives"
     if frame.settings.accelerator == BVH8:
-        meaning += "; of whole packets of rays where these are coherent (an experiment counts each ray's, in a kd-tree)"
+        means += "; bvh8 counts one for a whole packet of up to 128 coherent rays (an experiment counts each ray's, in "
+        means += "a kd-tree)"
+    means += "."
     if imgui.get_content_region_avail().x > em(_WIDE):
-        _work_table(rows, meaning)
+        _work_table(rows, means)
         return
     with _amounts("work, narrow") as shown:  # a narrow panel has no room for four columns
-        for name, numbers in rows if shown else ():
+        for name, numbers, tip in rows if shown else ():
             for title, number in zip(_WORK, numbers, strict=True):
                 if number:
-                    amount(f"{name}, {title}", short(number), f"{count(number)}; {meaning}")
+                    amount(f"{name}, {title}", short(number), f"{count(number)}: {tip}\n{means}")
 
 
-def _work_table(rows: list[tuple[str, tuple[int, ...]]], meaning: str) -> None:
+_Row = tuple[str, tuple[int, ...], str]  # a kind of rays: its name, its rays, steps and tests, and which they are
+
+
+def _row(name: str, counted: RayCounts, rays: int, tip: str) -> _Row:
+    return name, (rays, counted.traversal_steps, counted.intersection_tests), tip
+
+
+def _work_table(rows: list[_Row], means: str) -> None:
     if not imgui.begin_table("work", 4, int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)):
         return
     imgui.table_setup_column("kind", int(imgui.TableColumnFlags_.width_fixed), em(5.2))
@@ -183,12 +214,13 @@ def _work_table(rows: list[tuple[str, tuple[int, ...]]], meaning: str) -> None:
     for title in ("", *_WORK):
         imgui.table_next_column()
         right(title, QUIET)
-        tooltip(meaning)
-    for name, numbers in rows:
+        tooltip(means)
+    for name, numbers, tip in rows:
         imgui.table_next_column()
         paragraph(name, QUIET)
+        tooltip(f"{tip}\n{means}")
         for number in numbers:
             imgui.table_next_column()
             right(short(number))
-            tooltip(count(number))
+            tooltip(f"{count(number)}: {tip}\n{means}")
     imgui.end_table()
