@@ -112,9 +112,11 @@ class Words:
         since: Sentence = (" since ", _frame(unit.taught)) if unit.taught is not None else ()
         if unit.before is not OcclusionMode.FULLY_RENDERED:
             return (covers, ". Fully rendered from this frame on: nothing hides any of it ", *_section("2.6"), ".")
-        times = f"{unit.pixels / max(unit.highest, 1):.2g} of the {unit.zoom_factor:g} times"
-        examined = f"{covers}, {unit.highest:,} when it was last examined: {times} at which it is examined anew "
-        return (examined, *_section("2.6"), ". Fully rendered", *since, ".")
+        times = f"{unit.pixels / max(unit.highest, 1):.2g} × the {unit.highest:,} when it was last examined"
+        return (
+            f"{covers}, {times}; examined anew above {unit.zoom_factor:g} × ", *_section("2.6"), ". Fully rendered",
+            *since, ".",
+        )  # fmt: skip
 
     def reference(self, one: Reference) -> Sentence:
         """Say what became of the occlusion test against a reference pixel (Figure 3)."""

@@ -342,7 +342,7 @@ def test_how_a_primitive_stands_in_words(room: tracer.Scene):
     words = Words(room, Why(10, 6, 5, ()))
     far = Coverage(FULLY, FULLY, 812, 240, 4.0, False, taught=TaughtBy(7, "frame 7"))
     assert plain(words.coverage(far)) == (
-        "Covers 812 pixels, 240 when it was last examined: 3.4 of the 4 times at which it is examined anew (§2.6). "
+        "Covers 812 pixels, 3.4 × the 240 when it was last examined; examined anew above 4 × (§2.6). "
         "Fully rendered since frame 7."
     )
     assert plain(words.coverage(Coverage(FULLY, INIT, 1000, 1000, 4.0, False))) == (
@@ -386,7 +386,7 @@ def test_the_papers_figures_explain_themselves(name: str):
     if name == "figure3":
         assert "partly occluded by figure3 (triangle" in text and "clipped by the screen's edge" in text
     assert "Asks nothing, as nothing moves: nothing static has ever blocked it (§2.4)." in sentences
-    assert "of the 4 times at which it is examined anew (§2.6)" in text
+    assert "; examined anew above 4 × (§2.6)" in text
 
 
 def test_what_moves_and_what_it_darkens():
