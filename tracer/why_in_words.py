@@ -13,6 +13,7 @@ from tracer.reasons import MEANING, WHY_TRACED, Coverage, Reason, Rule, TaughtBy
 from tracer.scene.model import CONE, Scene
 
 MOST_NAMED = 3  # primitives of an answer that are named
+_MOVING = "objects that move"  # where a verdict's meaning says that they are asked
 
 
 @dataclass(frozen=True)
@@ -210,6 +211,8 @@ class Words:
         meaning = MEANING[reason.verdict]
         culled = reason.fate is Fate.CULLED
         said: list[str | Link] = [f"Culled: {meaning[0].lower()}{meaning[1:]}" if culled else meaning]
+        if reason.fate is Fate.DYNAMIC_ONLY and reason.dynamic_objects and _MOVING not in meaning:
+            said.append(f" It asks {_movers(reason.dynamic_objects)} only.")
         if reason.told:
             said.append(f" {reason.told}")
         if reason.named:
