@@ -436,6 +436,7 @@ class FrameInProgress:
         tests = int(self._occlusion_tests.sum()) if not settings.modes_beside else 0
         statistics = gather(self._counts, tests, lights if settings.keeps_modes else 0)
         statistics.part = 1.0 if self._parts is None else self._parts.share
+        statistics.phases, statistics.seconds = dict(self.phases), self.seconds  # counting is none of the frame's work
         if settings.keeps_modes:
             statistics.mode_changes = mode_changes(self.words, learnt.words, self.workers)
         statistics.resting = self._resting_primitives()
@@ -443,7 +444,6 @@ class FrameInProgress:
             statistics.samples = sample_counts(buffers.asked, buffers.reached)
         built = self._state.world.built()
         statistics.built = None if built is None else BuiltPart(*built)
-        statistics.phases, statistics.seconds = dict(self.phases), self.seconds
         layers: dict[str, Any] = {}
         for method in self.methods:
             method.report(statistics)

@@ -48,6 +48,7 @@ class Parts:
         self._stale = all_blocks(width, height) > 0  # blocks that are to be filled in, or once more
         self._doubt = np.zeros(self.shaded.shape, np.float32)
         self._filled = np.empty((height, width, 3), np.float32)
+        self._mask: NDArray[np.bool_] | None = None
         self._given = False  # whether somebody has what is filled in, who may go on showing it
 
     @property
@@ -63,7 +64,14 @@ class Parts:
     @property
     def pixels(self) -> NDArray[np.bool_] | None:
         """(height, width): which pixels have been shaded; None where all have."""
-        return None if self.share >= 1.0 else pixels_of(self.shaded, self._width, self._height)
+        return None if self.share >= 1.0 else self._known
+
+    @property
+    def _known(self) -> NDArray[np.bool_]:
+        """(height, width): which pixels have been shaded; made once for as long as no more are."""
+        if self._mask is None:
+            self._mask = pixels_of(self.shaded, self._width, self._height)
+        return self._mask
 
     def left_up_to(
         self, part: float, fill: Callable[[], None], untaught: NDArray[np.int32] | None = None
@@ -128,6 +136,7 @@ class Parts:
 
     def _take(self, lanes: NDArray[np.int32]) -> NDArray[np.int32]:
         self.shaded |= lanes
+        self._mask = None
         self._stale[1:-1, 1:-1] |= _with_neighbours(lanes != 0)
         return lanes
 
@@ -156,13 +165,9 @@ class Parts:
         self._given = True
         return self._filled
 
-    def stretched(self, values: NDArray) -> NDArray:
-        """values (height, width, ...) of the pixels that have been shaded, those of the nearest at the others."""
-        return _taken(values, self._sources())
-
-    def _sources(self) -> NDArray[np.int32]:
+    def sources(self) -> NDArray[np.int32]:
         """(height, width): the number of the pixel whose values each shows, its own where it has been shaded."""
-        known = pixels_of(self.shaded, self._width, self._height)
+        known = self._known
         y, x = np.argwhere(self._first == BAYER)[0]
         rows, columns = np.ix_(nearest(self._height, int(y)), nearest(self._width, int(x)))
         if self._width > BLOCK:  # every other block may have none: then what the one beside it has
@@ -178,12 +183,12 @@ class Parts:
         What is wrong, due or lit there is not known yet.
 
         shaded (height, width, 3) are the colours before the others were filled in."""
-        frame.shaded = pixels_of(self.shaded, self._width, self._height)
+        frame.shaded = self._known
         if frame.asked is not None and frame.reached is not None:
             frame.asked, frame.reached = frame.asked.copy(), frame.reached.copy()
         if frame.reference is None and frame.fates is None and frame.saved is None:
             return
-        sources = _of_own(frame.primitive, frame.shaded, self._sources())
+        sources = _of_own(frame.primitive, frame.shaded, self.sources())
         if frame.reference is not None and frame.wrong is not None:
             frame.reference = frame.color + _taken(frame.reference - shaded, sources)
             frame.wrong = frame.wrong.copy()

@@ -206,7 +206,8 @@ def _shadow_rays(
     ends = seen.point[:, points.LIFTED_ROW : points.LIFTED_ROW + 3]
     due, answer = noted & DUE != 0, noted >> ANSWERED
     lit, settled = noted & LIT != 0, noted & SETTLED != 0
-    traced, moving = due & (answer == 0), lit & ~settled & bool(world.placed.has_dynamic)
+    traced, of_static = due & (answer == 0), lit & ~settled
+    moving = of_static & bool(world.placed.has_dynamic)
     steps, tests, met = (np.zeros(shape, np.int32) for _ in range(3))
     met[:] = MISS
 
@@ -247,7 +248,7 @@ def _shadow_rays(
         found.append(
             ShadowRays(
                 lights, verdicts[row], lit[row], due[row] & (lit[row] == (blocker[row] != MISS)), blocker[row],
-                blocked_at[row], met[row], moving[row], steps[row], tests[row], named, known, told,
+                blocked_at[row], met[row], moving[row], of_static[row], steps[row], tests[row], named, known, told,
             )
         )  # fmt: skip
         _go_on(cancelled)

@@ -172,7 +172,7 @@ class Renderer:
         ValueError
             If `parts` do not increase up to 16.
         Cancelled
-            As for `render`.
+            If the frame was cancelled. What the last frame that was yielded has taught stays.
         """
         if list(parts) != sorted(set(parts)) or not parts or parts[0] < LEVELS[0] or parts[-1] != TURNS:
             raise ValueError(f"parts increase from {LEVELS[0]} at least to {TURNS}")

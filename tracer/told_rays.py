@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.fate import Fate
 from tracer.culling.verdicts import Verdict
 from tracer.scene.arrays import Float32, Float64
 
@@ -21,6 +22,30 @@ if TYPE_CHECKING:
 VERDICTS = tuple(Verdict)
 NUMBER_OF = {verdict: number for number, verdict in enumerate(VERDICTS)}
 AWAY, TRACED = NUMBER_OF[Verdict.AWAY], NUMBER_OF[Verdict.TRACED]
+
+FATES: dict[Verdict, Fate] = {
+    Verdict.AWAY: Fate.FACES_AWAY,
+    Verdict.PASSED_OVER: Fate.CULLED,
+    Verdict.FULL_SHADOW: Fate.CULLED,
+    Verdict.NON_SHADOW: Fate.CULLED,
+    Verdict.CERTIFIED_FULL: Fate.CULLED,
+    Verdict.CERTIFIED_LIT: Fate.CULLED,
+    Verdict.CANDIDATES: Fate.CANDIDATES,
+    Verdict.BEAM: Fate.CULLED,
+    Verdict.CACHED: Fate.CACHED,
+    Verdict.BUFFER_LIT: Fate.CULLED,
+    Verdict.BUFFER_FULL: Fate.CULLED,
+    Verdict.BUFFER_TESTED: Fate.CANDIDATES,
+    Verdict.VOXEL_LIT: Fate.CULLED,
+    Verdict.VOXEL_FULL: Fate.CULLED,
+    Verdict.VOXEL_WALK: Fate.CANDIDATES,
+    Verdict.CELL_LIT: Fate.CULLED,
+    Verdict.CELL_FULL: Fate.CULLED,
+    Verdict.CELL_TESTED: Fate.CANDIDATES,
+    Verdict.ANSWERED: Fate.CULLED,
+    Verdict.TRACED: Fate.TRACED,
+}
+"""What becomes of a ray that each verdict answers, if dynamic objects need not be asked as well."""
 
 
 class RayKind(Enum):
@@ -53,6 +78,9 @@ class ShadowRays:
         For rays that were traced, the primitive that the search came upon, which need not be the first; -1 for none.
     asked_moving : (s,) bool
         Whether moving objects alone were asked.
+    of_static : (s,) bool
+        Whether it was answered that nothing static is in the way, and no more: moving objects are asked as well, if
+        there are any.
     steps, tests : (s,) int32
         Traversal steps and intersection tests of the ray, traced alone; 0 unless it was traced or moving objects were
         asked.
@@ -74,6 +102,7 @@ class ShadowRays:
     blocked_at: Float32
     met: NDArray[np.int32]
     asked_moving: NDArray[np.bool_]
+    of_static: NDArray[np.bool_]
     steps: NDArray[np.int32]
     tests: NDArray[np.int32]
     named: dict[int, tuple[int, ...]]
@@ -84,6 +113,13 @@ class ShadowRays:
         """The places of a light's samples."""
         first, end = np.searchsorted(self.light, [light, light + 1])
         return slice(int(first), int(end))
+
+    def fate(self, place: int) -> Fate:
+        """What became of a ray, by what answered it; why it was traced is not told."""
+        verdict = VERDICTS[self.verdict[place]]
+        # Light buffers count what they have tested as dynamic only where that is what remains.
+        asks_dynamic = FATES[verdict] is Fate.CULLED or verdict is Verdict.BUFFER_TESTED
+        return Fate.DYNAMIC_ONLY if asks_dynamic and self.of_static[place] else FATES[verdict]
 
     @cached_property
     def counts(self) -> Counter[Verdict]:

@@ -35,19 +35,6 @@ if TYPE_CHECKING:
     from tracer.renderer import Renderer
 
 
-_FATES = {
-    Verdict.AWAY: Fate.FACES_AWAY,
-    Verdict.NON_SHADOW: Fate.DYNAMIC_ONLY,
-    Verdict.CERTIFIED_LIT: Fate.DYNAMIC_ONLY,
-    Verdict.VOXEL_LIT: Fate.DYNAMIC_ONLY,
-    Verdict.CELL_LIT: Fate.DYNAMIC_ONLY,
-    Verdict.VOXEL_WALK: Fate.CANDIDATES,
-    Verdict.CANDIDATES: Fate.CANDIDATES,
-    Verdict.BUFFER_TESTED: Fate.CANDIDATES,
-    Verdict.CELL_TESTED: Fate.CANDIDATES,
-    Verdict.CACHED: Fate.CACHED,
-    Verdict.TRACED: Fate.TRACED,
-}
 _RULES = {
     Fate.CULLED: Rule.FULL_SHADOW,
     Fate.DYNAMIC_ONLY: Rule.NON_SHADOW,
@@ -134,11 +121,9 @@ class _Pixel:
     def reason(self, s: ShadowRays, light: int) -> Reason:
         """Why the rays to a light had the fate that most of them had."""
         places = np.arange(len(s.light))[s.of_light(light)]
-        verdict, known, those = _most(s, places)
+        those, known = _most(s, places)
         place = int(those[0])
-        fate = _FATES.get(verdict, Fate.CULLED)
-        if verdict is Verdict.BUFFER_LIT and s.asked_moving[place]:  # else their depth is known, too
-            fate = Fate.DYNAMIC_ONLY
+        verdict, fate = VERDICTS[s.verdict[place]], s.fate(place)
         told = Reason(
             light=light,
             rule=Rule.KNOWN,
@@ -221,10 +206,11 @@ class _Pixel:
         return replace(told, rule=rule, fate=fate)
 
 
-def _most(s: ShadowRays, places: NDArray[np.int64]) -> tuple[Verdict, str, NDArray[np.int64]]:
-    """The verdict that most rays of a light have that are due, with what was known of them, and their places."""
-    fates: dict[tuple[int, str], list[int]] = {}
+def _most(s: ShadowRays, places: NDArray[np.int64]) -> tuple[NDArray[np.int64], str]:
+    """The places of the rays of a light with the verdict and fate that most have that are due, and what was known of
+    them."""
+    alike: dict[tuple[int, Fate, str], list[int]] = {}
     for place in places.tolist():
-        fates.setdefault((int(s.verdict[place]), s.known.get(place, "")), []).append(place)
-    number, known = max(fates, key=lambda fate: (VERDICTS[fate[0]].due, len(fates[fate])))
-    return VERDICTS[number], known, np.array(fates[number, known])
+        alike.setdefault((int(s.verdict[place]), s.fate(place), s.known.get(place, "")), []).append(place)
+    most = max(alike, key=lambda one: (VERDICTS[one[0]].due, len(alike[one])))
+    return np.array(alike[most]), most[2]

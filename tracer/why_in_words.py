@@ -13,6 +13,7 @@ from tracer.reasons import MEANING, WHY_TRACED, Coverage, Reason, Rule, TaughtBy
 from tracer.scene.model import CONE, Scene
 
 MOST_NAMED = 3  # primitives of an answer that are named
+_MOVING = "objects that move"  # where a verdict's meaning says that they are asked
 
 
 @dataclass(frozen=True)
@@ -111,9 +112,11 @@ class Words:
         since: Sentence = (" since ", _frame(unit.taught)) if unit.taught is not None else ()
         if unit.before is not OcclusionMode.FULLY_RENDERED:
             return (covers, ". Fully rendered from this frame on: nothing hides any of it ", *_section("2.6"), ".")
-        times = f"{unit.pixels / max(unit.highest, 1):.2g} of the {unit.zoom_factor:g} times"
-        examined = f"{covers}, {unit.highest:,} when it was last examined: {times} at which it is examined anew "
-        return (examined, *_section("2.6"), ". Fully rendered", *since, ".")
+        times = f"{unit.pixels / max(unit.highest, 1):.2g} × the {unit.highest:,} when it was last examined"
+        return (
+            f"{covers}, {times}; examined anew above {unit.zoom_factor:g} × ", *_section("2.6"), ". Fully rendered",
+            *since, ".",
+        )  # fmt: skip
 
     def reference(self, one: Reference) -> Sentence:
         """Say what became of the occlusion test against a reference pixel (Figure 3)."""
@@ -208,6 +211,8 @@ class Words:
         meaning = MEANING[reason.verdict]
         culled = reason.fate is Fate.CULLED
         said: list[str | Link] = [f"Culled: {meaning[0].lower()}{meaning[1:]}" if culled else meaning]
+        if reason.fate is Fate.DYNAMIC_ONLY and reason.dynamic_objects and _MOVING not in meaning:
+            said.append(f" It asks {_movers(reason.dynamic_objects)} only.")
         if reason.told:
             said.append(f" {reason.told}")
         if reason.named:

@@ -204,8 +204,7 @@ def test_what_is_recorded_stretches_to_the_nearest():
         parts = Parts(width, height, make_planes(width, height), 0.01)
         for part in (1, TURNS):
             for _ in parts.left_up_to(part, lambda: None):
-                stretched = parts.stretched(numbers[..., None])[..., 0]
-                assert (stretched == (found if part == 1 else numbers)).all()
+                assert (parts.sources() == (found if part == 1 else numbers)).all()
     assert parts.share == 1.0 and (parts.shaded[EDGE:-EDGE, EDGE:-EDGE] == 0xFFFF).all()
 
 
@@ -215,8 +214,7 @@ def test_of_a_half_of_the_blocks_what_is_recorded_reaches_the_others(first: int)
     lanes = next(parts.left_up_to(0.5, lambda: None))
     known = pixels_of(lanes, 37, 22)
     assert 0.02 < known.mean() < 0.045
-    stretched = parts.stretched(known.astype(int))
-    assert (stretched[:20, :36] == 1).all(), "of whole blocks"
+    assert known.reshape(-1)[parts.sources()[:20, :36]].all(), "of whole blocks"
 
 
 def test_a_part_between_two_levels_has_as_many_pixels_as_it_says():

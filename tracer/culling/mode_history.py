@@ -72,7 +72,8 @@ class ModeHistory:
             return
         whole = modes.occlusion_mode(finer.words) == modes.FULLY_RENDERED
         known = modes.occlusion_mode(self.words) == modes.FULLY_RENDERED
-        self.highest_count[whole] = np.where(known, np.maximum(highest, self.highest_count), highest)[whole]
+        highest = np.where(known, np.maximum(highest, self.highest_count), highest)
+        self.highest_count = np.where(whole, highest, self.highest_count)  # anew: frames have the array that was
         self.words[whole] = (self.words[whole] & ~self.words.dtype.type(3)) | finer.words[whole]
 
     def _knows_of_the_same(self, other: ModeHistory) -> bool:

@@ -105,7 +105,7 @@ def _with_teachers(found: Why, renderer: Renderer, frame: Frame, ledger: Ledger,
         return found
 
     def name(number: int) -> str:
-        return "the frame before" if len(before) == 1 else f"frame {number + 1} of the {len(before)} before"
+        return "the frame before" if len(before) == 1 else f"frame {number + 1} of the {len(before)} frames before this"
 
     @cache
     def answers(number: int) -> Answers | None:

@@ -117,7 +117,8 @@ def _notes(s: FrameStatistics, method: Method, by_modes: bool) -> Iterator[str]:
     if s.part < 1.0:
         yield f"{whole_percent(s.part)} of pixels shaded so far."
     if by_modes and not method.culls:
-        yield f"Outlined: what {BY_MODES} would do."
+        brackets = f"; in brackets: {terms.FOR_DISPLAY}" if s.part == 1.0 else ""  # for which there is room
+        yield f"Outlined: what {BY_MODES} would do{brackets}."
     if s.decision:
         yield s.decision
 
@@ -136,7 +137,7 @@ def _stage(
     time, part, share = f"{1e3 * seconds:.1f} ms", percent(seconds, s.seconds), min(seconds / max(s.seconds, 1e-9), 1.0)
     if not counted:
         rule, share = f"{rule} This is done {terms.WHY_FOR_DISPLAY}.", 0.0
-        time, part = f"{time} {terms.FOR_DISPLAY}", ""
+        time, part = "", f"({time})"
     return Stage(name, section, rule, time, part, share, **more)  # type: ignore[arg-type]
 
 

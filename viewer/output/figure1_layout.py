@@ -5,6 +5,7 @@ All lengths are those of the unit in which `measure` gives the width of a text; 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -24,6 +25,7 @@ _BAR, _TIME = 0.4, 0.14  # how high a bar of parts is, and one of time
 _SQUARE = 0.7  # a row's square of colour
 _BETWEEN = 0.7  # between the columns of a row
 _WIDEST = 28.0  # a column, where there is room for several: else numbers stand far from their names
+_TALLEST, _FOOT = 32.0, 2.5  # all of the paper's stages below each other, as low as can be, and what is below columns
 
 
 class Detail(Enum):
@@ -40,15 +42,17 @@ class Detail(Enum):
 def lay_out(figure: Figure, measure: Measure, line: float, width: float, height: float, strong: float = 1.0) -> Drawing:
     """The figure in so much room, in lines of text so high; `strong` letters are so many times as wide as others.
 
-    As much is written out as finds room, in as few columns.  Where nothing finds room, the figure is as low as can be,
-    and higher than that."""
+    As much is written out as finds room, in as few columns, but in as many as the paper's stages need, so that in the
+    same room other methods' fewer stages stand where these did.  Where nothing finds room, the figure is as low as can
+    be, and higher than that."""
     known = cache(measure)
+    needed = math.ceil(_TALLEST / max(height / line - _FOOT, 1.0))
+    fewest = max(int(width / (_WIDEST * line)), needed)
     lowest: _Sheet | None = None
-    for detail in Detail:
-        texts = _Texts(known, line, detail, strong)
-        most = int((width + (_GUTTER - _LOOP) * line) / (texts.least_column(figure) + _GUTTER * line))
-        most = max(1, min(len(figure.stages), most))
-        for columns in range(min(most, max(1, int(width / (_WIDEST * line)))), most + 1):
+    written = [_Texts(known, line, detail, strong) for detail in Detail]
+    most = [texts.most_columns(figure, width) for texts in written]
+    for texts, possible in zip(written, most, strict=True):
+        for columns in range(min(max(most), fewest), possible + 1):
             sheet = _Sheet(figure, texts, width, columns)
             if sheet.height <= height:
                 return sheet.drawn()
@@ -107,7 +111,12 @@ class _Texts:
             column - 2 * self.pad - _BETWEEN * self.line
         )
 
-    def least_column(self, figure: Figure) -> float:
+    def most_columns(self, figure: Figure, width: float) -> int:
+        """How many columns there is room for, one at least."""
+        most = int((width + (_GUTTER - _LOOP) * self.line) / (self._least_column(figure) + _GUTTER * self.line))
+        return max(1, min(len(figure.stages), most))
+
+    def _least_column(self, figure: Figure) -> float:
         """The width that a column must have for nothing in it to be cut."""
         boxes = (
             self.wide(self.heading(stage)) + self.measure(self.time(stage)) + 2 * self.pad + _BETWEEN * self.line

@@ -12,6 +12,7 @@ import numpy as np
 
 from tracer.frame import Frame
 from tracer.method import Method
+from tracer.scene.lights import number_of
 from tracer.statistics import CutErrors
 from viewer.output.legend_counts import (
     LegendRow,
@@ -24,7 +25,7 @@ from viewer.output.legend_counts import (
 )
 from viewer.output.legend_of_fates import of_fates, of_moving_shadows
 from viewer.output.legend_of_space import of_cell_lights, of_cuts, of_tree, of_voxels
-from viewer.output.legend_parts import ARRIVAL_NAMES, AS_USUAL, Chosen, Entry, Legend, Note, Scale, Tone, light_in_words
+from viewer.output.legend_parts import ARRIVAL_NAMES, AS_USUAL, Chosen, Entry, Legend, Note, Scale, Tone
 from viewer.state import terms, verified
 from viewer.state.readings import can_draw, has_modes_of_cells, span_of
 from viewer.state.tone import clipped
@@ -134,12 +135,12 @@ def _occlusion(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 
 def _of_light(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    title = f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
+    title = f"{view.label}, {chosen.light_in_words}"
     if view is View.SHADOW:
         rows, units, facts = (
             shadow_legend(frame, chosen.light),
             _units(frame),
-            _by_modes(frame, chosen.light, chosen.number),
+            _by_modes(frame, chosen.light, number_of(chosen.lights, chosen.light)),
         )
     else:
         rows, units, facts = certificate_legend(frame, chosen.light), "cells", ()
@@ -205,7 +206,7 @@ def _work(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 
 def _penumbra(frame: Frame, view: View, chosen: Chosen) -> Legend:
-    title = f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
+    title = f"{view.label}, {chosen.light_in_words}"
     found = penumbra_legend(frame, chosen.light)
     entries = tuple(
         Entry(ARRIVAL_NAMES[one], ARRIVAL_COLORS[one], (percent(pixels, found.seen),), f"{ARRIVAL_MEANING[one]}. "

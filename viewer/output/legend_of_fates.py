@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from tracer.method import Method
 from viewer.output.legend_counts import fate_legend, moving_shadow_legend
-from viewer.output.legend_parts import Chosen, Entry, Legend, Note, light_in_words
+from viewer.output.legend_parts import Chosen, Entry, Legend, Note, named_light
 from viewer.state import terms
 from viewer.state.views import (
     FATE_COLORS,
@@ -42,7 +44,7 @@ def of_fates(frame: Frame, view: View, chosen: Chosen) -> Legend:
         Entry("saved", None, ("", percent(found.saved, found.due)), "culled, or asked dynamic objects only"),
         Entry("traced", None, ("", percent(found.traced, found.due)), "through the whole scene, for whatever reason"),
     )
-    title = f"{view.label}, first hits, {light_in_words(chosen.number, chosen.light_name)}"
+    title = f"{view.label}, first hits, {chosen.light_in_words}"
     return Legend(title, ("pixels", "of due"), entries, facts=facts, notes=_filled_in(frame))
 
 
@@ -61,11 +63,17 @@ def of_moving_shadows(frame: Frame, view: View, chosen: Chosen) -> Legend:
     )
     share = percent(pixels[MovingShadow.DARK], asked)
     facts = (Entry(f"of {terms.DYNAMIC_ONLY}, darkened", None, (share,), MOVING_SHADOW_MEANING[MovingShadow.DARK]),)
-    return Legend(_title(view, chosen), ("pixels",), entries, facts=facts, notes=_filled_in(frame))
+    dark = pixels[MovingShadow.DARK] + pixels[MovingShadow.TRACED]
+    notes = (*(() if dark else (_no_moving_shadow(frame, chosen),)), *_filled_in(frame))
+    return Legend(f"{view.label}, {chosen.light_in_words}", ("pixels",), entries, facts=facts, notes=notes)
 
 
-def _title(view: View, chosen: Chosen) -> str:
-    return f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
+def _no_moving_shadow(frame: Frame, chosen: Chosen) -> Note:
+    """That the picture shows none of the chosen light, and of which light it shows most, if of any."""
+    pixels = [int(np.count_nonzero(frame.moving_shadow(light))) for light in range(frame.lights)]
+    most = max(range(frame.lights), key=pixels.__getitem__)
+    others = f"; {named_light(chosen.lights, most)} has some" if pixels[most] else ", nor of another light"
+    return Note(f"No moving object casts a shadow of this light now{others}.")
 
 
 def _filled_in(frame: Frame) -> tuple[Note, ...]:

@@ -7,7 +7,7 @@ from tracer.fit import lights_in_words, too_few
 from tracer.frame import Frame
 from tracer.method import Method
 from viewer.output.legend_counts import cell_lights_legend, cuts_legend, voxels_legend
-from viewer.output.legend_parts import ARRIVAL_NAMES, Chosen, Entry, Legend, Note, Scale, Tone, light_in_words
+from viewer.output.legend_parts import ARRIVAL_NAMES, Chosen, Entry, Legend, Note, Scale, Tone
 from viewer.state.readings import span_of, tree_of, voxels_of
 from viewer.state.slices import AXES, middle_of
 from viewer.state.tree_slice import SAMPLES, place_of, share_built
@@ -50,7 +50,7 @@ def of_cuts(frame: Frame, view: View, chosen: Chosen) -> Legend:
 def of_voxels(frame: Frame, view: View, chosen: Chosen) -> Legend:
     states, found = voxels_of(frame), voxels_legend(frame, chosen.light, chosen.cut)
     axis, grid = AXES[chosen.cut.axis], states.grid
-    title = f"{view.label}, {light_in_words(chosen.number, chosen.light_name)}"
+    title = f"{view.label}, {chosen.light_in_words}"
     if not states.known[chosen.light]:
         why = "Nothing is known of this light: it is a lamp, or past those that there is room for; its rays are traced."
         return Legend(title, notes=(Note(why, Tone.WARNING),))

@@ -79,23 +79,22 @@ class Legend:
 
 @dataclass(frozen=True)
 class Chosen:
-    """What else is chosen of a view: its light, with its name and number, whether wrong pixels are marked,
-    shares of rays, the range of its numbers, the tone of its picture, whether what this clips is marked, and the slice
-    through space."""
+    """What else is chosen of a view: its light, of these of the scene, whether wrong pixels are marked, shares of rays,
+    the range of its numbers, the tone of its picture, whether what this clips is marked, and the slice through
+    space."""
 
     light: int = 0
-    light_name: str = ""
+    lights: tuple[Light, ...] = ()
     marked: bool = True
     shares: bool = False
     span: tuple[float, float] | None = None
     tone: DisplayTone = NEUTRAL
     clipping: bool = False
-    light_number: int | None = None
     cut: Slice = MIDDLE
 
     @property
-    def number(self) -> int:
-        return self.light if self.light_number is None else self.light_number
+    def light_in_words(self) -> str:
+        return named_light(self.lights, self.light)
 
 
 AS_USUAL = Chosen()

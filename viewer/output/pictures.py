@@ -221,12 +221,11 @@ def _penumbra(frame: Frame, light: int) -> NDArray:
 
 
 def _moving_shadow(frame: Frame, light: int, shading: float) -> NDArray:
-    """Moving shadows over the paled picture in greys, tinted where rays ask dynamic objects only, and on these."""
+    """Moving shadows, what asks dynamic objects only, and these, over the paled picture in greys."""
     found = moving_shadows(frame, light)
     flat = np.asarray(list(MOVING_SHADOW_COLORS.values()), np.float32)[found]
     paled = (PALE + (1.0 - PALE) * (np.clip(frame.color, 0.0, 1.0) @ _LUMINANCE))[..., None]
-    shadow = (found == MovingShadow.DARK) | (found == MovingShadow.TRACED)
-    return np.where(shadow[..., None], _shaded(frame, flat, shading), paled * flat)
+    return np.where((found == MovingShadow.NONE)[..., None], paled, _shaded(frame, flat, shading))
 
 
 def _displayed(color: NDArray[np.float32], tone: Tone, clipping: bool) -> NDArray:

@@ -143,8 +143,8 @@ class Recipe:
 def needs_history(method: str, view: View, counters: bool = False) -> bool:
     """Whether a picture by a method in a view depends on the frames before it; `counters` stand beside it, or not."""
     parsed = Method.parse(method)
-    of_work = view is View.CERTIFICATE or (view.needs_work and parsed.culls)
-    return of_work or counters or view.of_modes or view is View.TREE or not parsed.exact
+    of_culling = view is View.CERTIFICATE or ((view.needs_work or view.needs_fates) and parsed.culls)
+    return of_culling or counters or view.of_modes or view is View.TREE or not parsed.exact
 
 
 def by_chance(settings: Settings, view: View, counters: bool = False) -> bool:

@@ -60,9 +60,9 @@ def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
     settings = results.settings
     if settings.get("verify"):
         return ["times include verifying, which traces culled rays, too: no speed-up is told"]
-    said = ["the window draws meanwhile: bench has the processor for itself"] if in_window else []
+    said = ["times include what the window takes meanwhile, those of the command bench do not"] if in_window else []
     if "accelerator" in settings:
-        said.append(f"by {settings['accelerator']}: another tree has other speed-ups")
+        said.append(f"rays go through the {settings['accelerator']}: speed-ups depend on the tree")
     for method, seconds in results.build_seconds.items():
         share = sum(seconds) / max(sum(results.methods[method]["frame_seconds"]), 1e-9)
         if share >= PREPARING:

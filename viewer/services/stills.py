@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.one_light import with_light
 from tracer.renderer import Renderer
-from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
 from viewer.output import capture, fingerprint, kept_modes
 from viewer.output.annotations import annotated
@@ -114,9 +113,8 @@ def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recip
     """What lies over a drawn view (h, w, 3), above and below it; as `draw`."""
     style, view, light, missing = recipe.style, recipe.view, recipe.light, ""
     if style.legend is not None:
-        name = scene.lights[light].name if view.of_light else ""
         looks = style.marked, style.shares, style.span, style.tone, style.clipping
-        chosen = Chosen(light, name, *looks, number_of(scene.lights, light), style.cut)
+        chosen = Chosen(light, scene.lights, *looks, style.cut)
         legend = legend_of(frame, view, chosen)
         described = with_legend(pixels, legend, style.legend) if legend is not None else None
         if described is None:

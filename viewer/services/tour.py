@@ -10,7 +10,14 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
+from tracer.culling.fate import Fate
+from tracer.culling.modes import OcclusionMode, occlusion_mode
+from tracer.explanation import Explanation
+from tracer.frame import Frame
 from tracer.method import Method
+from tracer.zoom import Results
 from viewer.services.controller import Controller
 from viewer.state import navigation
 from viewer.state.methods import BY_MODES, with_base
@@ -19,6 +26,7 @@ from viewer.state.views import View
 SECONDS = 2.0  # that a picture stays when it is shown
 PATIENCE = 20.0  # seconds that a picture or an answer may take to come
 REST = 1.0  # seconds without anything going on, after which no other picture comes
+_ZOOMED = 150.0  # pixels of what a shown zoom test goes to: few enough to become many, and many enough to be seen
 _PLACES = sorted(  # where a shadow is looked for, in parts of the picture's width and height: from its middle on
     ((x / 14.0, y / 14.0) for x in range(1, 14) for y in range(1, 14)),
     key=lambda at: (at[0] - 0.5) ** 2 + (at[1] - 0.5) ** 2,
@@ -43,12 +51,13 @@ class Step:
 
 class Tour:
     """`at` is the number of the step that is next, or None while no tour is being taken; `done` are those done so far,
-    the others are watched for."""
+    the others are watched for.  `last_word` is what is said after the last step, until it is closed."""
 
     def __init__(self, controller: Controller, show_panel: Callable[[str], None], key: Key) -> None:
         self._c = controller
         self._show_panel, self._key = show_panel, key
         self.at: int | None = None
+        self.last_word = ""
         self.done: set[int] = set()
         self._watches: list[Iterator[None]] = []
         self._script: Iterator[float] | None = None
@@ -72,10 +81,12 @@ class Tour:
     def start(self) -> None:
         self.done, self._watches = set(), [step.watch(self._c) for step in STEPS]
         self._c.selection.picked = None  # what was clicked before was not clicked for the tour
+        self.last_word = ""
         self._go_to(0)
 
     def end(self) -> None:
         self.at = self._script = None
+        self.last_word = ""
 
     def skip(self) -> None:
         """On to the next step that is not done; after the last the tour is over."""
@@ -100,6 +111,7 @@ class Tour:
         self.done |= {n for n, watch in enumerate(self._watches) if next(watch, _DONE) is _DONE}
         if self.at in self.done and self._script is None:
             self.skip()
+            self.last_word = "" if self.step is not None else _last_word(self._c, len(STEPS) - 1 in self.done)
 
     def _go_to(self, first: int) -> None:
         self._script = None
@@ -215,6 +227,11 @@ def _has_clicked_a_shadow(c: Controller) -> Iterator[None]:
         yield
 
 
+def _hidden_by_another(one: Explanation, primitive: int) -> bool:
+    """Whether another primitive is in the way of all of a light."""
+    return one.due and not one.reached and one.blocker not in (None, primitive)
+
+
 def _in_shadow(c: Controller) -> bool:
     """Whether the pixel that was clicked is in the shadow of some light."""
     answer = c.inspector.answer
@@ -226,16 +243,31 @@ def _in_shadow(c: Controller) -> bool:
 
 
 def _click_a_shadow(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
+    """Of places from the middle on, the first whose ray to some light is culled, with that light chosen, so that the
+    Inspector begins with what blocks it; where there is none, one that is in shadow all the same."""
     show_panel("Inspector")
     c.settings.set_view(View.COLOR)
+    in_shadow = None
     for at in _PLACES:
         c.selection.select(at)
         if c.selection.picked is None or c.selection.picked.dynamic:
             continue
         yield from _until(lambda: c.inspector.answer is not None)
-        if _in_shadow(c):
+        answer, primitive = c.inspector.answer, c.selection.picked.primitive
+        blocked = [one for one in answer.lights if _hidden_by_another(one, primitive)] if answer is not None else []
+        told = {one.light: one.fate for one in c.inspector.why.reasons} if c.inspector.why is not None else {}
+        culled = [one.light for one in blocked if told.get(one.light) is Fate.CULLED]
+        if culled:
+            c.settings.set_light(culled[0])
             yield SECONDS
             return
+        if blocked and in_shadow is None:
+            in_shadow = at, blocked[0].light
+    if in_shadow is not None:
+        c.selection.select(in_shadow[0])
+        c.settings.set_light(in_shadow[1])
+        yield from _until(lambda: c.inspector.answer is not None)
+        yield SECONDS
 
 
 def _has_run_a_zoom_test(c: Controller) -> Iterator[None]:
@@ -245,12 +277,53 @@ def _has_run_a_zoom_test(c: Controller) -> Iterator[None]:
 
 
 def _run_a_zoom_test(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
-    if c.selection.picked is None or c.selection.picked.dynamic:
-        yield from _click_a_shadow(c, show_panel)
+    """Towards a small primitive that is fully rendered, if the picture has one: what is not has no count to grow
+    from, and what is large cannot become so many times as large."""
     show_panel("Zoom test")
+    yield from _until(lambda: not c.tracing.awaits)
+    small = _small_primitive(c.frame, c) if c.frame is not None else None
+    if small is not None:
+        c.selection.select_primitive(small)
+    elif c.selection.picked is None or c.selection.picked.dynamic:
+        yield from _click_a_shadow(c, show_panel)
+    yield SECONDS
     c.runs.start_zoom_test()
     while c.runs.current is not None:
         yield 0.1
+
+
+def _small_primitive(frame: Frame, c: Controller) -> int | None:
+    """The number of a primitive at rest, in the scene as it was read, that is fully rendered in about `_ZOOMED` pixels,
+    and has set some shadow mode; None where there is none."""
+    now = c.session.edited
+    if now is None or not frame.settings.keeps_modes or Method.parse(frame.settings.method).uses_cells:
+        return None
+    counts, modes = frame.pixel_count, frame.modes
+    small = (occlusion_mode(modes) == OcclusionMode.FULLY_RENDERED) & (counts > 0) & (modes >> modes.dtype.type(2) > 0)
+    numbers = np.nonzero(small)[0]
+    numbers = numbers[np.argsort(np.abs(np.log(counts[numbers] / _ZOOMED)), kind="stable")]
+    found = next((int(n) for n in numbers if now.scene.object_of(int(n)) == 0), None)
+    return None if found is None else int(now.primitives[found])
+
+
+def _last_word(c: Controller, tested: bool) -> str:
+    """What the zoom test has shown, if there was one, and where to go on."""
+    test = c.runs.zoom_test
+    seen = zoom_test_in_words(test.results) if tested and test is not None and test.results is not None else ""
+    more = "Next: open another scene (File), such as BART's Kitchen; compare methods along its path, as Table 1 does "
+    more += "(panel Experiment); or read docs/viewer.md, which explains all panels. Help has this tour again."
+    return f"{seen} {more}".strip()
+
+
+def zoom_test_in_words(results: Results) -> str:
+    """With which factor the primitive was examined anew at which steps, and how many of its pixels were wrong."""
+    said = []
+    for one in results.approaches:
+        steps = ", ".join(map(str, one.examined_anew))
+        anew = f"examined anew after step {steps}" if steps else "never examined anew"
+        wrong = f"at most {one.most_wrong:,} wrong pixels" if one.most_wrong else "no wrong pixel"
+        said.append(f"with zoom factor {one.factor:g} {anew}, {wrong}")
+    return f"The primitive was, {'; '.join(said)}." if said else ""
 
 
 STEPS = (
@@ -298,5 +371,7 @@ STEPS = (
         ),
         _has_run_a_zoom_test,
         _run_a_zoom_test,
+        "The camera moves towards a small primitive, once with each zoom factor. When its pixels, the blue line, have "
+        "reached the green limit, so many times their highest number, it is examined anew (§2.6). Red: wrong pixels.",
     ),
 )

@@ -195,10 +195,10 @@ _EXPLANATIONS = {
     View.TREE: "A slice through a tree that is built where rays arrive: built parts by their level, and grey stripes "
     "where no ray has been yet. Lines are the borders of parts, and white ones those of objects or pieces. The slice "
     "goes through everything; what lies before it shows as light and shade.",
-    View.FATE: "What became of each pixel's shadow ray from its first hit to the chosen light: culled, asked dynamic "
-    "objects only, or traced, and why it was not culled. Rays from reflections are not in it.",
-    View.MOVING_SHADOW: "Where a moving object darkens a surface now that nothing static has ever hidden from the "
-    "chosen light (NON_SHADOW): its rays ask dynamic objects only, so that the shadow is right in every frame.",
+    View.FATE: "What became of the shadow ray from each pixel's first hit to the chosen light: culled, asked dynamic "
+    "objects only, or traced, and why it was not culled.",
+    View.MOVING_SHADOW: "Where a moving object darkens what nothing static has ever hidden from the chosen light "
+    "(NON_SHADOW): its rays ask dynamic objects only, so that the shadow is always right.",
 }
 
 
@@ -314,7 +314,7 @@ class Arrival(IntEnum):
 
 
 ARRIVAL_COLORS: dict[Arrival, Color] = {
-    Arrival.AWAY: _hex("3F434C"),
+    Arrival.AWAY: _hex("3C3A72"),
     Arrival.DARK: SHADOW_COLORS[ShadowMode.FULL_SHADOW],
     Arrival.FEW: _hex("8F3F00"),
     Arrival.MOST: _hex("F5BE82"),
@@ -423,11 +423,11 @@ class MovingShadow(IntEnum):
 MOVING_SHADOW_COLORS: dict[MovingShadow, Color] = {
     MovingShadow.NONE: (1.0, 1.0, 1.0),
     MovingShadow.LIT: _hex("F8F2A0"),
-    MovingShadow.DARK: _hex("5B2A86"),
-    MovingShadow.TRACED: _hex("A98BC9"),
-    MovingShadow.OBJECT: _hex("E8BCD3"),
+    MovingShadow.DARK: _hex("4A2FB5"),
+    MovingShadow.TRACED: _hex("8E97F5"),
+    MovingShadow.OBJECT: OCCLUSION_COLORS[OcclusionMode.DYNAMIC],
 }
-"""What is no shadow tints the paled picture: pale NON_SHADOW, and pale DYNAMIC."""
+"""Over the paled picture: blues for shadows, pale NON_SHADOW, and DYNAMIC."""
 
 MOVING_SHADOW_NAMES: dict[MovingShadow, str] = {
     MovingShadow.NONE: "neither",

@@ -188,8 +188,8 @@ def _splits() -> list[hello_imgui.DockingSplit]:
         split("MainDockSpace", "Right", imgui.Dir.right, 0.295),
         split("MainDockSpace", "Bottom", down, 0.30),
         split("Left", "LeftBottom", down, 0.52),
-        split("Right", "RightBottom", down, 0.41),
-        split("Right", "RightMiddle", down, 0.53),
+        split("Right", "RightBottom", down, 0.37),
+        split("Right", "RightMiddle", down, 0.56),
     ]
 
 

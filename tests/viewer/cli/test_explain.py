@@ -53,7 +53,7 @@ def test_the_reasons_come_first(capfd: pytest.CaptureFixture[str], room: Path) -
     _, out, _ = explained(capfd, *seen, "--pixel", "24,16")
     both = "light 0, light 1: Asks the dynamic object only: nothing static has ever blocked it (§2.4). Lit."
     assert out.splitlines()[1] == both
-    assert "Fully rendered since frame 1 of the 3 before." in out.splitlines()[2]
+    assert "Fully rendered since frame 1 of the 3 frames before this." in out.splitlines()[2]
     _, out, _ = explained(capfd, *seen, "--pixel", "24,26", "--json")
     told = json.loads(out)["why"]
     assert [one["light"] for one in told] == list(range(len(told))) and {one["section"] for one in told} - {None}
@@ -63,7 +63,9 @@ def test_who_taught_a_shadow_mode_is_named(capfd: pytest.CaptureFixture[str]) ->
     seen = ("default", "--frame", 40, "--warmup", 2, "--method", "paper", "--pixel", "19,50", "--size", "96x64")
     code, out, _ = run(capfd, "explain", *seen)
     assert code == 0
-    found = re.search(r"PARTIAL_SHADOW since frame 1 of the 2 before: pixel \((\d+), (\d+)\) (saw|was)", out)
+    found = re.search(
+        r"PARTIAL_SHADOW since frame 1 of the 2 frames before this: pixel \((\d+), (\d+)\) (saw|was)", out
+    )
     assert found is not None, out
 
 

@@ -22,11 +22,12 @@ from tests.viewer.fakes import (
     with_tree,
     with_voxels,
 )
-from tracer.culling.fate import Fate
+from tracer.culling.fate import MOVING_SHADOW, Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
+from tracer.scene.lights import Light
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend import legend_of
 from viewer.output.legend_counts import occlusion_legend, shadow_legend, work_legend
@@ -51,6 +52,9 @@ from viewer.util.resources import embedded_scenes
 
 SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)
 LINE = 10.0
+
+
+LAMPS = tuple(Light("lamp", (0.0, 0.0, 0.0)) for _ in range(3))
 
 
 def measure(text: str) -> float:
@@ -80,7 +84,7 @@ def test_every_view_but_the_picture_has_a_legend(frame: Frame):
 def test_voxels_are_counted_in_the_slice_and_in_all(frame: Frame):
     states, cut = voxels_of(frame), Slice(0, 0.3)
     modes = (states.words[:-1] >> np.uint32(4) & 3).reshape(states.shape)
-    legend = of(frame, View.VOXELS, light=1, light_name="lamp", cut=cut)
+    legend = of(frame, View.VOXELS, light=1, lights=LAMPS, cut=cut)
     assert legend.title == "Voxels, light 1 (lamp)" and legend.columns == ("slice", "all")
     for entry, state in zip(legend.entries, (1, 2, 0), strict=True):
         shares = percent(int((modes[4] == state).sum()), 64), percent(int((modes == state).sum()), 1024)
@@ -161,7 +165,7 @@ def test_in_motion_legends_count_the_modes_that_are_drawn():
 
 @pytest.mark.parametrize("light", [0, 1, 2])
 def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
-    legend, hit = of(frame, View.PENUMBRA, light=light, light_name="lamp"), frame.primitive >= 0
+    legend, hit = of(frame, View.PENUMBRA, light=light, lights=LAMPS), frame.primitive >= 0
     assert legend.title == f"Penumbra, light {light} (lamp)"
     assert legend.facts[0].values == (str((16, 1, 64)[light]),)
     asked, reached = frame.asked[hit][:, light].astype(int), frame.reached[hit][:, light].astype(int)
@@ -185,7 +189,7 @@ def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
 @pytest.mark.parametrize("method", ["paper+cache", "certified+cache"])
 def test_fates_come_with_shares_of_pixels_and_of_the_rays_that_are_due(frame: Frame, light: int, method: str):
     frame = replace(frame, settings=replace(SETTINGS, method=method))
-    legend, hit = of(frame, View.FATE, light=light, light_name="lamp"), frame.primitive >= 0
+    legend, hit = of(frame, View.FATE, light=light, lights=LAMPS), frame.primitive >= 0
     assert legend.title == f"Fate of shadow rays, first hits, light {light} (lamp)"
     assert legend.columns == ("pixels", "of due")
     fates = frame.fate(light)[hit]
@@ -210,6 +214,14 @@ def test_shadows_of_moving_objects_are_counted(frame: Frame):
     counts = (dark & asked, dark & ~asked, ~dark & asked & ~moves, moves)
     assert [entry.values for entry in legend.entries] == [(percent(one.sum(), hit.sum()),) for one in counts]
     assert legend.facts[0].values == (percent((dark & asked).sum(), (dark & asked).sum() + counts[2].sum()),)
+    assert not legend.notes
+    bright = frame.fates.copy()
+    bright[..., 1] &= ~np.uint8(MOVING_SHADOW)
+    most = max((0, 2), key=lambda light: frame.moving_shadow(light).sum())
+    (note,) = of(replace(frame, fates=bright), View.MOVING_SHADOW, light=1, lights=LAMPS).notes
+    assert note.text == f"No moving object casts a shadow of this light now; light {most} (lamp) has some."
+    (note,) = of(replace(frame, fates=bright & ~np.uint8(MOVING_SHADOW)), View.MOVING_SHADOW, light=1).notes
+    assert note.text.endswith(", nor of another light.")
 
 
 def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):
@@ -250,7 +262,7 @@ def test_pictures_by_clusters_of_lights_tell_their_errors(frame: Frame):
 
 def test_a_light_is_called_by_its_number_and_by_a_name_that_says_more(frame: Frame):
     assert light_in_words(2, "light 2") == light_in_words(2, "") == "light 2"
-    assert of(frame, View.SHADOW, light=1, light_name="lamp").title == "Shadow mode, light 1 (lamp)"
+    assert of(frame, View.SHADOW, light=1, lights=LAMPS).title == "Shadow mode, light 1 (lamp)"
     uncovered = of(frame, View.SHADOW, light=20)
     assert not uncovered.entries and uncovered.notes[0].tone is Tone.WARNING
 

@@ -46,9 +46,10 @@ def savings(d: Driver) -> None:
     assert d.c.history.frames == traced, "measuring has shown a picture"
     for size in d.sizes():
         _is_whole(d, size)
-    edges = d.picture_edges()
+    edges, control = d.picture_edges(), _place(d, "//Culling/Keep tracing when idle")
     d.press(KEY.v)
     d.settle()
+    assert _place(d, "//Culling/Keep tracing when idle") == control, "the verdict has moved a control"
     assert " wrong" in said(d) and "not verified" not in said(d) and "fast as none" in said(d), said(d)
     assert (d.c.frame.modes == modes).all(), "nothing was learnt meanwhile"
     d.press(KEY.v)
@@ -72,6 +73,11 @@ def savings(d: Driver) -> None:
     d.press(chord("Shift+B"))
     d.settle()
     assert d.picture_edges() == edges
+
+
+def _place(d: Driver, item: str) -> tuple[float, float]:
+    corner = d.context.item_info(item).rect_full.min
+    return corner.x, corner.y
 
 
 def _saved(d: Driver) -> None:

@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
+from tracer.why_in_words import Words, plain
 from viewer.services import tour as steps
 from viewer.services.tour import STEPS
 from viewer.state.preferences import load_preferences
@@ -63,12 +64,20 @@ def _tour(d: Driver) -> None:
     assert tour.at == 3
     d.context.item_click(show)
     d.wait(lambda: tour.at == 4, "a shadow that was clicked", 60.0)
-    assert d.c.selection.picked is not None and any(one.blocked_at is not None for one in d.c.inspector.answer.lights)
+    assert d.c.selection.picked is not None
+    chosen = d.c.inspector.why.reasons[d.c.session.light]
+    words = plain(Words(d.c.session.scene, d.c.inspector.why).answer(chosen))
+    assert words.startswith("In shadow: blocked by "), f"it says which light is blocked, and by what: {words}"
     d.c.runs.zoom_plan.steps, d.c.runs.zoom_plan.size = 3, (32, 32)
     d.context.item_click(show)
     d.wait(lambda: tour.at is None, "the zoom test", 120.0)
     assert d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole
+    assert all(one.seen_whole for one in d.c.runs.zoom_test.results.approaches), "else there is no limit to see"
+    assert "with zoom factor 4 " in tour.last_word and "Next: " in tour.last_word
     d.settle()
+    d.context.item_click("//###tour/Close")
+    d.frames(2)
+    assert not tour.last_word and d.ui.tour_height == 0.0
 
     d.context.menu_click("//##MainMenuBar/Help/Tour")
     d.frames(3)

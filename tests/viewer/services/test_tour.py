@@ -7,7 +7,8 @@ from types import SimpleNamespace
 
 from tests.viewer.fakes import make_frame
 from tracer.frame import Settings
-from viewer.services.tour import STEPS, Tour
+from tracer.zoom import Approach, Change, Results, Step
+from viewer.services.tour import STEPS, Tour, zoom_test_in_words
 
 CULLING = next(step for step in STEPS if step.title == "Turn culling off and on")
 
@@ -51,3 +52,17 @@ def test_the_readme_takes_the_same_way():
     c = SimpleNamespace(frame=None, session=SimpleNamespace(settings=Settings(16, 8)))
     said = CULLING.text(c, {"Shadow culling": "C"}.__getitem__)
     assert "Press `C` twice." in readme and said.startswith("Press C twice.")
+
+
+def test_a_zoom_test_is_told_as_it_went():
+    grown = Approach(4.0, [step(0, 0), step(1, 3, examined_anew=True), step(2, 1)])
+    results = Results("s", (8, 8), 1, 0.0, (0.0, 0.0, 0.0), 0.9, approaches=[grown, Approach(16.0, [step(0, 0)])])
+    assert zoom_test_in_words(results) == (
+        "The primitive was, with zoom factor 4 examined anew after step 1, at most 3 wrong pixels; "
+        "with zoom factor 16 never examined anew, no wrong pixel."
+    )
+
+
+def step(number: int, wrong: int, examined_anew: bool = False) -> Step:
+    changes = [Change(None, "FULLY_RENDERED", "INIT")] if examined_anew else []
+    return Step(number, 1.0, make_frame().camera, 9, 9, "INIT", [], changes, wrong, wrong, 9, 0, 0)

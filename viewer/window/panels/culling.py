@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from imgui_bundle import ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
@@ -23,6 +26,9 @@ from viewer.window.widgets import (
     wide_button,
 )
 
+_PALE = 0.55
+"""How much is left of what does nothing to the pictures of the chosen method."""
+
 
 def show(ui: Ui) -> None:
     """The panel."""
@@ -33,18 +39,18 @@ def show(ui: Ui) -> None:
     clusters = Method.parse(s.method).clusters
     if not clusters:  # which keep no modes
         tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
-        checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.settings.change(symmetric=on), tip)
+        with _of_modes(s.method) as besides:
+            checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.settings.change(symmetric=on), tip + besides)
         same_line_for("Verify")
     tip = "trace every culled shadow ray as well, and count wrong answers (V)"
     checkbox("Verify", s.verify, lambda on: c.settings.change(verify=on), tip)
-    with properties("culling", 6.5) as shown:
+    with properties("culling", 8.2 if Method.parse(s.method).has_certificates else 6.5) as shown:
         if shown and not clusters:
-            row(
-                "Zoom factor",
-                "a primitive that covers this many times its highest pixel count is examined again",
-            )
-            flags = int(imgui.SliderFlags_.logarithmic)
-            changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
+            with _of_modes(s.method) as besides:
+                tip = "a primitive that covers this many times its highest pixel count is examined again"
+                row("Zoom factor", tip + besides)
+                flags = int(imgui.SliderFlags_.logarithmic)
+                changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
             if changed:
                 c.settings.change(zoom_factor=factor)
         if shown and clusters:
@@ -62,7 +68,10 @@ def show(ui: Ui) -> None:
                 c.settings.change(lightcuts_nodes=min(max(most, 1), MAX_NODES))
         if shown and Method.parse(s.method).has_certificates:
             made = terms.things(terms.made(s.method)[0])
-            row("Preparing", f"the share of each frame's time for {made} while anything moves; when idle they get more")
+            row(
+                "Certificate budget",
+                f"the share of each frame's time for {made} while anything moves; when idle they get more",
+            )
             share = 100.0 * p.certificate_share
             changed, share = imgui.slider_float("##share", share, 1.0, 100.0 * MOST_CERTIFYING, "%.0f %%")
             if changed:
@@ -89,6 +98,15 @@ def show(ui: Ui) -> None:
     said = wrong_answers(c)
     if said is not None:  # at the end, where it moves nothing
         paragraph(*said)
+
+
+@contextmanager
+def _of_modes(method: str) -> Iterator[str]:
+    """What concerns modes alone: pale where the method does not cull by them; yields what its tip says of that."""
+    culls_by_them = Method.parse(method).uses_modes
+    imgui.push_style_var(imgui.StyleVar_.alpha, imgui.get_style().alpha * (1.0 if culls_by_them else _PALE))
+    yield "" if culls_by_them else f"\n{method} does not cull by modes: it changes those kept for the views alone"
+    imgui.pop_style_var()
 
 
 def _method(ui: Ui) -> None:

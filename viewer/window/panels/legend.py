@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, imgui
 
-from tracer.scene.lights import number_of
 from viewer.output.legend import legend_of
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting, lay_out
 from viewer.output.legend_parts import Chosen, Legend
@@ -31,11 +30,9 @@ def of_picture(ui: Ui) -> Legend | None:
     light, seen = c.session.light, comparing.shown(ui)
     if seen is not None and comparing.shows_a(ui):
         frame, view, light = seen[0].frame, seen[0].view, seen[0].light
-    name = scene.lights[light].name if light < len(scene.lights) else ""
     s, p = c.session, c.preferences
     span = c.comparing.span(view)
-    number = number_of(scene.lights, light)
-    chosen = Chosen(light, name, p.mark_wrong, p.work_shares, span, s.tone, s.clipping, number, s.cut)
+    chosen = Chosen(light, scene.lights, p.mark_wrong, p.work_shares, span, s.tone, s.clipping, s.cut)
     kept = "legend" if frame is c.frame else "legend of A"
     found: Legend | None = ui.cached(kept, frame, (view, chosen), lambda: legend_of(frame, view, chosen))
     return found

@@ -153,7 +153,7 @@ def _amounts(name: str, shares: float = 0.0) -> Iterator[bool]:
         if shares:
             imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(_NAMES))
         else:
-            imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 1.8)
+            imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 2.4)
         imgui.table_setup_column("number", int(imgui.TableColumnFlags_.width_stretch), 1.0)
         if shares:
             imgui.table_setup_column("share", int(imgui.TableColumnFlags_.width_fixed), shares)

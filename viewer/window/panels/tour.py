@@ -6,7 +6,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.services.tour import STEPS, Tour
+from viewer.services.tour import STEPS, Step, Tour
 from viewer.window.ui import Ui
 from viewer.window.widgets import GOOD, QUIET, clipped, em, paragraph, tooltip_above
 
@@ -19,7 +19,7 @@ def show(ui: Ui) -> None:
     """The step that is next, and what to do; all steps while there is no picture yet."""
     tour = ui.tour
     tour.follow()
-    if tour.step is None:
+    if tour.step is None and not tour.last_word:
         ui.tour_height = 0.0
         return
     if ui.controller.frame is None and ui.preview is None:
@@ -37,16 +37,16 @@ def leave_room(ui: Ui, corner: ImVec2, room: ImVec2) -> float:
 
 def height(ui: Ui) -> float:
     """How much the tour would have of the room for the picture; 0 while none is taken."""
-    return ui.tour_height if ui.tour.step is not None else 0.0
+    return ui.tour_height if ui.tour.step is not None or ui.tour.last_word else 0.0
 
 
 def _strip(ui: Ui, left: float, top: float, width: float) -> None:
     """The step in two or three lines, as wide as the picture's window."""
     tour = ui.tour
-    assert tour.step is not None and tour.at is not None
     padding = ImVec2(em(_PADDING.x), em(_PADDING.y))
     wrap = max(width - 2.0 * padding.x, em(4.0))
-    words = max(imgui.calc_text_size(tour.text(step), False, wrap).y for step in STEPS)
+    texts = [tour.text(step) for step in STEPS] if tour.step is not None else [tour.last_word]
+    words = max(imgui.calc_text_size(text, False, wrap).y for text in texts)
     ui.tour_height = imgui.get_frame_height_with_spacing() + words + 2.0 * padding.y + em(0.2)
     imgui.set_next_window_pos(ImVec2(left, top))
     imgui.set_next_window_size(ImVec2(width, ui.tour_height - em(0.2)))
@@ -55,6 +55,31 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
     imgui.push_style_var(imgui.StyleVar_.window_padding, padding)
     imgui.begin("Tour###tour", None, int(flags))
     imgui.pop_style_var()
+    if tour.step is None:
+        _end(tour, wrap)
+    else:
+        _step(tour, tour.step, wrap)
+    imgui.end()
+
+
+def _end(tour: Tour, wrap: float) -> None:
+    """What is said after the last step."""
+    label, style = "Close", imgui.get_style()
+    button = imgui.calc_text_size(label).x + 2.0 * style.frame_padding.x + style.item_spacing.x
+    if imgui.begin_child("title", ImVec2(max(wrap - button, em(2.0)), imgui.get_frame_height())):
+        imgui.align_text_to_frame_padding()
+        clipped("The tour is done")
+        _marks(tour)
+    imgui.end_child()
+    imgui.same_line()
+    text = tour.last_word
+    if imgui.button(label):
+        tour.end()
+    paragraph(text, QUIET)
+
+
+def _step(tour: Tour, step: Step, wrap: float) -> None:
+    """What to do in a step, and to have it done or leave it out."""
     last = tour.at == len(STEPS) - 1
     labels = f"{icons.ICON_FA_PLAY}  Show me", "Finish" if last else "Skip", icons.ICON_FA_XMARK
     style = imgui.get_style()
@@ -64,7 +89,7 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
     imgui.align_text_to_frame_padding()
     if imgui.begin_child("title", ImVec2(max(wrap - buttons, em(2.0)), imgui.get_frame_height())):
         imgui.align_text_to_frame_padding()
-        clipped(f"Step {tour.at + 1} of {len(STEPS)}:  {tour.step.title}")
+        clipped(f"Step {STEPS.index(step) + 1} of {len(STEPS)}:  {step.title}")
         _marks(tour)
     imgui.end_child()
     imgui.same_line()
@@ -74,7 +99,7 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
     imgui.end_disabled()
     tooltip_above("do this step for you")
     imgui.same_line()
-    text = tour.text(tour.step)
+    text = tour.text(step)
     if imgui.button(labels[1]):
         tour.skip()
     tooltip_above("end the tour; the menu Help has it again" if last else "go on to the next step")
@@ -83,7 +108,6 @@ def _strip(ui: Ui, left: float, top: float, width: float) -> None:
         tour.end()
     tooltip_above("end the tour; the menu Help has it again")
     paragraph(text, QUIET)
-    imgui.end()
 
 
 def _marks(tour: Tour) -> None:

@@ -1,0 +1,52 @@
+"""What a recipe says of the frames before its picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.commands import ROOM
+from tracer.renderer import Renderer
+from tracer.scene.load import load_scene
+from tracer.settings import Settings
+from viewer.output.recipe import Recipe, cannot_come_back
+from viewer.services import stills
+from viewer.services.films_elsewhere import filmed_alone
+from viewer.state.readings import can_draw
+from viewer.state.views import View
+
+
+@pytest.mark.parametrize("method", ("none", "certified", "voxels", "lie-exact", "certified+cache"))
+@pytest.mark.parametrize("view", View)
+def test_without_frames_before_it_a_picture_is_the_same_unless_the_recipe_says_otherwise(
+    tmp_path: Path, method: str, view: View
+) -> None:
+    (tmp_path / "room.aff").write_text(ROOM)
+    scene = load_scene(tmp_path / "room.aff")
+    recipe = Recipe(scene.path, scene.frame_time(3), None, Settings(24, 18, method=method, threads=1), view)
+    if recipe.needs_history:
+        return
+    alone, later = Renderer(scene, recipe.settings), Renderer(scene, recipe.settings)
+    for number in range(3):
+        later.render(scene.frame_time(number))
+    one, other = (stills.trace(renderer, recipe) for renderer in (alone, later))
+    if can_draw(one, view):
+        drawn = (stills.draw(frame, scene, recipe)[0] for frame in (one, other))
+        np.testing.assert_array_equal(*drawn)
+
+
+@pytest.mark.parametrize("view", [View.FATE, View.MOVING_SHADOW])
+def test_what_becomes_of_rays_depends_on_what_an_exact_method_has_learnt(view: View) -> None:
+    """As work does: such a picture is filmed after those before it, and by chance where that is by chance."""
+    for method in ("certified", "auto", "voxels", "none+cache", "certified+cache"):
+        for threads in (1, 2):
+            one, work = (
+                Recipe(Path("a.aff"), 0.0, None, Settings(method=method, threads=threads), shown)
+                for shown in (view, View.SAVED)
+            )
+            assert one.needs_history and not filmed_alone(one)
+            assert one.by_one_thread == work.by_one_thread
+            assert cannot_come_back(one.settings, view) == cannot_come_back(work.settings, View.SAVED)
+    assert filmed_alone(Recipe(Path("a.aff"), 0.0, None, Settings(method="none"), view))
