@@ -69,8 +69,7 @@ class FrameInProgress:
         self.tiles = np.array(self._tiles, np.int64)
         self._everywhere = all_blocks(settings.width, settings.height)
         self._focus: tuple[float, float] | None = None
-        self._records_fates = settings.record_fates and not Method.parse(settings.method).clusters
-        self._records = settings.record_lights or settings.record_work or self._records_fates
+        self._records = settings.record_lights or settings.record_work or settings.records_fates
         self.buffers = self._empty_buffers(progressive)
 
         # What is known, and learnt.
@@ -122,7 +121,7 @@ class FrameInProgress:
         planes = self._state.planes(s.width, s.height) if progressive else NO_PLANES
         asked = {
             "record_lights": s.record_lights and records,
-            "record_fates": self._records_fates and records,
+            "record_fates": s.records_fates and records,
             "verify": s.verify,
             "record_work": s.record_work and records,
         }
@@ -475,7 +474,7 @@ class FrameInProgress:
             lights=lights,
             asked=per_pixel(buffers.asked, settings.record_lights),
             reached=per_pixel(buffers.reached, settings.record_lights),
-            fates=per_pixel(buffers.fates, self._records_fates),
+            fates=per_pixel(buffers.fates, settings.records_fates),
             reference=per_pixel(buffers.reference, settings.verify),
             wrong=per_pixel(buffers.wrong, settings.verify),
             cells=layers.pop("cells", None),

@@ -297,14 +297,15 @@ class Renderer:
         self.scene, self._turn = other.scene, other._turn
 
     def take_modes(self, other: Renderer) -> None:
-        """Begin the next frame with the modes that another renderer of the same world knows now.
+        """Begin the next frame with the modes that another renderer of the same world knows now, of frames by the
+        settings that this one has: of this size and with these lamps.
 
         Parameters
         ----------
         other : Renderer
             A renderer none of whose frames is under way. It is left as it is.
         """
-        self.state.take_modes(other.state)
+        self.state.take_modes(other.state, self.settings)
 
     def take_turn(self, time: float) -> None:
         """Place the world once more as the frame that this renderer has begun needs it.

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import DEFAULT_METHOD, Method
@@ -11,6 +12,8 @@ from tracer.scene.lights import MAX_SAMPLES
 
 MAX_SIDE = 16384
 MAX_NODES = 65536  # of a cut: each takes a kilobyte for each thread
+RECORDS = ("verify", "record_lights", "record_fates", "record_work")
+"""Settings that only add to what a frame holds: the picture is the same."""
 LIGHT_BUFFER_SIDES = (16, 32, 64, 128, 256, 512, 1024)
 
 
@@ -108,6 +111,16 @@ class Settings:
     def modes_beside(self) -> bool:
         """Whether frames keep modes only to be looked at, beside a method that does not cull by them."""
         return self.modes and not Method.parse(self.method).uses_modes
+
+    @property
+    def records_fates(self) -> bool:
+        """Whether frames hold what became of each shadow ray. Those of methods that cluster lights never do."""
+        return self.record_fates and not Method.parse(self.method).clusters
+
+    def recording_only(self, *names: str) -> Settings:
+        """Return these settings with the `RECORDS` of these names and no others."""
+        recorded: dict[str, Any] = {name: name in names for name in RECORDS}
+        return replace(self, **recorded)
 
     def validated(self) -> Settings:
         """Return these settings, checked.

@@ -24,6 +24,7 @@ from tracer.shading.blocks import Planes, make_planes
 from tracer.shading.buffers import Workspace, workspace
 from tracer.shading.shading_data import SHINE, TRANSMISSION, make_shading_data
 
+_Key = tuple[int, int, bool, float | None, int | None]
 HISTORIES = 16  # resolutions and lamps whose modes are kept, of primitives or of cells, those used last
 
 MODES_BESIDE = Kind("modes", "Keeps the paper's modes.", ModesBeside, addition=True)
@@ -51,7 +52,7 @@ class State:
         by_name = lambda name: itself.method(name)  # noqa: E731
         self._services = Services(world, self.shading, model, clock, thread_clock, by_name)
         self._methods: dict[Kind, ShadowMethod] = {}
-        self.histories: dict[tuple[int, int, bool, float | None, int | None], ModeHistory] = {}
+        self.histories: dict[_Key, ModeHistory] = {}
         self._workspaces: list[Workspace] = []
         self._lamps: LampTable | None = None
         self._lamps_made_of: tuple[tuple[Light, ...], float | None, int | None] | None = None
@@ -64,9 +65,12 @@ class State:
         for method in self._methods.values():
             method.forget()
 
-    def take_modes(self, other: State) -> None:
-        """Know the modes, and what rests, as another state of the same world knows them now."""
-        self.histories = {key: history.copied() for key, history in other.histories.items()}
+    def take_modes(self, other: State, settings: Settings) -> None:
+        """Know what rests, and the modes of frames by these settings, as another state of the same world knows them
+        now."""
+        key = _key(settings, Method.parse(settings.method).uses_cells)
+        known = other.histories.get(key) if settings.keeps_modes else None
+        self.histories = {key: known.copied()} if known is not None else {}
         self.rest = copy(other.rest)
 
     def method(self, name: str) -> ShadowMethod:
@@ -96,7 +100,7 @@ class State:
         """The modes at this resolution and by these lamps, of primitives or of cells; made, or given room for more
         workers, where need be.  first (primitives + 1,) are the first units of primitives, or empty.  They begin with
         what is known at the resolution of the last frame, if that was finer."""
-        key = settings.width, settings.height, len(first) > 0, settings.lamp_radius, settings.lamp_samples
+        key = _key(settings, len(first) > 0)
         last = next(reversed(self.histories), key)
         history = self.histories.pop(key, None)
         if history is None:
@@ -131,6 +135,11 @@ class State:
         if self._planes is None or self._planes[0] != (width, height):
             self._planes = (width, height), make_planes(width, height)
         return self._planes[1]
+
+
+def _key(settings: Settings, in_cells: bool) -> _Key:
+    """What has modes of its own: a size, primitives or cells, and what lamps are made of lights."""
+    return settings.width, settings.height, in_cells, settings.lamp_radius, settings.lamp_samples
 
 
 def open_world(scene: Scene, settings: Settings, progress: Progress | None = None) -> World:

@@ -321,6 +321,16 @@ class FrameStatistics:
         self.decision = " ".join(filter(None, (self.decision, sentence)))
 
     @property
+    def traversal_steps(self) -> int:
+        """Those of rays of all kinds."""
+        return sum(rays.traversal_steps for rays in (self.primary, self.secondary, self.shadow))
+
+    @property
+    def intersection_tests(self) -> int:
+        """Those of rays of all kinds."""
+        return sum(rays.intersection_tests for rays in (self.primary, self.secondary, self.shadow))
+
+    @property
     def by_modes_in_all(self) -> SaidByModes:
         """The sum over the lights."""
         one = self.by_modes

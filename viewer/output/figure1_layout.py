@@ -49,11 +49,10 @@ def lay_out(figure: Figure, measure: Measure, line: float, width: float, height:
     needed = math.ceil(_TALLEST / max(height / line - _FOOT, 1.0))
     fewest = max(int(width / (_WIDEST * line)), needed)
     lowest: _Sheet | None = None
-    for detail in Detail:
-        texts = _Texts(known, line, detail, strong)
-        most = int((width + (_GUTTER - _LOOP) * line) / (texts.least_column(figure) + _GUTTER * line))
-        most = max(1, min(len(figure.stages), most))
-        for columns in range(min(most, fewest), most + 1):
+    written = [_Texts(known, line, detail, strong) for detail in Detail]
+    most = [texts.most_columns(figure, width) for texts in written]
+    for texts, possible in zip(written, most, strict=True):
+        for columns in range(min(max(most), fewest), possible + 1):
             sheet = _Sheet(figure, texts, width, columns)
             if sheet.height <= height:
                 return sheet.drawn()
@@ -112,7 +111,12 @@ class _Texts:
             column - 2 * self.pad - _BETWEEN * self.line
         )
 
-    def least_column(self, figure: Figure) -> float:
+    def most_columns(self, figure: Figure, width: float) -> int:
+        """How many columns there is room for, one at least."""
+        most = int((width + (_GUTTER - _LOOP) * self.line) / (self._least_column(figure) + _GUTTER * self.line))
+        return max(1, min(len(figure.stages), most))
+
+    def _least_column(self, figure: Figure) -> float:
         """The width that a column must have for nothing in it to be cut."""
         boxes = (
             self.wide(self.heading(stage)) + self.measure(self.time(stage)) + 2 * self.pad + _BETWEEN * self.line

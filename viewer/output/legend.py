@@ -233,7 +233,7 @@ def _lights(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 def _difference(frame: Frame, view: View, chosen: Chosen) -> Legend:
     """What is wrong in the frame, or of what it is said that nothing is."""
-    statistics, found = frame.statistics, verified.counts_of(frame.statistics)
+    statistics, found = frame.statistics, verified.known(frame.statistics.wrong)
     colored = view is View.DIFFERENCE or chosen.marked
     name = "around wrong pixels" if colored and view is not View.DIFFERENCE else terms.WRONG_PIXELS
     name = verified.named(name, found)

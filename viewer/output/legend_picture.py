@@ -39,13 +39,13 @@ def with_legend(pixels: NDArray[np.uint8], legend: Legend, place: tuple[float, f
     left, top = (round(margin + part * (free - taken)) for part, free, taken in zip(place, room, _size_of(layout)))
     area = Image.fromarray(pixels)
     box = (left, top, left + round(layout.width), top + round(layout.height))
-    backdrop = Image.new("RGB", (box[2] - left, box[3] - top), _bytes(BACKDROP))
+    backdrop = Image.new("RGB", (box[2] - left, box[3] - top), in_bytes(BACKDROP))
     area.paste(Image.blend(area.crop(box), backdrop, BACKDROP_OPACITY), box)
     draw = ImageDraw.Draw(area)
     for swatch in layout.swatches:
         _fill(area, draw, swatch, left, top)
     for words in layout.words:
-        draw.text((left + words.x, top + words.y), words.text, _bytes(words.color), letters)
+        draw.text((left + words.x, top + words.y), words.text, in_bytes(words.color), letters)
     return np.asarray(area)
 
 
@@ -57,16 +57,17 @@ def _fill(image: Image.Image, draw: ImageDraw.ImageDraw, swatch: Swatch, left: i
     x, y = left + round(swatch.x), top + round(swatch.y)
     width, height = max(1, round(swatch.width)), max(1, round(swatch.height))
     if swatch.color is not None:
-        draw.rectangle((x, y, x + width - 1, y + height - 1), _bytes(swatch.color))
+        draw.rectangle((x, y, x + width - 1, y + height - 1), in_bytes(swatch.color))
         if swatch.stripes is not None:
             rows, columns = np.nonzero(np.add.outer(np.arange(height), np.arange(width)) // UNTRUSTED_STRIPE % 2)
-            draw.point(np.stack([x + columns, y + rows], axis=1).reshape(-1).tolist(), _bytes(swatch.stripes))
+            draw.point(np.stack([x + columns, y + rows], axis=1).reshape(-1).tolist(), in_bytes(swatch.stripes))
         return
     colors = np.round((signed_map if swatch.signed else color_map)(width) * 255.0).astype(np.uint8)
     bar = np.broadcast_to(colors[::-1] if swatch.reverse else colors, (height, width, 3))
     image.paste(Image.fromarray(np.ascontiguousarray(bar)), (x, y))
 
 
-def _bytes(color: Color) -> tuple[int, int, int]:
+def in_bytes(color: Color) -> tuple[int, int, int]:
+    """A colour as pictures have it, 0 to 255."""
     red, green, blue = (round(255.0 * channel) for channel in color)
     return red, green, blue

@@ -9,12 +9,9 @@ from PIL import Image, ImageDraw
 from tracer.frame import Frame
 from viewer.output.caption import LINES, SMALLEST
 from viewer.output.legend_layout import BACKDROP, TEXT, wrapped
-from viewer.output.legend_picture import font
-from viewer.state.savings import Bar, bar_of, counters_in_words
+from viewer.output.legend_picture import font, in_bytes
+from viewer.state.savings import PALE, Bar, bar_of, counters_in_words
 from viewer.state.views import FATE_COLORS, Color, label_color
-
-_PALE = 0.35
-"""Of a colour, what lies between the stripes of what would be."""
 
 
 def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None) -> NDArray[np.uint8]:
@@ -29,10 +26,10 @@ def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None
     words = ", ".join(filter(None, (counters_in_words(frame), comparison)))
     lines = wrapped(words, letters.getlength, width - 2 * margin)
     bar = bar_of(frame)
-    strip = Image.new("RGB", (width, 2 * margin + step * (len(lines) + bool(bar.parts))), _bytes(BACKDROP))
+    strip = Image.new("RGB", (width, 2 * margin + step * (len(lines) + bool(bar.parts))), in_bytes(BACKDROP))
     draw = ImageDraw.Draw(strip)
     for number, line in enumerate(lines):
-        draw.text((margin, margin + number * step), line, _bytes(TEXT), letters)
+        draw.text((margin, margin + number * step), line, in_bytes(TEXT), letters)
     if bar.parts:
         box = margin, margin + len(lines) * step, width - margin, margin + (len(lines) + 1) * step
         _draw(strip, draw, bar, box, size)
@@ -50,29 +47,20 @@ def _draw(strip: Image.Image, draw: ImageDraw.ImageDraw, bar: Bar, box: tuple[in
             continue
         color = FATE_COLORS[part.fate]
         strip.paste(Image.fromarray(_filled(color, end - start, bottom - top, size, bar.would)), (start, top))
-        for text in (f"{part.name} {part.share}", part.share):
-            long = letters.getlength(text)
-            if long <= end - start - 2 * pad:
-                if bar.would:
-                    draw.rectangle(
-                        (start + pad // 2, top, start + pad + round(long) + pad // 2, bottom), _bytes(BACKDROP)
-                    )
-                said = TEXT if bar.would else label_color(color)
-                draw.text((start + pad, top + round(0.1 * size)), text, _bytes(said), letters)
-                break
+        text = part.label(letters.getlength, end - start - 2 * pad)
+        if bar.would and text:
+            back = start + pad + round(letters.getlength(text)) + pad // 2
+            draw.rectangle((start + pad // 2, top, back, bottom), in_bytes(BACKDROP))
+        said = TEXT if bar.would else label_color(color)
+        draw.text((start + pad, top + round(0.1 * size)), text, in_bytes(said), letters)
 
 
 def _filled(color: Color, width: int, height: int, size: int, hatched: bool) -> NDArray[np.uint8]:
     """(height, width, 3) of a colour, in stripes where it is hatched."""
-    full = np.array(_bytes(color), np.float32)
+    full = np.array(in_bytes(color), np.float32)
     if not hatched:
         return np.full((height, width, 3), full, np.uint8)
     y, x = np.indices((height, width))
     stripe = ((x + y) % (size // 2 + 2) < size // 4 + 1)[..., None]
-    pale = _PALE * full + (1.0 - _PALE) * np.array(_bytes(BACKDROP), np.float32)
+    pale = PALE * full + (1.0 - PALE) * np.array(in_bytes(BACKDROP), np.float32)
     return np.where(stripe, full, pale).astype(np.uint8)
-
-
-def _bytes(color: Color) -> tuple[int, int, int]:
-    red, green, blue = (round(255.0 * channel) for channel in color)
-    return red, green, blue

@@ -15,13 +15,13 @@ from typing import Protocol
 
 from tracer.frame import Settings
 from tracer.geometry.accelerators import LAZY
-from tracer.scene.model import Camera
+from tracer.scene.model import Camera, Cancelled
 from tracer.statistics import FrameStatistics
 from viewer.services import refinement
 from viewer.services.render_request import Spare, Traced, Traces
-from viewer.services.requests import recording
 from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import NO_CULLING
+from viewer.util.failures import one_line
 
 STILL = 0.7
 """Seconds that the picture must have rested before anything is measured."""
@@ -35,6 +35,7 @@ MOST = 40
 """Rounds, each of one frame by every method."""
 NARROW, CLEAR = 0.01, 0.25
 """The margin of the median ratio that is small enough: in any case, and as a part of what it is away from 1."""
+FAILED = "tracing the picture in turn has failed"
 BUILDS = "the tree is built where rays arrive: none would have more of it built"
 
 
@@ -60,18 +61,20 @@ def subject_of(traced: Traced, second: str = "") -> Subject | None:
     if len(methods) < 2:
         return None
     settings = replace(
-        recording(frame.settings, Settings()), method=NO_CULLING, samples=1, modes=False,
+        frame.settings.recording_only(), method=NO_CULLING, samples=1, modes=False,
         certificate_seconds=traced.request.settings.certificate_seconds, patient=False,
     )  # fmt: skip
     return Subject(frame.time, frame.camera, settings, methods)
 
 
 class Rounds:
-    """Measures a subject, a frame at a time.  `so_far` may be read from any thread."""
+    """Measures a subject, a frame at a time, and goes on from what is known of it.  `so_far`, and `why_not` where it
+    failed, may be read from any thread."""
 
-    def __init__(self, subject: Subject) -> None:
+    def __init__(self, subject: Subject, so_far: InTurn | None = None) -> None:
         self.subject = subject
-        self.so_far = InTurn(subject.methods)
+        self.so_far = so_far or InTurn(subject.methods)
+        self.why_not = ""
         self._renderers: dict[str, Traces] = {}
         self._prepared: dict[str, int] = {}
         self._round: dict[str, FrameStatistics] = {}
@@ -79,9 +82,23 @@ class Rounds:
     def step(self, renderer: Traces, cancelled: Callable[[], bool]) -> bool:
         """Trace one more frame, in the world of this renderer; returns whether more are to come.
 
-        Raises Cancelled, and then the frame is traced again by the next step."""
-        if self.so_far.settled:
+        Raises Cancelled, and then the frame is traced again by the next step; all else that goes wrong ends it."""
+        if self.ended:
             return False
+        try:
+            return self._step(renderer, cancelled)
+        except Cancelled:
+            raise
+        except Exception as problem:
+            self.why_not, self._renderers = f"{FAILED}: {one_line(problem)}", {}
+            raise
+
+    @property
+    def ended(self) -> bool:
+        """Whether no more is measured."""
+        return self.so_far.settled or bool(self.why_not)
+
+    def _step(self, renderer: Traces, cancelled: Callable[[], bool]) -> bool:
         waiting = [method for method in self.subject.methods if self._prepared.get(method, 0) >= 0]
         if waiting:
             self._prepare(renderer, waiting[0], cancelled)
@@ -110,8 +127,9 @@ class Rounds:
     ) -> FrameStatistics:
         subject = self.subject
         if method not in self._renderers:
-            self._renderers[method] = renderer.beside()
-            self._renderers[method].take_modes(renderer)
+            self._renderers[method] = made = renderer.beside()
+            made.settings = replace(subject.settings, method=method)
+            made.take_modes(renderer)
         own = self._renderers[method]
         seconds = PROVING if proves else subject.settings.certificate_seconds
         own.settings = replace(subject.settings, method=method, certificate_seconds=seconds, patient=proves)
@@ -162,13 +180,13 @@ class Baseline:
         self.moving = moving
         whole = traced is not None and traced.whole and traced.request.divisor == 1
         if moving or not whole:
-            self._subject = self._still_since = None
-            self._stop()
+            self._leave()
             return
         assert traced is not None
         lazy = traced.frame.settings.accelerator == LAZY
-        self.why_not = BUILDS if lazy else ""
         self._subject = None if lazy else subject_of(traced, second)
+        rounds = self._rounds
+        self.why_not = BUILDS if lazy else rounds.why_not if rounds is not None else ""
         if self._subject is None or busy:
             self._still_since = None
             self._stop()
@@ -181,9 +199,18 @@ class Baseline:
     def _measure(self, subject: Subject) -> None:
         self._known = {one: rounds for one, rounds in self._known.items() if one.is_of(subject)}
         rounds = self._known.setdefault(subject, Rounds(subject))
-        if rounds is not self._at_work and not rounds.so_far.settled:
+        if rounds is not self._at_work and not rounds.ended:
             self._at_work = rounds
             self._renderer.in_spare_time(rounds)
+
+    def _leave(self) -> None:
+        """The picture is another: what was measured of the last stays known, without the renderers that did so."""
+        self._stop()
+        if self._subject is not None:
+            self._known = {
+                one: rounds if rounds.ended else Rounds(one, rounds.so_far) for one, rounds in self._known.items()
+            }
+        self._subject = self._still_since = None
 
     def _stop(self) -> None:
         """Leave the thread to others; what was measured of a picture is taken up again."""
@@ -194,5 +221,8 @@ class Baseline:
     @property
     def measured(self) -> InTurn | None:
         """What is known of the picture that is shown; None where nothing is measured of it."""
-        rounds = self._known.get(self._subject) if self._subject is not None else None
-        return rounds.so_far if rounds is not None else None
+        return self._rounds.so_far if self._rounds is not None else None
+
+    @property
+    def _rounds(self) -> Rounds | None:
+        return self._known.get(self._subject) if self._subject is not None else None

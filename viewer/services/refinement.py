@@ -67,9 +67,15 @@ class Refinement:
         return True
 
     @property
+    def proves(self) -> bool:
+        """Whether frames follow to make certificates, and not only to learn modes."""
+        return self._settled is not None and self._proves
+
+    @property
     def progress(self) -> tuple[int, int]:
-        """Which frame of the view is under way, and how many there may be at most; 0, 0 while none is to follow."""
-        return (MOST_FRAMES - self._left, MOST_FRAMES) if self._settled is not None and self._left > 0 else (0, 0)
+        """Which frame with certificates is under way, and how many there may be at most; 0, 0 while none is to follow
+        for these."""
+        return (MOST_FRAMES - self._left, MOST_FRAMES) if self.proves and self._left > 0 else (0, 0)
 
 
 def _has_learnt(statistics: FrameStatistics, proves: bool) -> bool:
@@ -82,8 +88,7 @@ def _has_learnt(statistics: FrameStatistics, proves: bool) -> bool:
 
 def _view_of(request: RenderRequest) -> RenderRequest:
     """The request without what varies between frames of the same view."""
-    settings = replace(request.settings, verify=False, record_work=False, record_lights=False, record_fates=False)
-    return replace(request, settings=settings, serial=0, refinement_seconds=0.0)
+    return replace(request, settings=request.settings.recording_only(), serial=0, refinement_seconds=0.0)
 
 
 def _is_about_certificates(request: RenderRequest, view: View) -> bool:

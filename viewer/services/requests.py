@@ -7,13 +7,11 @@ from dataclasses import replace
 
 from tracer.frame import Settings
 from tracer.method import Method
+from tracer.settings import RECORDS
 from viewer.services.render_request import RenderRequest
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.readings import records_fates, records_lights
 from viewer.state.session import Session
-
-RECORDS = ("verify", "record_work", "record_lights", "record_fates")
-"""Settings that only add to what a frame holds."""
 
 
 def settings_for(session: Session, certificate_seconds: float, ready: bool, pixels: int) -> Settings:
@@ -30,7 +28,7 @@ def settings_for(session: Session, certificate_seconds: float, ready: bool, pixe
         verify=session.settings.verify or view.needs_verify,
         record_work=view.needs_work or session.counting,
         record_lights=records_lights(view, pixels, lights),
-        record_fates=records_fates(view, pixels, lights) and not Method.parse(method).clusters,
+        record_fates=records_fates(view, pixels, lights),
         modes=not Method.parse(method).clusters,  # which would look at single lights for these alone
         certificate_seconds=certificate_seconds,
     )

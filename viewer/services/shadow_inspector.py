@@ -26,6 +26,7 @@ from tracer.scene.model import Cancelled
 from tracer.why import why
 from viewer.services.render_request import Question, Traces
 from viewer.services.selection import Selection
+from viewer.state.edit_effects import same_place
 from viewer.state.picking import pixel_at, pixel_of
 from viewer.state.projection import Stroke, strokes
 
@@ -111,6 +112,7 @@ class ShadowInspector:
         self._selection, self._renderer = selection, renderer
         self.answer: Answer | None = None
         self.why: Why | None = None
+        self._why_of: Frame | None = None  # the frame of these
         self._subject: object = None
         self._asked: PixelQuestion | None = None
         self._drawn: tuple[Answer, Frame, list[DrawnLine]] | None = None
@@ -130,7 +132,8 @@ class ShadowInspector:
             self._subject = subject
         if self._asked is not None and self._asked.found is not None:
             self.answer = self._asked.found
-            self.why = self.answer.why or self.why
+            if self.answer.why is not None:
+                self.why, self._why_of = self.answer.why, self.answer.frame
         at = pixel_of(kept, frame) if kept is not None else self._pointed_at(frame, idle)
         if at is None and kept is None:
             self._forget()
@@ -143,6 +146,10 @@ class ShadowInspector:
             self._asked = PixelQuestion(frame, *at)
             self._renderer.ask(self._asked)
 
+    def names_pixels_of(self, frame: Frame) -> bool:
+        """Whether pixels that `why` names are where this frame has them: it is of the same moment, place and size."""
+        return self.why is not None and self._why_of is not None and same_place(self._why_of, frame)
+
     def lines(self, frame: Frame) -> list[DrawnLine]:
         """What is to be drawn of the answer on a frame."""
         answer = self.answer
@@ -154,7 +161,7 @@ class ShadowInspector:
 
     def _forget(self) -> None:
         self._drop()
-        self.answer = self.why = self._asked = self._drawn = None
+        self.answer = self.why = self._why_of = self._asked = self._drawn = None
 
     def _drop(self) -> None:
         """Let the render thread leave what has been asked."""

@@ -73,8 +73,8 @@ def answers_at(
 ) -> Answers:
     """Trace a frame once more, in the world of a renderer, and return what the pixels of a unit met in it."""
     settings = replace(
-        settings, method="cells" if in_cells else "paper", depth=0, samples=1, verify=False, modes=False,
-        record_lights=True, record_work=False, certificate_seconds=math.inf,
+        settings.recording_only("record_lights"), method="cells" if in_cells else "paper", depth=0, samples=1,
+        modes=False, certificate_seconds=math.inf,
     )  # fmt: skip
     alone = Renderer(renderer.scene, settings, world=renderer.world)
     return answers_in(alone, alone.render(time, camera), unit)

@@ -310,8 +310,8 @@ def _last_word(c: Controller, tested: bool) -> str:
     """What the zoom test has shown, if there was one, and where to go on."""
     test = c.runs.zoom_test
     seen = zoom_test_in_words(test.results) if tested and test is not None and test.results is not None else ""
-    more = "Next: open another scene (File), such as BART's Kitchen; compare methods along its path, as Table 1 does "
-    more += "(panel Experiment); or read docs/viewer.md, which explains all panels. Help has this tour again."
+    more = "Next: BART's Kitchen (File > Open), methods compared along a path as in Table 1 (panel Experiment), and "
+    more += "docs/viewer.md, which explains all panels."
     return f"{seen} {more}".strip()
 
 
@@ -319,11 +319,11 @@ def zoom_test_in_words(results: Results) -> str:
     """With which factor the primitive was examined anew at which steps, and how many of its pixels were wrong."""
     said = []
     for one in results.approaches:
-        steps = ", ".join(map(str, one.examined_anew))
-        anew = f"examined anew after step {steps}" if steps else "never examined anew"
-        wrong = f"at most {one.most_wrong:,} wrong pixels" if one.most_wrong else "no wrong pixel"
-        said.append(f"with zoom factor {one.factor:g} {anew}, {wrong}")
-    return f"The primitive was, {'; '.join(said)}." if said else ""
+        steps = " and ".join(map(str, one.examined_anew))
+        anew = f"examined anew at step {steps}" if steps else "never examined anew"
+        wrong = f"at most {one.most_wrong:,} pixels wrong" if one.most_wrong else "no pixel wrong"
+        said.append(f"factor {one.factor:g}: {anew}, {wrong}")
+    return f"Zoom test, {'; '.join(said)}." if said else ""
 
 
 STEPS = (

@@ -327,8 +327,9 @@ class Tracing:
     @property
     def certifies(self) -> bool:
         """Whether the picture is there, and another is to come because certificates can be made for it."""
-        asked, made = self._asked, Method.parse(self._session.settings.method).has_certificates
-        return made and asked is not None and asked.refinement_seconds > 0.0 and self.awaits and not self.outdated
+        asked = self._asked
+        refines = asked is not None and asked.refinement_seconds > 0.0
+        return refines and self.refinement.proves and self.awaits and not self.outdated
 
     @property
     def becoming_finer(self) -> bool:
@@ -386,7 +387,7 @@ class Tracing:
         """Whether the frame that is asked for holds what the view needs."""
         if view is View.LIGHTS:
             return self.settings.record_lights
-        return self.settings.record_fates if view.needs_fates else view.needs_more
+        return self.settings.records_fates if view.needs_fates else view.needs_more
 
     @property
     def title(self) -> str:

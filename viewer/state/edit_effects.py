@@ -147,15 +147,14 @@ def _said(name: str) -> str:
 
 def _counters(before: FrameStatistics, after: FrameStatistics) -> tuple[Counter, ...]:
     def of(s: FrameStatistics) -> dict[str, int]:
-        kinds = s.primary, s.secondary, s.shadow
         return {
             "due": s.shadow.due,
             "culled": s.shadow.culled,
             "dynamic only": s.shadow.dynamic_only,
             "candidates": s.shadow.candidates_only,
             "traced": s.shadow.traced,
-            "steps": sum(kind.traversal_steps for kind in kinds),
-            "tests": sum(kind.intersection_tests for kind in kinds),
+            "steps": s.traversal_steps,
+            "tests": s.intersection_tests,
             "certified": s.certificates,
         }
 

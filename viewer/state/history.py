@@ -66,7 +66,7 @@ class History:
         if again and self.frames > 0:
             self.frames -= 1
         s = frame.statistics
-        parts, samples = (s.primary, s.secondary, s.shadow), s.samples or SampleCounts()
+        samples = s.samples or SampleCounts()
         self._put(
             due=s.shadow.due,
             culled=s.shadow.culled,
@@ -74,8 +74,8 @@ class History:
             candidates_only=s.shadow.candidates_only,
             cache_hits=s.shadow.cache_hits,
             traced=s.shadow.traced,
-            steps=sum(p.traversal_steps for p in parts) + s.certificate_steps,
-            tests=sum(p.intersection_tests for p in parts) + s.certificate_tests,
+            steps=s.traversal_steps + s.certificate_steps,
+            tests=s.intersection_tests + s.certificate_tests,
             shadow_steps=s.shadow.traversal_steps + s.certificate_steps,
             shadow_tests=s.shadow.intersection_tests + s.certificate_tests,
             samples_due=samples.due,

@@ -86,7 +86,4 @@ class InTurn:
 
     def steps(self, method: str) -> int | None:
         """Nodes that rays of all kinds enter in a frame, the last; None before there is one."""
-        if not self.rounds:
-            return None
-        last = self.rounds[-1][self.methods.index(method)]
-        return sum(rays.traversal_steps for rays in (last.primary, last.secondary, last.shadow))
+        return self.frames(method)[-1].traversal_steps if self.rounds else None

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from viewer.state.readings import verified
+from viewer.state.verified import known
 
 
 class Mark(IntEnum):
@@ -25,7 +25,7 @@ def wrong_marks(frame: Frame, magnified: int = 1) -> NDArray[np.uint8]:
 
     The rings grow with the picture, so that a lone pixel is found in any; they are so much smaller where each pixel
     is shown as `magnified` of the screen's."""
-    wrong = verified(frame.wrong) > 0
+    wrong = known(frame.wrong) > 0
     if not wrong.any():
         return np.zeros(wrong.shape, np.uint8)
     side = max(frame.width, frame.height)

@@ -8,6 +8,12 @@ SPAN = 1.0
 """Seconds back that pictures count, or as far as the last two reach."""
 
 
+def in_words(rate: float) -> str:
+    """Pictures a second; nothing where so few come that it would read 0.0."""
+    shown = f"{rate:.0f}" if rate >= 9.5 else f"{rate:.1f}"
+    return f"{shown} pictures/s" if shown != "0.0" else ""
+
+
 class Rate:
     """Times of the newest pictures, in seconds."""
 

@@ -226,10 +226,3 @@ def span_of(frame: Frame, view: View) -> tuple[float, float]:
     if not view.has_range:
         raise ValueError(f"the view {view.value} has no range")
     return 0.0, work_top(frame, view)
-
-
-def verified(buffer: NDArray | None) -> NDArray:
-    """A buffer of verified frames; raises ValueError where the frame is none."""
-    if buffer is None:
-        raise ValueError("the frame was not verified")
-    return buffer

@@ -24,6 +24,8 @@ from viewer.util.numbers import count, percent, whole_percent
 
 LONGEST = ": 29.6 % of shadow rays saved, 15 % fewer steps, not verified, 1.08 × as fast as none (± 0.02)"
 """As long as the sentence usually is, after the method's name: what room there should be for it."""
+PALE = 0.35
+"""Of a colour, what lies between the stripes of what would be."""
 _WHOLE = 0.005  # of some work, or of all shadow rays: less is no difference
 
 
@@ -44,6 +46,11 @@ class Part:
     @property
     def share(self) -> str:
         return percent(self.rays, self.due)
+
+    def label(self, length: Callable[[str], float], room: float) -> str:
+        """The part's name and share, or the share alone, as far as there is room; `length` is that of a text."""
+        texts = f"{self.name} {self.share}", self.share
+        return next((text for text in texts if length(text) <= room), "")
 
     def in_words(self) -> str:
         """What it is, in two lines."""

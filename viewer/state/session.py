@@ -17,6 +17,7 @@ from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.lights import number_of
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
+from tracer.settings import RECORDS
 from viewer.state import edits as scene_edits
 from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
@@ -28,8 +29,8 @@ from viewer.util.json_numbers import finite, number, whole
 
 # Settings that say how a frame was asked for, not what the user chose; those of this machine and of the open scene.
 _NOT_RESTORED = {
-    "width", "height", "threads", "accelerator", "modes", "record_lights", "record_fates", "record_work",
-    "certificates", "certificate_seconds", "patient",
+    "width", "height", "threads", "accelerator", "modes", "certificates", "certificate_seconds", "patient",
+    *(name for name in RECORDS if name != "verify"),
 }  # fmt: skip
 _OPTIONAL: dict[str, type] = {"lamp_radius": float, "lamp_samples": int}  # None: as the scene says
 

@@ -6,6 +6,8 @@ the first sample: numbers that grow as samples are added say of how many they ar
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
 
 from tracer.frame import Frame
@@ -17,13 +19,14 @@ from viewer.util.numbers import count, percent, several
 ALL_TRACED = "Every shadow ray was traced, so that no answer can be wrong"
 NOT_YET = "How wrong clusters are is known once the picture is whole"
 _LEAST_SEEN = 1.0 / 255.0
+_Found = TypeVar("_Found")
 
 
-def counts_of(statistics: FrameStatistics) -> WrongCounts:
-    """What was found; raises ValueError where nothing was verified."""
-    if statistics.wrong is None:
+def known(found: _Found | None) -> _Found:
+    """What only verified frames have; raises ValueError where the frame was not verified."""
+    if found is None:
         raise ValueError("the frame was not verified")
-    return statistics.wrong
+    return found
 
 
 def in_short(statistics: FrameStatistics) -> str:
@@ -57,7 +60,7 @@ def is_wrong(statistics: FrameStatistics) -> bool:
 
 def in_words(statistics: FrameStatistics) -> str:
     """What is wrong, of how many answers; where nothing is, of how many that is said."""
-    found = counts_of(statistics)
+    found = known(statistics.wrong)
     if statistics.cuts is not None:
         return f"{in_short(statistics)}{_of_what(statistics)}" if statistics.cuts.errors is not None else NOT_YET
     if found.answers:
@@ -66,13 +69,13 @@ def in_words(statistics: FrameStatistics) -> str:
         return f"{answers} ({percent(found.answers, found.due)}) at {pixels}{_of_what(statistics)}"
     if not found.untraced:
         return ALL_TRACED
-    known = f"{several(found.untraced, 'answer')} known without tracing ({percent(found.untraced, found.due)})"
-    return f"None wrong of {known}{_of_what(statistics)}"
+    without = f"{several(found.untraced, 'answer')} known without tracing ({percent(found.untraced, found.due)})"
+    return f"None wrong of {without}{_of_what(statistics)}"
 
 
 def of_what(statistics: FrameStatistics) -> str:
     """Of which samples and pixels that is, where these are not one of each; else nothing."""
-    samples = counts_of(statistics).samples
+    samples = known(statistics.wrong).samples
     words = [f"in {samples} samples"] if samples > 1 else []
     if statistics.part < 1.0:
         words.append(f"in the {percent(statistics.part, 1.0)} of the picture that is shaded")
@@ -87,10 +90,8 @@ def _of_what(statistics: FrameStatistics) -> str:
 def largest_difference(frame: Frame) -> tuple[float, int]:
     """Between a wrong pixel and the right one, of a channel of the colour as it is, 1 for white; and how many of them a
     screen shows otherwise.  Raises ValueError where nothing was verified."""
-    if frame.wrong is None or frame.reference is None:
-        raise ValueError("the frame was not verified")
-    wrong = frame.wrong > 0
-    shown, right = frame.color[wrong], frame.reference[wrong]
+    wrong = known(frame.wrong) > 0
+    shown, right = frame.color[wrong], known(frame.reference)[wrong]
     seen = (pixels_of(shown[None]) != pixels_of(right[None])).any(axis=-1)
     return float(np.abs(shown - right).max(initial=0.0)), int(np.count_nonzero(seen))
 

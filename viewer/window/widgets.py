@@ -246,6 +246,11 @@ def swatch(color: tuple[float, float, float]) -> None:
     imgui.same_line(0.0, em(0.4))
 
 
+def packed(color: tuple[float, float, float], alpha: float = 1.0) -> int:
+    """A colour as lists of what is to be drawn take it."""
+    return int(imgui.get_color_u32(ImVec4(*color, alpha)))
+
+
 def heading(text: str) -> None:
     imgui.dummy(ImVec2(0.0, em(0.15)))
     imgui.separator_text(text)

@@ -209,3 +209,12 @@ def test_the_svg_is_well_formed_and_has_the_numbers():
     assert any("<scene> & more" in line for line in said)
     assert float(root.get("width", 0)) == 1280 and 0 < float(root.get("height", 0)) < 800
     assert len(text) < 60_000
+
+
+@pytest.mark.parametrize("width, height", [(780, 205), (860, 190), (860, 270), (340, 600)])
+def test_columns_stay_where_they_are_from_method_to_method(width, height):
+    def columns(method: str) -> set[float]:
+        return {box.x for box in lay_out(figure_of(frame_by(method, modes=True)), measure, LINE, width, height).boxes}
+
+    paper = columns("paper")
+    assert all(columns(method) == paper for method in ("none", "certified", "lightbuffer", "auto"))

@@ -73,7 +73,7 @@ def _tour(d: Driver) -> None:
     d.wait(lambda: tour.at is None, "the zoom test", 120.0)
     assert d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole
     assert all(one.seen_whole for one in d.c.runs.zoom_test.results.approaches), "else there is no limit to see"
-    assert "with zoom factor 4 " in tour.last_word and "Next: " in tour.last_word
+    assert "factor 4: " in tour.last_word and "Next: " in tour.last_word
     d.settle()
     d.context.item_click("//###tour/Close")
     d.frames(2)

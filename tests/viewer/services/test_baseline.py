@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests.viewer.fakes import FakeRenderer, make_frame
+from tests.viewer.services.test_pair import SCENE
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
@@ -29,13 +30,14 @@ class Timed:
 
     def __init__(self, seconds: dict[str, list[float]], made: dict[str, list[int]] | None = None) -> None:
         self.seconds, self.made, self.settings = seconds, made or {}, SIZE
+        self.failing: Exception | None = None
         self.order: list[str] = []
         self.taught: list[object] = []
         self.asked: list[Settings] = []
 
     def beside(self) -> Timed:
         other = Timed(self.seconds, self.made)
-        other.order, other.asked, other.taught = self.order, self.asked, self.taught
+        other.order, other.asked, other.taught, other.failing = self.order, self.asked, self.taught, self.failing
         return other
 
     def take_modes(self, other: object) -> None:
@@ -44,6 +46,8 @@ class Timed:
     def render(self, time=0.0, camera=None, cancel=None) -> Frame:
         if cancel is not None and cancel():
             raise Cancelled()
+        if self.failing is not None:
+            raise self.failing
         method = self.settings.method
         number = self.order.count(method)
         self.order.append(method)
@@ -175,21 +179,30 @@ def test_it_begins_at_rest_stops_at_once_and_goes_on_where_it_stopped():
     now[0] = 4.0 * STILL
     follow()
     assert thread.works[-1] is first
+    renderer = Timed({"none": [0.1], "paper": [0.2]})
+    for _ in range(2 * FIRST + 2):
+        first.step(renderer, lambda: False)
     follow(moving=True)
     assert thread.works[-1] is None and baseline.measured is None and baseline.moving
+    for at in (4.5, 5.75):
+        now[0] = at * STILL
+        follow()
+    again = thread.works[-1]
+    assert again is not first, "renderers, with all they have learnt, are not kept while pictures change"
+    assert baseline.measured is again.so_far and again.so_far.count == 1, "what they have measured is"
     other = traced("certified")
     for at in (6.0, 8.0):
         now[0] = at * STILL
         follow(other)
     second = thread.works[-1]
-    assert second is not first and second.subject.methods == ("none", "certified")
+    assert second is not again and second.subject.methods == ("none", "certified")
     follow(paper)
-    assert thread.works[-1] is first, "of the same picture, what is known of another method is known still"
+    assert thread.works[-1] is again, "of the same picture, what is known of another method is known still"
     elsewhere = traced("paper", at=2.0)
     follow(elsewhere)
-    assert thread.works[-1] not in (first, second)
+    assert thread.works[-1] not in (again, second)
     follow(paper)
-    assert thread.works[-1] not in (first, second), "of another picture it is not"
+    assert thread.works[-1] not in (again, second), "of another picture it is not"
     baseline.forget()
     assert thread.works[-1] is None and baseline.measured is None
 
@@ -200,6 +213,32 @@ def test_no_tree_is_built_for_a_figure():
     for _ in range(2):
         baseline.follow(traced(accelerator="kdtree-lazy"), "", False, False)
     assert not thread.works and "built" in baseline.why_not
+
+
+def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
+    now, thread = [0.0], Thread()
+    baseline = Baseline(thread, lambda: now[0])
+
+    def rest(newest: Traced) -> None:
+        for _ in range(2):
+            now[0] += 2.0 * STILL
+            baseline.follow(newest, "", False, False)
+
+    rest(traced())
+    begun, renderer = thread.works[-1], Timed({"none": [0.1], "paper": [0.1]})
+    renderer.failing = MemoryError()
+    with pytest.raises(MemoryError):
+        begun.step(renderer, lambda: False)
+    assert not begun.step(renderer, lambda: False)
+    rest(traced())
+    assert "out of memory" in baseline.why_not
+    baseline.follow(traced(), "", True, False)
+    given = len([work for work in thread.works if work is not None])
+    rest(traced())
+    assert "out of memory" in baseline.why_not
+    assert len([work for work in thread.works if work is not None]) == given == 1
+    rest(traced(at=2.0))
+    assert thread.works[-1] is not None and not baseline.why_not, "another picture is tried"
 
 
 class Work:
@@ -272,19 +311,13 @@ def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
     found = rounds.so_far.rounds[0]
     assert found[1].shadow.saved == known.statistics.shadow.saved > 0
     assert found[0].shadow.rays > found[1].shadow.rays and found[0].occlusion_tests == 0
+    window.settings = replace(settings, width=24, height=16)
+    window.render(1.0)
+    window.settings = settings
+    for method, histories in (("none", 0), ("paper+rest", 1)):
+        beside = window.beside()
+        beside.settings = replace(settings, method=method)
+        beside.take_modes(window)
+        assert len(beside.state.histories) == histories, "no modes of other sizes, and none where none are kept"
     after, expected = window.render(1.0), alone.render(1.0)
     assert np.array_equal(after.modes, expected.modes) and after.statistics.shadow == expected.statistics.shadow
-
-
-SCENE = """\
-v from 0 1 4 at 0 0 0 up 0 1 0 angle 50 hither 1 resolution 32 32
-a 0 9 10
-l 2 4 3 1 1 1
-l -3 4 2 0.5 0.5 0.5
-f 0.8 0.6 0.4 0.9 0.1 10 0.3 1
-p 4 -1 -0.5 -1 -1 -0.5 1 1 -0.5 1 1 -0.5 -1
-f 0.3 0.5 0.8 0.9 0.1 10 0 1
-s 0 0 0 0.5
-x flyer { p 3 -0.2 0.8 0 0.2 0.8 0 0 1.1 0 }
-k flyer { transl 4 -1 0 0 0 0 0 0  0 0 0 0 0 0 0  9 1 0 0 0 0 0  10 1 0 0 0 0 0 }
-"""

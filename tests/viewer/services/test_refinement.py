@@ -79,6 +79,18 @@ def test_frames_follow_until_modes_no_longer_change():
     assert k == MOST_LEARNING
 
 
+def test_progress_is_that_of_certificates_alone():
+    refinement = Refinement()
+    for method, expected in (("auto", (0, 0)), ("paper", (0, 0)), ("certified", (1, MOST_FRAMES))):
+        assert refinement.progress == (0, 0) and not refinement.proves
+        whole = traced(RenderRequest(0.0, CAMERA, Settings(8, 8, method=method), 1), 9)
+        assert refinement.wants_another(whole, View.COLOR, False)
+        assert refinement.progress == expected and refinement.proves == bool(expected[0]), method
+    assert not refinement.wants_another(traced(whole.request, 9, 0.5), View.COLOR, False)
+    refinement.forget()
+    assert refinement.progress == (0, 0) and not refinement.proves
+
+
 def test_the_view_of_certificates_asks_for_more_of_them():
     refinement = Refinement()
     assert frames(refinement, [9] * 20, method="auto") == 2

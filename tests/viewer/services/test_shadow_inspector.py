@@ -14,10 +14,12 @@ from tracer.culling.fate import Fate
 from tracer.explanation import NO_CERTIFICATE, Explanation, explain
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info
+from tracer.why_in_words import Link
 from viewer.services.controller import Controller
 from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, drawn_lights, drawn_lines
 from viewer.state import navigation
 from viewer.state.preferences import Preferences
+from viewer.window.panels.links import follow
 from viewer.window.panels.why import summary, unanswered
 from viewer.window.ui import Ui
 
@@ -181,6 +183,24 @@ def test_reasons_come_with_the_answer_and_say_what_the_frame_did(desk: Desk):
     assert answer.wrong_beyond == 0
     desk.c.selection.picked = None
     desk.until(lambda: desk.c.inspector.why is None)
+
+
+def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: Desk):
+    """In motion the reasons stay until the next come, but their pixels are elsewhere by then."""
+    desk.c.selection.select(desk.shadow)
+    answer, first, ui = desk.answered(), desk.c.frame, Ui(desk.c)
+    neighbour = Link("the right neighbour", pixel=(answer.x + 1, answer.y))
+    desk.c.motion.move(navigation.look(desk.c.session.camera, 0.02, 0.0, desk.c.motion.world_up))
+    desk.until(lambda: desk.c.frame is not first, ticks=1)
+    assert desk.c.inspector.why is answer.why and not desk.c.inspector.names_pixels_of(desk.c.frame)
+    before = desk.c.selection.picked
+    follow(ui, neighbour)
+    assert desk.c.selection.picked is before, "it would be another pixel"
+    desk.until(lambda: not desk.c.active)
+    desk.answered()
+    assert desk.c.inspector.names_pixels_of(desk.c.frame)
+    follow(ui, neighbour)
+    assert (desk.c.selection.picked.x, desk.c.selection.picked.y) == neighbour.pixel
 
 
 def _explained(light: int, samples: int = 16, reached: int = 16, due: bool = True, far: float = 1.0) -> Explanation:

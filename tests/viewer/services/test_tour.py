@@ -58,8 +58,8 @@ def test_a_zoom_test_is_told_as_it_went():
     grown = Approach(4.0, [step(0, 0), step(1, 3, examined_anew=True), step(2, 1)])
     results = Results("s", (8, 8), 1, 0.0, (0.0, 0.0, 0.0), 0.9, approaches=[grown, Approach(16.0, [step(0, 0)])])
     assert zoom_test_in_words(results) == (
-        "The primitive was, with zoom factor 4 examined anew after step 1, at most 3 wrong pixels; "
-        "with zoom factor 16 never examined anew, no wrong pixel."
+        "Zoom test, factor 4: examined anew at step 1, at most 3 pixels wrong; factor 16: never examined anew, no "
+        "pixel wrong."
     )
 
 

@@ -8,7 +8,7 @@ from tests.viewer.fakes import make_frame, make_scene
 from viewer.services.record import Record
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.history import History
-from viewer.state.rate import Rate
+from viewer.state.rate import Rate, in_words
 from viewer.state.session import Session
 
 
@@ -32,6 +32,15 @@ def test_a_picture_counts_once_however_often_more_of_it_comes() -> None:
         for _ in range(3):
             record.add([], Traced(request, frame, frame.statistics), 0.01)
     assert record.pictures_a_second == pytest.approx(10.0), "the clock ticks at each picture, not at its parts"
+
+
+def test_no_rate_reads_as_none_at_all() -> None:
+    assert [in_words(rate) for rate in (27.4, 9.4, 0.06, 0.04)] == [
+        "27 pictures/s",
+        "9.4 pictures/s",
+        "0.1 pictures/s",
+        "",
+    ]
 
 
 def test_slow_pictures_count_by_their_distance_and_none_that_have_ended() -> None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tracer.frame import Frame
 from viewer.state.columns import Row, rows
 from viewer.state.comparison import RATES, Side, Source, Way
+from viewer.state.in_turn import InTurn
 from viewer.state.told_apart import told_apart
 from viewer.state.views import LESS, MORE
 from viewer.window.panels.method_choice import method_list
@@ -155,7 +157,7 @@ def _columns(ui: Ui) -> None:
     if a is None or b is None:
         return
     timed = ui.controller.baseline.measured if comparing.measures else None
-    found: list[Row] = ui.cached("columns", a.frame, (id(b.frame), id(timed)), lambda: rows(a.frame, b.frame, timed))
+    found = figures(ui, a.frame, b.frame, timed)
     flags = int(
         imgui.TableFlags_.sizing_stretch_same
         | imgui.TableFlags_.row_bg
@@ -174,6 +176,12 @@ def _columns(ui: Ui) -> None:
     for one in found:
         _row(one)
     imgui.end_table()
+
+
+def figures(ui: Ui, a: Frame, b: Frame, timed: InTurn | None) -> list[Row]:
+    """What there is to say of both, and of frames that were timed in turn; made anew once any of them is another."""
+    found: list[Row] = ui.cached("columns", a, (b, timed), lambda: rows(a, b, timed))
+    return found
 
 
 def _heads(a: Side, b: Side, names: tuple[str, str]) -> None:

@@ -5,16 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import pairwise
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import ImVec2, imgui
 
 from viewer.output.figure1 import figure_of
 from viewer.output.figure1_layout import lay_out
 from viewer.output.figure1_shapes import Area, Arrow, Box, Drawing, Tone
-from viewer.state.views import Color
 from viewer.window.palette import BLUE
 from viewer.window.panels import coming
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, em, paragraph, tooltip_at
+from viewer.window.widgets import QUIET, em, packed, paragraph, tooltip_at
 
 _HEAD = 0.28  # ems: half of an arrow's head
 
@@ -60,7 +59,7 @@ def _draw(drawing: Drawing, at: ImVec2, pointed: Area | None) -> None:
     for box in drawing.times:
         draw.add_rect_filled(*_corners(box, at), imgui.get_color_u32(BLUE))
     for box in drawing.bars:
-        color = _packed(box.color) if box.color else fill
+        color = packed(box.color) if box.color else fill
         if box.hollow:
             draw.add_rect(*_corners(box, at), color, thickness=em(0.12))
         else:
@@ -93,7 +92,3 @@ def _corners(box: Box | Area, at: ImVec2) -> tuple[ImVec2, ImVec2]:
 
 def _width_of(text: str) -> float:
     return float(imgui.calc_text_size(text).x)
-
-
-def _packed(color: Color) -> int:
-    return int(imgui.get_color_u32(ImVec4(*color, 1.0)))

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import ImVec2, imgui
 
 from viewer.output.legend import legend_of
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting, lay_out
 from viewer.output.legend_parts import Chosen, Legend
-from viewer.state.views import Color, color_map, signed_map
+from viewer.state.views import color_map, signed_map
 from viewer.window import comparing
 from viewer.window.ui import Ui
-from viewer.window.widgets import em, tooltip_at
+from viewer.window.widgets import em, packed, tooltip_at
 
 _STEPS = 24  # of a bar of the colour map
 _MARGIN = 0.5  # ems between the legend and the picture's edge
@@ -76,7 +76,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     draw.push_clip_rect(corner, end, True)
     draw_layout(draw, layout, at)
     if imgui.is_item_hovered() and not imgui.is_item_active():
-        draw.add_rect(at, ImVec2(at.x + layout.width, at.y + layout.height), _packed((1.0, 1.0, 1.0), 0.35), em(0.3))
+        draw.add_rect(at, ImVec2(at.x + layout.width, at.y + layout.height), packed((1.0, 1.0, 1.0), 0.35), em(0.3))
         _tell(layout, at)
     draw.pop_clip_rect()
 
@@ -107,25 +107,25 @@ def _caught(part: float, room: float) -> float:
 def draw_layout(draw: imgui.ImDrawList, layout: Layout, at: ImVec2) -> None:
     """Draw a legend as it is laid out."""
     end = ImVec2(at.x + layout.width, at.y + layout.height)
-    draw.add_rect_filled(at, end, _packed(BACKDROP, BACKDROP_OPACITY), em(0.3))
+    draw.add_rect_filled(at, end, packed(BACKDROP, BACKDROP_OPACITY), em(0.3))
     for swatch in layout.swatches:
         _fill(draw, swatch, at)
     for words in layout.words:
-        draw.add_text(ImVec2(at.x + words.x, at.y + words.y), _packed(words.color), words.text)
+        draw.add_text(ImVec2(at.x + words.x, at.y + words.y), packed(words.color), words.text)
 
 
 def _fill(draw: imgui.ImDrawList, swatch: Swatch, at: ImVec2) -> None:
     x, y, bottom = at.x + swatch.x, at.y + swatch.y, at.y + swatch.y + swatch.height
     if swatch.color is not None:
-        draw.add_rect_filled(ImVec2(x, y), ImVec2(x + swatch.width, bottom), _packed(swatch.color), em(0.15))
+        draw.add_rect_filled(ImVec2(x, y), ImVec2(x + swatch.width, bottom), packed(swatch.color), em(0.15))
         if swatch.stripes is not None:
-            _stripe(draw, _packed(swatch.stripes), ImVec2(x, y), ImVec2(x + swatch.width, bottom))
+            _stripe(draw, packed(swatch.stripes), ImVec2(x, y), ImVec2(x + swatch.width, bottom))
         return
     colors = (signed_map if swatch.signed else color_map)(_STEPS + 1)
-    packed = [_packed((float(r), float(g), float(b))) for r, g, b in (colors[::-1] if swatch.reverse else colors)]
+    steps = [packed((float(r), float(g), float(b))) for r, g, b in (colors[::-1] if swatch.reverse else colors)]
     for i in range(_STEPS):
         start, stop = (x + swatch.width * k / _STEPS for k in (i, i + 1))
-        left, right = packed[i], packed[i + 1]
+        left, right = steps[i], steps[i + 1]
         draw.add_rect_filled_multi_color(ImVec2(start, y), ImVec2(stop, bottom), left, right, right, left)
 
 
@@ -149,7 +149,3 @@ def _tell(layout: Layout, at: ImVec2) -> None:
 
 def _width_of(text: str) -> float:
     return float(imgui.calc_text_size(text).x)
-
-
-def _packed(color: Color, alpha: float = 1.0) -> int:
-    return int(imgui.get_color_u32(ImVec4(*color, alpha)))

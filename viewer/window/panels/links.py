@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tracer.frame import Frame, Settings
 from tracer.reasons import SECTIONS
 from tracer.why_in_words import Link, Sentence
 from viewer.state.pixels import Point
@@ -105,7 +106,9 @@ def _about(ui: Ui, link: Link) -> str:
     if link.frame is not None:
         kept = ui.controller.record.moments.get(link.frame) is not None
         return f"Go to {going_back.in_words(ui, link.frame)}" if kept else "This picture is no longer kept."
-    return "Select this pixel" if link.pixel is not None else "Select it; resting here outlines it in the picture"
+    if link.pixel is not None:
+        return "Select this pixel" if _point(ui, link) is not None else "A pixel of another picture than this one"
+    return "Select it; resting here outlines it in the picture"
 
 
 def _menu(ui: Ui, link: Link) -> None:
@@ -130,13 +133,15 @@ def _menu(ui: Ui, link: Link) -> None:
 
 
 def _point(ui: Ui, link: Link) -> Point | None:
-    """The pixel of a link as a point of the picture, or of the picture that taught."""
-    if link.pixel is None:
-        return None
-    frame, moment = ui.controller.frame, None
+    """The pixel of a link as a point of the picture, or of the picture that taught; None where another picture is shown
+    than the one that it is of, or where that which taught is no longer kept."""
+    c = ui.controller
+    of: Frame | Settings | None = None
     if link.frame is not None:
-        moment = ui.controller.record.moments.get(link.frame)
-    width, height = (frame.width, frame.height) if frame is not None else (1, 1)
-    if moment is not None:
-        width, height = moment.settings.width, moment.settings.height
-    return (link.pixel[0] + 0.5) / width, (link.pixel[1] + 0.5) / height
+        moment = c.record.moments.get(link.frame)
+        of = moment.settings if moment is not None else None
+    elif c.frame is not None and c.inspector.names_pixels_of(c.frame):
+        of = c.frame
+    if link.pixel is None or of is None:
+        return None
+    return (link.pixel[0] + 0.5) / of.width, (link.pixel[1] + 0.5) / of.height

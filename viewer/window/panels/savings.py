@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import ImVec2, imgui
 
 from tracer.culling.fate import Fate
 from viewer.output.legend_layout import BACKDROP, TEXT
 from viewer.services.controller import Controller
-from viewer.state.savings import LONGEST, Bar, Clause, Part, Standing, Tone, bar_of, fitting, sentence
+from viewer.state.savings import LONGEST, PALE, Bar, Clause, Part, Standing, Tone, bar_of, fitting, sentence
 from viewer.state.views import FATE_COLORS, Color, View, label_color
 from viewer.util.numbers import count
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, em, fitted, tooltip
+from viewer.window.widgets import ERROR, QUIET, em, fitted, packed, tooltip
 
 LEAST = 14.0
 """Ems of height that there must be for the picture, sentence and bar; with less, these are not shown."""
@@ -120,7 +120,7 @@ def _draw(ui: Ui, bar: Bar, width: float) -> None:
     """The parts beside each other, each as wide as its share."""
     corner, high = imgui.get_cursor_screen_pos(), _bar_height()
     draw, done = imgui.get_window_draw_list(), 0
-    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), _packed(BACKDROP), em(0.15))
+    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), packed(BACKDROP), em(0.15))
     for part in bar.parts:
         left, right = (corner.x + width * rays / part.due for rays in (done, done + part.rays))
         done += part.rays
@@ -148,31 +148,26 @@ def _show_pixels(ui: Ui, fate: Fate, would: bool) -> None:
 
 def _fill(draw: imgui.ImDrawList, color: Color, at: ImVec2, end: ImVec2, hatched: bool) -> None:
     if not hatched:
-        draw.add_rect_filled(at, end, _packed(color))
+        draw.add_rect_filled(at, end, packed(color))
         return
     high, step = end.y - at.y, em(_STRIPE)
-    draw.add_rect_filled(at, end, _packed(color, 0.35))
+    draw.add_rect_filled(at, end, packed(color, PALE))
     draw.push_clip_rect(at, end, True)
     x = at.x - (at.x % step) - high
     while x < end.x:
-        draw.add_line(ImVec2(x, end.y), ImVec2(x + high, at.y), _packed(color), 0.3 * step)
+        draw.add_line(ImVec2(x, end.y), ImVec2(x + high, at.y), packed(color), 0.3 * step)
         x += step
     draw.pop_clip_rect()
 
 
 def _label(draw: imgui.ImDrawList, part: Part, at: ImVec2, end: ImVec2, hatched: bool) -> None:
     """The part's name and share, or the share alone, as far as there is room."""
-    room = end.x - at.x - 2.0 * em(_PAD)
-    for text in (f"{part.name} {part.share}", part.share):
-        size = imgui.calc_text_size(text)
-        if size.x <= room:
-            x, y = round(at.x + em(_PAD)), round(at.y + (end.y - at.y - size.y) / 2.0)
-            if hatched:
-                back = ImVec2(x - 0.2 * em(1.0), at.y), ImVec2(x + size.x + 0.2 * em(1.0), end.y)
-                draw.add_rect_filled(*back, _packed(BACKDROP, 0.8))
-            draw.add_text(ImVec2(x, y), _packed(TEXT if hatched else label_color(FATE_COLORS[part.fate])), text)
-            return
-
-
-def _packed(color: Color, alpha: float = 1.0) -> int:
-    return int(imgui.get_color_u32(ImVec4(*color, alpha)))
+    text = part.label(lambda text: imgui.calc_text_size(text).x, end.x - at.x - 2.0 * em(_PAD))
+    if not text:
+        return
+    size = imgui.calc_text_size(text)
+    x, y = round(at.x + em(_PAD)), round(at.y + (end.y - at.y - size.y) / 2.0)
+    if hatched:
+        back = ImVec2(x - 0.2 * em(1.0), at.y), ImVec2(x + size.x + 0.2 * em(1.0), end.y)
+        draw.add_rect_filled(*back, packed(BACKDROP, 0.8))
+    draw.add_text(ImVec2(x, y), packed(TEXT if hatched else label_color(FATE_COLORS[part.fate])), text)

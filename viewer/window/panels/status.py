@@ -8,11 +8,11 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.services.controller import Controller
 from viewer.state import terms, verified
 from viewer.state.log import Level
+from viewer.state.rate import in_words as rate_in_words
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, tooltip
 
 IDLE, TRACING = "idle", "tracing"
-LEAST_RATE = 0.05  # pictures a second: fewer would read 0.0
 
 
 def show(ui: Ui) -> None:
@@ -115,6 +115,6 @@ def _summary(ui: Ui) -> str:
         parts += filter(None, (verified.in_short(frame.statistics),))
         parts += [f"{frame.width} x {frame.height}", f"{1e3 * frame.statistics.seconds:.0f} ms"]
     rate = c.record.pictures_a_second
-    if rate is not None and rate >= LEAST_RATE and c.active:
-        parts.append(f"{rate:.0f} pictures/s" if rate >= 9.5 else f"{rate:.1f} pictures/s")
-    return "   ".join(parts)
+    if rate is not None and c.active:
+        parts.append(rate_in_words(rate))
+    return "   ".join(filter(None, parts))

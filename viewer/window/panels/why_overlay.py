@@ -33,27 +33,28 @@ def show(ui: Ui, area: Area) -> None:
     frame, found = c.frame, c.inspector.why
     if frame is None:
         return
+    in_place = c.inspector.names_pixels_of(frame)
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(area.corner, area.end, True)
     if c.selection.picked is not None and c.preferences.draw_explanation and found is not None:
-        _hider(ui, draw, area, frame, found)
-        if c.selection.pixel == (found.x, found.y):
+        _hider(ui, draw, area, frame, found, in_place)
+        if in_place and c.selection.pixel == (found.x, found.y):
             _figure_3(draw, area, frame, found)
     if link is not None and link.primitive is not None:
         _outline(ui, draw, area, frame, link.primitive, _POINTED, "pointed link")
-    if link is not None and link.pixel is not None and link.frame is None:
+    if link is not None and link.pixel is not None and link.frame is None and in_place:
         _square(draw, *_place(area, frame, link.pixel), _POINTED)
     draw.pop_clip_rect()
 
 
-def _hider(ui: Ui, draw: imgui.ImDrawList, area: Area, frame: Frame, found: Why) -> None:
-    """The outline of what hides the primitive, and the pixel at which it does."""
+def _hider(ui: Ui, draw: imgui.ImDrawList, area: Area, frame: Frame, found: Why, in_place: bool) -> None:
+    """The outline of what hides the primitive, and the pixel at which it does where that is still `in_place`."""
     by = None if found.coverage is None else found.coverage.occluded
     if by is None:
         return
     if not by.at_edge and by.primitive >= 0:
         _outline(ui, draw, area, frame, by.primitive, _HIDER, "hider")
-    if by.pixel != (found.x, found.y):
+    if in_place and by.pixel != (found.x, found.y):
         _square(draw, *_place(area, frame, by.pixel), _HIDER)
 
 
