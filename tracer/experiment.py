@@ -10,7 +10,7 @@ count against it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -22,9 +22,17 @@ from tracer.geometry.world import World
 from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled, Progress, Scene
-from tracer.statistics import FrameStatistics
+from tracer.statistics import FrameStatistics, ShadowCounts
 
 REFERENCE = "none"
+
+
+def _wrong(statistics: FrameStatistics) -> int:
+    """Wrong answers; of clusters of lights, which give none, the pixels that differ by more than they may."""
+    if statistics.cuts is not None and statistics.wrong is not None:
+        return statistics.wrong.pixels
+    return statistics.shadow.wrong
+
 
 _FIGURES: dict[str, Callable[[FrameStatistics], float]] = {
     "shadow_rays_due": lambda s: s.shadow.due,
@@ -35,7 +43,7 @@ _FIGURES: dict[str, Callable[[FrameStatistics], float]] = {
     "occlusion_tests": lambda s: s.occlusion_tests,
     "certificate_steps": lambda s: s.certificate_steps,
     "certificate_tests": lambda s: s.certificate_tests,
-    "wrong": lambda s: s.shadow.wrong,
+    "wrong": _wrong,
     "frame_seconds": lambda s: s.seconds,
 }
 
@@ -46,6 +54,21 @@ FIGURES = tuple(_FIGURES)
 def figures_of(statistics: FrameStatistics) -> dict[str, float]:
     """What is measured of a frame, by the names in `FIGURES`; all but "frame_seconds" are whole numbers."""
     return {name: of(statistics) for name, of in _FIGURES.items()}
+
+
+def saved_of(figures: Mapping[str, np.ndarray]) -> float:
+    """How many shadow rays frames have saved, by the names in `FIGURES`."""
+    culled, dynamic_only = (int(figures[f"shadow_rays_{name}"].sum()) for name in ("culled", "dynamic_only"))
+    return ShadowCounts(culled=culled, dynamic_only=dynamic_only).saved
+
+
+def wrong_part(method: str, wrong: float, due: float, pixels: float) -> float:
+    """The part that is wrong: of the shadow rays due, or of the pixels of all frames by clusters of lights."""
+    try:
+        by_pixels = Method.parse(method).clusters
+    except ValueError:  # kept results may be of a method that is not there
+        by_pixels = False
+    return float(wrong / max(1.0, pixels if by_pixels else due))
 
 
 # Settings of all methods.
@@ -141,11 +164,12 @@ class Row:
     """A line of the paper's Table 1.
 
     Savings are parts of 1. `most_steps_frame` and `most_tests_frame` are the frames that save the most, `wrong_part` is
-    the part of the shadow rays due that had a wrong answer, and `frame_seconds` is the median. `path_seconds` is what
-    all frames took, `build_seconds` the part of it in which the method made what it culls by, and `memory_bytes` what
-    it held at most. `speed_up` is the time of "none" over that of the method, in all frames, and `speed_up_spread` is
-    twice its standard error over the frames, infinite for fewer than two. `saved_part` is the part of the shadow rays
-    due that was culled, or tested against dynamic objects only.
+    the part of the shadow rays due that had a wrong answer, by clusters of lights the part of pixels that differ by
+    more than they may, and `frame_seconds` is the median. `path_seconds` is what all frames took, `build_seconds` the
+    part of it in which the method made what it culls by, and `memory_bytes` what it held at most. `speed_up` is the
+    time of "none" over that of the method, in all frames, and `speed_up_spread` is twice its standard error over the
+    frames, infinite for fewer than two. `saved_part` is the part of the shadow rays due that was saved
+    (`ShadowCounts.saved`).
     """
 
     method: str
@@ -177,7 +201,6 @@ def _row(results: Results, method: str) -> Row:
     figures = {name: np.array(values, np.float64) for name, values in results.methods[method].items()}
     pixels = results.size[0] * results.size[1]
     due = max(1.0, figures["shadow_rays_due"].sum())
-    saved = figures["shadow_rays_culled"].sum() + figures["shadow_rays_dynamic_only"].sum()
     of_reference = np.array(results.methods[REFERENCE]["frame_seconds"], np.float64)
     faster, spread = speed_up(of_reference, figures["frame_seconds"])
     return Row(
@@ -190,14 +213,14 @@ def _row(results: Results, method: str) -> Row:
         most_tests_frame=results.frames[int(tests.argmax())],
         extra_tests_per_pixel=float(figures["occlusion_tests"].mean() / pixels),
         wrong=int(figures["wrong"].sum()),
-        wrong_part=float(figures["wrong"].sum() / due),
+        wrong_part=wrong_part(method, figures["wrong"].sum(), due, pixels * len(results.frames)),
         frame_seconds=float(np.median(figures["frame_seconds"])),
         path_seconds=float(figures["frame_seconds"].sum()),
         build_seconds=float(sum(results.build_seconds.get(method, ()))),
         memory_bytes=max(results.memory_bytes.get(method, (0,))),
         speed_up=faster,
         speed_up_spread=spread,
-        saved_part=float(saved / due),
+        saved_part=saved_of(figures) / due,
     )
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tracer.experiment import REFERENCE, Results, run, speed_up
+from tracer.experiment import REFERENCE, Results, run, saved_of, speed_up
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.scene.lights import as_lamps
@@ -27,9 +27,8 @@ class LampRow:
     """A method under one kind of lamp.
 
     `lamp_radius` and `lamp_samples` are those of the settings. `frame_seconds` is the median, `shadow_rays` the mean of
-    those due per frame, `known` the part of them that was culled or tested against dynamic objects only, `speed_up` the
-    time of `none` over that of the method in all frames, and `share_of_free` the part that this is of the speed-up of
-    `free`.
+    those due per frame, `known` the part of them that was saved (`ShadowCounts.saved`), `speed_up` the time of `none`
+    over that of the method in all frames, and `share_of_free` the part that this is of the speed-up of `free`.
     """
 
     lamp_radius: float | None
@@ -106,14 +105,13 @@ def _speed_up(results: Results, method: str) -> float:
 def _row(results: Results, method: str) -> LampRow:
     figures = {name: np.array(values, np.float64) for name, values in results.methods[method].items()}
     due, faster = figures["shadow_rays_due"], _speed_up(results, method)
-    known = figures["shadow_rays_culled"] + figures["shadow_rays_dynamic_only"]
     return LampRow(
         lamp_radius=results.settings["lamp_radius"],
         lamp_samples=results.settings["lamp_samples"],
         method=method,
         frame_seconds=float(np.median(figures["frame_seconds"])),
         shadow_rays=float(due.mean()),
-        known=float(known.sum() / max(1.0, due.sum())),
+        known=saved_of(figures) / max(1.0, float(due.sum())),
         speed_up=faster,
         share_of_free=faster / _speed_up(results, CEILING),
     )

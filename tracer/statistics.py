@@ -59,7 +59,8 @@ class ShadowCounts(RayCounts):
         pixel; `FrameStatistics.wrong` is of all.
     passed_over : int
         Pairs of a point and a light's sample that nobody looked at, as it is proven that the light does not reach any
-        point nearby. They are not among those that are due, unless the light of each is recorded.
+        point nearby. They are not among those that are due. Where the light of each is recorded or verified, nothing
+        is passed over: such rays are due, and culled.
     """
 
     due: int = 0
@@ -72,7 +73,7 @@ class ShadowCounts(RayCounts):
 
     @property
     def saved(self) -> int:
-        """Those that the static scene was not asked about: culled, or tested against dynamic objects only."""
+        """Those that asked nothing static: culled, or tested against dynamic objects only."""
         return self.culled + self.dynamic_only
 
     @property
@@ -134,7 +135,7 @@ class SaidByModes:
 
     @property
     def saved(self) -> int:
-        """Those that it would not ask the static scene about."""
+        """Those that would ask nothing static."""
         return self.full_shadow + self.non_shadow
 
 

@@ -30,7 +30,7 @@ from tests.bench.frame_times import machine
 from tests.bench.of_scenes import SCENES
 from tracer.compilation import make_ready, warm_up
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.experiment import REFERENCE
+from tracer.experiment import REFERENCE, figures_of
 from tracer.frame import Settings
 from tracer.method import Method, line_up
 from tracer.renderer import Renderer
@@ -93,7 +93,7 @@ def measure(path: Path, size: int, frames: int) -> dict[str, Sums]:
                 if verify:
                     of.steps += statistics.shadow.traversal_steps + statistics.certificate_steps
                     of.tests += statistics.shadow.intersection_tests + statistics.certificate_tests
-                    of.wrong += statistics.shadow.wrong
+                    of.wrong += int(figures_of(statistics)["wrong"])
                     of.due += statistics.shadow.due
                 else:
                     of.seconds += statistics.seconds

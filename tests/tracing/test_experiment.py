@@ -119,3 +119,9 @@ def test_the_table_tells_what_is_saved_and_how_sure_the_speed_up_is():
     assert (none.saved_part, none.speed_up, none.speed_up_spread) == (0.0, 1.0, 0.0)
     assert paper.saved_part == pytest.approx(0.4) and paper.speed_up == pytest.approx(2.0)
     assert paper.speed_up_spread == pytest.approx(2.0)
+
+
+def test_what_clusters_get_wrong_is_a_part_of_the_pixels_and_what_culling_gets_wrong_of_the_rays():
+    one = _figures(steps=[40, 150], tests=[5, 0], occlusion=[0, 0], wrong=[3, 1])
+    results = experiment.Results("s", (10, 10), frames=[7, 9], methods={m: one for m in ("none", "paper", "lightcuts")})
+    assert [row.wrong_part for row in experiment.table(results)] == pytest.approx([0.04, 0.04, 0.02])

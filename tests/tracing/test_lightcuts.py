@@ -18,6 +18,7 @@ from tests.tracing.nasty_worlds import nasty_walk, with_lamps
 from tests.tracing.same import assert_same
 from tests.tracing.shades import floor
 from tests.tracing.worlds import quad, scene
+from tracer.experiment import figures_of
 from tracer.geometry.world import ACCELERATORS
 from tracer.methods.lightcuts import errors_of
 from tracer.scene.animation import Animation
@@ -125,7 +126,8 @@ def test_errors_that_are_allowed_are_not_exceeded_by_much_and_limits_are_told(me
         hit = frame.primitive >= 0
         wrong = errors_of(frame.color[hit], truth().color[hit])
         assert (cuts.errors.median, cuts.errors.most) == pytest.approx((np.median(wrong), wrong.max()))
-        assert frame.statistics.shadow.wrong == cuts.errors.beyond == frame.wrong.sum() == (wrong > allowed).sum()
+        assert frame.statistics.wrong.pixels == cuts.errors.beyond == frame.wrong.sum() == (wrong > allowed).sum()
+        assert figures_of(frame.statistics)["wrong"] == cuts.errors.beyond and frame.statistics.shadow.wrong == 0
         assert cuts.errors.median < allowed
         errors.append(cuts.errors.median)
         sizes.append(cuts.mean)

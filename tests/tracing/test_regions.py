@@ -196,6 +196,8 @@ def test_what_is_recorded_of_lights_that_are_passed_over_is_what_none_records():
     frame = Renderer(rooms(), settings).render(0.0)
     none = Renderer(rooms(), replace(settings, method="none")).render(0.0)
     assert frame.statistics.shadow.culled > 1000 and frame.statistics.shadow.wrong == 0
+    verified = Renderer(rooms(), replace(SETTINGS, verify=True)).render(0.0).statistics
+    assert verified.wrong.untraced > 1000 and verified.shadow.passed_over == 0, "answers that may be wrong are counted"
     assert frame.statistics.shadow.due == none.statistics.shadow.due
     for name in ("color", "asked", "reached", "reference", "due_rays"):
         assert getattr(frame, name).tobytes() == getattr(none, name).tobytes(), name

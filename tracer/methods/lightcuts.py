@@ -152,8 +152,6 @@ class Lightcuts(ShadowMethod):
         statistics.decision = self._decided(cuts)
         if cuts.blocks:
             statistics.cuts = cuts
-            if cuts.errors is not None:
-                statistics.shadow.wrong = cuts.errors.beyond
 
     def _counts(self) -> CutCounts:
         lights = 0 if self._lamps is None else len(self._lamps.samples)

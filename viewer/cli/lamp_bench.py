@@ -15,6 +15,7 @@ from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import Work
 from viewer.cli.narrow_tables import left_out, named
 from viewer.output.reports import frames_in_words
+from viewer.state import terms
 
 
 def run(
@@ -79,7 +80,7 @@ def _table(results: LampResults, left: Sequence[str]) -> Table:
     wider = f"\na wider terminal shows {named(left)}, too; --csv FILE has all figures" if left else ""
     made.caption = (
         f"shadow rays: due per frame; speed-up: over {REFERENCE}, all frames; {CEILING}: shadow rays cost nothing\n"
-        f"saved: shadow rays that are culled, or tested against dynamic objects only{wider}"
+        f"{terms.SAVED} are shadow rays {terms.MEANINGS[terms.SAVED]}{wider}"
     )
     return made
 

@@ -12,6 +12,7 @@ from rich.table import Table
 from tracer.experiment import REFERENCE
 from viewer.cli.console import width_of
 from viewer.cli.narrow_tables import left_out, named
+from viewer.state import terms
 from viewer.state.study import Study
 from viewer.util.messages import printable
 
@@ -54,10 +55,10 @@ def _of_part(part: list[Line], lines: list[Line], left: Sequence[str]) -> Table:
 
 def _table(title: str, shown: list[Line], lines: list[Line], left: Sequence[str] = (), where: bool = True) -> Table:
     """A section for each scene, size and combination of settings, a row for each method."""
-    from viewer.output.sweep_summary import COLUMNS, SAVED
+    from viewer.output.sweep_summary import COLUMNS
 
     verified = all(line.verified for line in lines)
-    saved = f"\n{SAVED}: shadow rays that are culled, or tested against dynamic objects only" * (SAVED not in left)
+    saved = f"\n{terms.SAVED} are shadow rays {terms.MEANINGS[terms.SAVED]}" * (terms.SAVED not in left)
     table = Table(title=printable(title), title_justify="left", title_style="bold", caption_justify="left")
     table.caption = (
         f"saved against {REFERENCE}, certificates included; times are processor time of one thread"

@@ -41,8 +41,10 @@ def of_fates(frame: Frame, view: View, chosen: Chosen) -> Legend:
         if pixels or fate in usual
     )
     facts = (
-        Entry("saved", None, ("", percent(found.saved, found.due)), "culled, or asked dynamic objects only"),
-        Entry("traced", None, ("", percent(found.traced, found.due)), "through the whole scene, for whatever reason"),
+        Entry(terms.SAVED, None, ("", percent(found.saved, found.due)), terms.MEANINGS[terms.SAVED]),
+        Entry(
+            terms.TRACED, None, ("", percent(found.traced, found.due)), "through the whole scene, for whatever reason"
+        ),
     )
     title = f"{view.label}, first hits, {chosen.light_in_words}"
     return Legend(title, ("pixels", "of due"), entries, facts=facts, notes=_filled_in(frame))

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from tracer.experiment import REFERENCE
+from tracer.experiment import FIGURES, REFERENCE, saved_of, wrong_part
 from viewer.output.sweep_store import Key, keys_of
 from viewer.state.study import ASPECTS
+from viewer.state.terms import SAVED
 from viewer.util.numbers import saved
 
 Group = tuple[str, int, int, tuple[Any, ...]]
@@ -23,7 +24,7 @@ NOTHING = float("nan")
 class Line:
     """A method under the same circumstances.  Savings are averages over frames, parts of 1, against `none`; `spread` is
     how far the averages of seeds deviate from the steps that are saved (standard deviation).  `known` is the part of
-    the shadow rays that was culled, or tested against dynamic objects only.  `seconds` is the median of a frame's
+    the shadow rays that was saved (`ShadowCounts.saved`).  `seconds` is the median of a frame's
     processor time, for which it matters little what else the machine does, and `speed_up` that of all frames by `none`
     over that of the method.  NaN: not known.
 
@@ -99,9 +100,9 @@ def _line(
         steps=float(steps.mean()) if pairs else NOTHING,
         spread=float(np.std(by_seed)) if len(by_seed) > 1 else NOTHING,
         tests=float(tests.mean()) if pairs else NOTHING,
-        known=float((of("shadow_rays_culled", rows) + of("shadow_rays_dynamic_only", rows)).sum() / max(due, 1.0)),
+        known=saved_of({name: of(name, rows) for name in FIGURES}) / max(float(due), 1.0),
         wrong=int(wrong),
-        wrong_part=float(wrong / max(due, 1.0)),
+        wrong_part=wrong_part(method, wrong, due, width * height * len(rows)),
         verified=all(data["verify"][row] for row in rows),
         seconds=float(np.median(of("processor_seconds", rows))),
         speed_up=float(of("processor_seconds", theirs).sum() / seconds) if seconds > 0 else NOTHING,
@@ -127,7 +128,6 @@ def _saved(value: float, spread: float = NOTHING) -> str:
     return "" if value != value else saved(value, spread if spread == spread else None)
 
 
-SAVED = "saved"
 COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
     ("frames", lambda line: f"{line.frames:,}"),
     ("steps\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.steps, line.spread)),

@@ -47,4 +47,4 @@ def test_nothing_is_cut_off(width: int | None, count: int):
     ]
     assert bool(left_out) == (width in (80, 100)), left_out
     assert ("18.4 × as many" in text) == ("tests\nsaved" not in left_out)
-    assert ("saved: shadow rays that are culled" in words) == ("saved" not in left_out)
+    assert ("saved are shadow rays culled or dynamic only" in words) == ("saved" not in left_out)
