@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.cost_model import CostModel
+from tracer.culling.modes import FULLY_RENDERED, occlusion_mode, word_type
 from tracer.frame import Frame
 from tracer.frame_in_progress import Cancel, FrameInProgress
 from tracer.geometry.world import World
@@ -90,9 +91,35 @@ class Renderer:
         self.state.forget()
 
     @property
-    def modes(self) -> NDArray[np.unsignedinteger]:
-        """The modes (units,) that the next frame by these settings begins with; to be changed in place."""
-        return self.state.history(self.settings, self.state.method(self.settings.method).first_units(), 1).words
+    def units(self) -> int:
+        """How many units carry modes by these settings: primitives, or cells of them."""
+        first = self.state.method(self.settings.method).first_units()
+        return int(first[-1]) if len(first) else self.scene.primitive_count
+
+    def begin_with(self, modes: NDArray[np.unsignedinteger]) -> None:
+        """Forget all modes and what methods have learnt, and let the next frame begin with these modes.
+
+        It is by these settings that they are taken. A picture depends on no more than its modes before it, if its
+        method learns nothing else. Over how many pixels a unit has been examined they do not tell: none of them is
+        examined anew, and the modes that later frames leave may differ from those that were.
+
+        Parameters
+        ----------
+        modes : (units,) uint32 or uint64
+            Such as `Frame.modes_before` of a picture by the same settings.
+
+        Raises
+        ------
+        ValueError
+            If the scene has not so many units, or its lights have modes of another size.
+        """
+        words = word_type(len(self.scene.lights))
+        if modes.shape != (self.units,) or modes.dtype != words:
+            raise ValueError(f"modes are {self.units:,} of {np.dtype(words).name}, not {modes.shape} of {modes.dtype}")
+        self.reset_modes()
+        history = self.state.history(self.settings, self.state.method(self.settings.method).first_units(), 1)
+        history.words[:] = modes
+        history.highest_count[occlusion_mode(modes) == FULLY_RENDERED] = np.iinfo(history.highest_count.dtype).max
 
     def render(self, time: float = 0.0, camera: Camera | None = None, cancel: Cancel = None) -> Frame:
         """Render one frame.

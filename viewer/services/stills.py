@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.modes import word_type
 from tracer.frame import Frame
 from tracer.one_light import with_light
 from tracer.renderer import Renderer
@@ -76,7 +77,7 @@ def trace(
         on_frame(done, len(before) + 1)
         renderer.render(earlier.time, earlier.camera, cancelled)
     if recipe.modes:
-        renderer.modes[:] = kept_modes.unpacked(recipe.modes, len(renderer.modes), renderer.modes.dtype)
+        renderer.begin_with(kept_modes.unpacked(recipe.modes, renderer.units, np.dtype(word_type(len(scene.lights)))))
     on_frame(len(before), len(before) + 1)
     lights = everything or records_lights(view, settings.width * settings.height, len(scene.lights))
     renderer.settings = replace(
