@@ -9,8 +9,7 @@ from threading import Event
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import FakeRenderer, make_frame
-from tests.viewer.services.test_pair import SCENE
+from tests.viewer.fakes import FLYER_SCENE, FakeRenderer, make_frame
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
@@ -296,7 +295,7 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
 
 
 def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
-    (tmp_path / "scene.aff").write_text(SCENE)
+    (tmp_path / "scene.aff").write_text(FLYER_SCENE)
     scene = load_scene(tmp_path / "scene.aff")
     settings = Settings(width=48, height=32, threads=1, method="paper+rest")
     window, alone = Renderer(scene, settings), Renderer(scene, settings)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from tests.tracing.same import assert_same
-from tests.viewer.fakes import FakeRenderer
+from tests.viewer.fakes import FLYER_SCENE, FakeRenderer
 from tracer.frame import Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
@@ -17,25 +17,13 @@ from viewer.services.pair import Asked, Pair
 from viewer.services.render_request import RenderRequest
 from viewer.services.render_thread import RenderThread
 
-SCENE = """\
-v from 0 1 4 at 0 0 0 up 0 1 0 angle 50 hither 1 resolution 32 32
-a 0 9 10
-l 2 4 3 1 1 1
-l -3 4 2 0.5 0.5 0.5
-f 0.8 0.6 0.4 0.9 0.1 10 0.3 1
-p 4 -1 -0.5 -1 -1 -0.5 1 1 -0.5 1 1 -0.5 -1
-f 0.3 0.5 0.8 0.9 0.1 10 0 1
-s 0 0 0 0.5
-x flyer { p 3 -0.2 0.8 0 0.2 0.8 0 0 1.1 0 }
-k flyer { transl 4 -1 0 0 0 0 0 0  0 0 0 0 0 0 0  9 1 0 0 0 0 0  10 1 0 0 0 0 0 }
-"""
 CAMERA = Camera((0.0, 1.0, 4.0), (0.0, -0.25, -1.0))
 
 
 @pytest.mark.parametrize("keeps_modes", [True, False])
 def test_neither_knows_what_the_other_has_found_out(tmp_path, keeps_modes):
     """While an object moves, and when it rests, which counts as static for one of the methods alone."""
-    (tmp_path / "scene.aff").write_text(SCENE)
+    (tmp_path / "scene.aff").write_text(FLYER_SCENE)
     scene = load_scene(tmp_path / "scene.aff")
     settings = Settings(width=48, height=32, threads=1, modes=keeps_modes, record_work=True)
     methods = "paper", "certified"
