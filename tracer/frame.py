@@ -72,7 +72,9 @@ class Frame:
         Words like `modes`, with certificates in the place of shadow modes, 0 for none; for methods that make
         certificates.
     saved : (h, w) int32
-        Shadow rays of a pixel that did not have to traverse static geometry; with `record_work`.
+        Shadow rays of a pixel that were not traced through the whole scene, those that asked candidates or met a cached
+        occluder among them: what is *untraced*, of which `ShadowCounts.saved` is a part. The name is older than these
+        words, and stays. With `record_work`.
     cost : (h, w) int32
         Rays of all kinds that were traced for a pixel; with `record_work`. Without culling there are `saved + cost`.
     due_rays : (h, w) int32

@@ -64,7 +64,7 @@ class Reference(NamedTuple):
 
 
 def occluded_by(seen: Seen, unit: int, near: Pixel) -> OccludedBy | None:
-    """Find where a unit is partly occluded, as near as can be to a pixel.
+    """Find where a unit is partially occluded, as near as can be to a pixel.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ class Rule(Enum):
     NON_SHADOW = ("NON_SHADOW", "2.4")
     KNOWN = ("another method knows", "")
     DYNAMIC = ("dynamic", "2.2")
-    PARTLY_OCCLUDED = ("partly occluded", "2.3")
+    PARTLY_OCCLUDED = ("partially occluded", "2.3")
     NOT_SEEN_WHOLE = ("not seen whole", "2.6")
     EXAMINED_ANEW = ("examined anew", "2.6")
     PARTIAL_SHADOW = ("PARTIAL_SHADOW", "2.5")
@@ -43,7 +43,7 @@ SECTIONS = {
     "2.2": "Each primitive has an occlusion mode, and a shadow mode for each light. The occlusion mode of a "
     "dynamic object is DYNAMIC for good.",
     "2.3": "Occlusion testing: the ray of a pixel is tested against what its left and its upper neighbour see. What it "
-    "meets there is hidden by something nearer, and so partly occluded; so is what the screen's edge cuts off.",
+    "meets there is hidden by something nearer, and so partially occluded; so is what the screen's edge cuts off.",
     "2.4": "Shadow testing: no ray of a fully rendered primitive in FULL_SHADOW is traced, those of one in NON_SHADOW "
     "ask dynamic objects alone, and every other ray is traced.",
     "2.5": "Shadow-mode setting: a blocked ray adds FULL_SHADOW to the mode of its primitive and light, one that "
@@ -86,11 +86,24 @@ _PROVEN = {
     "lit": "nothing static is in the way",
     "candidates": "only a few primitives can block the light here",
 }
+WHY_NOT_CULLED: dict[Fate, str] = {
+    Fate.PARTLY_OCCLUDED: "something hides a part of the primitive, or the screen's edge cuts it off (§2.3)",
+    Fate.PARTIAL_SHADOW: "some shadow rays of the primitive were blocked and some were not (§2.5)",
+    Fate.NOT_SEEN_WHOLE: "the primitive was not seen whole before, too few of its pixels have set its modes, none of "
+    "its shadow rays has asked this light, or it is examined anew (§2.2, §2.6)",
+    Fate.DYNAMIC: "the primitive belongs to a dynamic object, which is never culled (§2.2)",
+}
+"""Why the paper's method traces rays, by their fate, where nothing is said of a single pixel."""
+
+_BY_MODE = {
+    "INIT": Fate.NOT_SEEN_WHOLE,
+    "PARTIALLY_OCCLUDED": Fate.PARTLY_OCCLUDED,
+    "DYNAMIC": Fate.DYNAMIC,
+    "PARTIAL_SHADOW": Fate.PARTIAL_SHADOW,
+}
+
 WHY_TRACED: dict[str, str] = {
-    "INIT": "Traced: nothing is known of the primitive yet, or not towards this light.",
-    "PARTIALLY_OCCLUDED": "Traced: something hides a part of the primitive, so that its shadow modes are not trusted.",
-    "DYNAMIC": "Traced: the primitive moves, so that it has no shadow modes.",
-    "PARTIAL_SHADOW": "Traced: some shadow rays from the primitive to this light were blocked, and others were not.",
+    **{mode: f"Traced: {WHY_NOT_CULLED[fate]}." for mode, fate in _BY_MODE.items()},
     "candidates": "Traced: only a few primitives can block the light here, but to trace the ray with its neighbours is "
     "quicker than to test these.",
     **{
@@ -145,7 +158,7 @@ class Reason:
     taught_pixels : int
         How many pixels have set its modes, where that is too few to trust them.
     occluded : OccludedBy or None
-        Where this frame finds the primitive partly occluded.
+        Where this frame finds the primitive partially occluded.
     named : tuple of int
         The primitives that the answer rests on.
     dynamic_objects : int
@@ -189,8 +202,8 @@ class Reason:
 class Coverage:
     """How a pixel's unit, a primitive or a cell of one, stands in occlusion-mode setting (§2.6): its mode before the
     frame and after it, the pixels that it covers and those that it covered when it was examined last, how many times
-    those it may cover, where it is partly occluded, how many pixels have set its modes where these are too few yet, and
-    the frame that saw it whole."""
+    those it may cover, where it is partially occluded, how many pixels have set its modes where these are too few yet,
+    and the frame that saw it whole."""
 
     before: OcclusionMode
     after: OcclusionMode

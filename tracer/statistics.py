@@ -48,8 +48,9 @@ class ShadowCounts(RayCounts):
     culled : int
         Those that were not traced at all.
     dynamic_only : int
-        Those that were tested against dynamic objects only; where there are none, or all of them rest and the method
-        takes what rests for static, nothing is asked, and no ray is counted.
+        Those of which nothing was known but that nothing static is in the way, in shadow rays: they were tested against
+        dynamic objects only. Where there are none, or all of them rest and the method takes what rests for static,
+        nothing is asked: they count here, but are not among `rays`.
     candidates_only : int
         Those that were tested against a few candidates instead of the static tree.
     cache_hits : int

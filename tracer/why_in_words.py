@@ -97,7 +97,7 @@ class Words:
             return (f"{covers}. Dynamic: it has no modes ", *_section("2.2"), ".")
         if unit.after is OcclusionMode.PARTIALLY_OCCLUDED:
             if unit.occluded is not None and unit.occluded == told:
-                return (f"{covers}; not fully rendered, as it is partly occluded there ", *_section("2.6"), ".")
+                return (f"{covers}; not fully rendered, as it is partially occluded there ", *_section("2.6"), ".")
             return (covers, ". Not fully rendered: ", *self._occluded(unit.occluded), ".")
         if unit.after is OcclusionMode.INIT and unit.before is OcclusionMode.FULLY_RENDERED:
             return (
@@ -151,13 +151,13 @@ class Words:
     def _occluded(self, by: OccludedBy | None) -> Sentence:
         """What hides it, and where."""
         if by is None:
-            return ("partly occluded ", *_section("2.3"))
+            return ("partially occluded ", *_section("2.3"))
         at, section = self._at(by.pixel), _section("2.3")
         if by.at_edge:
             return ("clipped by the screen's edge", *at, " ", *section)
         if by.primitive < 0:
             return ("its outline goes on", *at, ", which sees nothing: that is rounding ", *section)
-        return ("partly occluded by ", self.primitive(by.primitive), *at, " ", *section)
+        return ("partially occluded by ", self.primitive(by.primitive), *at, " ", *section)
 
     def _traced(self, reason: Reason) -> str:
         """How a sentence begins about a ray that was traced because its modes are not trusted."""
@@ -174,7 +174,12 @@ class Words:
         trusted = (", so its shadow mode is not trusted ", *_section("2.4"))
         if reason.occluded is not None:
             return (*self._occluded(reason.occluded), *trusted)
-        return ("partly occluded in the frame before ", *_section("2.3"), *trusted, "; this frame finds it so no more")
+        return (
+            "partially occluded in the frame before ",
+            *_section("2.3"),
+            *trusted,
+            "; this frame finds it so no more",
+        )
 
     def _not_seen_whole(self, reason: Reason) -> Sentence:
         return (self._traced(reason), *self._not_whole(reason), ".")

@@ -280,7 +280,7 @@ def test_the_rules_of_the_paper_in_words(room: tracer.Scene):
     table = named(room, 812)
     trusted = "so its shadow mode is not trusted (§2.4)."
     assert said(room, held) == (
-        f"Traced although it has been dark so far: partly occluded by {table} at the pixel on its left (§2.3), "
+        f"Traced although it has been dark so far: partially occluded by {table} at the pixel on its left (§2.3), "
         f"{trusted}"
     )
     lit = replace(held, shadow=ShadowMode.NON_SHADOW, occluded=OccludedBy((0, 6), 5, at_edge=True))
@@ -290,12 +290,12 @@ def test_the_rules_of_the_paper_in_words(room: tracer.Scene):
     )
     gone = replace(held, shadow=ShadowMode.INIT, occluded=None, occlusion_after=FULLY)
     assert said(room, gone) == (
-        f"Traced: partly occluded in the frame before (§2.3), {trusted[:-1]}; this frame finds it so no more."
+        f"Traced: partially occluded in the frame before (§2.3), {trusted[:-1]}; this frame finds it so no more."
     )
     new = replace(held, rule=Rule.NOT_SEEN_WHOLE, shadow=ShadowMode.INIT, occlusion=INIT)
     assert said(room, new) == (
-        f"Traced: not seen whole before this frame (§2.6), and now partly occluded by {table} at the pixel on its left "
-        "(§2.3)."
+        f"Traced: not seen whole before this frame (§2.6), and now partially occluded by {table} at the pixel on its "
+        "left (§2.3)."
     )
     assert said(room, replace(new, occluded=None, occlusion_after=FULLY)) == (
         "Traced: not seen whole before this frame (§2.6), which sees it so: its shadow mode counts from the next one "
@@ -350,7 +350,7 @@ def test_how_a_primitive_stands_in_words(room: tracer.Scene):
     )
     hidden = Coverage(PARTLY, PARTLY, 1, 0, 4.0, True, OccludedBy((10, 7), 812))
     assert plain(words.coverage(hidden)) == (
-        f"Its cell covers 1 pixel. Not fully rendered: partly occluded by {named(room, 812)} at the pixel below it "
+        f"Its cell covers 1 pixel. Not fully rendered: partially occluded by {named(room, 812)} at the pixel below it "
         "(§2.3)."
     )
     assert "has no modes" in plain(words.coverage(Coverage(DYNAMIC, DYNAMIC, 9, 0, 4.0, False)))
@@ -384,7 +384,7 @@ def test_the_papers_figures_explain_themselves(name: str):
             sentences[plain(words.coverage(found.coverage))] += 1
     text = "\n".join(sentences)
     if name == "figure3":
-        assert "partly occluded by figure3 (triangle" in text and "clipped by the screen's edge" in text
+        assert "partially occluded by figure3 (triangle" in text and "clipped by the screen's edge" in text
     assert "Asks nothing, as nothing moves: nothing static has ever blocked it (§2.4)." in sentences
     assert "; examined anew above 4 × (§2.6)" in text
 

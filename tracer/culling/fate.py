@@ -16,7 +16,11 @@ from tracer.culling import modes
 
 
 class Fate(IntEnum):
-    """What became of the shadow ray from a point to a light."""
+    """What became of the shadow ray from a point to a light.
+
+    The order tells how much was asked: no ray, then nothing, then more and more. Of the samples of a lamp the greatest
+    is kept; what is due begins at CULLED, and what is traced through the whole scene at PARTLY_OCCLUDED, with TRACED
+    last, which kernels record for all of these. Palettes have a colour for each, in this order."""
 
     NONE = 0
     """Nobody knows: there is no surface, it has not been shaded yet, or the light was not looked at."""

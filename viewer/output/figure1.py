@@ -269,7 +269,7 @@ def _occlusion_mode_setting(s: FrameStatistics, changes: ModeChanges, frame: Fra
     flows = (
         Flow("→ fully rendered", changes.fully_rendered, "", OCCLUSION_COLORS[whole], False,
              f"{units} that went from INIT to FULLY_RENDERED in this frame", View.OCCLUSION),
-        Flow("→ partly occluded", changes.partially_occluded, "", OCCLUSION_COLORS[part], False,
+        Flow("→ partially occluded", changes.partially_occluded, "", OCCLUSION_COLORS[part], False,
              f"{units} that became PARTIALLY_OCCLUDED, and were not in the last frame", View.OCCLUSION),
         Flow("→ examined anew", changes.examined_anew, "", OCCLUSION_COLORS[init], False,
              f"{units} that went from FULLY_RENDERED to INIT, as they cover more than {factor} times their highest "

@@ -88,6 +88,6 @@ def _nothing_saved(view: View, frame: Frame) -> Missing | None:
         if method.kind.culls
         else f"The method {method.base} traces every shadow ray."
     )
-    shown = "no ray is saved at any pixel" if view is View.SAVED else "100 % of the rays are traced at every pixel"
+    shown = "no ray is untraced at any pixel" if view is View.SAVED else "100 % of the rays are traced at every pixel"
     helps = method.adaptive or not method.has_certificates
     return Missing(f"{why} So {shown}.", CERTIFIED if helps else "")

@@ -98,7 +98,7 @@ def values_of(frame: Frame, view: View, light: int = 0, *, cut: Slice) -> Values
         return _single(frame.fate(light), "fate of the shadow ray", hit, classes=True)
     if view is View.MOVING_SHADOW:
         return _single(moving_shadows(frame, light), "shadow of a moving object", hit, classes=True)
-    name = "shadow rays saved" if view is View.SAVED else "rays traced"
+    name = "shadow rays untraced" if view is View.SAVED else "rays traced"
     return _single(_there(work_of(frame, view)), name, known)
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.reasons import WHY_NOT_CULLED
 from viewer.state import terms
 
 Color = tuple[float, float, float]
@@ -379,7 +380,7 @@ FATE_NAMES: dict[Fate, str] = {
     Fate.DYNAMIC_ONLY: terms.DYNAMIC_ONLY,
     Fate.CANDIDATES: terms.CANDIDATES_ONLY,
     Fate.CACHED: terms.CACHE_HITS,
-    Fate.PARTLY_OCCLUDED: f"{terms.TRACED}: partly occluded",
+    Fate.PARTLY_OCCLUDED: f"{terms.TRACED}: partially occluded",
     Fate.PARTIAL_SHADOW: f"{terms.TRACED}: partly in shadow",
     Fate.NOT_SEEN_WHOLE: f"{terms.TRACED}: not seen whole yet",
     Fate.DYNAMIC: f"{terms.TRACED}: dynamic",
@@ -401,11 +402,7 @@ FATE_MEANING: dict[Fate, str] = {
     Fate.DYNAMIC_ONLY: "asked dynamic objects alone: NON_SHADOW of a fully rendered primitive (§2.4)",
     Fate.CANDIDATES: "asked the few static primitives that can block it, and dynamic objects",
     Fate.CACHED: "blocked by what blocked the last ray from here",
-    Fate.PARTLY_OCCLUDED: "traced: something hides a part of the primitive, or the screen's edge cuts it off (§2.3)",
-    Fate.PARTIAL_SHADOW: "traced: some shadow rays of the primitive were blocked and some were not (§2.5)",
-    Fate.NOT_SEEN_WHOLE: "traced: the primitive was not seen whole before, too few of its pixels have set its modes, "
-    "or it is examined anew (§2.2, §2.6)",
-    Fate.DYNAMIC: "traced: the primitive belongs to a dynamic object, which is never culled (§2.2)",
+    **{fate: f"traced: {why}" for fate, why in WHY_NOT_CULLED.items()},
     Fate.TRACED: "traced through the whole scene",
 }
 

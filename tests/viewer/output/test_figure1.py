@@ -69,7 +69,7 @@ def test_the_stages_are_those_of_the_paper_with_the_frames_numbers():
         "→ non-shadow": s.mode_changes.non_shadow,
         "→ partial shadow": s.mode_changes.partial_shadow,
         "→ fully rendered": s.mode_changes.fully_rendered,
-        "→ partly occluded": s.mode_changes.partially_occluded,
+        "→ partially occluded": s.mode_changes.partially_occluded,
         "→ examined anew": s.mode_changes.examined_anew,
     }
     assert figure.title.startswith("a scene, paper, 64 × 48 pixels")

@@ -21,8 +21,8 @@ ROOM = Path(__file__).resolve().parents[3] / "assets" / "scenes" / "default.aff"
 
 
 def why(d: Driver) -> None:
-    """A culled shadow, a primitive that is partly occluded, and one at the screen's edge: each click is answered by one
-    sentence, at the top of the Inspector, and the names in it are links."""
+    """A culled shadow, a primitive that is partially occluded, and one at the screen's edge: each click is answered by
+    one sentence, at the top of the Inspector, and the names in it are links."""
     d.settle()
     d.c.settings.change(method="paper")
     d.drop(ROOM)
@@ -62,7 +62,7 @@ def _occluded(d: Driver) -> None:
     d.c.settings.set_light(one.light)
     d.frames(3)
     text, hider = _said(d, one), _named(d, one.occluded.primitive)
-    assert f"partly occluded by {hider} at " in text and text.endswith("so its shadow mode is not trusted (§2.4).")
+    assert f"partially occluded by {hider} at " in text and text.endswith("so its shadow mode is not trusted (§2.4).")
     by, drawn = d.c.inspector.why.coverage.occluded, _drawn(d)
     d.context.mouse_move(f"//Inspector/reason/{hider}##0")
     d.frames(3)

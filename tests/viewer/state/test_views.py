@@ -19,6 +19,7 @@ from viewer.output import legend_counts
 from viewer.state import marks, readings, views
 from viewer.state.history import SERIES, History
 from viewer.state.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
+from viewer.util.resources import shader_source
 from viewer.window.widgets import in_window_style, percent
 
 
@@ -163,6 +164,11 @@ def test_one_fate_stands_out_and_words_can_be_read_on_each():
     for color in colors.values():
         light, dark = sorted((luminance(color), luminance(views.label_color(color))), reverse=True)
         assert (light + 0.05) / (dark + 0.05) >= 3.0, color
+
+
+def test_the_shader_of_fates_has_a_colour_for_each_in_their_order():
+    assert list(views.FATE_COLORS) == list(Fate)
+    assert f"uniform vec3 palette[{len(Fate)}];" in shader_source("fate.frag")
 
 
 def test_the_colour_map_grows_lighter_all_the_way():

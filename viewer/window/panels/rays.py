@@ -17,8 +17,8 @@ _TREE_SHARE = 0.48
 _ROWS, _ROWS_ABOVE = 14, 6  # lines of the tree, and of the steps; and of the tree above these
 _DRAWN = (
     "in the picture, the shadow rays of the clicked point (I): yellow as far as light comes, then blue; outlined in "
-    "red is what blocks it, in orange what a certificate names; dashes are hidden. In the colour of partly occluded, "
-    "what hides its primitive; three squares are the pixel and the two that it is compared with (Figure 3)"
+    "red is what blocks it, in orange what a certificate names; dashes are hidden. In the colour of partially "
+    "occluded, what hides its primitive; three squares are the pixel and the two that it is compared with (Figure 3)"
 )
 _LIGHT = 7.0  # ems of width, at least, for the name of a light
 _SHOWN_TIPS = {
