@@ -23,6 +23,7 @@ class Rule(Enum):
     DYNAMIC = ("dynamic", "2.2")
     PARTLY_OCCLUDED = ("partly occluded", "2.3")
     NOT_SEEN_WHOLE = ("not seen whole", "2.6")
+    EXAMINED_ANEW = ("examined anew", "2.6")
     PARTIAL_SHADOW = ("PARTIAL_SHADOW", "2.5")
     NO_SHADOW_MODE = ("no shadow mode", "2.5")
     NO_ROOM = ("no room for modes", "2.2")

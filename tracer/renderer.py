@@ -75,6 +75,8 @@ class Renderer:
         self._turn = 0
         self._last: Sequence[ShadowMethod] = ()
         self._unfinished: FrameInProgress | None = None
+        # (units,) the pixels that each covered when it was examined last, as the last frame found them.
+        self.highest_before: NDArray[np.int32] = np.empty(0, np.int32)
         self._done: FrameInProgress | None = None
 
     @property
@@ -244,6 +246,7 @@ class Renderer:
             self._unfinished.discard()  # somebody has left it half done
         self._unfinished = frame = FrameInProgress(self.state, settings, camera, time, cancel, progressive)
         self._last, self._done = frame.methods, None
+        self.highest_before = frame.history.highest_count
         return frame
 
     def _finished(self, frame: FrameInProgress) -> Frame:

@@ -81,10 +81,11 @@ def why(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = No
     if primitive < 0:
         return Why(x, y, -1, (), tree=tree)
     pixel = _Pixel(renderer, work, frame, x, y)
-    shadows = None if tree is None else tree.rays[0].shadows
-    if shadows is None:
+    if tree is None:
         reasons = tuple(pixel.in_part(one) for one in explain(renderer, frame, x, y))
     else:
+        shadows = tree.rays[0].shadows
+        assert shadows is not None, "the primary ray has hit"
         reasons = tuple(pixel.reason(shadows, light) for light in range(frame.lights))
     compared = references(pixel.seen, (x, y)) if frame.settings.keeps_modes else ()
     return Why(x, y, primitive, reasons, pixel.coverage, compared, tree)
@@ -101,6 +102,7 @@ class _Pixel:
         self.seen = Seen(renderer.world.placed, work.rays, frame.primitive, units, work.first, settings.symmetric)
         unit = int(units[y, x])
         self._word = work.words[unit : unit + 1]
+        self._examined_before = bool(renderer.highest_before[unit])
         self._before, self._after = (
             OcclusionMode(int(occlusion_mode(words[unit]))) for words in (work.words, frame.modes)
         )
@@ -203,6 +205,8 @@ class _Pixel:
         rule = _RULES[fate]
         if rule is Rule.NOT_SEEN_WHOLE and told.occlusion is OcclusionMode.FULLY_RENDERED:
             rule = Rule.NO_SHADOW_MODE
+        elif rule is Rule.NOT_SEEN_WHOLE and self._examined_before:
+            rule = Rule.EXAMINED_ANEW
         return replace(told, rule=rule, fate=fate)
 
 

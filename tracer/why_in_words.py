@@ -180,7 +180,8 @@ class Words:
         return (self._traced(reason), *self._not_whole(reason), ".")
 
     def _not_whole(self, reason: Reason) -> Sentence:
-        said: Sentence = ("not seen whole before this frame ", *_section("2.6"))
+        anew = "examined anew, and not seen whole again" if reason.rule is Rule.EXAMINED_ANEW else "not seen whole"
+        said: Sentence = (f"{anew} before this frame ", *_section("2.6"))
         if reason.occluded is not None:
             return (*said, ", and now ", *self._occluded(reason.occluded))
         if reason.occlusion_after is OcclusionMode.FULLY_RENDERED:
@@ -246,6 +247,7 @@ class Words:
         clauses: dict[Rule, Callable[[Reason], Sentence]] = {
             Rule.PARTLY_OCCLUDED: self._partly,
             Rule.NOT_SEEN_WHOLE: self._not_whole,
+            Rule.EXAMINED_ANEW: self._not_whole,
             Rule.PARTIAL_SHADOW: self._partial,
             Rule.DYNAMIC: lambda _: _dynamic(),
             Rule.NO_SHADOW_MODE: lambda _: _nothing_learnt(),
@@ -325,6 +327,7 @@ _HEADS: dict[Rule, Callable[[Words, Reason], Sequence[str | Link]]] = {
     Rule.DYNAMIC: lambda _, reason: ("Traced: ", *_dynamic(), "."),
     Rule.PARTLY_OCCLUDED: Words._partly_occluded,
     Rule.NOT_SEEN_WHOLE: Words._not_seen_whole,
+    Rule.EXAMINED_ANEW: Words._not_seen_whole,
     Rule.PARTIAL_SHADOW: Words._partial_shadow,
     Rule.NO_SHADOW_MODE: lambda _, reason: ("Traced: ", *_nothing_learnt(), "."),
     Rule.NO_ROOM: lambda _, reason: ("Traced: ", *_no_room(reason), "."),

@@ -413,6 +413,30 @@ def test_what_moves_and_what_it_darkens():
     )
 
 
+def test_what_is_examined_anew_as_it_has_grown_was_seen_whole_before():
+    """A triangle that the camera comes nearer to, by the zoom rule (§2.6)."""
+    made = scene([[(-4, -4, 0), (4, -4, 0), (0, 4, 0)]], lights=[(0.0, 0.0, 99.0)])
+    renderer = Renderer(made, Settings(96, 64, method="paper", threads=1, depth=0))
+    said = []
+    for distance in (80.0, 80.0, 16.0, 16.0, 16.0):
+        frame = renderer.render(0.0, Camera((0.0, 0.0, distance), (0.0, 0.0, -1.0), angle=60.0))
+        found = why(renderer, frame, 47, 31)
+        said.append((found.reasons[0].rule, plain(Words(made, found).reason(found.reasons[0]))))
+    asks = (Rule.NON_SHADOW, "Asks nothing, as nothing moves: nothing static has ever blocked it (§2.4).")
+    sees = "which sees it so: its shadow mode counts from the next one on (§2.4)."
+    assert said == [
+        (Rule.NOT_SEEN_WHOLE, f"Traced: not seen whole before this frame (§2.6), {sees}"),
+        asks,
+        asks,
+        (
+            Rule.EXAMINED_ANEW,
+            "Traced although nothing static has blocked it so far: examined anew, and not seen whole again before this "
+            f"frame (§2.6), {sees}",
+        ),
+        asks,
+    ]
+
+
 def test_lights_past_the_thirty_first_have_no_modes():
     lights = [(0.1 * i, 0.0, 9.0) for i in range(33)]
     made = scene(quad((-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)), lights=lights)

@@ -94,7 +94,7 @@ def _chosen(ui: Ui, words: Words, one: Reason) -> None:
 
 def _tells(one: Reason) -> bool:
     """Whether a light's sentence says what hides the primitive."""
-    return (one.instead or one).rule in (Rule.PARTLY_OCCLUDED, Rule.NOT_SEEN_WHOLE)
+    return (one.instead or one).rule in (Rule.PARTLY_OCCLUDED, Rule.NOT_SEEN_WHOLE, Rule.EXAMINED_ANEW)
 
 
 def _name(ui: Ui, one: Reason, chosen: bool) -> ImVec2:
