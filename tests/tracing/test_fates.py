@@ -14,6 +14,7 @@ from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.shades import shadow_scene
 from tracer.culling.fate import FATE, Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.settings import RECORDS
 from viewer.util.resources import embedded_scenes
 
 SETTINGS = tracer.Settings(48, 40, depth=0, threads=2, record_fates=True)
@@ -170,3 +171,12 @@ def test_without_a_record_there_is_one_line_and_with_one_the_picture_is_the_same
         plain.fate(0)
     clustered = tracer.Renderer(scene, replace(SETTINGS, method="lightcuts")).render()
     assert clustered.fates is None, "single lights have no rays of their own"
+
+
+def test_what_only_adds_to_a_frame_is_listed_once() -> None:
+    assert {name for name in vars(SETTINGS) if name.startswith("record_")} | {"verify"} == set(RECORDS)
+    all_recorded = replace(SETTINGS, **dict.fromkeys(RECORDS, True))
+    alone = all_recorded.recording_only("record_lights")
+    assert [name for name in RECORDS if getattr(alone, name)] == ["record_lights"]
+    assert all_recorded.recording_only() == replace(SETTINGS, record_fates=False), "all else stays"
+    assert all_recorded.records_fates and not replace(all_recorded, method="lightcuts").records_fates

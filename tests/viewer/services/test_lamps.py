@@ -270,15 +270,14 @@ def test_samples_of_pixels_come_after_certificates():
         tracing.take()
         tracing.ask(HERE)
     assert not tracing.certifies and not tracing.awaits and not tracing.adds_samples, "all samples are there"
-    window = Window()
-    window.session.settings = replace(window.session.settings, method="auto")
-    for _ in range(2):
-        window.tracing.ask(HERE)
-        window.tracing.take()
-    window.tracing.ask(HERE)
-    assert not window.tracing.certifies, "where the method chooses by itself, what follows learns modes"
     part = replace(tracing.traced.frame, settings=replace(tracing.traced.frame.settings, samples=2))
     tracing.traced = replace(tracing.traced, frame=part)
     assert tracing.adds_samples and not tracing.awaits
     tracing.traced = None
     assert tracing.awaits
+    window = Window()
+    window.session.settings = replace(window.session.settings, method="auto")
+    window.tracing.ask(HERE)
+    window.tracing.take()
+    window.tracing.ask(HERE)
+    assert window.tracing.awaits and not window.tracing.certifies, "where it chooses by itself, what follows learns"
