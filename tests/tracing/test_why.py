@@ -104,7 +104,10 @@ def room() -> tracer.Scene:
     return loaded(ASSETS / "default.aff")
 
 
-METHODS = ("none", "paper", "cells", "certified", "paper+cache", "lightbuffer", "voxels", "lie-exact")
+METHODS = (
+    *("none", "paper", "cells", "certified", "auto", "lightbuffer", "voxels", "lie-exact", "lie"),
+    *("paper+cache", "paper+rest", "paper+lightbuffer", "certified+cache"),
+)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -143,7 +146,7 @@ def test_the_fates_are_those_of_the_view_of_fates(scene_file: Path, method: str)
             assert one.fate is fate, (x, y, one)
 
 
-@pytest.mark.parametrize("method", [*METHODS, "certified+cache", "paper+lightbuffer"])
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("samples", [1, 9])
 def test_of_a_lamps_rays_that_which_asked_most_is_in_the_view_of_fates(scene_file: Path, method: str, samples: int):
     lamps = {"lamp_radius": 0.3, "lamp_samples": samples}
