@@ -77,11 +77,9 @@ def test_a_picture_after_others_in_motion_of_which_some_pixels_taught_is_made_ag
     c.settings.change(method="paper")
     c.session.playing = True
     desk.came.clear()
-    desk.until(lambda: len(desk.came) > 20)
-    parts = {frame.statistics.part < 1.0 for frame in desk.came}
+    desk.until(lambda: len(desk.came) > 20 and any(frame.statistics.part < 1.0 for frame in desk.came))
     c.session.playing = False
     desk.rest()
-    assert True in parts, "no picture was shaded in part"
     code, said = check(capfd, saved(desk, View.SAVED, "after-motion.png"))
     assert code == 0 and "bit for bit" in said, said
 
