@@ -59,7 +59,7 @@ MEANING: dict[Verdict, str] = {
     Verdict.FULL_SHADOW: "The primitive is fully rendered, and every shadow ray from it to this light was blocked.",
     Verdict.NON_SHADOW: "The primitive is fully rendered, and nothing static blocked any shadow ray from it to this "
     "light: only objects that move are tested.",
-    Verdict.CERTIFIED_FULL: "The whole cell is proven to be in the shadow of static geometry.",
+    Verdict.CERTIFIED_FULL: "The whole cell is proven to be in the shadow of what does not move now.",
     Verdict.CERTIFIED_LIT: "Nothing static is between the whole cell and the light: only objects that move are tested.",
     Verdict.CANDIDATES: "Only a few primitives can block the light here: these are tested, and objects that move.",
     Verdict.BEAM: "What is between the lamp and neighbouring points was asked about all of its samples at once.",

@@ -97,7 +97,11 @@ class Words:
             return (f"{covers}. Dynamic: it has no modes ", *_section("2.2"), ".")
         if unit.after is OcclusionMode.PARTIALLY_OCCLUDED:
             if unit.occluded is not None and unit.occluded == told:
-                return (f"{covers}; not fully rendered, as it is partially occluded there ", *_section("2.6"), ".")
+                return (
+                    f"{covers}; not fully rendered, as it is partially occluded (see above) ",
+                    *_section("2.6"),
+                    ".",
+                )
             return (covers, ". Not fully rendered: ", *self._occluded(unit.occluded), ".")
         if unit.after is OcclusionMode.INIT and unit.before is OcclusionMode.FULLY_RENDERED:
             return (

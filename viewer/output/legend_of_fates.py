@@ -72,6 +72,8 @@ def of_moving_shadows(frame: Frame, view: View, chosen: Chosen) -> Legend:
 
 def _no_moving_shadow(frame: Frame, chosen: Chosen) -> Note:
     """That the picture shows none of the chosen light, and of which light it shows most, if of any."""
+    if frame.statistics.resting:
+        return Note(f"What could move is at rest, and counts as static with {frame.settings.method}.")
     pixels = [int(np.count_nonzero(frame.moving_shadow(light))) for light in range(frame.lights)]
     most = max(range(frame.lights), key=pixels.__getitem__)
     others = f"; {named_light(chosen.lights, most)} has some" if pixels[most] else ", nor of another light"

@@ -199,7 +199,7 @@ _EXPLANATIONS = {
     View.FATE: "What became of the shadow ray from each pixel's first hit to the chosen light: culled, asked dynamic "
     "objects only, or traced, and why it was not culled.",
     View.MOVING_SHADOW: "Where a moving object darkens what nothing static has ever hidden from the chosen light "
-    "(NON_SHADOW): its rays ask dynamic objects only, so that the shadow is always right.",
+    "(NON_SHADOW): its rays ask dynamic objects only, so that no stale shadow stays behind.",
 }
 
 
@@ -399,7 +399,8 @@ FATE_MEANING: dict[Fate, str] = {
     Fate.FACES_AWAY: "no shadow ray is due: the surface faces away from the light",
     Fate.CULLED: "answered without asking any geometry: with the paper's method, FULL_SHADOW of a fully rendered "
     "primitive (§2.4)",
-    Fate.DYNAMIC_ONLY: "asked dynamic objects alone: NON_SHADOW of a fully rendered primitive (§2.4)",
+    Fate.DYNAMIC_ONLY: "asked dynamic objects alone: with the paper's method, NON_SHADOW of a fully rendered "
+    "primitive (§2.4)",
     Fate.CANDIDATES: "asked the few static primitives that can block it, and dynamic objects",
     Fate.CACHED: "blocked by what blocked the last ray from here",
     **{fate: f"traced: {why}" for fate, why in WHY_NOT_CULLED.items()},

@@ -222,6 +222,14 @@ def test_shadows_of_moving_objects_are_counted(frame: Frame):
     assert note.text == f"No moving object casts a shadow of this light now; light {most} (lamp) has some."
     (note,) = of(replace(frame, fates=bright & ~np.uint8(MOVING_SHADOW)), View.MOVING_SHADOW, light=1).notes
     assert note.text.endswith(", nor of another light.")
+    resting = replace(frame.statistics, resting=20)
+    (note,) = of(
+        replace(frame, fates=bright & ~np.uint8(MOVING_SHADOW), statistics=resting),
+        View.MOVING_SHADOW,
+        light=1,
+        lights=LAMPS,
+    ).notes
+    assert note.text == "What could move is at rest, and counts as static with paper."
 
 
 def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):

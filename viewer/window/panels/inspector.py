@@ -19,6 +19,7 @@ from viewer.window.panels import rays, teaching, why
 from viewer.window.panels.links import sentence
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
+    ERROR,
     QUIET,
     clipped,
     count,
@@ -61,6 +62,8 @@ def show(ui: Ui) -> None:
 def _details(ui: Ui, pick: Pick) -> None:
     frame = ui.controller.frame
     by_modes = frame is None or frame.settings.keeps_modes
+    if pick.wrong and frame is not None:
+        paragraph(_wrong(pick.wrong, frame.settings.samples), ERROR)
     why.show(ui)  # first, as it is what a click asks
     if by_modes:
         heading("Modes of its cell" if pick.in_cells else "Modes")
@@ -81,15 +84,18 @@ def _details(ui: Ui, pick: Pick) -> None:
                 fact("Its cell", asks, "of the octree of this method: all but those that it knows to be hidden")
             if not by_modes:  # else it is said above
                 fact("Pixels", f"{count(pick.pixels)} now")
-            if pick.wrong is not None:
-                answers = f"{count(pick.wrong)} shadow {'answer' if pick.wrong == 1 else 'answers'}"
-                fact("Wrong here", answers, "for any light, at any bounce: what is seen in mirrors counts too")
             if math.isfinite(pick.depth):  # else nothing of it is seen
                 fact("Depth", f"{pick.depth:.5g}")
             if pick.point is not None:
                 fact("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
             if pick.normal is not None:
                 fact("Normal", ", ".join(f"{along:z.2f}" for along in pick.normal))
+
+
+def _wrong(answers: int, samples: int) -> str:
+    """How many answers are wrong at a pixel, and of which of its rays; the sentences are of its first ray alone."""
+    of = f"in its {samples} samples, at all bounces" if samples > 1 else "at all bounces"
+    return f"{count(answers)} wrong shadow {'answer' if answers == 1 else 'answers'} at this pixel, {of}."
 
 
 def _references(ui: Ui) -> None:
