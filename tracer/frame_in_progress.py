@@ -267,7 +267,7 @@ class FrameInProgress:
         if not self.settings.keeps_modes:
             self._learnt = Learnt(history.words, counts, history.highest_count, history.taught)
             return
-        shaded = self._parts.pixels if self._parts is not None else None
+        shaded = self._shaded
         of_shaded = counts if shaded is None else self._count(np.where(shaded, self.units, np.int32(MISS)))
         self._learnt = history.learnt(counts, of_shaded, self.settings.zoom_factor)
 
@@ -334,6 +334,11 @@ class FrameInProgress:
             with self.phase("shading"):
                 self.shade(lanes)
 
+    @property
+    def _shaded(self) -> NDArray[np.bool_] | None:
+        """(height, width): which pixels have been shaded by now; None where all have, or all are at once."""
+        return None if self._parts is None else self._parts.pixels
+
     def _untaught(self) -> NDArray[np.int32] | None:
         """The pixels of each block that are to be shaded first, as they would teach; None where modes are not kept."""
         if not self.settings.keeps_modes:
@@ -398,8 +403,7 @@ class FrameInProgress:
 
     def has_shaded(self, x: int, y: int) -> bool:
         """Whether a pixel has been shaded by now."""
-        shaded = None if self._parts is None else self._parts.pixels
-        return shaded is None or bool(shaded[y, x])
+        return self._shaded is None or bool(self._shaded[y, x])
 
     def taught(self, unit: int) -> int:
         """How many pixels have set modes of a unit that is seen whole, and not FULLY_RENDERED yet."""
@@ -496,7 +500,7 @@ class FrameInProgress:
         if not self.settings.verify:
             return None
         found, wrong = shadow_counts(self._verified + self._counts[:, SHADOW:].sum(0)), self.buffers.wrong
-        shaded = self._parts.pixels if self._parts is not None else None
+        shaded = self._shaded
         return WrongCounts(
             answers=int(wrong.sum()),
             due=found.due,

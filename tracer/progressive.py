@@ -79,8 +79,8 @@ class Parts:
         """The pixels of each block that are to be shaded until so many sixteenths are, or a few more, in one step or in
         two, between which `fill` has to fill in the others; those that are `untaught`, like `shaded`, before others:
         where there are many, fewer lie evenly, and of the smallest part up to twice as many are shaded."""
-        level, waiting = level_of(part), self._waiting(untaught, part)
-        lanes = self._left(level)
+        level, lanes = level_of(part), self._left(level_of(part))
+        waiting = np.zeros_like(lanes) if untaught is None else untaught & ~self.shaded
         if TURNS * self._share_of(waiting & ~lanes) > self._room(part, lanes) and level > LEVELS[0]:
             level = LEVELS[LEVELS.index(level) - 1]
             lanes = self._left(level)
@@ -91,12 +91,6 @@ class Parts:
             more = LEVELS[LEVELS.index(level) + 1]
             fill()
             yield self._take(self._most_in_doubt(self._left(more), part))
-
-    def _waiting(self, untaught: NDArray[np.int32] | None, part: float) -> NDArray[np.int32]:
-        """Of these pixels those that are left; none where all are shaded anyway."""
-        if untaught is None or part == TURNS:
-            return np.zeros_like(self.shaded)
-        return untaught & ~self.shaded
 
     def _room(self, part: float, lanes: NDArray[np.int32]) -> float:
         """How many sixteenths may still be shaded besides these pixels and those that are."""
