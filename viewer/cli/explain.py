@@ -34,7 +34,7 @@ from viewer.output.ray_rows import RayRows, Row, totals
 from viewer.output.why_lines import why_data, why_lines
 from viewer.services.teachers import Answers, Teacher, answers_at, can_be_asked, with_teachers
 from viewer.state.earlier import Earlier
-from viewer.state.teaching import Ledger
+from viewer.state.teaching import ModeOrigins
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
 
@@ -57,7 +57,7 @@ def explain(path: Path, options: Namespace) -> None:
         times = times_before(scene, time, options.warmup, work)
         times += [time] * _repeats(options)
         before = [*options.before, *(Earlier(then, options.camera) for then in times)]
-        ledger, moves = Ledger(len(scene.lights)), _Moves(scene)
+        ledger, moves = ModeOrigins(len(scene.lights)), _Moves(scene)
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
             modes = renderer.render(earlier.time, earlier.camera, work.cancelled).modes
@@ -97,7 +97,7 @@ class _Moves:
         return None if before is None else (before != self._before).any(axis=1)
 
 
-def _with_teachers(found: Why, renderer: Renderer, frame: Frame, ledger: Ledger, before: Sequence[Earlier]) -> Why:
+def _with_teachers(found: Why, renderer: Renderer, frame: Frame, ledger: ModeOrigins, before: Sequence[Earlier]) -> Why:
     """The same with the frames, and the pixels of these, that gave the primitive its modes."""
     unit = int(frame.cell[found.y, found.x])
     taught = ledger.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None

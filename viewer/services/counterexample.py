@@ -11,7 +11,7 @@ from tracer.scene.model import Scene
 from tracer.told_rays import VERDICTS, RayTree
 from viewer.output.finds import PATH, Find
 from viewer.state.earlier import Earlier
-from viewer.state.teaching import NEVER, Ledger
+from viewer.state.teaching import NEVER, ModeOrigins
 
 
 class Lessons:
@@ -20,7 +20,7 @@ class Lessons:
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         self.frames: list[Earlier] = []
-        self.ledger = Ledger(len(scene.lights))
+        self.ledger = ModeOrigins(len(scene.lights))
         self._lights: np.ndarray | None = None
 
     def add(self, frame: Frame, earlier: Earlier) -> None:
