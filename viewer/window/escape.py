@@ -27,8 +27,8 @@ def close_newest(ui: Ui) -> bool:
         ui.fold.drawer = ""
     elif ui.screening is not None:
         ui.screening = None
-    elif ui.controller.notices.faults.notice is not None:
-        ui.controller.notices.faults.dismiss()
+    elif ui.controller.notices.newest_fault is not None:
+        ui.controller.notices.dismiss_faults()
     else:
         return False
     return True

@@ -40,11 +40,11 @@ def reviving(d: Driver) -> Callable[[Driver], Any]:
     def lose() -> None:
         """In the middle of a frame, as something else than the picture is drawn: that is no fault."""
         d.app._bring_shots = bring  # type: ignore[method-assign]
-        d.app.losses.status = lambda: UNKNOWN_RESET
+        d.app.context_loss.status = lambda: UNKNOWN_RESET
         raise RuntimeError("made to fail")
 
     d.app._bring_shots = lose  # type: ignore[method-assign]
-    d.wait(lambda: bool(d.app.losses.cause), "the loss to be seen", 20.0)
+    d.wait(lambda: bool(d.app.context_loss.cause), "the loss to be seen", 20.0)
     return lambda d: _revived(d, *before)
 
 
@@ -58,7 +58,7 @@ def _revived(d: Driver, state: tuple[Any, ...], picture: np.ndarray, frame: Fram
     assert (d.c.frame.width, d.c.frame.height) == (frame.width, frame.height)
     assert np.array_equal(d.shown(), picture)
     assert d.c.notices.message.text.startswith("the graphics driver was reset: the window was made anew")
-    assert d.c.notices.faults.notice is None
+    assert d.c.notices.newest_fault is None
     _denser_screen(d)
     _full_screen(d)
 
