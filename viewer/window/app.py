@@ -27,7 +27,8 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, glfw_pads, graphics, menus, palette, style, window_place
+from viewer.window import commands, comparing, graphics, menus, palette, style
+from viewer.window.full_screen import Rect
 from viewer.window.gl_window import PATIENCE, ContextLoss, closing_by_signals, open_window
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
@@ -47,6 +48,7 @@ FASTEST = 60.0  # frames a second of the window's own
 # user's doings, up to so many a second, and while something moves not fewer than so many.
 FASTEST_BY_PROCESSOR, SLOWEST_BY_PROCESSOR = 30.0, 12.0
 IDLE = 8.0  # frames a second while nothing happens
+SETTLED = 4  # frames of a new window until it and its panels have taken their places
 ACTIVE = 0.25  # seconds after an event until nothing happens
 TOO_MANY_LOSSES = "the window is closed, as {cause}, again and again; settings are saved"
 DRAWN_BY_PROCESSOR = ("llvmpipe", "softpipe", "swrast", "software")
@@ -90,8 +92,7 @@ class App:
         self.drawn_by_processor = self.iconified = self.was_open = self._opened = self._ended = False
         self.context_loss = ContextLoss()
         self._room = (0, 0)
-        self._place: window_place.Rect | None = None
-        self.read_pads = glfw_pads.Pads().read
+        self._place: Rect | None = None
         if problem:
             self.controller.notices.say(problem, error=True)
 
@@ -128,7 +129,6 @@ class App:
         self.params = self._params()
         before, self.layout = self.layout, Layout(self.ui, self.params)
         self.layout.go_on_from(before)
-        self.read_pads = glfw_pads.Pads().read
         self.controller.notices.say(f"{cause}: the window was made anew, and nothing is lost")
         self._open(runner, PATIENCE)
 
@@ -149,7 +149,7 @@ class App:
         self._follow_style()
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
         step = self.ui.guard.step
-        step("Full screen", self.ui.full_screen.follow)
+        step("Full screen", self.ui.full_screen.apply)
         step("Opening dropped files", self._open_dropped)
         step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
         step("The script's function", self._tell)
@@ -168,7 +168,6 @@ class App:
         step("Reading the keys", lambda: menus.handle_keys(self.ui))
         step("Flying", lambda: picture.fly(self.ui))
         step("Comparing", lambda: comparing.follow_key(self.ui))
-        step("Game pads", self._follow_pads)
         overlay("The progress of loading", lambda: loading.show(self.ui))
         dialogs.show(self.ui)
         overlay("The tour", lambda: tour.show(self.ui), self.ui.tour.end)
@@ -179,14 +178,6 @@ class App:
         self._draws("Saving the window", self._capture_window)
         self.controller.undo.held = imgui.is_any_item_active()
         self.controller.drawn_seconds = time.perf_counter() - self._frame_began
-
-    def _follow_pads(self) -> None:
-        if not self.ui.key_wanted and not imgui.get_io().want_text_input:
-            found = self.read_pads()
-            if found and not window_place.in_front(glfw_utils.glfw_window_hello_imgui()):
-                return  # sticks are those of the program in front
-            runs = {c.name: c.run for c in self.ui.commands if c.enabled()} if found else {}
-            self.controller.pads.follow(found, runs)
 
     # --- the steps -------------------------------------------------------------------------------
 
@@ -206,7 +197,7 @@ class App:
         size = imgui.get_io().display_size
         if self.iconified or min(size.x, size.y) < 1:
             return 0, 0
-        if imgui.get_frame_count() >= window_place.SETTLED:
+        if imgui.get_frame_count() >= SETTLED:
             self._room = self.ui.picture_area
         return self._room
 
@@ -308,7 +299,7 @@ class App:
         glfw.set_window_close_callback(window, self._close_wanted)
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
-        self.ui.full_screen.begin(window)
+        self.ui.full_screen.begin()
         if not self._opened:
             self._opened = True
             self._open_first()

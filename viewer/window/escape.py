@@ -17,8 +17,6 @@ def close_newest(ui: Ui) -> bool:
         _close_list()
     elif ui.tour.step is not None and ui.controller.frame is None:  # a window until there is a picture
         ui.tour.end()
-    elif ui.tool is not None:
-        ui.tool = ui.drawn = None
     elif ui.about_open:
         ui.about_open = False
     elif ui.presets_open:
