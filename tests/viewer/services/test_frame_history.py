@@ -66,8 +66,8 @@ def test_frames_of_an_experiment_are_told_from_those_of_the_path(desk: Desk) -> 
     c, scene = desk.c, desk.c.session.scene
     every = [scene.frame_time(number) for number in range(scene.frames)]
     runs = [SimpleNamespace(times=times, shown="paper", is_of=lambda scene: True) for times in (every, every[::5])]
-    assert c.navigator.named_of_experiment(runs[0], 2) == "frame 2 of the path, by paper"
-    assert c.navigator.named_of_experiment(runs[1], 2) == "frame 2 of the experiment, by paper, frame 10 of the path"
+    assert c.navigator.name_in_experiment(runs[0], 2) == "frame 2 of the path, by paper"
+    assert c.navigator.name_in_experiment(runs[1], 2) == "frame 2 of the experiment, by paper, frame 10 of the path"
 
 
 def test_going_back_can_be_undone_with_its_time(desk: Desk) -> None:
