@@ -15,7 +15,6 @@ from viewer.state.plans import parse_factors
 
 if TYPE_CHECKING:
     from tracer.experiments.warmup_frames import WarmupFrame
-    from viewer.state.annotations import Annotation
     from viewer.state.slices import Slice
     from viewer.state.tone import Curve
     from viewer.state.views import View
@@ -138,21 +137,6 @@ def place(text: str) -> tuple[float, float]:
     if not comma or not all(0.0 <= part <= 1.0 for part in at):
         raise argparse.ArgumentTypeError(f"{text!r} is not a place; give one like 0,1, in parts of the picture")
     return at
-
-
-def annotation_list(text: str) -> tuple[Annotation, ...]:
-    """Annotations as JSON, or a file that holds it."""
-    from tracer.scene.files import read_regular
-    from viewer.state.annotations import from_json
-
-    try:
-        if not text.lstrip().startswith("["):
-            text = read_regular(Path(text), 1 << 20).decode("utf-8")
-        return from_json(json.loads(text))
-    except OSError as error:
-        raise argparse.ArgumentTypeError(f"{text[:60]!r}: {error.strerror or error}") from None
-    except (ValueError, RecursionError) as error:
-        raise argparse.ArgumentTypeError(f"not understood: {error}") from None
 
 
 def before(text: str) -> tuple[WarmupFrame, ...]:

@@ -84,6 +84,8 @@ class Checker:
         if data.get("window"):
             return Verdict(None, "it shows two pictures, or the window with its panels, which cannot be rendered again")
         wanted = self._wanted(data)
+        if data.get("picture", {}).get("style", {}).get("annotations"):
+            return Verdict(None, "arrows, boxes or words are drawn on it, which are not drawn any more")
         if wanted.history and not wanted.modes and wanted.view is View.COLOR and not wanted.tells_counters:
             return self._against_tracing_all(path, kept, wanted)
         frame, wanted = self._traced(path, wanted)

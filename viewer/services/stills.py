@@ -21,7 +21,6 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version
 from viewer.output import capture, kept_modes
-from viewer.output.annotations import annotated
 from viewer.output.caption import with_caption
 from viewer.output.legend import legend_of
 from viewer.output.legend_parts import Chosen
@@ -122,7 +121,7 @@ def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recip
         if described is None:
             missing = f"no legend: {'the picture is too small for it' if legend else 'the traced picture needs none'}"
         pixels = pixels if described is None else described
-    pixels = with_savings(annotated(pixels, style.annotations), frame, style.savings)
+    pixels = with_savings(pixels, frame, style.savings)
     return with_caption(pixels, style.caption), missing
 
 

@@ -19,7 +19,6 @@ from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import RECORDS
 from viewer.state import edits as scene_edits
-from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
 from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
@@ -162,7 +161,6 @@ class Session:
     comparison: Comparison = field(default_factory=Comparison)
     selected: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE  # how the scene was read
-    annotations: list[Annotation] = field(default_factory=list)
     _on_path: tuple[Scene, float, Camera] | None = field(default=None, init=False, repr=False, compare=False)
 
     @property
@@ -203,7 +201,6 @@ class Session:
         self.free_camera = None
         self.playing = False
         self.selected = None
-        self.annotations = []
         self.light = min(self.light, max(len(scene.lights) - 1, 0))
 
     @property

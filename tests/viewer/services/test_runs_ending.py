@@ -94,8 +94,8 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
     while controller.runs.current is not None or controller.frame is None:
         assert time.monotonic() < end
         controller.tick(SIZE)
-    assert controller.notices.faults.notice.text == "the experiment failed: AttributeError: no world"
-    assert "no world" in controller.notices.faults.notice.details
+    assert controller.notices.newest_fault.text == "the experiment failed: AttributeError: no world"
+    assert "no world" in controller.notices.newest_fault.details
     assert controller.close()
 
 

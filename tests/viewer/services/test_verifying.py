@@ -133,7 +133,7 @@ def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk:
     while desk.c.runs.current is not None:
         assert time.monotonic() < end
         desk.c.tick(SIZE)
-    assert desk.c.notices.faults.notice is not None, "the run fails at once"
+    assert desk.c.notices.newest_fault is not None, "the run fails at once"
     assert desk.renderer.cancelled, "the run came before the frame"
     desk.renderer.go.set()
     assert desk.rest() == [False], "the frame that was cut short has not come"
