@@ -133,7 +133,6 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
         outlines=options.outlines,
         legend=(options.legend_at or LEGEND_PLACE) if options.legend else None,
         caption=options.caption,
-        annotations=options.annotations,
         tone=_tone(options),
         clipping=options.mark_clipped,
         span=options.range,

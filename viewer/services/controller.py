@@ -11,11 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from tracer.experiments.zoom import Step
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
-from tracer.zoom import Step
 from viewer.services.baseline import Baseline
 from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
@@ -27,7 +27,6 @@ from viewer.services.film_controller import FilmController
 from viewer.services.hunt_controller import HuntController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
-from viewer.services.pad_flight import PadFlight
 from viewer.services.picture_controller import PictureController
 from viewer.services.presets import Presets
 from viewer.services.preview import Preview
@@ -92,7 +91,6 @@ class Controller:
         self.presets = Presets(
             session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
         )
-        self.pads = PadFlight(session, preferences, self.motion, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
         self.rays = RayInspector(session, self.selection, renderer)
         self.cuts = CutInspector(self.selection, renderer)

@@ -21,7 +21,6 @@ from tracer.setting import check_all
 from tracer.settings import RECORDS
 from viewer.state import codec
 from viewer.state import edits as scene_edits
-from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
 from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
@@ -164,7 +163,6 @@ class Session:
     comparison: Comparison = field(default_factory=Comparison)
     selected: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE  # how the scene was read
-    annotations: list[Annotation] = field(default_factory=list)
     _on_path: tuple[Scene, float, Camera] | None = field(default=None, init=False, repr=False, compare=False)
 
     @property
@@ -205,7 +203,6 @@ class Session:
         self.free_camera = None
         self.playing = False
         self.selected = None
-        self.annotations = []
         self.light = min(self.light, max(len(scene.lights) - 1, 0))
 
     @property

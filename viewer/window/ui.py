@@ -13,13 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from tracer.culling.fate import Fate
+from tracer.scene.lights import named_light
 from tracer.why_in_words import Link
 from viewer.output.capture import FIELDS
-from viewer.output.legend_parts import named_light
 from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
-from viewer.state.annotations import Annotation, Kind
 from viewer.state.keymap import Keymap
 from viewer.state.pixels import Pixels, Point
 from viewer.state.placing import Rect
@@ -66,8 +65,7 @@ class Fold:
 @dataclass
 class Ui:
     """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill, `picture_size` the
-    one that it fills; `wiping` says that the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is
-    being drawn, and `drawn_text` the words that are typed there, `pointed_light` and `pointed_link`
+    one that it fills; `wiping` says that the pointer holds the line of the wipe, `pointed_light` and `pointed_link`
     which light and which name it is on in the inspector, whose rays are to unfold for `rays_wanted` frames;
     `light_filters` is what is typed above each list of lights; `screening` is the recorded picture that is shown in the
     picture's place; `legend_shown` says whether the picture shows its legend, `legend_place` where that is on the
@@ -120,13 +118,9 @@ class Ui:
     modifiers: int = 0
     chorded: set[str] = field(default_factory=set)
     pressed: int = 0
-    pressed_with: str = ""
     pressed_at: tuple[float, float] = (0.0, 0.0)
     dragged: bool = False
     wiping: bool = False
-    tool: Kind | None = None
-    drawn: Annotation | None = None
-    drawn_text: str | None = None
     new_bookmark: str = ""
     dropped: list[Path] = field(default_factory=list)
     renderer_name: str = ""

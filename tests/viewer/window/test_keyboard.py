@@ -7,7 +7,7 @@ import pytest
 from imgui_bundle import imgui
 
 from viewer.services.controller import Controller
-from viewer.state.keymap import HABITS, Keymap
+from viewer.state.keymap import Keymap
 from viewer.state.preferences import Preferences
 from viewer.window import commands
 from viewer.window.keyboard import PLACES, Keyboard
@@ -87,15 +87,12 @@ def ui():
 
 
 @pytest.mark.parametrize("printed", [US, FRENCH, DVORAK], ids=["us", "french", "dvorak"])
-@pytest.mark.parametrize("habits", HABITS)
-def test_no_key_does_two_things(ui, habits: str, printed: dict[int, str]):
-    ui.keymap.use(habits)
+def test_no_key_does_two_things(ui, printed: dict[int, str]):
     assert not ui.keymap.conflicts()
     made = keyboard(printed)
     keys = [key for name in ui.keymap.names for key in ui.keymap.of(name)]
     unclear = [key for key in keys if key in PLACES and made.chord(key) in made._shared]
     assert len({made.chord(key) for key in keys if key not in unclear}) == len(keys) - len(unclear)
-    assert set(HABITS[habits].keys) <= set(ui.keymap.names), "habits give keys to what there is"
 
 
 def test_keys_that_a_file_cannot_mean_are_dropped():

@@ -33,7 +33,6 @@ def show(ui: Ui) -> None:
     bookmarks.show(ui)
     _moving(ui)
     _path(ui)
-    _pads(ui)
 
 
 def _place(ui: Ui) -> None:
@@ -99,17 +98,3 @@ def _path(ui: Ui) -> None:
                 row("Rate", "1 is the scene's own time")
                 flags = int(imgui.SliderFlags_.logarithmic)
                 _, p.playback_rate = imgui.slider_float("##rate", p.playback_rate, 0.1, 10.0, "%.2f x", flags)
-
-
-def _pads(ui: Ui) -> None:
-    """What game pads and space mice there are."""
-    p, pads = ui.controller.preferences, ui.controller.pads
-    heading("Game pads and space mice")
-    checkbox("Fly by them", p.pads, lambda on: setattr(p, "pads", on), "by any that are plugged in, now or later")
-    if p.pads:
-        paragraph(", ".join(pads.names) or "None is plugged in.", QUIET)
-        with properties("pads", 5.0) as shown:
-            if shown:
-                row("Dead zone", "of a stick or a cap: how far it may stand from its middle and count as at rest")
-                changed, share = imgui.slider_float("##dead zone", 100.0 * p.pad_dead_zone, 0.0, 60.0, "%.0f %%")
-                p.pad_dead_zone = min(max(share / 100.0, 0.0), 0.9) if changed else p.pad_dead_zone

@@ -6,7 +6,6 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.window import taking as commands_of
-from viewer.window.panels import annotating
 from viewer.window.ui import CaptureKind, Ui
 from viewer.window.widgets import QUIET, checkbox, paragraph, properties, row, tooltip, wide_button
 
@@ -24,7 +23,6 @@ def show(ui: Ui) -> None:
     imgui.same_line()
     if wide_button(f"{icons.ICON_FA_TERMINAL}  Copy command", "the command that makes this picture (Ctrl+Alt+C)"):
         commands_of.copy_command(ui)
-    annotating.tools(ui)
     with properties("pictures", 5.0) as shown:
         if shown:
             row("Folder", "where pictures are saved")

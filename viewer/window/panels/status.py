@@ -7,7 +7,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
 from viewer.state import terms, verified
-from viewer.state.log import Level
+from viewer.state.notices import Level
 from viewer.state.rate import in_words as rate_in_words
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, tooltip
