@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
+from tracer.mode_origins import Ledger, Taught
 from tracer.scene.edits import NO_EDITS
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.history import History
@@ -18,7 +19,6 @@ from viewer.state.picking import Pick
 from viewer.state.rate import Rate
 from viewer.state.readings import has_modes_of_cells
 from viewer.state.session import Session, settings_to_json
-from viewer.state.teaching import Ledger, Taught
 
 LEDGERS = 4
 """Mode histories, of resolutions and lamps, whose teachers are known."""

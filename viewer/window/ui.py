@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from tracer.culling.fate import Fate
+from tracer.scene.lights import named_light
 from tracer.why_in_words import Link
 from viewer.output.capture import FIELDS
-from viewer.output.legend_parts import named_light
 from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour

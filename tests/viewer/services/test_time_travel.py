@@ -11,8 +11,8 @@ import pytest
 from tests.viewer.desk import ELSEWHERE, Desk
 from tracer.culling import modes
 from tracer.frame import Frame
+from tracer.mode_origins import NEVER
 from tracer.scene.edits import NO_EDITS, Edits
-from viewer.state.teaching import NEVER
 from viewer.state.views import View
 
 

@@ -8,9 +8,9 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.mode_origins import NEVER, Lesson
 from viewer.services.teachers import Teacher
 from viewer.state.picking import Pick
-from viewer.state.teaching import NEVER, Lesson
 from viewer.window.panels import going_back
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, paragraph, tooltip
