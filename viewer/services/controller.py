@@ -11,11 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from tracer.experiments.zoom import Step
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
-from tracer.zoom import Step
 from viewer.services.baseline import Baseline
 from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.method import Method
+from tracer.mode_origins import ModeOrigins, Taught
 from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Camera
 from viewer.output.recipe import BUILT
@@ -31,7 +32,6 @@ from viewer.state.picking import Pick
 from viewer.state.preferences import Preferences
 from viewer.state.readings import has_modes_of_cells
 from viewer.state.session import Session, Snapshot, settings_to_json
-from viewer.state.teaching import ModeOrigins, Taught
 from viewer.state.views import View
 from viewer.state.zooming import Zoom
 

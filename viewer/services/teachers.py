@@ -16,6 +16,7 @@ import numpy as np
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, shadow_mode
 from tracer.explanation import explain
 from tracer.frame import Frame
+from tracer.mode_origins import NEVER, Taught
 from tracer.reasons import TaughtBy, Why
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera
@@ -27,7 +28,6 @@ from viewer.state.history import FrameRecord
 from viewer.state.picking import Pick
 from viewer.state.readings import can_record_lights
 from viewer.state.session import Session
-from viewer.state.teaching import NEVER, Taught
 
 _LOOKED_INTO = 6  # pixels in shadow of which one may be in that of something static
 MOST_PIXELS = 1 << 22

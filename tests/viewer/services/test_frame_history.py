@@ -13,9 +13,9 @@ import tracer
 from tests.viewer.desk import ELSEWHERE, Desk
 from tracer.culling import modes
 from tracer.frame import Frame
+from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.scene.edits import NO_EDITS, Edits
 from viewer.services.frame_history import JumpTarget
-from viewer.state.teaching import NEVER, ModeOrigins
 from viewer.state.views import View
 
 

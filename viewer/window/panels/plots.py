@@ -10,7 +10,7 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from numpy.typing import NDArray
 
-from tracer.experiment import REFERENCE, Results
+from tracer.experiments.experiment import REFERENCE, Results
 from viewer.services.runs import Experiment
 from viewer.state import terms
 from viewer.util.numbers import whole_percent

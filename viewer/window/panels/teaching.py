@@ -7,9 +7,9 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.mode_origins import NEVER, Origin
 from viewer.services.teachers import Teacher
 from viewer.state.picking import Pick
-from viewer.state.teaching import NEVER, Origin
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, paragraph, tooltip
 
