@@ -60,7 +60,7 @@ class Soak:
         self.scenes = scenes
         self.desk = Desk(scenes[0], folder)
         self.c = self.desk.c
-        self.c.preferences.dynamic_resolution = True
+        self.c.session.set_pace(progressive=True)
         self.c.settings.change(method="certified")  # whose pictures can be compared, until another is chosen
         self.done: Counter[str] = Counter()
         self.compared = 0
@@ -122,8 +122,8 @@ class Soak:
 
     def _follow_path(self) -> None:
         scene = self.c.session.scene
-        self.c.session.free_camera = None
-        self.c.session.time = scene.frame_time(int(self.rng.integers(max(scene.frames, 1))))
+        self.c.session.change(camera=None)
+        self.c.session.change(time=scene.frame_time(int(self.rng.integers(max(scene.frames, 1)))))
 
     def _play(self) -> None:
         self.c.session.playing = self.c.session.animated and self.rng.random() < 0.7

@@ -75,22 +75,22 @@ class CaptureService:
             return
         # What the picture shows: another moment than the session's where a run goes on, or a finer frame is to come.
         number = session.frame_at(frame.time)
-        follow = session.follow and frame.camera == scene.camera_at(frame.time)
+        follow = session.on_path and frame.camera == scene.camera_at(frame.time)
         height, width = pixels.shape[:2]
         values = {
             "scene": scene.path.stem,
-            "view": session.view.value,
+            "view": session.draw.view.value,
             "frame": number,
             "seconds": frame.time,
             "method": frame.settings.method,
-            "light": session.light,
+            "light": session.draw.light,
             "width": width,
             "height": height,
         }
         settings = replace(frame.settings, verify=session.settings.verify)  # a view may have verified by itself
         edits = session.edited.edits if session.edited is not None else NO_EDITS
         snapshot = replace(
-            session.snapshot(), time=frame.time, camera=frame.camera, follow=follow,
+            session.state, time=frame.time, camera=frame.camera, follow=follow,
             settings=settings_to_json(settings), edits=edits,
         )  # fmt: skip
         size = (frame.width, frame.height)

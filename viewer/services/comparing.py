@@ -78,10 +78,10 @@ class Comparing:
             if second is None:
                 return None
             view = self._tracing.drawn_view
-            return self._side(second, view if can_draw(second, view, session.light) else View.COLOR)
+            return self._side(second, view if can_draw(second, view, session.draw.light) else View.COLOR)
         kept = state.kept
-        if kept is not None and state.same_view and can_draw(kept.frame, session.view, session.light):
-            view, light = self._tracing.drawn_view, session.light
+        if kept is not None and state.same_view and can_draw(kept.frame, session.draw.view, session.draw.light):
+            view, light = self._tracing.drawn_view, session.draw.light
             return replace(kept, view=view, light=light, light_number=session.light_number)
         if kept is not None and not can_draw(kept.frame, kept.view, kept.light):
             return replace(kept, view=View.COLOR)  # what it showed is gone, as a tree is with its world
@@ -90,7 +90,7 @@ class Comparing:
     def _side(self, frame: Frame, view: View) -> Side:
         session = self._session
         name = session.scene.path.stem if session.scene is not None else ""
-        return Side(frame, view, session.light, name, session.frame_at(frame.time), session.light_number)
+        return Side(frame, view, session.draw.light, name, session.frame_at(frame.time), session.light_number)
 
     @property
     def sides(self) -> tuple[Side, Side] | None:
@@ -121,7 +121,7 @@ class Comparing:
 
     def difference(self, a: Side, b: Side) -> Difference | None:
         """B - A in the view of B; None where A has nothing for it."""
-        known, cut = self._difference, self._session.cut
+        known, cut = self._difference, self._session.draw.slice
         same = known is not None and known[0].frame is a.frame and known[1].frame is b.frame
         if known is not None and same and (known[1].view, known[1].light, known[2]) == (b.view, b.light, cut):
             return known[3]
@@ -175,7 +175,7 @@ class Comparing:
     def start(self, way: Way) -> None:
         """Compare in this way."""
         self.state.on, self.state.way = True, way
-        if self._session.view is View.WIPE:  # one line is enough
+        if self._session.draw.view is View.WIPE:  # one line is enough
             self._settings.set_view(View.COLOR)
         self._follow_second()
         if self.state.source is Source.KEPT and self.state.kept is None:
@@ -229,7 +229,7 @@ class Comparing:
 
     def follow(self) -> None:
         """Once per frame: where the wipe against the right picture is chosen, it takes the place of the comparison."""
-        if self.state.on and self._session.view is View.WIPE:
+        if self.state.on and self._session.draw.view is View.WIPE:
             self.end()
             self._notices.say("the comparison with A has ended: this wipe compares with the right picture")
         if self.state.source is Source.METHOD and not self.state.second:

@@ -46,10 +46,12 @@ from viewer.services.shadow_inspector import ShadowInspector
 from viewer.services.teachers import Teachers
 from viewer.services.tracing import Conditions, Tracing
 from viewer.services.undo import Undo
+from viewer.state import codec
 from viewer.state.arriving import fitting_view
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
-from viewer.state.session import Session, Snapshot
+from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 
@@ -65,7 +67,7 @@ class Controller:
             self.wake()
 
         self.preferences = preferences
-        self.session = session = Session(settings=preferences.settings(), view=preferences.chosen_view())
+        self.session = session = Session(state=codec.recalled(preferences.state))
         self.notices = notices = Notices(awaken)
         self.renderer = renderer = RenderThread(awaken)
         self.history = FrameHistory(session)
@@ -82,11 +84,11 @@ class Controller:
         self.comparing = Comparing(session, self.tracing, self.settings, notices)
         self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
         self.undo = Undo(
-            session, preferences, self.motion, notices, self.runs.refuses,
+            session, self.motion, notices, self.runs.refuses,
             lambda meshes: self.loader.read_as(meshes), lambda: self.loader.load_job is not None,
         )  # fmt: skip
         self.presets = Presets(
-            session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
+            session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.begin_step
         )
         self.inspector = ShadowInspector(self.selection, renderer)
         self.rays = RayInspector(session, self.selection, renderer)
@@ -97,7 +99,7 @@ class Controller:
             self.restore,
         )  # fmt: skip
         self.recorder = LightRecorder(session, renderer, self.tracing)
-        refuses, overlook = self.runs.refuses, self.undo.overlook
+        refuses, overlook = self.runs.refuses, self.undo.without_undo
         self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook, self.tracing.again)
         self.table = SceneTable(session, self.selection, preferences, notices, self.captures, self.editing, awaken)
         self.before_edits = BeforeEdits(session, self.editing)
@@ -132,7 +134,7 @@ class Controller:
         """Whether anything goes on."""
         working = self.renderer.busy or self.loader.busy or self.captures.busy or self.runs.current is not None
         working = working or bool(self.pictures.jobs)
-        return working or self.motion.lively
+        return working or self.motion.is_animating
 
     # --- the frame -------------------------------------------------------------------------------
 
@@ -149,15 +151,15 @@ class Controller:
         self.preview.follow(traced=self.frame is not None)
         self.comparing.follow()
         traced, motion, run = self.traced, self.motion, self.runs.current
-        motion.follow(traced.request.time if traced is not None and traced.whole else None)
-        self.undo.follow()
+        motion.advance(traced.request.time if traced is not None and traced.whole else None)
+        self.undo.note_changes()
         self.editing.follow(run is not None, self.tracing.shows_edits or not self.renderer.busy)
         traced = self.traced if run is None else None  # edits may have left the newest frame behind
         # Before the next frame is asked for:
-        self.inspector.follow(self.frame if run is None else None, not motion.lively)
+        self.inspector.follow(self.frame if run is None else None, not motion.is_animating)
         known = self.inspector.answer.why if self.inspector.answer is not None else None
         self.rays.follow(traced, None if known is None else known.tree)
-        self.table.follow(traced, motion.lively)
+        self.table.follow(traced, motion.is_animating)
         edits, focus = self.editing.at_work, self.selection.hovered
         scene, settings = self.session.scene, self.session.settings
         if scene is not None:
@@ -166,15 +168,16 @@ class Controller:
         if run is None:
             self.recorder.follow()
             self._follow_before_edits()
-            if self.traced is not None and self.traced.whole:
-                self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
+            if self.traced is not None and self.traced.whole and self.traced.request.divisor == 1:
+                self.bookmarks.take_pictures(self.traced.frame)
         whole = run is None and self.traced is not None and self.traced.whole
         wanted = whole and self.tracing.drawn_view is View.CUTS
-        self.cuts.follow(self.frame if wanted else None, not motion.lively)
+        self.cuts.follow(self.frame if wanted else None, not motion.is_animating)
         self.navigator.select_when_shown(self.traced)
-        if not motion.lively:
-            self._keep_preferences()
-        self.teachers.follow(self.traced if run is None and not motion.lively else None)
+        self.settings.note_method()
+        if not motion.is_animating:
+            self.settings.save_when_rested()
+        self.teachers.follow(self.traced if run is None and not motion.is_animating else None)
         self._follow_baseline()
         return frame
 
@@ -184,21 +187,15 @@ class Controller:
         wanted = self.preferences.savings or bool(compared)
         busy = self.renderer.busy or tracing.awaits or tracing.adds_samples or tracing.refines_lamps
         busy = busy or self.loader.busy or self.runs.current is not None or self.editing.at_work or not wanted
-        self.baseline.follow(self.traced, compared, self.motion.lively, busy)
+        self.baseline.follow(self.traced, compared, self.motion.is_animating, busy)
 
     def _forget_modes(self) -> None:
         self.editing.forget_modes()
         self.baseline.forget()
 
-    def _keep_preferences(self) -> None:
-        """Save them soon after a change."""
-        if self.preferences.start_where_left and self.session.scene is not None:
-            self.preferences.last = self.session.snapshot().to_json()
-        self.settings.follow()
-
     def _follow_before_edits(self) -> None:
         traced, tracing = self.traced, self.tracing
-        now = traced is not None and traced.whole and traced.request.divisor == 1 and not self.motion.lively
+        now = traced is not None and traced.whole and traced.request.divisor == 1 and not self.motion.is_animating
         frame = traced.frame if traced is not None and now and tracing.shows_edits else None
         self.before_edits.follow(frame, not (tracing.awaits or tracing.adds_samples or self.renderer.busy))
 
@@ -213,18 +210,18 @@ class Controller:
             self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
             said = self._fit_view() if arrival.place is None else ""
         if arrival.place is not None:
-            self.undo.call_next("the place of a saved picture")
+            self.undo.begin_step("the place of a saved picture")
             self.restore(arrival.place)
         if flown is not None:  # while the scene was waiting for its kernels
-            self.session.move(flown)
+            self.session.change(camera=flown)
         self.notices.say(f"{arrival.text}. {said}" if said else arrival.text)
 
     def _fit_view(self) -> str:
         """Show the picture where the view has nothing to show in the scene that has just been opened; returns what is
         to be said of it, and of the method there."""
         session = self.session
-        view, said = fitting_view(session.view, session.settings, session.scene.lights if session.scene else ())
-        if view is not session.view:
+        view, said = fitting_view(session.draw.view, session.settings, session.scene.lights if session.scene else ())
+        if view is not session.draw.view:
             self.settings.set_view(view)
         return said
 
@@ -233,7 +230,7 @@ class Controller:
         session, opened = self.session, arrival.opened
         if opened is None or session.scene is None:
             return
-        here, playing = session.snapshot(), session.playing
+        here, playing = session.state, session.playing
         self.show(opened.scene, opened.renderer, opened.info)
         session.restore(here)
         session.playing = playing and session.animated
@@ -296,7 +293,7 @@ class Controller:
         """Show the scene that is open with other edits: where we are, and what was chosen, stays."""
         before = self.session.edited
         same = before is not None and before.made_as(now)
-        self.undo.overlook(lambda: self.session.take(now))
+        self.undo.without_undo(lambda: self.session.take(now))
         self.renderer.use(renderer, fresh=False)
         self.history.forget_modes(blank=False)
         self.tracing.follow_edits(same)
@@ -305,26 +302,24 @@ class Controller:
             self.selection.follow_edits(before, now)
             self.reloaded = True
 
-    def restore(self, snapshot: Snapshot) -> None:
-        """Go back to a snapshot of the open scene."""
+    def restore(self, state: ViewState) -> None:
+        """Go back to a state of the open scene."""
         self.runs.stop()
         self.motion.halt()
-        self.session.restore(snapshot)
-        self.preferences.keep(self.session.settings)
-        self.preferences.view = self.session.view.value
+        self.session.restore(state)
 
     def go_to_bookmark(self, index: int) -> None:
         """Glide to a bookmark and take over its time and view; settings stay as they are."""
         if self.runs.refuses():
             return
-        snapshot, start = self.bookmarks.find(index), self.session.camera
+        state, start = self.bookmarks.find(index), self.session.camera
         self._bookmark = index
-        if snapshot is not None:
-            self.undo.call_next(f"going to {self.bookmarks.all[index].get('name', '?')}")
-            self.restore(snapshot)
+        if state is not None:
+            self.undo.begin_step(f"going to {self.bookmarks.all[index].name}")
+            self.restore(state)
             self.bookmarks.arrived(index)
-            if not snapshot.follow:
-                self.motion.fly_to(snapshot.camera, start)
+            if state.camera is not None:
+                self.motion.fly_to(state.camera, start)
 
     def next_bookmark(self, step: int) -> None:
         """Go to the next bookmark of the list, or with -1 to the one before; past the last comes the first."""
@@ -351,6 +346,6 @@ class Controller:
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
         if self.session.scene is not None:
-            self.preferences.last = self.session.snapshot().to_json()
+            self.preferences.last = codec.state_to_json(self.session.state)
         self.settings.save()
         return stopped

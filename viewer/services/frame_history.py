@@ -93,13 +93,13 @@ class FrameHistory(History):
     def _record_of(self, traced: Traced, number: int) -> FrameRecord:
         session, frame = self._session, traced.frame
         scene = session.scene
-        follow = session.follow and scene is not None and frame.camera == scene.camera_at(frame.time)
+        follow = session.on_path and scene is not None and frame.camera == scene.camera_at(frame.time)
         chosen = settings_to_json(session.settings)
         for name, value in settings_to_json(frame.settings).items():
             if name not in ("samples", "lamp_samples", "verify", "method"):  # of these the frame may have had others
                 chosen[name] = value
         return FrameRecord(
-            number, frame.time, frame.camera, follow, frame.settings, chosen, session.view, session.light, session.wipe,
+            number, frame.time, frame.camera, follow, frame.settings, chosen, session.draw.view, session.draw.light, session.draw.wipe,
             traced.full_size, traced.whole, session.edited.edits if session.edited is not None else NO_EDITS,
         )  # fmt: skip
 
@@ -185,9 +185,9 @@ class FrameNavigator:
             self._notices.say(f"picture {number} is no longer kept: only the last 10,000 are")
             return
         snapshot = replace(
-            self._session.snapshot(), time=record.time, camera=record.camera, follow=record.follow,
+            self._session.state, time=record.time, camera=record.camera, follow=record.follow,
             settings=dict(record.chosen), view=record.view, light=record.light, wipe=record.wipe,
-            span=self._session.spans.get(record.view), edits=record.edits, cut=self._session.cut,
+            span=self._session.spans.get(record.view), edits=record.edits, cut=self._session.draw.slice,
         )  # fmt: skip
         self.go_to(JumpTarget(snapshot, f"picture {number}", record.size, point))
         self._notices.say(f"{self.name_of(number)}, again{self._may_differ(record)}")
@@ -203,7 +203,7 @@ class FrameNavigator:
         settings = replace(run.settings, method=run.shown, samples=session.settings.samples)
         then = run.times[number]
         snapshot = replace(
-            session.snapshot(), time=then, camera=scene.camera_at(then), follow=True,
+            session.state, time=then, camera=scene.camera_at(then), follow=True,
             settings=settings_to_json(settings),
         )  # fmt: skip
         self.go_to(JumpTarget(snapshot, f"frame {number} of the experiment", (settings.width, settings.height)))
@@ -211,10 +211,10 @@ class FrameNavigator:
 
     def go_to(self, target: JumpTarget) -> None:
         """Restore a target's state, and select its point once its picture has come."""
-        self._undo.call_next(f"going to {target.name}", with_time=True)
+        self._undo.begin_step(f"going to {target.name}", with_time=True)
         self._restore(target.snapshot)
         if target.zoom is not None:
-            self._session.zoom = target.zoom
+            self._session.set_draw(zoom=target.zoom)
         self._selection.clear()
         if self._depends_on_modes:
             self._tracing.reset_modes()
@@ -271,4 +271,4 @@ class FrameNavigator:
     @property
     def _depends_on_modes(self) -> bool:
         """Whether the picture depends on what was seen before it."""
-        return not Method.parse(self._session.settings.method).exact or self._session.view.of_modes
+        return not Method.parse(self._session.settings.method).exact or self._session.draw.view.of_modes

@@ -167,7 +167,7 @@ class HuntController:
         self.chosen = number
         settings, size = hunt.search.settings, (hunt.search.settings.width, hunt.search.settings.height)
         snapshot = replace(
-            self._session.snapshot(), time=find.time, camera=find.camera, follow=find.own_camera,
+            self._session.state, time=find.time, camera=find.camera, follow=find.own_camera,
             settings=settings_to_json(replace(settings, samples=self._session.settings.samples)), light=find.light,
         )  # fmt: skip
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]

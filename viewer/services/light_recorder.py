@@ -55,7 +55,7 @@ class LightRecorder:
 
     def follow(self) -> None:
         """Take up an answer, and ask about the frame that is shown now."""
-        asked, view, light = self._asked, self._session.view, self._session.light
+        asked, view, light = self._asked, self._session.draw.view, self._session.draw.light
         if asked is not None and asked.found is not None:
             self._shown.complete(asked.frame, asked.found)
             self._asked = asked = None

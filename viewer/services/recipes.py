@@ -36,7 +36,7 @@ class Recipes:
         session, scene = self._session, self._session.scene
         if scene is None:
             return None
-        follow = session.follow and frame.camera == scene.camera_at(frame.time)
+        follow = session.on_path and frame.camera == scene.camera_at(frame.time)
         settings = replace(frame.settings, verify=session.settings.verify, modes=False)
         magnified = self._tracing.magnified if view.needs_verify else 1
         style = self._style(view, magnified, self._preferences.legend_in_pictures if legend is None else legend)
@@ -46,8 +46,8 @@ class Recipes:
             camera=None if follow else frame.camera,
             settings=settings,
             view=view,
-            light=session.light,
-            wipe=session.wipe,
+            light=session.draw.light,
+            wipe=session.draw.wipe,
             style=style,
             by_gpu=view is not View.COLOR or style.outlines or not style.tone.neutral or style.clipping,
             folders=self._loader.folders,
@@ -68,10 +68,10 @@ class Recipes:
             beneath=p.beneath,
             outlines=p.outlines,
             legend=(p.legend_x, p.legend_y) if legend else None,
-            tone=session.tone if view.shows_picture else NEUTRAL,
-            clipping=session.clipping and view.shows_clipped,
+            tone=session.draw.tone if view.shows_picture else NEUTRAL,
+            clipping=session.draw.clipping and view.shows_clipped,
             span=session.spans.get(view) if ranged else None,
-            cut=session.cut if view.has_slice else MIDDLE,
+            cut=session.draw.slice if view.has_slice else MIDDLE,
             savings="" if p.savings_in_pictures else None,
         )
 
@@ -99,7 +99,7 @@ class Recipes:
             self._tracing.settings, width=width, height=height, samples=session.settings.samples
         )
         as_wanted = replace(frame, time=session.time, camera=session.camera, settings=settings)
-        return self.of(as_wanted, session.view)
+        return self.of(as_wanted, session.draw.view)
 
     def command(self) -> str | None:
         """The command line that makes the picture again; None, and one line, where there is no picture."""

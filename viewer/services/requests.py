@@ -18,7 +18,7 @@ def settings_for(session: Session, certificate_seconds: float, ready: bool, pixe
     """What the user has set, with modes; verified, and with more recorded, where the view needs that and there is
     memory for it in a picture of so many `pixels`.  Until what makes certificates is `ready`, still being compiled,
     it is traced without: the picture is the same."""
-    view, method = session.view, session.settings.method
+    view, method = session.draw.view, session.settings.method
     lights = len(session.scene.lights) if session.scene is not None else 0
     if not ready and Method.parse(method).has_certificates:
         method = with_base(method, NO_CULLING)

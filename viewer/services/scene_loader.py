@@ -113,7 +113,7 @@ class SceneLoader:
         from `folders` besides their own. `meshes` says how meshes are read; which way is up holds for the first."""
         self._folders, self.meshes = tuple(folders), meshes
         self._given = dict(settings or {})
-        self._session.settings = replace(self._session.settings, **self._given)
+        self._session.change(settings=replace(self._session.settings, **self._given))
         self.compiles = not compiled_before()
         title = "Compiling the tracer (first start only)" if self.compiles else "Loading the tracer"
         self.warm_up_job = Job(title, warm_up, self._wake)
@@ -319,7 +319,7 @@ class SceneLoader:
             self._notices.report(replace(job.failure, text=f"{job.failure.text}{stays}"))
         elif job.result is not None:
             opened = job.result
-            self._session.meshes = self._reading_meshes
+            self._session.change(meshes=self._reading_meshes)
             up = up_in_studio(opened.scene)
             standing = f", with {up} up" if up else ""
             count = len(opened.scene.warnings)

@@ -259,7 +259,7 @@ class SceneTable:
             return
         source = self._shown.source
         if traced is not None and traced.whole and traced.request.divisor == 1:
-            newest = _Source(now, traced.frame, None if self.all_lights else self._session.light)
+            newest = _Source(now, traced.frame, None if self.all_lights else self._session.draw.light)
             source = source if source is not None and newest.is_like(source) else newest
         if source is None or not self._lacks(source, moving):
             return

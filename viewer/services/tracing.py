@@ -201,9 +201,9 @@ class Tracing:
 
     def _refine(self) -> None:
         """At idle, let one more frame of the same view follow where it will know more about shadows."""
-        if self.is_frozen and not self._preferences.keep_tracing:
+        if self.is_frozen and not self._session.pace.keep_tracing:
             return
-        if self.refinement.wants_another(self.traced, self._session.view, self._preferences.keep_tracing):
+        if self.refinement.wants_another(self.traced, self._session.draw.view, self._session.pace.keep_tracing):
             self._serial += 1
             self._refines = True
 
@@ -225,12 +225,12 @@ class Tracing:
     @property
     def _each_is_whole(self) -> bool:
         """Whether no picture is shown before all of it has been traced."""
-        return not self._preferences.dynamic_resolution or (self._session.playing and self._preferences.every_frame)
+        return not self._session.pace.progressive or (self._session.playing and self._session.pace.every_frame)
 
     @property
     def _frame_seconds(self) -> float:
         """That a picture may take until some of it is shown: half of a frame's where each is traced twice."""
-        return (0.5 if self.second else 1.0) / self._preferences.target_fps
+        return (0.5 if self.second else 1.0) / self._session.pace.target_fps
 
     @property
     def _second(self) -> str:
@@ -274,7 +274,7 @@ class Tracing:
     @property
     def settings(self) -> Settings:
         """What the user has set, and what else the next picture needs."""
-        seconds = self._preferences.certificate_share * self._frame_seconds
+        seconds = self._session.pace.certificate_share * self._frame_seconds
         width, height = self.full_size
         return settings_for(self._session, seconds, self.now.ready, width * height)
 
@@ -376,8 +376,8 @@ class Tracing:
     @property
     def drawn_view(self) -> View:
         """The view to draw the newest frame in: the picture while one that needs more of a frame waits for it."""
-        view = self._session.view
-        return view if self.frame is None or can_draw(self.frame, view, self._session.light) else View.COLOR
+        view = self._session.draw.view
+        return view if self.frame is None or can_draw(self.frame, view, self._session.draw.light) else View.COLOR
 
     def _comes(self, view: View) -> bool:
         """Whether the frame that is asked for holds what the view needs."""
@@ -390,7 +390,7 @@ class Tracing:
         """The view, and the light where it shows one; before it what a run that is under way is at."""
         view, run = self.drawn_view, self.now.run
         title = f"{view.label}, light {self._session.light_number}" if view.of_light else view.label
-        wanted = self._session.view
+        wanted = self._session.draw.view
         if run is not None:
             lacks = wanted is not view and run.lacks(wanted)
             return f"{run.showing}   {title}{f' (this run {lacks})' if lacks else ''}"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args, get_origin
 
 import msgspec
 import numpy as np
@@ -47,6 +47,21 @@ def patched(value: T, data: Any, what: str = "it") -> T:
     if not isinstance(data, Mapping):
         raise ValueError(f"{what} is damaged")
     return from_json(_onto(to_json(value), data), type(value), what)
+
+
+def forgiven(data: Any, kind: Any, default: Any) -> Any:
+    """Return what stored data has of a type: of lists and dictionaries what is right of them, else the default."""
+    try:
+        return msgspec.convert(data, kind)
+    except (msgspec.ValidationError, OverflowError, RecursionError):
+        pass
+    parts = get_args(kind)
+    if isinstance(data, list) and get_origin(kind) is list:
+        return [item for item in (forgiven(one, parts[0], None) for one in data) if item is not None]
+    if isinstance(data, dict) and get_origin(kind) is dict:
+        found = {name: forgiven(value, parts[1], None) for name, value in data.items()}
+        return {name: value for name, value in found.items() if value is not None}
+    return default
 
 
 def _onto(base: dict[str, Any], data: Mapping[str, Any]) -> dict[str, Any]:
@@ -96,6 +111,40 @@ def picture_from_json(data: Mapping[str, Any]) -> ViewState:
         return found
     width, height = from_json(size, tuple[int, int], "its size")
     return found.with_settings(width=width, height=height).validated()
+
+
+def remembered(state: ViewState) -> dict[str, Any]:
+    """Return what a window that is started later takes over of a state."""
+    found = to_json(state)
+    data: dict[str, Any] = {}
+    for one in _REMEMBERED:
+        outer, inner = found, data
+        for name in one.within:
+            outer, inner = outer[name], inner.setdefault(name, {})
+        inner[one.name] = outer[one.name]
+    return data
+
+
+def recalled(data: Any) -> ViewState:
+    """Return the state that a window starts with; what is wrong with what is stored has its default."""
+    state = ViewState.in_window()
+    for one in _REMEMBERED:
+        part = data
+        for name in (*one.within, one.name):
+            part = part.get(name, _NOTHING) if isinstance(part, Mapping) else _NOTHING
+        if part is not _NOTHING:
+            nested = part
+            for name in (one.name, *reversed(one.within)):
+                nested = {name: nested}
+            try:
+                state = state_from_json(nested, state)
+            except ValueError:
+                continue
+    return state
+
+
+_NOTHING = object()
+_REMEMBERED = tuple(one for one in settings_of(ViewState) if one.remembered and one.stored != NEVER)
 
 
 def _without(data: dict[str, Any], stored: tuple[str, ...]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ is seen instead.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,42 +16,15 @@ from tracer.culling.voxels.grid import BLOCK, VoxelGrid
 from tracer.culling.voxels.tell import STATE_NAMES, VoxelStates, index_of
 from tracer.frame import Frame
 from tracer.geometry.camera import pinhole
-from viewer.util.json_numbers import number
+from viewer.state.draw_options import AXES as AXES
+from viewer.state.draw_options import MIDDLE as MIDDLE
+from viewer.state.draw_options import Slice as Slice
 
-AXES = ("x", "y", "z")
 NOTHING, LINE = 255, 4  # a code of no voxel, and a flag of the code of one that has its border at a pixel
 STATE = 3  # a mask of codes
 FEWEST = 6.0  # pixels that voxels, or blocks of them, must be wide for their borders to be drawn
 
 
-class Slice(NamedTuple):
-    """Across which axis, 0 to 2, and where along it, 0 to 1 of the grid."""
-
-    axis: int = 1
-    at: float = 0.25
-
-    def layer(self, shape: tuple[int, int, int]) -> int:
-        """The number of the layer of voxels along the axis."""
-        return min(int(self.at * shape[self.axis]), shape[self.axis] - 1)
-
-    def in_words(self) -> str:
-        """As the option `--slice` takes it."""
-        return f"{AXES[self.axis]}:{np.format_float_positional(self.at, trim='-')}"
-
-    @staticmethod
-    def from_json(data: Any) -> Slice:
-        """The inverse of `list`; raises ValueError, in one line, on anything else."""
-        try:
-            axis, at = data
-            found = Slice(AXES.index(AXES[axis]), number(at))
-        except (TypeError, ValueError, IndexError):
-            raise ValueError("its slice is damaged") from None
-        if not 0.0 <= found.at <= 1.0:
-            raise ValueError("its slice lies nowhere")
-        return found
-
-
-MIDDLE = Slice()
 
 
 def middle_of(grid: VoxelGrid, cut: Slice) -> float:

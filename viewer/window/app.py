@@ -239,7 +239,7 @@ class App:
     def _stay_awake(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
         idling = self.params.fps_idling
-        lively = self.controller.motion.lively or self.controller.comparing.blinks()
+        lively = self.controller.motion.is_animating or self.controller.comparing.blinks()
         by_processor = lively and self.drawn_by_processor
         idling.enable_idling = by_processor or not lively
         idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE

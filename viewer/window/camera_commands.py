@@ -136,7 +136,7 @@ def _bookmarks(ui: Ui, here: Condition) -> list[Command]:
 
     def go(index: int) -> Command:
         def title() -> str:
-            return f"{index + 1}  {marks.all[index].get('name', '?')}" if index < len(marks.all) else ""
+            return f"{index + 1}  {marks.all[index].name}" if index < len(marks.all) else ""
 
         there = Condition(lambda: index < len(marks.all), "this scene has not so many bookmarks")
         return Command(f"Go to bookmark {index + 1}", "Camera/Bookmarks", lambda: c.go_to_bookmark(index),

@@ -10,7 +10,7 @@ from viewer.window.ui import Ui
 def zoom_by(ui: Ui, factor: float, at: Point = (0.5, 0.5)) -> None:
     """Enlarge the picture; `at`, 0 to 1 in the room that it has, stays where it is."""
     session = ui.controller.session
-    session.zoom = zoomed(session.zoom, factor, at)
+    session.set_draw(zoom=zoomed(session.draw.zoom, factor, at))
 
 
 def offer(ui: Ui, panel: str) -> None:
@@ -41,4 +41,4 @@ def pin_what_is_pointed_at(ui: Ui) -> None:
 
 def fit(ui: Ui) -> None:
     """Show all of the picture."""
-    ui.controller.session.zoom = FIT
+    ui.controller.session.set_draw(zoom=FIT)

@@ -9,6 +9,7 @@ from viewer.state.tone import NEUTRAL, brighter
 from viewer.state.zooming import MOST, STEP
 from viewer.window import closer
 from viewer.window.command import Command, Condition
+from viewer.window.setting_rows import switch
 from viewer.window.ui import Ui
 
 _STOPS = 0.5  # of exposure by a key
@@ -66,8 +67,8 @@ def looking(ui: Ui) -> list[Command]:
 
     def expose(stops: float) -> Callable[[], None]:
         def change() -> None:
-            session.tone = brighter(session.tone, stops)
-            ui.controller.notices.say(f"exposure {session.tone.exposure:+.3g} stops")
+            session.set_draw(tone=brighter(session.draw.tone, stops))
+            ui.controller.notices.say(f"exposure {session.draw.tone.exposure:+.3g} stops")
 
         return change
 
@@ -77,11 +78,11 @@ def looking(ui: Ui) -> list[Command]:
     def clear_region() -> None:
         ui.pixels.region = None
 
-    larger = Condition(lambda: session.zoom.scale < MOST, f"it is enlarged {MOST:.0f} times, which is the most")
-    zoomed = Condition(lambda: not session.zoom.fits, "the whole picture is shown")
+    larger = Condition(lambda: session.draw.zoom.scale < MOST, f"it is enlarged {MOST:.0f} times, which is the most")
+    zoomed = Condition(lambda: not session.draw.zoom.fits, "the whole picture is shown")
     watching = Condition(lambda: bool(watched), "no pixel is watched")
     chosen = Condition(lambda: ui.pixels.region is not None, "no region is chosen")
-    toned = Condition(lambda: not session.tone.neutral, "colours are shown as traced")
+    toned = Condition(lambda: not session.draw.tone.neutral, "colours are shown as traced")
     return [
         Command("Zoom in", "Picture", lambda: closer.zoom_by(ui, STEP, _at(ui)), "Equal", repeats=True,
                 enabled=larger, other_keys=("Shift+Equal", "KeypadAdd")),
@@ -94,16 +95,15 @@ def looking(ui: Ui) -> list[Command]:
         Command("Clear the region", "Picture", clear_region, enabled=chosen),
         Command("Brighter", "Picture", expose(_STOPS), "RightBracket", repeats=True, separated=True),
         Command("Darker", "Picture", expose(-_STOPS), "LeftBracket", repeats=True),
-        Command("Colours as traced", "Picture", lambda: setattr(session, "tone", NEUTRAL),
+        Command("Colours as traced", "Picture", lambda: session.set_draw(tone=NEUTRAL),
                 enabled=toned),
-        Command("Mark clipped pixels", "Picture", lambda: setattr(session, "clipping", not session.clipping), "Shift+M",
-                checked=lambda: session.clipping),
+        switch(ui, "draw.clipping", "Picture", "Shift+M"),
     ]  # fmt: skip
 
 
 def _at(ui: Ui) -> tuple[float, float]:
     """Where the pointer is in the picture's room, else its middle."""
-    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.zoom
+    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.draw.zoom
     if hovered is None:
         return 0.5, 0.5
     return (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale

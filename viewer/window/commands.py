@@ -14,6 +14,7 @@ from viewer.window import camera_commands, edit_commands, mesh_commands, space_c
 from viewer.window.closer_commands import comparing, looking
 from viewer.window.command import Command, Condition
 from viewer.window.finding import finding, fly_to_selected
+from viewer.window.setting_rows import switch
 from viewer.window.taking import taking
 from viewer.window.ui import CaptureKind, Ui
 
@@ -76,7 +77,7 @@ def _view(ui: Ui) -> list[Command]:
             "View",
             lambda: c.settings.set_view(view),
             view.key,
-            checked=lambda: c.session.view is view,
+            checked=lambda: c.session.draw.view is view,
             also=view.also,
         )
 
@@ -84,14 +85,14 @@ def _view(ui: Ui) -> list[Command]:
         return lambda: setattr(p, name, not getattr(p, name))
 
     def light(step: int) -> Callable[[], None]:
-        return lambda: c.settings.set_light(c.session.light + step)
+        return lambda: c.settings.set_light(c.session.draw.light + step)
 
     def hide() -> None:
         ui.fold.hidden = not ui.fold.hidden
 
     def another(step: int) -> Callable[[], None]:
         views = list(View)
-        return lambda: c.settings.set_view(views[(views.index(c.session.view) + step) % len(views)])
+        return lambda: c.settings.set_view(views[(views.index(c.session.draw.view) + step) % len(views)])
 
     lit = Condition(
         lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "there are not several lights"
@@ -101,9 +102,9 @@ def _view(ui: Ui) -> list[Command]:
         Command("Next view", "View", another(1)),
         Command("Previous view", "View", another(-1)),
         Command(
-            "Next light", "View", lambda: c.settings.set_light(c.session.light + 1), "L", enabled=lit, separated=True
+            "Next light", "View", lambda: c.settings.set_light(c.session.draw.light + 1), "L", enabled=lit, separated=True
         ),
-        Command("Previous light", "View", lambda: c.settings.set_light(c.session.light - 1), "Shift+L", enabled=lit),
+        Command("Previous light", "View", lambda: c.settings.set_light(c.session.draw.light - 1), "Shift+L", enabled=lit),
         *space_commands.build(ui),
         Command(
             "What culling saves",
@@ -114,14 +115,14 @@ def _view(ui: Ui) -> list[Command]:
             separated=True,
             tip="one sentence above the picture, and a bar of the shadow rays by what became of them",
         ),
-        Command("Legend", "View", toggle("legend"), "N", checked=lambda: p.legend),
-        Command("Outlines", "View", toggle("outlines"), "B", checked=lambda: p.outlines),
-        Command("Mark wrong pixels", "View", toggle("mark_wrong"), "M", checked=lambda: p.mark_wrong),
-        Command("Shares of rays", "View", toggle("work_shares"), "U", checked=lambda: p.work_shares),
+        switch(ui, "draw.legend", "View", "N"),
+        switch(ui, "draw.outlines", "View", "B"),
+        switch(ui, "draw.mark_wrong", "View", "M"),
+        switch(ui, "draw.shares", "View", "U"),
         *_rays(ui),
         *finding(ui),
-        Command("Draw shadow rays", "View", toggle("draw_explanation"), "I", checked=lambda: p.draw_explanation),
-        Command("Smooth upscaling", "View", toggle("smooth_upscaling"), checked=lambda: p.smooth_upscaling),
+        switch(ui, "draw.rays", "View", "I"),
+        switch(ui, "draw.smooth", "View"),
         *_looks(ui),
         Command("Hide panels", "View", hide, "Tab", checked=lambda: ui.fold.hidden, separated=True),
         Command("Full screen", "View", ui.full_screen.toggle, "F11", checked=lambda: ui.full_screen.wanted),
@@ -186,9 +187,9 @@ def _camera(ui: Ui) -> list[Command]:
         Command(
             "Follow the scene's path",
             "Camera",
-            lambda: c.motion.follow_path(not c.session.follow),
+            lambda: c.motion.follow_path(not c.session.on_path),
             "P",
-            checked=lambda: c.session.follow,
+            checked=lambda: c.session.on_path,
             enabled=here,
         ),
         Command("Add bookmark", "Camera/Bookmarks", c.bookmarks.add, "Ctrl+B", enabled=here, separated=True),
@@ -215,17 +216,13 @@ def _time(ui: Ui) -> list[Command]:
         Command("First frame", "Time", lambda: c.motion.step(-c.session.frame), "Home", enabled=moves),
         Command("Last frame", "Time", to_end, "End", enabled=moves),
         Command("Loop", "Time", toggle("loop"), checked=lambda: p.loop, separated=True),
-        Command("Trace every frame", "Time", toggle("every_frame"), checked=lambda: p.every_frame),
+        switch(ui, "pace.every_frame", "Time"),
     ]
 
 
 def _culling(ui: Ui) -> list[Command]:
     c = ui.controller
     p = c.preferences
-
-    def toggle_tracing() -> None:
-        p.keep_tracing = not p.keep_tracing
-        c.tracing.trace_again()
 
     s = lambda: c.session.settings  # noqa: E731
     method = lambda: Method.parse(s().method)  # noqa: E731
@@ -246,12 +243,11 @@ def _culling(ui: Ui) -> list[Command]:
         *[addition(kind) for kind in additions()],
         Command("Shadow culling", "Culling", c.settings.toggle_culling, "C", checked=lambda: method().culls,
                 separated=True),
-        Command("Symmetric occlusion test", "Culling", lambda: c.settings.change(symmetric=not s().symmetric), "Y",
-                checked=lambda: s().symmetric),
-        Command("Verify", "Culling", lambda: c.settings.change(verify=not s().verify), "V", checked=lambda: s().verify),
+        switch(ui, "settings.symmetric", "Culling", "Y"),
+        switch(ui, "settings.verify", "Culling", "V"),
         Command("Reset modes", "Culling", c.tracing.reset_modes, "Backspace", separated=True),
         Command("Trace again", "Culling", c.tracing.trace_again, "T"),
-        Command("Keep tracing when idle", "Culling", toggle_tracing, "K", checked=lambda: p.keep_tracing),
+        switch(ui, "pace.keep_tracing", "Culling", "K"),
     ]  # fmt: skip
 
 

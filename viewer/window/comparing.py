@@ -57,7 +57,7 @@ def draw(ui: Ui, look: Look) -> None:
 
 def _look_of_a(ui: Ui, look: Look, a: Side, b: Side) -> Look:
     session = ui.controller.session
-    span = look.span if a.view is b.view else session.spans.get(a.view)
+    span = look.span if a.view is b.view else dict(session.draw.spans).get(a.view)
     return replace(look, view=a.view, light=a.light, selected=-1, line=False, span=span)
 
 
@@ -86,7 +86,7 @@ def difference(ui: Ui) -> Difference | None:
 
 def marked(ui: Ui) -> tuple[Spot, ...]:
     """The pixels of a signed difference that have rings."""
-    found = difference(ui) if ui.controller.preferences.mark_wrong else None
+    found = difference(ui) if ui.controller.session.draw.mark_wrong else None
     return () if found is None else found.worst
 
 
@@ -119,9 +119,9 @@ def magnify(ui: Ui, look: Look) -> None:
         of_a = seen is not None and ui.compared is not None and drawn is ui.compared.a
         view = seen[0].view if seen is not None and of_a else look.view
         smooth = look.smooth and view.is_smooth and not isinstance(drawn, SignedDifference)
-        enlarged = picture is not None and (size[0] > picture.size[0] or not ui.controller.session.zoom.fits)
+        enlarged = picture is not None and (size[0] > picture.size[0] or not ui.controller.session.draw.zoom.fits)
         if drawn is not None and enlarged and not smooth:
-            magnifier.draw(name, picture, drawn.version, ui.controller.session.zoom, size)
+            magnifier.draw(name, picture, drawn.version, ui.controller.session.draw.zoom, size)
         else:
             magnifier.drop(name)
 
@@ -138,7 +138,7 @@ def words(ui: Ui, side: Side | None = None) -> Words | None:
     """The frame whose pixels are seen, and what each of them says: those of a side, or of all that fills the picture;
     None without a frame."""
     c, seen = ui.controller, shown(ui)
-    shares = c.preferences.work_shares
+    shares = c.session.draw.shares
     if side is None and seen is not None and shows_a(ui):
         side = seen[0]
     if side is None:
@@ -149,14 +149,14 @@ def words(ui: Ui, side: Side | None = None) -> Words | None:
 
     def of(one: Side, x: int, y: int) -> tuple[str, ...]:
         at = pixel_at(one.frame, (x + 0.5) / own.frame.width, (y + 0.5) / own.frame.height)
-        return words_at(one.frame, one.view, one.light, *at, shares, c.session.cut)
+        return words_at(one.frame, one.view, one.light, *at, shares, c.session.draw.slice)
 
     if seen is not None and own.frame is seen[1].frame and seen[2] is Way.DIFFERENCE:
         found = c.comparing.difference(seen[0], seen[1])
         if found is not None:
             return own.frame, lambda x, y: difference_words(found.pixels, found.values, x, y)
     if seen is not None and own.frame is seen[1].frame and seen[2] is Way.WIPE:
-        column = wipe_column(own.frame.width, c.session.wipe)
+        column = wipe_column(own.frame.width, c.session.draw.wipe)
         return own.frame, lambda x, y: of(seen[0] if x < column else seen[1], x, y)
     return own.frame, lambda x, y: of(own, x, y)
 
@@ -169,4 +169,4 @@ def composed(ui: Ui, b: NDArray[np.uint8]) -> NDArray[np.uint8]:
     alone = shows_a(ui)
     if seen[2] is Way.DIFFERENCE and not alone:
         return with_rings(compared.difference.read(), marked(ui))
-    return composed_of(compared.read_a(), b, seen[2], ui.controller.session.wipe, alone)
+    return composed_of(compared.read_a(), b, seen[2], ui.controller.session.draw.wipe, alone)

@@ -115,24 +115,24 @@ def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
 
 def look_of(ui: Ui, selected: int = -1) -> Look:
     """How the view is to be drawn, with an outline around a primitive unless it is -1."""
-    c, p = ui.controller, ui.controller.preferences
+    c, draw = ui.controller, ui.controller.session.draw
     return Look(
         view=c.tracing.drawn_view,
-        light=c.session.light,
-        shading=p.shading,
-        outlines=p.outlines,
+        light=draw.light,
+        shading=draw.shading,
+        outlines=draw.outlines,
         selected=selected,
-        smooth=p.smooth_upscaling and c.session.zoom.fits,
-        marked=p.mark_wrong,
+        smooth=draw.smooth and draw.zoom.fits,
+        marked=draw.mark_wrong,
         magnified=c.tracing.magnified,
-        wipe=c.session.wipe,
+        wipe=draw.wipe,
         line=not c.tracing.becoming_finer,
-        shares=p.work_shares,
-        beneath=p.beneath,
-        tone=c.session.tone,
-        clipping=c.session.clipping,
+        shares=draw.shares,
+        beneath=draw.beneath,
+        tone=draw.tone,
+        clipping=draw.clipping,
         span=c.comparing.span(c.tracing.drawn_view),
-        cut=c.session.cut,
+        cut=draw.slice,
     )
 
 
@@ -142,13 +142,13 @@ def capture(ui: Ui) -> None:
     if wanted not in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD):
         ui.capture_view = None
         return
-    view = ui.capture_view = ui.capture_view or c.session.view
-    why = _why_none(c) if view is c.session.view else "another view was chosen before it came"
+    view = ui.capture_view = ui.capture_view or c.session.draw.view
+    why = _why_none(c) if view is c.session.draw.view else "another view was chosen before it came"
     if why:
         ui.capture_wanted = ui.capture_view = None
         c.notices.say(f"no picture of the view {view.label}: {why}", error=True)
         return
-    shown = c.tracing.drawn_view is c.session.view
+    shown = c.tracing.drawn_view is c.session.draw.view
     ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
     if ui.display is not None and ready:
         ui.capture_wanted = ui.capture_view = None
@@ -171,12 +171,12 @@ def capture(ui: Ui) -> None:
 
 def _why_none(c: Controller) -> str:
     """Why there is no picture in the chosen view, and none is on its way; nothing where there is, or may be."""
-    frame, view, run = c.frame, c.session.view, c.runs.current
+    frame, view, run = c.frame, c.session.draw.view, c.runs.current
     if frame is None or c.tracing.drawn_view is view:
         return ""
     if run is not None and (lacks := run.lacks(view)):
         return f"the {run.name} {lacks}"
     if run is None and (c.tracing.awaits or c.renderer.busy):
         return ""
-    found = missing(view, frame, c.preferences.work_shares)
+    found = missing(view, frame, c.session.draw.shares)
     return found.text if found is not None else ""

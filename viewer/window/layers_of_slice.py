@@ -21,7 +21,7 @@ class Layer(NamedTuple):
 
 def layer_now(ui: Ui) -> Layer | None:
     """That of the view's slice; None while there is nothing to cut."""
-    frame, cut, view = ui.controller.frame, ui.controller.session.cut, ui.controller.session.view
+    frame, cut, view = ui.controller.frame, ui.controller.session.draw.slice, ui.controller.session.draw.view
     if frame is not None and view is View.VOXELS and VOXELS in frame.structures:
         states = voxels_of(frame)
         return Layer(cut.layer(states.shape), states.shape[cut.axis], middle_of(states.grid, cut))
@@ -39,10 +39,10 @@ def step(ui: Ui, layers: int) -> None:
     """Go on by so many layers."""
     s, layer = ui.controller.session, layer_now(ui)
     if layer is not None:
-        s.cut = go_to(s.cut, layer.number + layers, layer.many)
+        s.set_draw(slice=go_to(s.draw.slice, layer.number + layers, layer.many))
 
 
 def turn(ui: Ui) -> None:
     """Cut across the next axis."""
     s = ui.controller.session
-    s.cut = s.cut._replace(axis=(s.cut.axis + 1) % len(AXES))
+    s.set_draw(slice=s.draw.slice._replace(axis=(s.draw.slice.axis + 1) % len(AXES)))

@@ -37,7 +37,7 @@ def test_a_state_keeps_them_and_one_without_had_no_studio(tmp_path: Path) -> Non
 
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     session = Session(load_scene(tmp_path / "a.obj"), meshes=MeshOptions(True, "-x", 3.0))
-    data = session.snapshot().to_json()
+    data = session.state.to_json()
     assert Snapshot.from_json(data).meshes == MeshOptions(True, "-x", 3.0)
     assert Snapshot.from_json({k: v for k, v in data.items() if k != "meshes"}).meshes == AS_IN_FILE
     for bad in (5, {"up": 3}, {"up": "w"}, {"crease": "x"}, {"crease": 1e9}):

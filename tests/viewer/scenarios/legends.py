@@ -23,7 +23,7 @@ def legends(d: Driver) -> None:
         for view in View:
             d.c.settings.set_view(view)
             d.settle()
-            assert d.ui.legend_shown == (view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.light)), view
+            assert d.ui.legend_shown == (view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.draw.light)), view
             if d.ui.legend_shown:
                 _legend(d)
         _dragged(d)
@@ -82,7 +82,7 @@ def _off_and_on(d: Driver) -> None:
 
     with_legend = panel()
     d.press(KEY.n)
-    assert not d.c.preferences.legend and not d.ui.legend_shown
+    assert not d.c.session.draw.legend and not d.ui.legend_shown
     assert panel() > with_legend + 60.0
     d.press(KEY.n)
     assert d.ui.legend_shown and panel() == with_legend
@@ -96,7 +96,7 @@ def _in_saved_pictures(d: Driver) -> None:
         p.screenshot_template = f"{name}.png"
         d.press(KEY.f12)
         d.wait(lambda: not d.c.captures.busy, "the picture to be written")
-        assert capture.read(folder / f"{name}.png").view is d.c.session.view
+        assert capture.read(folder / f"{name}.png").view is d.c.session.draw.view
         with Image.open(folder / f"{name}.png") as image:
             return np.asarray(image)
 

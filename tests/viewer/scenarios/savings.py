@@ -106,7 +106,7 @@ def _pixels(d: Driver) -> None:
     d.context.item_click("//Picture/culled##savings")
     d.frames(2)
     assert d.ui.fate_shown is Fate.CULLED
-    culled, now = d.c.frame.fate(d.c.session.light) == Fate.CULLED, d.shown().astype(int).sum(-1)
+    culled, now = d.c.frame.fate(d.c.session.draw.light) == Fate.CULLED, d.shown().astype(int).sum(-1)
     others = (d.c.frame.primitive >= 0) & ~culled
     assert (
         culled.any()

@@ -45,7 +45,7 @@ class Parts:
 def parts() -> Parts:
     parts = Parts()
     for x in range(3):
-        parts.session.move(replace(AWAY, position=(float(x), 0.0, 0.0)))
+        parts.session.change(camera=replace(AWAY, position=(float(x), 0.0, 0.0)))
         parts.marks.add()
     return parts
 
@@ -57,7 +57,7 @@ def test_a_picture_is_of_a_whole_frame_from_there(parts: Parts, own_settings: Pa
     assert parts.pictured == [False, False, False]
     parts.comes()
     assert parts.pictured == [False, False, True]
-    parts.session.move(replace(here, position=(0.0, 0.0, 0.0)))
+    parts.session.change(camera=replace(here, position=(0.0, 0.0, 0.0)))
     parts.comes()
     assert parts.pictured == [True, False, True], "who comes back takes the picture that was missed"
     (kept,) = json.loads((own_settings / "settings.json").read_text())["bookmarks"].values()
@@ -83,7 +83,7 @@ def test_order_and_deletion(parts: Parts):
 
 def test_one_can_be_put_elsewhere(parts: Parts):
     parts.comes()
-    parts.session.move(AWAY)
+    parts.session.change(camera=AWAY)
     parts.marks.replace(2)
     assert parts.marks.find(2).camera == AWAY and parts.pictured == [False, False, False]
     parts.comes()

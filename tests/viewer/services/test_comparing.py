@@ -101,7 +101,7 @@ def test_one_wipe_at_a_time(desk: Desk) -> None:
     keep(desk)
     desk.c.settings.set_view(View.WIPE)
     comparing.start(Way.WIPE)
-    assert desk.c.session.view is View.COLOR
+    assert desk.c.session.draw.view is View.COLOR
     desk.rest()
     assert comparing.state.on
     desk.c.settings.set_view(View.WIPE)
@@ -168,7 +168,7 @@ def test_a_difference_is_that_of_the_chosen_slice(desk: Desk) -> None:
         Side(with_tree(make_frame(settings)), View.TREE, 0, "", 0) for settings in (Settings(), Settings(samples=2))
     )
     for cut in (Slice(1, 0.25), Slice(0, 0.6)):
-        desk.c.session.cut = cut
+        desk.c.session.set_draw(slice=cut)
         found = comparing.difference(a, b)
         assert found is not None and comparing.difference(a, b) is found
         expected = values_of(b.frame, View.TREE, cut=cut)

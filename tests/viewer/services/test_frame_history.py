@@ -72,15 +72,15 @@ def test_frames_of_an_experiment_are_told_from_those_of_the_path(desk: Desk) -> 
 
 def test_going_back_can_be_undone_with_its_time(desk: Desk) -> None:
     seen, c = flown(desk, "paper"), desk.c
-    here = c.session.snapshot()
+    here = c.session.state
     number = list(seen)[1]
     c.navigator.go(number)
     desk.rest()
-    assert c.session.time == seen[number].time != here.time and c.session.view is View.COLOR
+    assert c.session.time == seen[number].time != here.time and c.session.draw.view is View.COLOR
     assert c.undo.undoes == f"going to picture {number}"
     c.undo.undo()
     desk.rest()
-    assert c.session.snapshot() == here
+    assert c.session.state == here
     c.undo.redo()
     desk.rest()
     assert c.session.time == seen[number].time and c.session.settings.depth == 3
@@ -107,7 +107,7 @@ def test_a_frozen_picture_knows_what_its_warmup_frames_teach_and_no_more(desk: D
     desk.rest()
     scene, settings = c.session.scene, c.session.settings
     warmup = tuple((scene.frame_time(n), scene.camera_at(scene.frame_time(n))) for n in range(3))
-    snapshot = replace(c.session.snapshot(), time=scene.frame_time(3))
+    snapshot = replace(c.session.state, time=scene.frame_time(3))
     c.navigator.go_to(JumpTarget(snapshot, "a find", (32, 24), warmup=warmup))
     desk.rest()
     own = tracer.Renderer(scene, replace(c.frame.settings, samples=1))

@@ -73,7 +73,7 @@ def test_a_picture_after_others_in_motion_of_which_some_pixels_taught_is_made_ag
     desk: Desk, capfd: pytest.CaptureFixture[str]
 ) -> None:
     c = desk.c
-    c.preferences.dynamic_resolution, c.preferences.target_fps = True, 5000.0
+    c.session.pace.progressive, c.session.pace.target_fps = True, 5000.0
     c.settings.change(method="paper")
     c.session.playing = True
     desk.came.clear()

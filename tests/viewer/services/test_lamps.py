@@ -98,7 +98,7 @@ class Window:
     def move(self) -> None:
         camera = self.session.camera
         x, y, z = camera.position
-        self.session.move(replace(camera, position=(x + 1.0, y, z)))
+        self.session.change(camera=replace(camera, position=(x + 1.0, y, z)))
 
 
 def test_at_idle_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_for_twice():
@@ -106,12 +106,12 @@ def test_at_idle_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_fo
     assert window.rest() == [(4, 1), (16, 1), (64, 2), (64, 2)], "the last knows more about shadows"
     assert window.rest() == []
     assert not window.tracing.refines_lamps and window.tracing.lamp_samples_shown == 64
-    window.session.settings = replace(window.session.settings, lamp_samples=256)
+    window.session.change(settings=replace(window.session.settings, lamp_samples=256))
     assert window.tracing.refines_lamps
     assert window.rest() == [(256, 2), (256, 2)], "what there is goes on"
-    window.session.settings = replace(window.session.settings, lamp_samples=1)
+    window.session.change(settings=replace(window.session.settings, lamp_samples=1))
     assert window.rest() == [(1, 2), (1, 2)]
-    window.session.settings = replace(window.session.settings, lamp_samples=16, lamp_radius=0.25)
+    window.session.change(settings=replace(window.session.settings, lamp_samples=16, lamp_radius=0.25))
     assert window.rest() == [(4, 1), (16, 2), (16, 2)], "lamps of another size"
 
 
@@ -179,9 +179,9 @@ def test_pixels_cost_by_the_samples_of_lamps():
 def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it():
     window = Window(lamp_radius=0.5, lamp_samples=16)
     window.rest()
-    window.session.view = View.PENUMBRA
+    window.session.set_draw(view=View.PENUMBRA)
     assert window.rest() == [(16, 2)] and window.renders.asked[-1].settings.record_lights
-    window.session.view = View.COLOR
+    window.session.set_draw(view=View.COLOR)
     assert window.rest() == [], "there is more than the picture needs"
     many = make_scene(lights=3)
     window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
@@ -190,7 +190,7 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
         (View.LIGHTS, "Lights due: none here, colour shown"),
         (View.FATE, "Fate of shadow rays: none here, colour shown"),
     ):
-        window.session.view = view
+        window.session.set_draw(view=view)
         window.rest()
         asked = window.renders.asked[-1].settings
         assert not asked.record_lights and not asked.record_fates
@@ -214,12 +214,12 @@ def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
     window.rest()
     recorder.follow()
     assert not questions.asked, "the picture needs none"
-    window.session.view = View.PENUMBRA
+    window.session.set_draw(view=View.PENUMBRA)
     for _ in range(3):
         recorder.follow()
     (question,) = questions.asked
     assert (question.frame, question.light) == (window.tracing.frame, 0)
-    window.session.light = 1
+    window.session.set_draw(light=1)
     recorder.follow()
     (_, question) = questions.asked
     first = with_lamps(question.frame)
@@ -228,7 +228,7 @@ def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
     assert window.tracing.frame is question.found and window.tracing.drawn_view is View.PENUMBRA
     recorder.follow()
     assert len(questions.asked) == 2
-    window.session.light = 2
+    window.session.set_draw(light=2)
     recorder.follow()
     assert window.tracing.drawn_view is View.COLOR and len(questions.asked) == 3, "another light"
     window.move()
@@ -259,7 +259,7 @@ def test_between_steps_it_is_known_that_more_is_to_come():
 
 def test_samples_of_pixels_come_after_certificates():
     window = Window()
-    window.session.settings = replace(window.session.settings, method="certified", samples=4)
+    window.session.change(settings=replace(window.session.settings, method="certified", samples=4))
     tracing = window.tracing
     tracing.ask(HERE)
     assert tracing.awaits and not tracing.certifies, "there is no picture yet"
@@ -276,7 +276,7 @@ def test_samples_of_pixels_come_after_certificates():
     tracing.traced = None
     assert tracing.awaits
     window = Window()
-    window.session.settings = replace(window.session.settings, method="auto")
+    window.session.change(settings=replace(window.session.settings, method="auto"))
     window.tracing.ask(HERE)
     window.tracing.take()
     window.tracing.ask(HERE)

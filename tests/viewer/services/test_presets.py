@@ -48,7 +48,7 @@ def test_as_in_the_paper_is_what_the_paper_says(parts: Parts):
     assert s.lamp_radius == 0.0, "point lights"
     assert (p.fixed_resolution, p.fixed_width, p.fixed_height, p.dynamic_resolution) == (True, 512, 512, False)
     assert p.every_frame, "frame-to-frame coherence is that of one frame and the next"
-    assert parts.session.view is View.DEPTH, "it says nothing of the view"
+    assert parts.session.draw.view is View.DEPTH, "it says nothing of the view"
     assert parts.named == ["preset As in the paper"] and parts.notices.message.text.endswith("As in the paper")
 
 
@@ -61,7 +61,7 @@ def test_all_of_the_program_can_be_applied(parts: Parts, name: str):
 def test_one_is_saved_and_applied_again_by_another_window(parts: Parts, own_settings: Path):
     parts.settings.change(method="paper+rest", depth=4, lamp_samples=64)
     parts.settings.set_view(View.PENUMBRA)
-    parts.preferences.outlines = True
+    parts.session.set_draw(outlines=True)
     kept = parts.now
     assert parts.presets.save("  soft   shadows ")
     assert json.loads((own_settings / "settings.json").read_text())["presets"][0]["name"] == "soft shadows"

@@ -106,7 +106,7 @@ def test_steps_lead_through_both_structures(desk: Desk) -> None:
 def test_frame_after_frame_is_looked_into(desk: Desk) -> None:
     rays = looked_at(desk)
     desk.c.selection.select(middle(desk))
-    desk.c.preferences.keep_tracing = True
+    desk.c.session.set_pace(keep_tracing=True)
     desk.c.tracing.trace_again()
     seen = []
 
@@ -116,7 +116,7 @@ def test_frame_after_frame_is_looked_into(desk: Desk) -> None:
         return len(seen) > 3
 
     desk.until(others)
-    desk.c.preferences.keep_tracing = False
+    desk.c.session.set_pace(keep_tracing=False)
     desk.rest()
     desk.c.motion.step(2)
     desk.until(lambda: rays.tree is not None and rays.tree.frame.time == desk.c.frame.time > seen[-1].frame.time)

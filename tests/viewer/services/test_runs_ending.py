@@ -61,7 +61,7 @@ def test_a_run_that_is_overtaken_by_another_scene_does_not_trace_it(desk: Desk) 
 
 
 def test_restoring_a_place_ends_a_run(desk: Desk) -> None:
-    snapshot = desk.c.session.snapshot()
+    snapshot = desk.c.session.state
     desk.runs.experiment_plan.frames = 5000
     desk.runs.start_experiment()
     desk.until(lambda: desk.runs.experiment.traced > 2)

@@ -97,7 +97,7 @@ def door_opened(door: Door, path: Path):
 
 def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(door: Door, tiny_scene_file: Path, tmp_path: Path):
     door.session.open(door_opened(door, tiny_scene_file))
-    door.session.view = View.DEPTH
+    door.session.set_draw(view=View.DEPTH)
     frame = make_frame(time=1.0)
     door.captures.capture(frame, np.zeros((8, 16, 3), np.uint8))
     (job,) = door.captures.saving

@@ -25,7 +25,7 @@ class Parts:
         self.bookmarks = Bookmarks(self.session, self.preferences, self.settings, self.notices)
 
     def follow_settings(self) -> None:
-        self.settings.follow()
+        self.settings.save_when_rested()
         if self.settings._writer is not None:
             self.settings._writer.join(30.0)
 
@@ -67,7 +67,7 @@ def test_lights_are_counted_around():
     parts = Parts()
     for light, chosen in ((2, 2), (3, 0), (-1, 2)):
         parts.settings.set_light(light)
-        assert parts.session.light == chosen
+        assert parts.session.draw.light == chosen
 
 
 def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
@@ -76,7 +76,7 @@ def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
     parts.settings.set_view(View.DEPTH)
     parts.settings.change(depth=3)
     parts.settings.reset(["bookmarks"])
-    assert parts.session.view is View.COLOR and parts.session.settings.depth == Preferences().depth
+    assert parts.session.draw.view is View.COLOR and parts.session.settings.depth == Preferences().depth
     stored = json.loads((own_settings / "settings.json").read_text())
     assert stored["view"] == "color" and len(stored["bookmarks"]) == 1
 
@@ -90,7 +90,7 @@ def test_settings_that_cannot_be_written_are_one_line(own_settings: Path):
 
 def test_bookmarks_are_found_again_without_settings_and_a_damaged_one_is_one_line():
     parts, place = Parts(), Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
-    parts.session.move(place)
+    parts.session.change(camera=place)
     parts.bookmarks.add()
     parts.bookmarks.add("  named ")
     assert [mark["name"] for mark in parts.bookmarks.all] == ["frame 0", "named"]

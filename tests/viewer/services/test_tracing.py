@@ -67,7 +67,7 @@ def test_until_certificates_can_be_made_pictures_come_without():
     assert tracing.settings.method == "certified+rest"
     tracing.ask(Conditions(ready=False))
     assert tracing.settings.method == "none+rest"
-    session.settings = replace(session.settings, method="paper")
+    session.change(settings=replace(session.settings, method="paper"))
     assert tracing.settings.method == "paper"
 
 

@@ -142,7 +142,7 @@ def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk:
 def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: Desk, tmp_path):
     own = desk.c.session.scene.camera
     elsewhere = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
-    assert desk.c.session.follow and desk.c.session.frame == 0
+    assert desk.c.session.on_path and desk.c.session.frame == 0
     desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "{frame:04d}.png"
     for camera, follow in ((elsewhere, False), (own, True)):
         frame = make_frame(time=7.0, camera=camera)
@@ -161,7 +161,7 @@ def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: 
 
 def test_a_capture_keeps_the_users_setting_and_the_line(desk: Desk, tmp_path):
     desk.c.settings.set_view(View.WIPE)
-    desk.c.session.wipe = 0.25
+    desk.c.session.set_draw(wipe=0.25)
     desk.rest()
     desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "wipe.png"
     desk.c.captures.capture(desk.c.frame, np.zeros((8, 16, 3), np.uint8))

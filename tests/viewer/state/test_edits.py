@@ -71,20 +71,20 @@ def test_each_edit_has_words_and_can_go_by_itself():
 def test_the_chosen_light_stays_whatever_lights_are_off():
     session = Session()
     session.open(make_scene(lights=3))
-    session.light = 2
+    session.set_draw(light=2)
     session.take(edited(session.original, Edits(lights_off=frozenset({0}))))
-    assert session.light == 1 and len(session.scene.lights) == 2
+    assert session.draw.light == 1 and len(session.scene.lights) == 2
     session.take(edited(session.original, Edits(lights_off=frozenset({2}))))
-    assert session.light == 1, "the nearest that is on"
+    assert session.draw.light == 1, "the nearest that is on"
     session.take(edited(session.original, NO_EDITS))
-    assert session.light == 1 and session.scene is session.original
+    assert session.draw.light == 1 and session.scene is session.original
 
 
 def test_a_snapshot_keeps_edits_and_gives_up_those_without_a_target():
     session = Session()
     session.open(make_scene(lights=3))
-    session.edits = Edits(lights_off=frozenset({2}), hidden=frozenset({"train"}))
-    kept = Snapshot.from_json(session.snapshot().to_json())
+    session.change(edits=Edits(lights_off=frozenset({2}), hidden=frozenset({"train"})))
+    kept = Snapshot.from_json(session.state.to_json())
     assert kept.edits == session.edits
     other = Session()
     other.open(make_scene(lights=2))
@@ -102,7 +102,7 @@ def test_lights_keep_their_numbers_whichever_others_are_off():
     assert named_light(lights, 1) == light_in_words(2, scene.lights[2].name)
     session = Session(scene)
     session.take(edited(scene, edits))
-    session.light = 2
+    session.set_draw(light=2)
     assert session.light_number == 4
 
 

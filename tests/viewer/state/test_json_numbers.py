@@ -26,7 +26,7 @@ INFINITE = float("inf")
 def state() -> dict[str, Any]:
     session = Session()
     session.open(make_scene(lights=2))
-    data: dict[str, Any] = json.loads(json.dumps(session.snapshot().to_json()))
+    data: dict[str, Any] = json.loads(json.dumps(session.state.to_json()))
     return data
 
 

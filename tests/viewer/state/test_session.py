@@ -17,9 +17,9 @@ from viewer.state.views import View
 def session_somewhere() -> Session:
     session = Session(settings=Settings(method="none", zoom_factor=7.5, symmetric=True, depth=3))
     session.open(make_scene())
-    session.time = 4.0
-    session.move(Camera((1.0, 2.0, 3.0), (0.0, 0.6, -0.8), (0.0, 0.8, 0.6), 33.0))
-    session.view, session.light, session.wipe = View.SHADOW, 2, 0.25
+    session.change(time=4.0)
+    session.change(camera=Camera((1.0, 2.0, 3.0), (0.0, 0.6, -0.8), (0.0, 0.8, 0.6), 33.0))
+    session.draw.view, session.draw.light, session.draw.wipe = View.SHADOW, 2, 0.25
     return session
 
 
@@ -44,8 +44,8 @@ def test_a_wipe_that_lies_nowhere_is_in_the_middle(kept, wipe):
 
 def test_what_belongs_to_this_machine_is_not_kept():
     session = session_somewhere()
-    session.settings = replace(session.settings, certificate_seconds=0.05, threads=3)
-    kept = session.snapshot().to_json()["settings"]
+    session.change(settings=replace(session.settings, certificate_seconds=0.05, threads=3))
+    kept = session.state.to_json()["settings"]
     assert kept["method"] == "none" and kept["zoom_factor"] == 7.5
     assert not {"certificate_seconds", "certificates", "threads", "width", "record_work"} & set(kept)
 
@@ -54,8 +54,8 @@ def test_what_belongs_to_this_machine_is_not_kept():
 @pytest.mark.parametrize("samples", [None, 64])
 def test_lamps_are_restored(radius, samples):
     session = session_somewhere()
-    session.settings = replace(session.settings, lamp_radius=radius, lamp_samples=samples)
-    session.restore(Snapshot.from_json(json.loads(json.dumps(session.snapshot().to_json()))))
+    session.change(settings=replace(session.settings, lamp_radius=radius, lamp_samples=samples))
+    session.restore(Snapshot.from_json(json.loads(json.dumps(session.state.to_json()))))
     assert (session.settings.lamp_radius, session.settings.lamp_samples) == (radius, samples)
 
 
@@ -70,11 +70,11 @@ def test_settings_that_are_none_are_refused(wrong):
 
 def test_following_is_restored_as_following():
     session = session_somewhere()
-    session.free_camera = None
+    session.change(camera=None)
     other = Session()
     other.open(make_scene())
     other.move(Camera((9, 9, 9), (0, 0, 1)))
-    other.restore(Snapshot.from_json(session.snapshot().to_json()))
+    other.restore(Snapshot.from_json(session.state.to_json()))
     assert other.follow
 
 
@@ -103,10 +103,10 @@ def test_time_goes_round_or_stops_at_the_end():
     session = Session()
     session.open(make_scene())
     session.playing = True
-    session.time = 9.5
+    session.change(time=9.5)
     session.advance(1.0, loop=True)
     assert session.time == pytest.approx(0.5) and session.playing
-    session.time = 9.5
+    session.change(time=9.5)
     session.advance(1.0, loop=False)
     assert session.time == 10.0 and not session.playing
 
@@ -137,4 +137,4 @@ def test_without_a_scene_there_is_a_camera_but_no_snapshot():
     session = Session()
     assert session.camera.angle > 0
     with pytest.raises(ValueError, match="no scene"):
-        session.snapshot()
+        session.state

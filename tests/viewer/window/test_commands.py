@@ -82,7 +82,7 @@ def test_no_panel_opens_by_itself_where_it_would_cover_the_picture(ui):
 def test_views_are_chosen_and_ticked(ui):
     by_name = {c.name: c for c in ui.commands}
     by_name[View.SHADOW.label].run()
-    assert ui.controller.session.view is View.SHADOW
+    assert ui.controller.session.draw.view is View.SHADOW
     assert by_name[View.SHADOW.label].checked() and not by_name[View.COLOR.label].checked()
     assert by_name[View.SHADOW.label].key == "3"
 

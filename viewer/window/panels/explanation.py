@@ -29,7 +29,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     c = ui.controller
     pointed, ui.pointed_light = ui.pointed_light, None  # the inspector says so in each frame
     answer, frame = c.inspector.answer, c.frame
-    if answer is None or frame is None or c.selection.picked is None or not c.preferences.draw_explanation:
+    if answer is None or frame is None or c.selection.picked is None or not c.session.draw.rays:
         return
     width, height = end.x - corner.x, end.y - corner.y
 

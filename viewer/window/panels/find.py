@@ -88,14 +88,14 @@ def _filter(ui: Ui, table: SceneTable) -> None:
 def _light(ui: Ui, table: SceneTable) -> None:
     """Which light shadow modes are of."""
     c = ui.controller
-    label = "all lights" if table.all_lights else ui.light_name(c.session.light)
+    label = "all lights" if table.all_lights else ui.light_name(c.session.draw.light)
     if imgui.begin_combo("##light", label):
         if imgui.is_window_appearing():
             ui.light_filters["find"] = ""
         if imgui.selectable("all lights", table.all_lights)[0]:
             table.all_lights = True
         for number in list(lights.found(ui, "find"))[:64]:
-            chosen = not table.all_lights and c.session.light == number
+            chosen = not table.all_lights and c.session.draw.light == number
             if imgui.selectable(f"{ui.light_name(number)}##{number}", chosen)[0]:
                 table.all_lights = False
                 c.settings.set_light(number)

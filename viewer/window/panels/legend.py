@@ -27,12 +27,14 @@ def of_picture(ui: Ui) -> Legend | None:
     of_both = comparing.legend(ui)
     if of_both is not None:
         return of_both
-    light, seen = c.session.light, comparing.shown(ui)
+    light, seen = c.session.draw.light, comparing.shown(ui)
     if seen is not None and comparing.shows_a(ui):
         frame, view, light = seen[0].frame, seen[0].view, seen[0].light
-    s, p = c.session, c.preferences
+    draw = c.session.draw
     span = c.comparing.span(view)
-    chosen = Chosen(light, scene.lights, p.mark_wrong, p.work_shares, span, s.tone, s.clipping, s.cut)
+    chosen = Chosen(
+        light, scene.lights, draw.mark_wrong, draw.shares, span, draw.tone, draw.clipping, draw.slice
+    )
     kept = "legend" if frame is c.frame else "legend of A"
     found: Legend | None = ui.cached(kept, frame, (view, chosen), lambda: legend_of(frame, view, chosen))
     return found
@@ -55,8 +57,8 @@ def in_panel(ui: Ui) -> None:
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """Over the picture from `corner` to `end`: where it was put, and always inside."""
     ui.legend_shown, ui.legend_place = False, None
-    legend, p = of_picture(ui), ui.controller.preferences
-    if legend is None or not p.legend:
+    legend, options = of_picture(ui), ui.controller.session.draw
+    if legend is None or not options.legend:
         return
     width, height = end.x - corner.x, end.y - corner.y
     layout = fitting(legend, _width_of, imgui.get_text_line_height(), _MOST * width, _MOST * height)
@@ -67,7 +69,8 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     least = ImVec2(corner.x + margin, corner.y + margin + imgui.get_text_line_height() + em(0.7))  # below the title
     room = ImVec2(end.x - margin - layout.width - least.x, end.y - margin - layout.height - least.y)
     room = ImVec2(max(room.x, 1.0), max(room.y, 1.0))
-    at = ImVec2(round(least.x + p.legend_x * room.x), round(least.y + p.legend_y * room.y))
+    across, down = options.legend_at
+    at = ImVec2(round(least.x + across * room.x), round(least.y + down * room.y))
     imgui.set_cursor_screen_pos(at)
     imgui.invisible_button("legend", ImVec2(layout.width, layout.height))
     _drag(ui, at, least, room)
@@ -83,7 +86,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
 
 def _drag(ui: Ui, at: ImVec2, least: ImVec2, room: ImVec2) -> None:
     """Follow the pointer that holds it; let go near an edge, it lies at that edge."""
-    p, mouse = ui.controller.preferences, imgui.get_io().mouse_pos
+    mouse = imgui.get_io().mouse_pos
     if imgui.is_item_activated():
         ui.legend_held = mouse.x - at.x, mouse.y - at.y
     released = imgui.is_item_deactivated()
@@ -92,9 +95,10 @@ def _drag(ui: Ui, at: ImVec2, least: ImVec2, room: ImVec2) -> None:
     if not (imgui.is_item_active() or released):
         return
     left, top = mouse.x - ui.legend_held[0] - least.x, mouse.y - ui.legend_held[1] - least.y
-    p.legend_x, p.legend_y = (min(max(way / free, 0.0), 1.0) for way, free in ((left, room.x), (top, room.y)))
+    across, down = (min(max(way / free, 0.0), 1.0) for way, free in ((left, room.x), (top, room.y)))
     if released:
-        p.legend_x, p.legend_y = _caught(p.legend_x, room.x), _caught(p.legend_y, room.y)
+        across, down = _caught(across, room.x), _caught(down, room.y)
+    ui.controller.session.set_draw(legend_at=(across, down))
 
 
 def _caught(part: float, room: float) -> float:

@@ -53,7 +53,7 @@ def show(ui: Ui) -> None:
         _offer(ui, frame)
         return
     cubes: tuple[LightCube, ...] = frame.structures[LIGHT_CUBES]
-    light = c.session.light
+    light = c.session.draw.light
     found = cubes[light] if light < len(cubes) else None
     if found is None or found.cube is None:
         why = found.why if found is not None else f"only the first {len(cubes)} lights have one"

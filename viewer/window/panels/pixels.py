@@ -45,11 +45,11 @@ def _watched(ui: Ui) -> None:
     tip = "numbers in the pixels, and a grid, where the picture is enlarged enough"
     checkbox("Values in pixels", p.pixel_values, lambda on: setattr(p, "pixel_values", on), tip)
     imgui.same_line(0.0, em(1.0))
-    if not c.session.zoom.fits:
+    if not c.session.draw.zoom.fits:
         if imgui.small_button("Fit"):
             closer.fit(ui)
         imgui.same_line()
-    clipped("all of the picture" if c.session.zoom.fits else f"enlarged {c.session.zoom.scale:.3g} times", QUIET)
+    clipped("all of the picture" if c.session.draw.zoom.fits else f"enlarged {c.session.draw.zoom.scale:.3g} times", QUIET)
     frame = c.frame
     if frame is None or not ui.pixels.watched:
         text = "Ctrl+wheel zooms into the picture, Ctrl+drag moves it. Watch the pixel under the pointer"
@@ -96,7 +96,7 @@ def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Sid
     clipped(" ".join(f"{channel:.{digits}f}" for channel in frame.color[y, x]))
     if c.tracing.drawn_view not in (View.COLOR, View.WIPE):
         imgui.table_next_column()
-        clipped(_value(ui, frame, c.tracing.drawn_view, c.session.light, x, y))
+        clipped(_value(ui, frame, c.tracing.drawn_view, c.session.draw.light, x, y))
     if a is not None:
         imgui.table_next_column()
         there = pixel_at(a.frame, *point)
@@ -106,13 +106,13 @@ def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Sid
 
 def _value(ui: Ui, frame: Frame, view: View, light: int, x: int, y: int) -> str:
     c = ui.controller
-    return " ".join(words_at(frame, view, light, x, y, c.preferences.work_shares, c.session.cut)) or "-"
+    return " ".join(words_at(frame, view, light, x, y, c.session.draw.shares, c.session.draw.slice)) or "-"
 
 
 def _histogram(ui: Ui) -> None:
     """How the values of the region lie, and the range of the colour map from them."""
     c, frame, region = ui.controller, ui.controller.frame, ui.pixels.region
-    view, light, cut = c.tracing.drawn_view, c.session.light, c.session.cut
+    view, light, cut = c.tracing.drawn_view, c.session.draw.light, c.session.draw.slice
     difference = comparing.difference(ui)
     if frame is None or not can_draw(frame, view, light):
         return
@@ -148,9 +148,10 @@ def _histogram(ui: Ui) -> None:
         if imgui.small_button("Use as the range of colours"):
             c.comparing.state.limit = max(-found.least[0], found.largest[0])
         tooltip("the colours go as far to both sides of 0 as the difference does here")
-    elif view.has_range and not (view.needs_work and c.preferences.work_shares):
+    elif view.has_range and not (view.needs_work and c.session.draw.shares):
         if imgui.small_button("Use as the range of colours"):
-            c.session.spans[view] = (min(found.least), max(max(found.largest), min(found.least) + 1e-6))
+            span = min(found.least), max(max(found.largest), min(found.least) + 1e-6)
+            c.session.change(draw=c.session.draw.with_span(span, view))
         tooltip("the first and the last colour of the map stand for the least and the largest value here")
     _plot(found, values.names)
 

@@ -9,8 +9,9 @@ from viewer.services.ray_inspector import RayInspector
 from viewer.state.ray_lines import MOST_DRAWN
 from viewer.state.verdicts import Shown
 from viewer.window.panels import lights, ray_steps
+from viewer.window.setting_rows import ALL, setting_switch
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, checkbox, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip
+from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip
 
 _SIDE_BY_SIDE = 38.0  # ems of width that leave room for both
 _TREE_SHARE = 0.48
@@ -43,7 +44,7 @@ def section(ui: Ui) -> None:
         imgui.set_scroll_here_y(0.0)
     if opened:
         _list(ui, rays)
-    checkbox("Draw for a click", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), _DRAWN)
+    setting_switch(ui, ALL["draw.rays"])
 
 
 def _list(ui: Ui, rays: RayInspector) -> None:

@@ -30,7 +30,7 @@ def show(ui: Ui) -> None:
     words = Words(scene, found)
     if not found.reasons:
         paragraph("The scene has no lights.", QUIET)
-    chosen = min(c.session.light, len(found.reasons) - 1)
+    chosen = min(c.session.draw.light, len(found.reasons) - 1)
     for one in found.reasons[chosen : chosen + 1]:
         _chosen(ui, words, one)
     many = len(found.reasons) > lights.FEW
@@ -56,7 +56,7 @@ def unanswered(ui: Ui) -> str:
         return f"answered when the {run.name} has ended"
     if selection.picked is not None and selection.pixel is None:
         return "The clicked point is not visible from here. Its shadow rays are explained when it is in view again."
-    if c.motion.lively:
+    if c.motion.is_animating:
         return "answered when nothing moves"
     return f"answered after {after(c)}" if after(c) else "looking into it ..."
 

@@ -36,7 +36,7 @@ def show(ui: Ui, area: Area) -> None:
     in_place = c.inspector.names_pixels_of(frame)
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(area.corner, area.end, True)
-    if c.selection.picked is not None and c.preferences.draw_explanation and found is not None:
+    if c.selection.picked is not None and c.session.draw.rays and found is not None:
         _hider(ui, draw, area, frame, found, in_place)
         if in_place and c.selection.pixel == (found.x, found.y):
             _figure_3(draw, area, frame, found)
