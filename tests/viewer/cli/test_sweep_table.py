@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 from rich.console import Console
 
-from viewer.cli import sweep_table
+from viewer.cli import sweep
 from viewer.output.sweep_summary import COLUMNS, Line
 
 METHODS = ("none", "paper", "lightcuts-stochastic", "certified+lightbuffer")
@@ -26,7 +26,7 @@ def lines() -> list[Line]:
 
 def printed(width: int | None) -> tuple[str, int]:
     """What is printed, and how many tables it is."""
-    tables, out = list(sweep_table.tables(STUDY, lines(), width)), io.StringIO()
+    tables, out = list(sweep.tables(STUDY, lines(), width)), io.StringIO()
     for table in tables:
         title, table.title = table.title, None
         print(title, file=out)
