@@ -68,7 +68,7 @@ class RunController:
         """Whether a run is under way that must not be disturbed; says so."""
         if self.current is None or self.current.stopping:
             return False
-        self._notices.say(f"the {self.current.name} is still under way; stop it first (Escape)")
+        self._notices.say(f"the {self.current.name} is still under way; stop it first")
         return True
 
     def start_experiment(self) -> None:

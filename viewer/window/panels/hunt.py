@@ -182,7 +182,7 @@ def _details(ui: Ui, hunts: HuntController, number: int, find: Counterexample, s
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_CODE_BRANCH}  Rays"):
         ui.show_rays()
-    tooltip_above("what became of each ray of the pixel (X)")
+    tooltip_above(f"what became of each ray of the pixel{ui.key('Rays of the clicked pixel')}")
     _colors(find)
     for sentence in (*counterexample.in_words(find, scene), counterexample.in_its_frame(find)):
         paragraph(in_window_style(sentence))

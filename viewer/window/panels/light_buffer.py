@@ -74,7 +74,7 @@ def _choose(ui: Ui) -> None:
     """Which light, and what of its cube."""
     with properties("light buffer", 4.0) as shown:
         if shown:
-            row("Light", "whose cube is shown (L and Shift+L)")
+            row("Light", f"whose cube is shown{ui.keys('Next light', 'Previous light')}")
             lights.combo(ui)
             row("Shown", "what is known of each cell, or how far from the light all is in shadow")
             for number, name in enumerate(("lists", "full shadow")):
