@@ -170,9 +170,9 @@ def test_seeds_shake_the_camera_and_a_warmup_cuts_paths(shared: Cluster, capfd: 
     assert len(found) == 20 and len({row["task"] for row in found.values()}) == 20, "each frame is a task"
     assert found[1, "none", 2]["picture"] != found[2, "none", 2]["picture"]
     scene = load_scene("room.aff")
-    study = study.Study(Path("study.toml"), "", {}, ("paper",), (), (1,), 0.02)
+    study = sweeping.Study(Path("study.toml"), "", {}, ("paper",), (), (1,), 0.02)
     settings = Settings(width=24, height=18, method="paper", accelerator="kdtree", threads=1)
-    task = study.Task("room.aff", "", settings, 1, study.shake, 10, 0.0)
+    task = sweeping.Task("room.aff", "", settings, 1, study.shake, 10, 0.0)
     renderer = sweeping.rows_of(
         replace(task, frames=((4, scene.frame_time(4)),), before=tuple((n, scene.frame_time(n)) for n in (2, 3))), scene
     )
