@@ -18,7 +18,7 @@ from rich.tree import Tree
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
 from tracer.method import DEFAULT_METHOD, Method
-from tracer.mode_origins import Ledger
+from tracer.mode_origins import ModeOrigins
 from tracer.reasons import Why
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
@@ -57,7 +57,7 @@ def explain(path: Path, options: Namespace) -> None:
         times = times_before(scene, time, options.warmup, work)
         times += [time] * _repeats(options)
         before = [*options.before, *(WarmupFrame(then, options.camera) for then in times)]
-        ledger, moves = Ledger(len(scene.lights)), _Moves(scene)
+        ledger, moves = ModeOrigins(len(scene.lights)), _Moves(scene)
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
             modes = renderer.render(earlier.time, earlier.camera, work.cancelled).modes
@@ -97,7 +97,9 @@ class _Moves:
         return None if before is None else (before != self._before).any(axis=1)
 
 
-def _with_teachers(found: Why, renderer: Renderer, frame: Frame, ledger: Ledger, before: Sequence[WarmupFrame]) -> Why:
+def _with_teachers(
+    found: Why, renderer: Renderer, frame: Frame, ledger: ModeOrigins, before: Sequence[WarmupFrame]
+) -> Why:
     """The same with the frames, and the pixels of these, that gave the primitive its modes."""
     unit = int(frame.cell[found.y, found.x])
     taught = ledger.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
