@@ -110,8 +110,8 @@ class Script:
         self._lead(self.began)
         had = self.c.traced
         self._before()
-        if self.c.notices.faults.notice is not None:  # the window lives on, but what it shows is worth nothing
-            raise RuntimeError(self.c.notices.faults.notice.as_text)
+        if self.c.notices.newest_fault is not None:  # the window lives on, but what it shows is worth nothing
+            raise RuntimeError(self.c.notices.newest_fault.as_text)
         new = self.c.traced
         if new is had or new is None or self.burst is None:
             return

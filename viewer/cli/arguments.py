@@ -18,8 +18,8 @@ from tracer.similar import did_you_mean, similar
 from viewer.util.messages import ERROR, say
 
 if TYPE_CHECKING:
+    from tracer.experiments.warmup_frames import WarmupFrame
     from tracer.scene.model import Camera
-    from viewer.state.earlier import Earlier
     from viewer.state.slices import Slice
     from viewer.state.views import View
 
@@ -221,11 +221,11 @@ def _json(text: str, start: str, most: int) -> Any:
         raise ValueError(f"{name} is not JSON") from None
 
 
-def before(text: str) -> tuple[Earlier, ...]:
+def before(text: str) -> tuple[WarmupFrame, ...]:
     """Read the frames that come before."""
-    from viewer.state import earlier
+    from tracer.experiments import warmup_frames
 
-    return earlier.from_json(_json(text, "[", 1 << 26))
+    return warmup_frames.from_json(_json(text, "[", 1 << 26))
 
 
 def camera(text: str) -> Camera | None:

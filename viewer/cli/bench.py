@@ -11,10 +11,10 @@ from pathlib import Path
 
 from rich.table import Table
 
-from tracer import experiment, lamp_experiment
-from tracer.experiment import REFERENCE, Results, Row
+from tracer.experiments import experiment, lamp_experiment
+from tracer.experiments.experiment import REFERENCE, Results, Row
+from tracer.experiments.lamp_experiment import CEILING, LampResults, LampRow
 from tracer.geometry.world import World
-from tracer.lamp_experiment import CEILING, LampResults, LampRow
 from tracer.method import line_up
 from tracer.scene.load import check_scene_file
 from viewer.cli import arguments, options

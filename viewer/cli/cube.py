@@ -9,11 +9,11 @@ from PIL import Image
 
 from tracer.methods.lightbuffer import LightBuffer
 from tracer.renderer import Renderer
+from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file
 from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import print_table, titled, working
-from viewer.output.legend_parts import named_light
 from viewer.output.light_cube import EMPTY, FEW, MANY, ONE, described, picture_of, seen
 from viewer.output.pictures import lights_in_words
 from viewer.util.messages import printable

@@ -11,10 +11,13 @@ from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
 from tracer.method import DEFAULT_METHOD, Method
+from tracer.mode_origins import ModeOrigins
 from tracer.reasons import Why
 from tracer.renderer import Renderer
+from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
 from tracer.told_rays import RayTree
@@ -22,13 +25,10 @@ from tracer.why import why
 from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import working
-from viewer.output.legend_parts import named_light
 from viewer.output.ray_json import ray_data
 from viewer.output.ray_rows import RayRows, Row, totals
 from viewer.output.why_lines import why_data, why_lines
 from viewer.services.teachers import Answers, Teacher, answers_at, can_be_asked, with_teachers
-from viewer.state.earlier import Earlier
-from viewer.state.teaching import Ledger
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
 
@@ -90,18 +90,18 @@ def run(given: Namespace) -> int:
         renderer = Renderer(scene, settings, work.progress)
         times = options.warmup_times(scene, time, given.warmup, work)
         times += [time] * _repeats(given)
-        before = [*given.before, *(Earlier(then, given.camera) for then in times)]
-        ledger, places = Ledger(len(scene.lights)), None
+        before = [*given.before, *(WarmupFrame(then, given.camera) for then in times)]
+        origins, places = ModeOrigins(len(scene.lights)), None
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
             modes = renderer.render(earlier.time, earlier.camera, work.cancelled).modes
             were, places = places, scene.light_positions(earlier.time)
-            ledger.add(done, modes, None if were is None else (were != places).any(axis=1))  # lights that have moved
+            origins.add(done, modes, None if were is None else (were != places).any(axis=1))  # lights that have moved
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, given.camera, work.cancelled)
         found = why(renderer, frame, x, y, work.cancelled)
         work.count("asking which frames have taught it", len(before), len(before) + 1)
-        found = _with_teachers(found, renderer, frame, ledger, before)
+        found = _with_teachers(found, renderer, frame, origins, before)
     tree = found.tree
     assert tree is not None
     if given.json:
@@ -124,10 +124,12 @@ def _repeats(given: Namespace) -> int:
     return 0 if given.warmup or given.before else 1
 
 
-def _with_teachers(found: Why, renderer: Renderer, frame: Frame, ledger: Ledger, before: Sequence[Earlier]) -> Why:
+def _with_teachers(
+    found: Why, renderer: Renderer, frame: Frame, origins: ModeOrigins, before: Sequence[WarmupFrame]
+) -> Why:
     """Add the frames, and the pixels of these, that gave the primitive its modes."""
     unit = int(frame.cell[found.y, found.x])
-    taught = ledger.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
+    taught = origins.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
     if taught is None:
         return found
 

@@ -127,7 +127,7 @@ def _is_shared(recipe: Recipe, given: Namespace, work: Work) -> bool:
     """Whether several processes shall share the film, and can; raises ValueError, in one line, without Dask."""
     if given.workers is None and given.scheduler is None:
         return False
-    from viewer.services.cluster import check_dask
+    from tracer.experiments.cluster import check_dask
     from viewer.services.films_elsewhere import filmed_alone
 
     check_dask()

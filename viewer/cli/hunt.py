@@ -10,6 +10,8 @@ from pathlib import Path
 
 from rich.table import Table
 
+from tracer.experiments import counterexample, hunt
+from tracer.experiments.hunt import Search
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.scene.lights import number_of
@@ -18,10 +20,7 @@ from tracer.scene.model import Cancelled, Scene
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, last_of, print_table, titled, working
-from viewer.output import finds
-from viewer.output.finds import Findings
-from viewer.services import find_figures, hunting
-from viewer.services.hunting import Search
+from viewer.services import counterexamples
 from viewer.state import flight
 from viewer.state.methods import NO_CULLING
 from viewer.util.messages import printable
@@ -82,18 +81,18 @@ def run(given: Namespace) -> int:
         scene = options.read_scene(given.path, given, work)
         search = _search(scene, settings, given)
         if given.output is not None:
-            find_figures.check_folder(given.output)
+            counterexamples.check_folder(given.output)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method, NO_CULLING)
         world = World(scene, search.times[0], settings.accelerator, work.progress)
         done = 0
 
-        def on_frame(label: str, number: int, total: int, frame: Frame) -> None:
+        def on_frame(label: str, frame: Frame) -> None:
             nonlocal done
-            done = number
-            work.count(label, number, total)
+            done += 1
+            work.count(label, done, search.frames)
 
         work.count(f"frame 1 of {len(search.times)}", 0, search.frames)
-        found = last_of(hunting.hunt(scene, search, world, work.cancelled, on_frame))
+        found = last_of(hunt.run(scene, search, work.cancelled, world, on_frame))
         whole = not work.stopped
         if not whole:
             work.note(f"cancelled after {done} of {search.frames} pictures; the table is of these")
@@ -113,33 +112,33 @@ def _search(scene: Scene, settings: Settings, given: Namespace) -> Search:
     return Search(settings, times, given.camera, given.around, given.radius, given.seed, given.keep)
 
 
-def _write(found: Findings, scene: Scene, search: Search, world: World, given: Namespace, work: Work) -> list[Path]:
+def _write(found: hunt.Results, scene: Scene, search: Search, world: World, given: Namespace, work: Work) -> list[Path]:
     """Write the files of all findings; of a hunt that was stopped the JSON alone, as figures take long."""
     written, meshes = [], options.mesh_options(given)
     for rank, find in enumerate(found.finds, 1):
-        stem = given.output / find_figures.name_of(rank)
-        find_figures.save_json(find, found, scene, stem.with_suffix(".json"), options.mesh_arguments(meshes))
+        stem = given.output / f"find-{rank}"
+        counterexamples.save_json(find, found, scene, stem.with_suffix(".json"), options.mesh_arguments(meshes))
         if not work.stopped:
             work.count(f"figure {rank} of {len(found.finds)}", rank - 1, len(found.finds))
             of_file, folders = meshes.of_file(Path(scene.path)), tuple(given.folder)
-            wanted = find_figures.comparison_of(find, found, scene, search.settings, folders, of_file)
+            wanted = counterexamples.comparison_of(find, found, scene, search.settings, folders, of_file)
             try:
-                find_figures.save_figure(wanted, scene, world, stem.with_suffix(".png"), cancelled=work.cancelled)
+                counterexamples.save_figure(wanted, scene, world, stem.with_suffix(".png"), cancelled=work.cancelled)
                 written.append(stem.with_suffix(".png"))
             except Cancelled:
                 work.note("cancelled: the figures from here on are not drawn")
         written.append(stem.with_suffix(".json"))
-    find_figures.save_all(found, scene, given.output)
-    return [*written, given.output / find_figures.ALL]
+    counterexamples.save_all(found, scene, given.output)
+    return [*written, given.output / counterexamples.ALL]
 
 
-def _table(found: Findings, scene: Scene) -> Table:
+def _table(found: hunt.Results, scene: Scene) -> Table:
     size = f"{found.size[0]} × {found.size[1]}"
     title = f"{Path(found.scene).name}, {size}, method {found.method}: the worst wrong pixels"
     table = titled(title, "difference: of the colour, of 1; wrong pixels: of the picture; light: (+ others)")
     for heading in ("", "difference", "pixel", "wrong pixels"):
         table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("where", no_wrap=True)
+    table.add_column("frame", no_wrap=True)
     for heading in ("primitive", "light", "culled by", "truly", "learnt"):
         table.add_column(heading, overflow="fold")
     for rank, find in enumerate(found.finds, 1):
@@ -148,11 +147,11 @@ def _table(found: Findings, scene: Scene) -> Table:
             f"{find.difference:.3f}",
             f"{find.x},{find.y}",
             f"{find.pixels:,}",
-            finds.where(find, scene),
-            printable(finds.primitive_of(find, scene)),
+            counterexample.frame_of(find, scene),
+            printable(counterexample.primitive_of(find, scene)),
             f"{number_of(scene.lights, find.light)}" + (f" (+{find.more_lights})" if find.more_lights else ""),
-            finds.verdict_of(find),
+            counterexample.verdict_of(find),
             "blocked" if find.lit else "lit",
-            finds.taught(find, scene),
+            counterexample.taught_by(find, scene),
         )
     return table

@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tracer.similar import did_you_mean
+from tracer.version import program_version
 from viewer.cli.arguments import FAILED, INTERRUPTED, MISUSED, Parser
 from viewer.util import resources
 from viewer.util.messages import ERROR, say
 from viewer.util.screen import has_display, no_display_reason
-from viewer.util.version import program_version
 
 if TYPE_CHECKING:
     from tracer.scene.mesh_options import MeshOptions

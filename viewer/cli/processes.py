@@ -7,9 +7,9 @@ import time
 from argparse import Namespace
 from contextlib import AbstractContextManager
 
+from tracer.experiments.cluster import Cluster, connected, local_cluster
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import Work
-from viewer.services.cluster import Cluster, connected, local_cluster
 
 
 def add_processes(parser: Parser) -> None:

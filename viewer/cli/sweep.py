@@ -6,7 +6,7 @@ Ctrl-C ends it at once: what is traced is kept, and the same command goes on fro
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
@@ -14,24 +14,25 @@ from typing import TYPE_CHECKING
 
 from rich.table import Table
 
-from tracer.experiment import REFERENCE
+from tracer.experiments.cluster import check_dask
+from tracer.experiments.experiment import REFERENCE
+from tracer.experiments.study import Study, read_study
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli import options, processes
 from viewer.cli.arguments import INTERRUPTED, Parser
 from viewer.cli.console import Work, left_out, named, print_table, terminal_width, titled, width_of, working
-from viewer.services.cluster import check_dask
 from viewer.state import terms
-from viewer.state.study import Study
-from viewer.state.study_file import read_study
+from viewer.util import numbers
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
+from viewer.util.resources import embedded_scenes
 
 if TYPE_CHECKING:  # these need pyarrow
-    from viewer.output.sweep_store import Store
-    from viewer.output.sweep_summary import Line
-    from viewer.services.sweeping import Plan, Report
+    from tracer.experiments.sweep import Plan, Report
+    from tracer.experiments.sweep_store import Store
+    from tracer.experiments.sweep_summary import Line
 
 RESULTS = "-results"
 """What the folder of a study's results is called after it."""
@@ -97,10 +98,10 @@ def run(given: Namespace) -> int:
     Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished."""
     path = given.study
     check_dask()
-    from viewer.output.sweep_store import Store
-    from viewer.services import sweeping
+    from tracer.experiments import sweep as sweeping
+    from tracer.experiments.sweep_store import Store
 
-    study = read_study(path)
+    study = read_study(path, embedded_scenes())
     if given.plot is not None:
         from viewer.output.figures import check_ending
 
@@ -149,7 +150,7 @@ def _scenes(study: Study, work: Work) -> dict[str, Scene]:
 
 def _trace(plan: Plan, store: Store, given: Namespace, work: Work) -> tuple[bool, Report]:
     """Trace what is missing; returns whether it was not stopped, and what came of it."""
-    from viewer.services import sweeping
+    from tracer.experiments import sweep as sweeping
 
     report = sweeping.Report()
     for change in plan.changes:
@@ -190,8 +191,8 @@ def _trace(plan: Plan, store: Store, given: Namespace, work: Work) -> tuple[bool
 
 
 def _summary(plan: Plan, store: Store) -> list[Line]:
-    from viewer.output.sweep_summary import summary
-    from viewer.services.sweeping import frames_of
+    from tracer.experiments.sweep import frames_of
+    from tracer.experiments.sweep_summary import summary
 
     lines = summary(store.read(), (key for task in plan.tasks for key in frames_of(task)))
     return [replace(line, scene=plan.study.label(line.scene)) for line in lines]
@@ -211,7 +212,7 @@ def _plot(study: Study, lines: list[Line], path: Path) -> None:
 
 def _check(report: Report) -> None:
     """Raise OSError, in one line, where not everything went well."""
-    from viewer.services.sweeping import in_words
+    from tracer.experiments.sweep import in_words
 
     if report.unequal:
         task, number, names = report.unequal[0]
@@ -227,6 +228,22 @@ def _check(report: Report) -> None:
 
 LEAST_WANTED = ("frames", "saved", "tests\nsaved", "wrong")
 """Columns that are left out, one after another, where there is no room for all."""
+
+
+def _saved(value: float, spread: float = float("nan")) -> str:
+    return "" if value != value else numbers.saved(value, spread if spread == spread else None)
+
+
+COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
+    ("frames", lambda line: f"{line.frames:,}"),
+    ("steps\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.steps, line.spread)),
+    ("tests\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.tests)),
+    (terms.SAVED, lambda line: "" if line.method == REFERENCE else f"{line.known:.1%}"),
+    ("wrong", lambda line: f"{line.wrong:,}" if line.verified else ""),
+    ("frame,\nmedian\nms", lambda line: "" if line.seconds != line.seconds else f"{1000 * line.seconds:,.1f}"),
+    ("speed-\nup, all\nframes", lambda line: "" if line.speed_up != line.speed_up else f"{line.speed_up:.2f}"),
+)
+"""What a table says of a line: headings, and the cells below them."""
 
 
 def tables(study: Study, lines: list[Line], width: int | None) -> Iterator[Table]:
@@ -262,8 +279,6 @@ def _of_part(part: list[Line], lines: list[Line], left: Sequence[str]) -> Table:
 
 def _table(title: str, shown: list[Line], lines: list[Line], left: Sequence[str] = (), where: bool = True) -> Table:
     """A section for each scene, size and combination of settings, a row for each method."""
-    from viewer.output.sweep_summary import COLUMNS
-
     verified = all(line.verified for line in lines)
     saved = f"\n{terms.SAVED} are shadow rays {terms.MEANINGS[terms.SAVED]}" * (terms.SAVED not in left)
     caption = (

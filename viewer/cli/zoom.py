@@ -11,13 +11,13 @@ from pathlib import Path
 
 from rich.table import Table
 
-from tracer import zoom
+from tracer.experiments import zoom
+from tracer.experiments.zoom import Aim, Approach, Results
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
-from tracer.zoom import Aim, Approach, Results
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, last_of, print_table, titled, working

@@ -155,7 +155,7 @@ class PictureController:
     ) -> None:
         """Put what is shown, (h, w, 3), on the clipboard, with its legend.
 
-        With the recipe that makes it again, and its annotations; without one, as for two pictures, it says nothing."""
+        With the recipe that makes it again; without one, as for two pictures, it says nothing."""
         scene, place = self._session.scene, (self._preferences.legend_x, self._preferences.legend_y)
         if pixels is None or frame is None or scene is None:
             self._notices.say("there is no picture to copy yet", error=True)

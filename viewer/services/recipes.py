@@ -68,7 +68,6 @@ class Recipes:
             beneath=p.beneath,
             outlines=p.outlines,
             legend=(p.legend_x, p.legend_y) if legend else None,
-            annotations=tuple(session.annotations),
             tone=session.tone if view.shows_picture else NEUTRAL,
             clipping=session.clipping and view.shows_clipped,
             span=session.spans.get(view) if ranged else None,

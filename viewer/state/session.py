@@ -17,9 +17,10 @@ from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.lights import number_of
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
+from tracer.setting import check_all
 from tracer.settings import RECORDS
+from viewer.state import codec
 from viewer.state import edits as scene_edits
-from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
 from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
@@ -59,7 +60,7 @@ class Snapshot:
         if self.edits:
             data["edits"] = scene_edits.to_json(self.edits)
         data |= {"slice": list(data.pop("cut"))}
-        return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": self.tone.to_json()}
+        return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": codec.to_json(self.tone)}
 
     @staticmethod
     def from_json(data: Any) -> Snapshot:
@@ -77,7 +78,7 @@ class Snapshot:
                 view=View(data.get("view", View.COLOR)),
                 light=max(0, whole(data.get("light", 0))),
                 wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
-                tone=Tone.from_json(data.get("tone", {})),
+                tone=check_all(codec.patched(NEUTRAL, data.get("tone", {}))),
                 span=_span(data.get("span")),
                 meshes=_meshes_from_json(data.get("meshes", {})),
                 edits=scene_edits.from_json(data.get("edits", {})),
@@ -162,7 +163,6 @@ class Session:
     comparison: Comparison = field(default_factory=Comparison)
     selected: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE  # how the scene was read
-    annotations: list[Annotation] = field(default_factory=list)
     _on_path: tuple[Scene, float, Camera] | None = field(default=None, init=False, repr=False, compare=False)
 
     @property
@@ -203,7 +203,6 @@ class Session:
         self.free_camera = None
         self.playing = False
         self.selected = None
-        self.annotations = []
         self.light = min(self.light, max(len(scene.lights) - 1, 0))
 
     @property

@@ -11,7 +11,6 @@ from imgui_bundle import imgui
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from viewer.output.annotations import annotated
 from viewer.output.compared import composed as composed_of
 from viewer.output.compared import difference_legend
 from viewer.output.legend_parts import Legend
@@ -163,15 +162,11 @@ def words(ui: Ui, side: Side | None = None) -> Words | None:
 
 
 def composed(ui: Ui, b: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The picture to save: B as it was drawn, (h, w, 3) uint8, and what is compared with it, with annotations."""
+    """The picture to save: B as it was drawn, (h, w, 3) uint8, and what is compared with it."""
     seen, compared = shown(ui), ui.compared
     if seen is None or compared is None:
         return b
-    alone, annotations = shows_a(ui), ui.controller.session.annotations
-    if seen[2] is Way.SIDE:
-        b = annotated(b, annotations)
+    alone = shows_a(ui)
     if seen[2] is Way.DIFFERENCE and not alone:
-        both = with_rings(compared.difference.read(), marked(ui))
-    else:
-        both = composed_of(compared.read_a(), b, seen[2], ui.controller.session.wipe, alone)
-    return both if seen[2] is Way.SIDE else annotated(both, annotations)
+        return with_rings(compared.difference.read(), marked(ui))
+    return composed_of(compared.read_a(), b, seen[2], ui.controller.session.wipe, alone)

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
+
+import moderngl
 
 from viewer.services.controller import Controller
 from viewer.state.missing import missing
 from viewer.state.parts import parts_of
+from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.savings import comparison_in_words
-from viewer.window import comparing, previewing
+from viewer.window import comparing
 from viewer.window.compared import Compared
 from viewer.window.display import Display, Look
 from viewer.window.magnifier import Magnifier
 from viewer.window.panels import legend, savings
+from viewer.window.preview import PreviewDisplay
 from viewer.window.shots import Shots
 from viewer.window.ui import CaptureKind, Ui
+
+PREVIEW_UPLOAD_SECONDS = 0.01
+"""That bringing the preview to the GPU takes of each of the window's frames, at most, unless one piece takes longer."""
 
 
 def make(ui: Ui) -> None:
@@ -34,7 +42,7 @@ def release(ui: Ui) -> None:
     if ui.magnifier is not None:
         ui.magnifier.release()
         ui.magnifier = None
-    previewing.release(ui)
+    release_preview(ui)
     if ui.display is not None:
         ui.display.release()
         ui.display = None
@@ -57,6 +65,52 @@ def draw(ui: Ui) -> None:
     display.draw(look)
     comparing.draw(ui, look)
     comparing.magnify(ui, look)
+
+
+def draw_preview(ui: Ui) -> None:
+    """Draw what is seen while kernels compile from where the camera is; free what it took once there is none any more.
+    The window's framebuffer stays bound.
+
+    A geometry that failed to be drawn is not tried again in this window."""
+    geometry = ui.controller.preview.geometry
+    if ui.display is None or geometry is None:
+        release_preview(ui)
+    elif ui.not_previewed is not geometry:
+        try:
+            _draw_preview(ui, ui.display, geometry)
+        except Exception:
+            release_preview(ui)
+            ui.not_previewed = geometry
+            raise
+
+
+def release_preview(ui: Ui) -> None:
+    """Free what the preview took; whatever comes next is tried."""
+    if ui.preview is not None:
+        ui.preview.release()
+    ui.preview = ui.not_previewed = None
+
+
+def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
+    c = ui.controller
+    if ui.preview is None or ui.preview.geometry is not geometry:
+        release_preview(ui)
+        ui.preview = PreviewDisplay(display.context, geometry)
+    width, height = ui.picture_area
+    if min(width, height) < 1:
+        return
+    window = display.context.detect_framebuffer()
+    try:
+        until = time.perf_counter() + PREVIEW_UPLOAD_SECONDS
+        while ui.preview.bring() and time.perf_counter() < until:
+            pass
+        if ui.preview.whole:
+            ui.preview.draw(c.session.camera, (width, height), hurried=c.motion.under_way)
+        else:
+            c.wake()
+    finally:
+        window.use()
+        display.context.disable(moderngl.DEPTH_TEST)
 
 
 def look_of(ui: Ui, selected: int = -1) -> Look:

@@ -9,8 +9,8 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
-from tracer.experiment import FIGURES, Results
-from tracer.lamp_experiment import LampResults
+from tracer.experiments.experiment import FIGURES, Results
+from tracer.experiments.lamp_experiment import LampResults
 from tracer.method import line_up
 from viewer.cli import bench, console
 from viewer.cli.bench import COLUMNS, bench_table

@@ -43,7 +43,7 @@ def show(ui: Ui) -> None:
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
             c.selection.picked = None
             return
-        tooltip("let it go, and follow the pointer again (Escape)")
+        tooltip(f"let it go, and follow the pointer again{ui.key('Stop, or clear the selection')}")
         _details(ui, c.selection.picked)
         return
     found = c.selection.at(c.selection.hovered)
