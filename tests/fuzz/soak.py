@@ -136,9 +136,8 @@ class Soak:
         self.c.settings.set_view(views[self.rng.integers(len(views))])
 
     def _size(self) -> None:
-        p = self.c.preferences
-        p.fixed_resolution = bool(self.rng.random() < 0.7)
-        p.fixed_width, p.fixed_height = (int(side) for side in self.rng.integers(8, 160, 2))
+        width, height = (int(side) for side in self.rng.integers(8, 160, 2))
+        self.c.session.set_pace(fixed_size=bool(self.rng.random() < 0.7), width=width, height=height)
 
     def _settings(self) -> None:
         rng = self.rng

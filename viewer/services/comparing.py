@@ -140,7 +140,7 @@ class Comparing:
     def span(self, view: View) -> tuple[float, float] | None:
         """The range that maps of numbers have: chosen, or one for both pictures, so that a colour means the same in A
         and in B; None for what each frame has."""
-        chosen, sides = self._session.spans.get(view), self.sides
+        chosen, sides = replace(self._session.draw, view=view).span, self.sides
         if chosen is not None or sides is None or not view.has_range or {side.view for side in sides} != {view}:
             return chosen
         frames = sides[0].frame, sides[1].frame

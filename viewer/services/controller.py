@@ -99,8 +99,8 @@ class Controller:
             self.restore,
         )  # fmt: skip
         self.recorder = LightRecorder(session, renderer, self.tracing)
-        refuses, overlook = self.runs.refuses, self.undo.without_undo
-        self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook, self.tracing.again)
+        refuses, without_undo = self.runs.refuses, self.undo.without_undo
+        self.editing = Editing(session, renderer, notices, refuses, self._show_edited, without_undo, self.tracing.again)
         self.table = SceneTable(session, self.selection, preferences, notices, self.captures, self.editing, awaken)
         self.before_edits = BeforeEdits(session, self.editing)
         self.questions = Questions(self.runs, self.captures, awaken)

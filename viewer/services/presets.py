@@ -99,9 +99,13 @@ class Presets:
         return self._preferences.presets
 
     @property
+    def _all(self) -> list[BuiltIn | Preset]:
+        return [*BUILT_IN, *self.own]
+
+    @property
     def names(self) -> list[str]:
         """All, those of the program first."""
-        return [preset.name for preset in (*BUILT_IN, *self.own)]
+        return [preset.name for preset in self._all]
 
     def tip(self, name: str) -> str:
         """Return what a preset does."""
@@ -112,7 +116,7 @@ class Presets:
         if self._locked():
             return
         session = self._session
-        preset = next((one for one in (*BUILT_IN, *self.own) if one.name == name), None)
+        preset = next((one for one in self._all if one.name == name), None)
         try:
             if preset is None or not preset.state:
                 raise ValueError("there is none of this name" if preset is None else "it holds no settings")

@@ -60,8 +60,9 @@ class Preview:
         if scene.primitive_count > MOST_READ:
             return
         self._scene = session.previewed = scene
-        self._start = session.state.camera = camera
-        start = session.time = scene.time_range[0] if time is None else time
+        self._start = camera
+        start = scene.time_range[0] if time is None else time
+        session.change(camera=camera, time=start)
 
         def gather(progress: Progress) -> tuple[PreviewGeometry, tuple[Corner, Corner] | None]:
             return preview_geometry(scene, start, progress), _bounds(scene)

@@ -15,8 +15,6 @@ from viewer.services.tracing import Tracing
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
-from viewer.state.slices import MIDDLE
-from viewer.state.tone import NEUTRAL
 from viewer.state.views import View
 
 UNKNOWN = "its modes were learnt from other frames as well"
@@ -58,21 +56,20 @@ class Recipes:
 
     def _style(self, view: View, magnified: int, legend: bool) -> Style:
         """Of tone and range, what the view has a use for."""
-        p, session = self._preferences, self._session
-        ranged = view.has_range and not (view.needs_work and p.work_shares)
+        draw = replace(self._session.draw, view=view).as_needed()
         return Style(
-            shares=p.work_shares,
-            marked=p.mark_wrong,
+            shares=draw.shares,
+            marked=draw.mark_wrong,
             magnified=magnified,
-            shading=p.shading,
-            beneath=p.beneath,
-            outlines=p.outlines,
-            legend=(p.legend_x, p.legend_y) if legend else None,
-            tone=session.draw.tone if view.shows_picture else NEUTRAL,
-            clipping=session.draw.clipping and view.shows_clipped,
-            span=session.spans.get(view) if ranged else None,
-            cut=session.draw.slice if view.has_slice else MIDDLE,
-            savings="" if p.savings_in_pictures else None,
+            shading=draw.shading,
+            beneath=draw.beneath,
+            outlines=draw.outlines,
+            legend=draw.legend_at if legend else None,
+            tone=draw.tone,
+            clipping=draw.clipping,
+            span=draw.span,
+            cut=draw.slice,
+            savings="" if self._preferences.savings_in_pictures else None,
         )
 
     def _with_history(self, found: Recipe, frame: Frame) -> Recipe:

@@ -21,9 +21,11 @@ from tracer.scene.studio import up_in_studio
 from viewer.output import capture
 from viewer.services import scene_files
 from viewer.services.jobs import Job
+from viewer.state import codec
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
-from viewer.state.session import Session, Snapshot
+from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.util.messages import ERROR, say
 
 PATIENCE = 0.5
@@ -36,7 +38,7 @@ class Arrival:
     and one line that says so.  `again` says that it is the scene that was open, read again: the place stays."""
 
     opened: scene_files.Opened | None
-    place: Snapshot | None
+    place: ViewState | None
     text: str
     again: bool = False
 
@@ -65,7 +67,7 @@ class SceneLoader:
         self.meshes = IN_STUDIO  # how the next mesh is read
         self._reading_meshes = IN_STUDIO  # how the one that is being read is
         self._abandoned: list[Job] = []
-        self._place: Snapshot | None = None  # where to go once the scene is loaded
+        self._place: ViewState | None = None  # where to go once the scene is loaded
         self._restored: Arrival | None = None
         self._again = False  # whether the scene that is open is being read again
         self._changed = ""  # what of it had changed, where that is why
@@ -93,7 +95,7 @@ class SceneLoader:
         place = self._place
         if place is None:
             return self._seen[0], None, None
-        return self._seen[0], place.time, None if place.follow else place.camera
+        return self._seen[0], place.time, place.camera
 
     @property
     def ready(self) -> bool:
@@ -113,7 +115,7 @@ class SceneLoader:
         from `folders` besides their own. `meshes` says how meshes are read; which way is up holds for the first."""
         self._folders, self.meshes = tuple(folders), meshes
         self._given = dict(settings or {})
-        self._session.change(settings=replace(self._session.settings, **self._given))
+        self._session.set_settings(**self._given)
         self.compiles = not compiled_before()
         title = "Compiling the tracer (first start only)" if self.compiles else "Loading the tracer"
         self.warm_up_job = Job(title, warm_up, self._wake)
@@ -178,15 +180,15 @@ class SceneLoader:
         if not last:
             return False
         try:
-            snapshot = Snapshot.from_json(last)
+            state = codec.state_from_json(last, self._session.state)
         except ValueError as error:
             self._notices.say(f"cannot start where you left off: {error}", error=True)
             return False
-        found = scene_files.find_scene(snapshot.scene, Path(snapshot.scene))
+        found = scene_files.find_scene(state.scene, Path(state.scene))
         if found is None:
-            self._notices.say(f"cannot start where you left off: the scene is gone: {snapshot.scene}", error=True)
+            self._notices.say(f"cannot start where you left off: the scene is gone: {state.scene}", error=True)
             return False
-        self._load(found, snapshot)
+        self._load(found, state)
         return True
 
     def reload(self) -> None:
@@ -246,24 +248,33 @@ class SceneLoader:
     def _restore_capture(self, path: Path) -> None:
         """Bring back scene, camera, time, settings and view of a captured picture."""
         try:
-            snapshot = capture.read(path)
+            state = self._as_here(capture.read(path))
         except capture.CaptureError as error:
             self._refuse(str(error))
             return
-        found = scene_files.find_scene(snapshot.scene, path)
+        found = scene_files.find_scene(state.scene, path)
         scene = self._session.scene
         if found is None:
-            self._refuse(f"{path.name}: its scene was not found: {snapshot.scene}")
+            self._refuse(f"{path.name}: its scene was not found: {state.scene}")
         elif (
             scene is not None
             and self.load_job is None
             and _same_file(found, scene)
-            and snapshot.meshes == self._session.meshes
+            and state.meshes == self._session.meshes
         ):
-            self._restored = Arrival(None, snapshot, f"restored {path.name}")
+            self._restored = Arrival(None, state, f"restored {path.name}")
             self._wake()
         else:
-            self._load(found, snapshot)
+            self._load(found, state)
+
+    def _as_here(self, state: ViewState) -> ViewState:
+        """A state from a picture, with what the window shows around pictures, and not in them, as it is here."""
+        here = self._session.state
+        draw = here.draw
+        return replace(state, pace=here.pace).with_draw(
+            legend=draw.legend, legend_at=draw.legend_at, rays=draw.rays, smooth=draw.smooth, zoom=draw.zoom,
+            savings=draw.savings, caption=draw.caption, magnified=draw.magnified,
+        )  # fmt: skip
 
     def _refuse(self, why: str) -> None:
         self._tell_shell(why)
@@ -274,12 +285,12 @@ class SceneLoader:
         if self._from_shell:
             say(why, ERROR)
 
-    def _load(self, path: Path, then: Snapshot | None, again: bool = False, meshes: MeshOptions | None = None) -> None:
+    def _load(self, path: Path, then: ViewState | None, again: bool = False, meshes: MeshOptions | None = None) -> None:
         if self.load_job is not None:
             self.load_job.cancel()
             self._abandoned.append(self.load_job)
         if then is not None:
-            then = replace(then, settings=then.settings | self._given)
+            then = then.with_settings(**self._given)
         self._given = {}
         self._place, self._again, self._changed = then, again, ""
         files = self._reading = {}

@@ -56,6 +56,7 @@ class SettingsController:
             self._notices.say(str(error), error=True)
             return
         self._session.state = state
+        self.note_method()
 
     def set_view(self, view: View) -> None:
         """Choose a view."""

@@ -63,7 +63,7 @@ class TeacherQuestion:
     def answer(self, renderer: Traces) -> None:
         real, record, pick = cast(Renderer, renderer), self.record, self.pick
         try:
-            self.found = answers_at(real, record.time, record.camera, record.settings, pick.unit, pick.in_cells)
+            self.found = answers_at(real, record.state.time, record.camera, record.settings, pick.unit, pick.in_cells)
         finally:
             real.world.place(self._time, real.state.rest.now.since > 0)
 

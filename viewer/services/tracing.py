@@ -362,8 +362,8 @@ class Tracing:
     @property
     def full_size(self) -> tuple[int, int]:
         """The resolution at idle: the window's, or the fixed one (0, 0 while there is nowhere to show it)."""
-        p, size = self._preferences, self.now.size
-        return (p.fixed_width, p.fixed_height) if p.fixed_resolution and min(size) > 0 else size
+        pace, size = self._session.pace, self.now.size
+        return (pace.width, pace.height) if pace.fixed_size and min(size) > 0 else size
 
     @property
     def magnified(self) -> int:

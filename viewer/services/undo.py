@@ -1,9 +1,9 @@
 """Undo and redo: a list of states.
 
 Nobody has to announce a change: the state is compared from one of the window's frames to the next.  Changes that belong
-together are one step: all of a drag, all of a flight until the camera rests, all turns of the wheel until it does.  Time
-by itself, and what a run does, are no steps.  How a mesh is read is one, which takes a while to be brought back: the
-mesh is read again."""
+together are one step: all of a drag, all of a flight until the camera rests, all turns of the wheel until it does.
+Time by itself, and what a run does, are no steps.  How a mesh is read is one, which takes a while to be brought
+back: the mesh is read again."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ FORMAT = 2
 
 def to_json(value: Any) -> Any:
     """Return a value as dictionaries, lists, numbers and words."""
-    return msgspec.to_builtins(value, enc_hook=_plain, order="deterministic")
+    return _with_lists(msgspec.to_builtins(value, enc_hook=_plain, order="deterministic"))
 
 
 def from_json(data: Any, kind: type[T], what: str = "it") -> T:
@@ -74,6 +74,13 @@ def _onto(base: dict[str, Any], data: Mapping[str, Any]) -> dict[str, Any]:
     return {**base, **data, **inner}
 
 
+def _with_lists(data: Any) -> Any:
+    """Lists in the place of tuples, so that what is stored is equal to what is read again."""
+    if isinstance(data, dict):
+        return {name: _with_lists(value) for name, value in data.items()}
+    return [_with_lists(value) for value in data] if isinstance(data, (list, tuple)) else data
+
+
 def _plain(value: Any) -> Any:
     if isinstance(value, np.generic):
         return value.item()
@@ -103,8 +110,9 @@ def state_from_json(data: Any, onto: ViewState | None = None) -> ViewState:
 
 def picture_from_json(data: Mapping[str, Any]) -> ViewState:
     """Return the state that a saved picture carries, of any version; raises ValueError, in one line."""
-    state, picture, size = data.get("state"), data.get("picture"), data.get("size")
-    if isinstance(state, Mapping) and isinstance(picture, Mapping):
+    state, size = data.get("state"), data.get("size")
+    picture = data.get("picture") or data.get("figure")
+    if isinstance(state, Mapping) and isinstance(picture, Mapping) and "draw" not in state:
         state = _of_today(state, picture)
     found = state_from_json(state)
     if not isinstance(size, list):

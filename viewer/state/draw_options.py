@@ -34,9 +34,9 @@ class Slice(NamedTuple):
     @staticmethod
     def parse(text: str) -> Slice:
         """Return the inverse of `in_words`; raises ValueError, in one line."""
-        axis, _, at = text.partition(":")
+        axis, colon, at = text.partition(":")
         try:
-            found = Slice(AXES.index(axis.strip().lower()), float(at or Slice().at))
+            found = Slice(AXES.index(axis.strip().lower()), float(at) if colon else Slice().at)
             found.check()
         except ValueError:
             raise ValueError(f"{text!r} is not a slice; give an axis and a part from 0 to 1, like y:0.25") from None

@@ -72,8 +72,8 @@ class Preferences:
                            low=0.001, high=1000.0, slider=(0.05, 20.0), log=True, unit=" x",
                            panel="Camera")  # fmt: skip
     loop: bool = True
-    playback_rate: float = setting(1.0, "Rate", "How fast time passes: 1 is the scene's own time.", low=0.01, high=100.0,
-                                   slider=(0.1, 10.0), log=True, unit=" x", panel="Time")  # fmt: skip
+    playback_rate: float = setting(1.0, "Rate", "How fast time passes: 1 is the scene's own time.", low=0.01,
+                                   high=100.0, slider=(0.1, 10.0), log=True, unit=" x", panel="Camera")  # fmt: skip
     savings: bool = True
     legend_in_pictures: bool = setting(
         False, "Legend in saved pictures", "Draw the legend of the view into them.", panel="Saving"
@@ -137,7 +137,7 @@ def load_preferences(folder: Path | None = None) -> tuple[Preferences, str | Non
 
 
 def save_preferences(
-    preferences: Preferences, folder: Path | None = None, base: Mapping[str, Any] | None = None
+    preferences: Preferences | Mapping[str, Any], folder: Path | None = None, base: Mapping[str, Any] | None = None
 ) -> str | None:
     """Write the preferences in one step; returns None, or one line saying why they could not be written.
 

@@ -11,7 +11,6 @@ from tracer.scene.lights import number_of
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
-from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import Pace, ViewState
@@ -34,7 +33,6 @@ class Session:
     playing: bool = False
     counting: bool = False
     comparison: Comparison = field(default_factory=Comparison)
-    annotations: list[Annotation] = field(default_factory=list)
     _on_path: tuple[Scene, float, Camera] | None = field(default=None, init=False, repr=False, compare=False)
 
     # --- the state -------------------------------------------------------------------------------
@@ -127,7 +125,6 @@ class Session:
         self.change(scene=path, edits=NO_EDITS, time=scene.time_range[0], camera=None)
         self.set_draw(light=min(self.draw.light, max(len(scene.lights) - 1, 0)))
         self.playing = False
-        self.annotations = []
 
     @property
     def original(self) -> Scene | None:

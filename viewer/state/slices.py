@@ -25,8 +25,6 @@ STATE = 3  # a mask of codes
 FEWEST = 6.0  # pixels that voxels, or blocks of them, must be wide for their borders to be drawn
 
 
-
-
 def middle_of(grid: VoxelGrid, cut: Slice) -> float:
     """Where the plane of a slice lies along its axis, in units of the scene."""
     return float((grid.x, grid.y, grid.z)[cut.axis] + (cut.layer((grid.nx, grid.ny, grid.nz)) + 0.5) * grid.side)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.camera import Camera
@@ -44,15 +45,17 @@ class Pace:
         "Show pictures before all of their pixels are shaded, so that frames come fast.", panel="Rendering",
     )  # fmt: skip
     target_fps: float = setting(
-        15.0, "In motion", "Frames per second to aim at.", low=1.0, high=240.0, slider=(2.0, 60.0), unit=" fps", digits=0,
-        panel="Rendering", applies=lambda state: state.pace.progressive,
+        15.0, "In motion", "Frames per second to aim at.", low=1.0, high=240.0, slider=(2.0, 60.0), unit=" fps",
+        digits=0, panel="Rendering", applies=lambda state: state.pace.progressive,
     )  # fmt: skip
     keep_tracing: bool = setting(
         False, "Keep tracing when idle",
         "Trace frame after frame, to watch how modes are set and certificates made.", panel="Culling",
     )  # fmt: skip
     every_frame: bool = setting(
-        False, "Trace every frame", "Play every frame of the animation, each traced in full, however long it takes; otherwise play in real time."
+        False,
+        "Trace every frame",
+        "Play every frame of the animation, each traced in full, however long it takes; otherwise play in real time.",
     )
     certificate_share: float = setting(
         0.15, "Certificate budget",
@@ -60,13 +63,6 @@ class Pace:
         low=0.0, high=MOST_CERTIFYING, percent=True, digits=0, panel="Culling",
         applies=lambda state: Method.parse(state.settings.method).has_certificates,
     )  # fmt: skip
-
-
-class WarmupFrame(NamedTuple):
-    """A frame that was traced before a picture: its time in seconds and its camera, None for the scene's own."""
-
-    time: float
-    camera: Camera | None = None
 
 
 @dataclass(frozen=True)

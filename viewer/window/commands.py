@@ -102,9 +102,16 @@ def _view(ui: Ui) -> list[Command]:
         Command("Next view", "View", another(1)),
         Command("Previous view", "View", another(-1)),
         Command(
-            "Next light", "View", lambda: c.settings.set_light(c.session.draw.light + 1), "L", enabled=lit, separated=True
+            "Next light",
+            "View",
+            lambda: c.settings.set_light(c.session.draw.light + 1),
+            "L",
+            enabled=lit,
+            separated=True,
         ),
-        Command("Previous light", "View", lambda: c.settings.set_light(c.session.draw.light - 1), "Shift+L", enabled=lit),
+        Command(
+            "Previous light", "View", lambda: c.settings.set_light(c.session.draw.light - 1), "Shift+L", enabled=lit
+        ),
         *space_commands.build(ui),
         Command(
             "What culling saves",
@@ -222,8 +229,6 @@ def _time(ui: Ui) -> list[Command]:
 
 def _culling(ui: Ui) -> list[Command]:
     c = ui.controller
-    p = c.preferences
-
     s = lambda: c.session.settings  # noqa: E731
     method = lambda: Method.parse(s().method)  # noqa: E731
 

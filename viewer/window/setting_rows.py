@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from imgui_bundle import imgui
@@ -81,8 +82,8 @@ def _slider(one: Setting, now: Any) -> Any:
     low, high = one.slider or (one.low, one.high)
     flags = int(imgui.SliderFlags_.logarithmic) if one.log else 0
     if one.kind is int:
-        changed, value = imgui.slider_int(f"##{one.path}", now, int(low), int(high), f"%d{one.unit}", flags)
-        return value if changed else None
+        changed, number = imgui.slider_int(f"##{one.path}", now, int(low), int(high), f"%d{one.unit}", flags)
+        return number if changed else None
     unit = " %%" if one.percent else one.unit
     shown = f"%{'+' if low < 0.0 else ''}.{one.digits}f{unit}"
     changed, value = imgui.slider_float(f"##{one.path}", scale * now, scale * low, scale * high, shown, flags)
@@ -114,10 +115,10 @@ def entries(ui: Ui) -> Iterator[Item]:
         if one.choices:
             yield from _choices(ui, one, locked)
         elif one.kind is bool:
-            yield _entry(ui, one, locked, run=lambda one=one: c.settings.set(one, not value_of(ui, one)),
-                         checked=value_of(ui, one), also="on off switch")  # fmt: skip
+            flip = partial(c.settings.set, one, not value_of(ui, one))
+            yield _entry(ui, one, locked, run=flip, checked=value_of(ui, one), also="on off switch")
         else:
-            yield _typed(ui, one, value_of(ui, one), lambda value, one=one: c.settings.set(one, value), locked)
+            yield _typed(ui, one, value_of(ui, one), partial(c.settings.set, one), locked)
     if c.session.animated and c.session.scene is not None:
         frame = Setting("Frame", "", 0, c.session.scene.frames - 1, kind=int, panel="Time", name="frame")
         yield _typed(ui, frame, c.session.frame, lambda number: c.motion.step(number - c.session.frame))
@@ -150,7 +151,9 @@ def _typed(ui: Ui, one: Setting, now: Any, change: Callable[[Any], None], refuse
 
 def _choices(ui: Ui, one: Setting, refused: str) -> Iterator[Item]:
     """An entry for each value of a setting."""
+    now, change = value_of(ui, one), ui.controller.settings.set
     for choice, meaning in one.choices.items():
-        named = replace(one, label=f"{one.label}: {one.text(choice)}")
-        yield _entry(ui, named, refused, run=lambda choice=choice: ui.controller.settings.set(one, choice),
-                     checked=choice == value_of(ui, one), hint=meaning or one.help)  # fmt: skip
+        text, hint = one.text(choice), meaning or one.help
+        named = replace(one, label=f"{one.label} {text}")
+        yield _entry(ui, named, refused, label=f"{one.label}: {text}", run=partial(change, one, choice),
+                     checked=choice == now, hint=hint)  # fmt: skip

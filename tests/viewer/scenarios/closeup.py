@@ -19,7 +19,8 @@ def closeup(d: Driver) -> None:
     d.resize(*SMALL)
     p = d.c.preferences
     d.fix_resolution(320, 240)
-    p.pixel_values = p.legend = False
+    p.pixel_values = False
+    d.c.session.set_draw(legend=False)
     d.settle()
     camera, traced, speed = d.c.session.camera, d.c.history.frames, d.c.preferences.speed
     shown = picture(d.c.frame)

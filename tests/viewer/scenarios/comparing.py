@@ -26,7 +26,6 @@ SMALL = 1024, 620  # a window that is quickly drawn, and just does not fold its 
 def comparing(d: Driver) -> None:
     """What was kept stays as it was, and is seen in each way beside what is changed since; saved as it is seen."""
     d.resize(*SMALL)
-    p = d.c.preferences
     d.fix_resolution(160, 120)
     d.c.settings.change(method="none")
     d.settle()
@@ -55,9 +54,9 @@ def comparing(d: Driver) -> None:
             shown = with_rings(signed_picture(found.pixels, found.apart.limit), found.worst)
             assert np.abs(saved.astype(int) - shown).max() <= 1 and found.worst, "with its rings"
             assert seen.legend(d.ui).entries[0].values == (str(len(found.worst)),)
-            p.mark_wrong = False
+            d.c.session.set_draw(mark_wrong=False)
             assert seen.marked(d.ui) == () and not seen.legend(d.ui).entries
-            p.mark_wrong = True
+            d.c.session.set_draw(mark_wrong=True)
         elif way is not Way.BLINK:  # which may show either
             assert np.array_equal(saved, composed(a, b, way, 0.5, shows_a=False))
         if way is Way.SIDE:
@@ -88,7 +87,7 @@ def comparing(d: Driver) -> None:
     assert not state.on and d.ui.compared.a is None, "one line at a time"
     d.press(KEY._1)
     d.c.session.set_draw(tone=Tone())
-    p.fixed_width, p.fixed_height = 80, 60
+    d.c.session.set_pace(width=80, height=60)
     d.settle()
     d.c.comparing.start(Way.FLIP)
     d.settle()

@@ -104,7 +104,7 @@ def dropping(d: Driver) -> None:
     d.c.settings.set_view(View.SHADOW)
     d.drop(dark)
     d.wait(lambda: d.c.session.scene.path.name == "dark.nff", "the scene without lights")
-    assert d.c.session.draw.view is View.COLOR and d.c.preferences.view == View.COLOR.value
+    assert d.c.session.draw.view is View.COLOR
     assert "The view is Colour, not Shadow mode, as there are no lights." in d.c.notices.message.text
     d.settle()
     d.press(KEY._3)

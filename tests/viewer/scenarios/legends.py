@@ -23,7 +23,9 @@ def legends(d: Driver) -> None:
         for view in View:
             d.c.settings.set_view(view)
             d.settle()
-            assert d.ui.legend_shown == (view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.draw.light)), view
+            assert d.ui.legend_shown == (
+                view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.draw.light)
+            ), view
             if d.ui.legend_shown:
                 _legend(d)
         _dragged(d)
@@ -51,7 +53,7 @@ def _dragged(d: Driver) -> None:
     """About the picture, and into two corners; nothing but the legend moves, and a click on it selects nothing."""
     d.c.settings.set_view(View.OCCLUSION)
     d.settle()
-    p, camera, frame = d.c.preferences, d.c.session.camera, d.c.frame
+    camera, frame = d.c.session.camera, d.c.frame
     left, top, right, bottom = d.picture_edges()
 
     def drag_to(x: float, y: float) -> tuple[float, float, float, float]:
@@ -66,9 +68,9 @@ def _dragged(d: Driver) -> None:
     d.frames(2)
     assert d.c.selection.picked is None and d.c.session.camera == camera and d.c.frame is frame
     area = drag_to(left, top)
-    assert (p.legend_x, p.legend_y) == (0.0, 0.0) and area[0] - left < 20.0
+    assert d.c.session.draw.legend_at == (0.0, 0.0) and area[0] - left < 20.0
     area = drag_to(right - (area[2] - area[0]) / 2.0 - 20.0, bottom - (area[3] - area[1]) / 2.0 - 20.0)
-    assert (p.legend_x, p.legend_y) == (1.0, 1.0) and right - area[2] < 20.0 and bottom - area[3] < 20.0
+    assert d.c.session.draw.legend_at == (1.0, 1.0) and right - area[2] < 20.0 and bottom - area[3] < 20.0
     assert d.c.session.camera == camera and d.c.frame is frame and d.c.selection.picked is None
 
 

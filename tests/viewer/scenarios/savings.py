@@ -89,8 +89,8 @@ def _saved(d: Driver) -> None:
     saved, frame = next(folder.glob("*.png")), d.c.frame
     with Image.open(saved) as picture:
         assert picture.width == frame.width and frame.height < picture.height < 1.5 * frame.height
-    style = capture.read_data(saved)["picture"]["style"]
-    assert " steps, " in style["savings"] and "fast as none (" in style["savings"], style
+    said = capture.read(saved).draw.savings
+    assert " steps, " in said and "fast as none (" in said
     p.savings_in_pictures = False
 
 

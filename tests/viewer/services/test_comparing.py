@@ -64,7 +64,7 @@ def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
 
 
 def test_maps_of_both_have_one_range(desk: Desk) -> None:
-    comparing, spans = desk.c.comparing, desk.c.session.spans
+    comparing, session = desk.c.comparing, desk.c.session
     desk.c.settings.set_view(View.DEPTH)
     keep(desk)
     alone = comparing.span(View.DEPTH)
@@ -75,7 +75,7 @@ def test_maps_of_both_have_one_range(desk: Desk) -> None:
     both = comparing.span(View.DEPTH)
     hit = [side.frame.depth[np.isfinite(side.frame.depth)] for side in (a, b)]
     assert alone is None and both[0] <= min(np.median(d) for d in hit) and both[1] >= max(np.median(d) for d in hit)
-    spans[View.DEPTH] = (1.0, 2.0)
+    session.change(draw=session.draw.with_span((1.0, 2.0), View.DEPTH))
     assert comparing.span(View.DEPTH) == (1.0, 2.0), "a range that was chosen is kept"
     assert comparing.span(View.COLOR) is None
 

@@ -51,7 +51,7 @@ def test_an_exact_picture_comes_back_bit_for_bit(desk: Desk, method: str) -> Non
     seen, c = flown(desk, method), desk.c
     for number, frame in seen.items():
         moment = c.history.records.get(number)
-        assert moment is not None and (moment.time, moment.camera) == (frame.time, frame.camera)
+        assert moment is not None and (moment.state.time, moment.camera) == (frame.time, frame.camera)
         c.navigator.go(number)
         of_path = c.session.frame_at(frame.time)
         assert desk.said == f"picture {number}, frame {of_path} of the path, again: the same picture, bit for bit"
@@ -59,7 +59,7 @@ def test_an_exact_picture_comes_back_bit_for_bit(desk: Desk, method: str) -> Non
         assert (c.session.time, c.session.camera) == (frame.time, frame.camera)
         assert (c.session.settings.method, c.session.settings.depth) == (method, frame.settings.depth)
         assert np.array_equal(c.frame.color.view(np.uint32), frame.color.view(np.uint32))
-    assert {c.history.records.get(number).view for number in seen} == {View.COLOR, View.DEPTH}
+    assert {c.history.records.get(number).state.draw.view for number in seen} == {View.COLOR, View.DEPTH}
 
 
 def test_frames_of_an_experiment_are_told_from_those_of_the_path(desk: Desk) -> None:
@@ -160,7 +160,7 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
     for n in learnt:
         moment = words[n]
         again.settings = moment.settings
-        word = again.render(moment.time, moment.camera).modes[picked.unit]
+        word = again.render(moment.state.time, moment.camera).modes[picked.unit]
         for light in range(2):
             for lit, bit in ((False, modes.FULL_SHADOW), (True, modes.NON_SHADOW)):
                 if int(modes.shadow_mode(word, light)) & bit:
@@ -173,7 +173,7 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
             found, moment = c.teachers.of(n, light, lit), words[n]
             assert found is not None
             exact = replace(moment.settings, method="none", record_lights=True, verify=False)
-            frame = tracer.Renderer(c.session.scene, exact, world=world).render(moment.time, moment.camera)
+            frame = tracer.Renderer(c.session.scene, exact, world=world).render(moment.state.time, moment.camera)
             here = (frame.primitive == picked.primitive) & (frame.asked[..., light] > 0)
             here &= (frame.reached[..., light] > 0) == lit
             if found.pixel is not None:

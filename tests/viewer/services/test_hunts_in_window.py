@@ -67,7 +67,7 @@ def test_the_figure_of_a_find_is_saved(study: Desk) -> None:
     (picture,), (told,) = folder.glob("*.png"), folder.glob("*.json")
     find, data = c.hunts.found.finds[0], capture.read_data(picture)
     assert data["figure"]["marks"] == [[find.x, find.y]] and data["figure"]["methods"] == ["none", "paper"]
-    assert json.loads(told.read_text())["before"] == data["figure"]["before"]
+    assert json.loads(told.read_text())["before"] == data["state"]["warmup"]["frames"]
     assert str(picture) in study.said
 
 

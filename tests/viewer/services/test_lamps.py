@@ -19,6 +19,7 @@ from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
 from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 HERE = Conditions(size=(16, 8))
@@ -83,7 +84,10 @@ class Window:
     """Tracing as the window drives it, of a scene with lamps."""
 
     def __init__(self, scene: Scene | None = None, **settings: int | float) -> None:
-        self.session, self.renders = Session(settings=Settings(method="none", samples=2, **settings)), Renders()
+        self.session, self.renders = (
+            Session(state=ViewState(settings=Settings(method="none", samples=2, **settings))),
+            Renders(),
+        )
         self.session.open(scene or make_scene())
         self.tracing = Tracing(self.session, Preferences(), self.renders)
 
@@ -151,7 +155,7 @@ def test_points_have_one_sample_and_whole_pictures_all_of_them():
     sphere = Light("lamp", (0.0, 5.0, 0.0), kind="sphere", radius=1.0, samples=16)
     window = Window(replace(make_scene(), lights=(sphere,)))
     assert window.rest() == [(4, 1), (None, 2), (None, 2)], "as the scene says"
-    window.tracing._preferences.dynamic_resolution = False
+    window.session.set_pace(progressive=False)
     window.move()
     assert set(window.rest(MOVING, 3)) == {(None, 2)}
 

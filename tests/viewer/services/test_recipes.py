@@ -78,23 +78,24 @@ def soft(desk: Desk) -> None:
 
 
 def toned(desk: Desk) -> None:
-    desk.c.session.draw.tone, desk.c.session.draw.clipping = Tone(-1.25, 0.7, Curve.FILMIC), True
+    desk.c.session.set_draw(tone=Tone(-1.25, 0.7, Curve.FILMIC), clipping=True)
 
 
 def ranged(desk: Desk) -> None:
     """By a range of its own; tone and stripes are for other views."""
-    desk.c.session.spans[View.DEPTH] = (1e-7, 9.5)
+    desk.c.session.change(draw=desk.c.session.draw.with_span((1e-7, 9.5), View.DEPTH))
     desk.c.settings.set_view(View.DEPTH)
 
 
 def by_modes(view: View) -> Callable[[Desk], None]:
     def change(desk: Desk) -> None:
-        desk.c.session.change(settings=replace(desk.c.session.settings, method="paper", symmetric=True, zoom_factor=2.5))
+        desk.c.session.change(
+            settings=replace(desk.c.session.settings, method="paper", symmetric=True, zoom_factor=2.5)
+        )
         desk.c.settings.set_view(view)
         desk.c.session.set_draw(wipe=0.3)
         desk.c.preferences.legend_in_pictures = view is View.SHADOW
-        desk.c.preferences.legend_x, desk.c.session.draw.shading = 0.25, 0.7
-        desk.c.session.set_draw(shares=True)
+        desk.c.session.set_draw(legend_at=(0.25, 1.0), shading=0.7, shares=True)
         desk.rest()
         fresh(desk)
 

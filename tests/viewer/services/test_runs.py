@@ -124,7 +124,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
 def test_a_plan_that_is_no_good_is_one_line(desk: Desk) -> None:
     desk.runs.experiment_plan.size = (0, 10)
     desk.runs.start_experiment()
-    assert desk.c.notices.message.error and "width and height" in desk.said
+    assert desk.c.notices.message.error and "width is a whole number" in desk.said
     desk.c.selection.select((0.5, 0.5))
     desk.runs.experiment_plan.size = desk.runs.zoom_plan.size = (64, 4097)
     for start in (desk.runs.start_experiment, desk.runs.start_zoom_test):

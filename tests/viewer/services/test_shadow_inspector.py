@@ -30,7 +30,9 @@ class Desk:
     """A controller at work on a scene in a file, without a window."""
 
     def __init__(self, path: Path) -> None:
-        self.c = Controller(Preferences(dynamic_resolution=False, samples=1, threads=1))
+        self.c = Controller(
+            Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1, "threads": 1}})
+        )
         scene = load_scene(path)
         self.renderer = Renderer(scene, self.c.session.settings)
         self.c.show(scene, self.renderer, scene_info(scene))

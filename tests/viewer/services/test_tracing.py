@@ -16,6 +16,7 @@ from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 CAMERA = Camera((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -45,9 +46,10 @@ class Pictures:
 
 def test_pictures_are_asked_for_once_and_again_after_a_run():
     """A run drops what was asked for, and leaves the world at its own last frame."""
-    pictures, session = Pictures(), Session(settings=Settings(method="none", samples=1))
+    pictures, session = Pictures(), Session(state=ViewState(settings=Settings(method="none", samples=1)))
     session.open(make_scene())
-    tracing = Tracing(session, Preferences(dynamic_resolution=False), pictures)
+    session.set_pace(progressive=False)
+    tracing = Tracing(session, Preferences(), pictures)
     here = Conditions(size=(16, 8))
     for _ in range(3):
         tracing.ask(here)
@@ -62,7 +64,7 @@ def test_pictures_are_asked_for_once_and_again_after_a_run():
 
 
 def test_until_certificates_can_be_made_pictures_come_without():
-    session = Session(settings=Settings(method="certified+rest"))
+    session = Session(state=ViewState(settings=Settings(method="certified+rest")))
     tracing = Tracing(session, Preferences(), Pictures())
     assert tracing.settings.method == "certified+rest"
     tracing.ask(Conditions(ready=False))
@@ -79,7 +81,10 @@ def test_nothing_is_reset_while_it_is_locked():
 
 def test_a_hand_that_falters_starves_no_picture():
     """While something moves, each picture that has begun is shown, however often the camera stands still in between."""
-    controller, renderer = Controller(Preferences(dynamic_resolution=False, samples=1)), FakeRenderer()
+    controller, renderer = (
+        Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}})),
+        FakeRenderer(),
+    )
     controller.show(make_scene(), renderer, {})
     trace, size = renderer.refine, (16, 8)
 

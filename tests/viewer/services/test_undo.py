@@ -12,7 +12,8 @@ from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Camera
 from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
 from viewer.services.settings_controller import SettingsController
-from viewer.services.undo import MOST, Undo
+from viewer.services.undo import MOST_STEPS, Undo
+from viewer.state import codec
 from viewer.state.comparison import Way
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -31,7 +32,7 @@ class Desk:
         self.now = 100.0
         monkeypatch.setattr(time, "monotonic", lambda: self.now)
         self.preferences, self.notices = Preferences(), Notices()
-        self.session = Session(settings=self.preferences.settings())
+        self.session = Session(state=codec.recalled({}))
         self.session.open(make_scene(lights=3))
         self.locked = False
         lock = lambda: self.locked  # noqa: E731
@@ -44,7 +45,7 @@ class Desk:
             self.read.append(meshes)
             self.reading = True
 
-        self.undo = Undo(self.session, self.preferences, self.motion, self.notices, lock, read_as, lambda: self.reading)
+        self.undo = Undo(self.session, self.motion, self.notices, lock, read_as, lambda: self.reading)
         self.frame()
 
     def frame(self, seconds: float = 0.02) -> None:
@@ -82,9 +83,9 @@ def test_each_change_is_a_step_with_a_name(desk: Desk):
     assert desk.undo.undoes == "view Depth" and desk.undo.redoes == ""
     desk.undo.undo()
     assert desk.said == "undone: view Depth" and desk.session.draw.view is View.COLOR
-    assert desk.session.settings.method == "certified" and desk.preferences.view == "color"
+    assert desk.session.settings.method == "certified"
     desk.undo.undo()
-    assert desk.session.settings.method == desk.preferences.method == "paper" and desk.undo.undoes == ""
+    assert desk.session.settings.method == "paper" and desk.undo.undoes == ""
     desk.undo.redo()
     assert desk.said == "redone: method certified" and desk.session.settings.method == "certified"
     assert desk.undo.redoes == "view Depth"
@@ -240,10 +241,10 @@ def test_a_mesh_that_could_not_be_read_again_leaves_the_steps_as_they_were(desk:
 
 
 def test_memory_is_bounded(desk: Desk):
-    for number in range(MOST + 20):
+    for number in range(MOST_STEPS + 20):
         desk.settings.change(depth=number % 50)
         desk.frame()
-    for _ in range(MOST):
+    for _ in range(MOST_STEPS):
         assert desk.undo.undoes
         desk.undo.undo()
     assert desk.undo.undoes == ""
@@ -269,7 +270,9 @@ def test_strokes_of_other_kinds_are_steps_of_their_own(desk: Desk):
     desk.session.set_draw(zoom=Zoom(2.0))
     desk.frame()
     desk.undo.undo()
-    assert desk.session.draw.zoom.fits and desk.session.draw.tone == Tone(0.5) and desk.undo.undoes == "tone +0.5 EV"
+    assert (
+        desk.session.draw.zoom.fits and desk.session.draw.tone == Tone(0.5) and desk.undo.undoes == "exposure +0.5 EV"
+    )
     desk.undo.undo()
     assert desk.session.draw.tone.neutral
     desk.undo.redo()
@@ -277,19 +280,16 @@ def test_strokes_of_other_kinds_are_steps_of_their_own(desk: Desk):
 
 
 def test_ranges_and_stripes_come_back(desk: Desk):
-    desk.session.spans[View.DEPTH] = (1.0, 2.0)
+    desk.session.change(draw=desk.session.draw.with_span((1.0, 2.0), View.DEPTH))
     desk.frame()
     desk.session.set_draw(clipping=True)
     desk.frame()
-    assert desk.undo.undoes == "marks of clipped pixels on"
+    assert desk.undo.undoes == "mark clipped pixels on"
     desk.undo.undo()
     desk.undo.undo()
-    assert not desk.session.spans and not desk.session.draw.clipping
+    assert not desk.session.draw.spans and not desk.session.draw.clipping
     desk.undo.redo()
-    desk.session.spans.clear()
-    desk.frame()
-    desk.undo.undo()
-    assert desk.session.spans == {View.DEPTH: (1.0, 2.0)}, "what is kept is no reference to what holds now"
+    assert desk.session.draw.spans == ((View.DEPTH, (1.0, 2.0)),) and desk.undo.undoes == "range changed"
 
 
 def test_a_comparison_is_a_step_but_what_is_kept_stays(desk: Desk):

@@ -14,8 +14,8 @@ from tracer.experiments import experiment
 from tracer.scene.model import Camera
 from viewer.services.controller import Controller
 from viewer.services.render_request import RenderRequest, Traced
+from viewer.state import codec
 from viewer.state.preferences import Preferences
-from viewer.state.session import Snapshot
 from viewer.state.views import View
 
 SIZE = (16, 8)
@@ -42,7 +42,7 @@ class Desk:
 
 @pytest.fixture
 def desk():
-    controller = Controller(Preferences(dynamic_resolution=False, samples=1))
+    controller = Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}}))
     yield Desk(controller)
     assert controller.close()
 
@@ -84,7 +84,7 @@ def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(des
         desk.c.settings.set_view(other)
         assert not desk.c.tracing.outdated
         assert desk.rest() == []
-    assert not desk.c.session.settings.verify and not desk.c.preferences.verify
+    assert not desk.c.session.settings.verify
 
 
 def test_only_frames_of_such_a_view_are_verified(desk: Desk):
@@ -152,9 +152,9 @@ def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: 
         assert desk.c.captures.saving.pop().join(10.0)
         with Image.open(tmp_path / name) as image:
             kept = json.loads(image.text["shadowcull"])
-        snapshot = Snapshot.from_json(kept["state"])
-        assert (kept["frame"], snapshot.time, snapshot.follow) == (7, 7.0, follow)
-        desk.c.restore(snapshot)
+        state = codec.picture_from_json(kept)
+        assert (kept["frame"], state.time, state.camera is None) == (7, 7.0, follow)
+        desk.c.restore(state)
         assert (desk.c.session.camera, desk.c.session.frame) == (camera, 7)
         desk.c.motion.reset_camera()
 
@@ -169,5 +169,5 @@ def test_a_capture_keeps_the_users_setting_and_the_line(desk: Desk, tmp_path):
     with Image.open(tmp_path / "wipe.png") as image:
         kept = json.loads(image.text["shadowcull"])
     assert kept["statistics"]["shadow"]["wrong"] == 3
-    snapshot = Snapshot.from_json(kept["state"])
-    assert (snapshot.view, snapshot.wipe, snapshot.settings["verify"]) == (View.WIPE, 0.25, False)
+    state = codec.picture_from_json(kept)
+    assert (state.draw.view, state.draw.wipe, state.settings.verify) == (View.WIPE, 0.25, False)

@@ -52,8 +52,8 @@ def drag(ui: Ui, area: Area) -> bool:
     if not ui.gesture or not (imgui.is_item_active() or released):
         return False
     if ui.gesture == "pan":
-        session, moved = ui.controller.session, io.mouse_delta
-        session.set_draw(zoom=panned(session.draw.zoom, moved.x / area.size.x, moved.y / area.size.y))
+        session, by = ui.controller.session, io.mouse_delta
+        session.set_draw(zoom=panned(session.draw.zoom, by.x / area.size.x, by.y / area.size.y))
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
     else:
         start, here = ui.gesture_at, area.to_picture(io.mouse_pos.x, io.mouse_pos.y)

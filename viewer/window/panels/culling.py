@@ -39,7 +39,7 @@ def show(ui: Ui) -> None:
 
     def note(one: Setting) -> str:
         if one.path in _OF_MODES and not method.uses_modes:
-            return f"\n{method.name} does not cull by modes: it changes those kept for the views alone."
+            return f"\n{c.session.settings.method} does not cull by modes: it changes those kept for the views alone."
         return ""
 
     settings = in_panel(ui, "Culling")

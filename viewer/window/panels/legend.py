@@ -32,9 +32,7 @@ def of_picture(ui: Ui) -> Legend | None:
         frame, view, light = seen[0].frame, seen[0].view, seen[0].light
     draw = c.session.draw
     span = c.comparing.span(view)
-    chosen = Chosen(
-        light, scene.lights, draw.mark_wrong, draw.shares, span, draw.tone, draw.clipping, draw.slice
-    )
+    chosen = Chosen(light, scene.lights, draw.mark_wrong, draw.shares, span, draw.tone, draw.clipping, draw.slice)
     kept = "legend" if frame is c.frame else "legend of A"
     found: Legend | None = ui.cached(kept, frame, (view, chosen), lambda: legend_of(frame, view, chosen))
     return found

@@ -49,7 +49,9 @@ def _watched(ui: Ui) -> None:
         if imgui.small_button("Fit"):
             closer.fit(ui)
         imgui.same_line()
-    clipped("all of the picture" if c.session.draw.zoom.fits else f"enlarged {c.session.draw.zoom.scale:.3g} times", QUIET)
+    clipped(
+        "all of the picture" if c.session.draw.zoom.fits else f"enlarged {c.session.draw.zoom.scale:.3g} times", QUIET
+    )
     frame = c.frame
     if frame is None or not ui.pixels.watched:
         text = "Ctrl+wheel zooms into the picture, Ctrl+drag moves it. Watch the pixel under the pointer"

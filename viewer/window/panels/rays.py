@@ -33,7 +33,7 @@ _SHOWN_TIPS = {
 
 def section(ui: Ui) -> None:
     """A part of the panel that folds; rays are listed, and drawn in the picture, where it is open."""
-    rays, p = ui.controller.rays, ui.controller.preferences
+    rays = ui.controller.rays
     wanted, ui.rays_wanted = ui.rays_wanted, max(ui.rays_wanted - 1, 0)
     imgui.dummy(ImVec2(0.0, em(0.15)))
     if wanted:
