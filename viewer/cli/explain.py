@@ -28,13 +28,12 @@ from viewer.cli.edit_options import edited_scene, light_index
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import times_before
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
+from viewer.output.explained import ray_data, why_data, why_lines
 from viewer.output.legend_parts import named_light
-from viewer.output.ray_json import ray_data
 from viewer.output.ray_rows import RayRows, Row, totals
-from viewer.output.why_lines import why_data, why_lines
-from viewer.services.teachers import Answers, Teacher, answers_at, can_be_asked, with_teachers
+from viewer.services.origin_pixels import Found, OriginPixels, can_trace_once_more, trace_once_more, with_origins
 from viewer.state.earlier import Earlier
-from viewer.state.teaching import Ledger
+from viewer.state.mode_origins import ModeOrigins
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
 
@@ -57,16 +56,16 @@ def explain(path: Path, options: Namespace) -> None:
         times = times_before(scene, time, options.warmup, work)
         times += [time] * _repeats(options)
         before = [*options.before, *(Earlier(then, options.camera) for then in times)]
-        ledger, moves = Ledger(len(scene.lights)), _Moves(scene)
+        origins, moves = ModeOrigins(len(scene.lights)), _Moves(scene)
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
             modes = renderer.render(earlier.time, earlier.camera, work.cancelled).modes
-            ledger.add(done, modes, moves.since(earlier.time))
+            origins.add(done, modes, moves.since(earlier.time))
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, options.camera, work.cancelled)
         found = why(renderer, frame, x, y, work.cancelled)
-        work.count("asking which frames have taught it", len(before), len(before) + 1)
-        found = _with_teachers(found, renderer, frame, ledger, before)
+        work.count("looking for the frames that set its modes", len(before), len(before) + 1)
+        found = _with_origins(found, renderer, frame, origins, before)
     tree = found.tree
     assert tree is not None
     if options.json:
@@ -97,28 +96,28 @@ class _Moves:
         return None if before is None else (before != self._before).any(axis=1)
 
 
-def _with_teachers(found: Why, renderer: Renderer, frame: Frame, ledger: Ledger, before: Sequence[Earlier]) -> Why:
+def _with_origins(found: Why, renderer: Renderer, frame: Frame, modes: ModeOrigins, before: Sequence[Earlier]) -> Why:
     """The same with the frames, and the pixels of these, that gave the primitive its modes."""
     unit = int(frame.cell[found.y, found.x])
-    taught = ledger.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
-    if taught is None:
+    origins = modes.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
+    if origins is None:
         return found
 
     def name(number: int) -> str:
         return "the frame before" if len(before) == 1 else f"frame {number + 1} of the {len(before)} frames before this"
 
     @cache
-    def answers(number: int) -> Answers | None:
-        if not can_be_asked(frame.settings, frame.lights):
+    def pixels(number: int) -> Found | None:
+        if not can_trace_once_more(frame.settings, frame.lights):
             return None
         then, uses_cells = before[number], Method.parse(frame.settings.method).uses_cells
-        return answers_at(renderer, then.time, then.camera, frame.settings, unit, uses_cells)
+        return trace_once_more(renderer, then.time, then.camera, frame.settings, unit, uses_cells)
 
-    def teacher(number: int, light: int, lit: bool) -> Teacher | None:
-        known = answers(number)
-        return None if known is None else known.get((light, lit), Teacher(0, None))
+    def pixel(number: int, light: int, lit: bool) -> OriginPixels | None:
+        known = pixels(number)
+        return None if known is None else known.get((light, lit), OriginPixels(0, None))
 
-    return with_teachers(found, taught, teacher, name)
+    return with_origins(found, origins, pixel, name)
 
 
 def _print(found: Why, tree: RayTree, scene: Scene, shown: Filter, title: str) -> None:

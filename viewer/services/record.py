@@ -13,15 +13,15 @@ from tracer.frame import Frame
 from tracer.scene.edits import NO_EDITS
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.history import History
+from viewer.state.mode_origins import ModeOrigins, Origins
 from viewer.state.moments import MOST, Moment, Moments
 from viewer.state.picking import Pick
 from viewer.state.rate import Rate
 from viewer.state.readings import has_modes_of_cells
 from viewer.state.session import Session, settings_to_json
-from viewer.state.teaching import Ledger, Taught
 
-LEDGERS = 4
-"""Mode histories, of resolutions and lamps, whose teachers are known."""
+MODE_HISTORIES = 4
+"""Those, of resolutions and lamps, of which it is known which frame set each mode."""
 Key = tuple[int, int, bool, float | None, int | None]
 
 
@@ -51,7 +51,7 @@ class Record:
 
     def forget_modes(self) -> None:
         """Nothing is known of shadows any more."""
-        self._ledgers: dict[Key, Ledger] = {}
+        self._origins: dict[Key, ModeOrigins] = {}
         self._lights: dict[Key, NDArray[np.float64]] = {}
         self._dropped: set[Key] = set()
         self._blank = True  # whether modes are those of frames that were seen here
@@ -95,7 +95,7 @@ class Record:
             traced.full_size, traced.whole, session.edited.edits if session.edited is not None else NO_EDITS,
         )  # fmt: skip
 
-    # --- who taught what --------------------------------------------------------------------------
+    # --- which frame set a mode --------------------------------------------------------------------------
 
     def _learn(self, traced: Traced, number: int) -> None:
         frame, scene = traced.frame, self._session.scene
@@ -110,23 +110,24 @@ class Record:
         key = _key(frame)
         if traced.request.divisor == 1:
             self._shown = key
-        ledger = self._ledgers.pop(key, None) or Ledger(frame.lights, blank=self._blank and key not in self._dropped)
-        self._ledgers[key] = ledger  # the newest last
-        if len(self._ledgers) > LEDGERS:
-            oldest = next(iter(self._ledgers))
-            del self._ledgers[oldest]
+        blank = self._blank and key not in self._dropped
+        origins = self._origins.pop(key, None) or ModeOrigins(frame.lights, blank=blank)
+        self._origins[key] = origins  # the newest last
+        if len(self._origins) > MODE_HISTORIES:
+            oldest = next(iter(self._origins))
+            del self._origins[oldest]
             self._dropped.add(oldest)
         lights, before = scene.light_positions(frame.time), self._lights.get(key)
         moved = None if before is None or len(before) != len(lights) else (lights != before).any(axis=1)
         self._lights[key] = lights
-        ledger.add(number, frame.modes, moved)
+        origins.add(number, frame.modes, moved)
 
-    def taught(self, pick: Pick) -> Taught | None:
-        """Which frames taught what is known of the unit that was picked; None where that is not known."""
-        ledger = self._ledgers.get(self._shown) if self._shown is not None else None
-        if ledger is None or self._shown is None or self._shown[2] != pick.in_cells:
+    def origins(self, pick: Pick) -> Origins | None:
+        """Which frames set the modes of the unit that was picked; None where that is not known."""
+        origins = self._origins.get(self._shown) if self._shown is not None else None
+        if origins is None or self._shown is None or self._shown[2] != pick.in_cells:
             return None
-        return ledger.of(pick.unit)
+        return origins.of(pick.unit)
 
 
 def _key(frame: Frame) -> Key:
