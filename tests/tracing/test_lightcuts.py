@@ -18,7 +18,7 @@ from tests.tracing.nasty_worlds import nasty_walk, with_lamps
 from tests.tracing.same import assert_same
 from tests.tracing.shades import floor
 from tests.tracing.worlds import quad, scene
-from tracer.experiment import figures_of
+from tracer.experiments.experiment import figures_of
 from tracer.geometry.world import ACCELERATORS
 from tracer.methods.lightcuts import errors_of
 from tracer.scene.animation import Animation

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 from viewer.state.plans import parse_factors
 
 if TYPE_CHECKING:
-    from viewer.state.earlier import Earlier
+    from tracer.experiments.warmup_frames import WarmupFrame
     from viewer.state.slices import Slice
     from viewer.state.tone import Curve
     from viewer.state.views import View
@@ -139,15 +139,15 @@ def place(text: str) -> tuple[float, float]:
     return at
 
 
-def before(text: str) -> tuple[Earlier, ...]:
+def before(text: str) -> tuple[WarmupFrame, ...]:
     """Frames before, as JSON, or a file that holds it."""
+    from tracer.experiments import warmup_frames
     from tracer.scene.files import read_regular
-    from viewer.state import earlier
 
     try:
         if not text.lstrip().startswith("["):
             text = read_regular(Path(text), 1 << 26).decode("utf-8")
-        return earlier.from_json(json.loads(text))
+        return warmup_frames.from_json(json.loads(text))
     except OSError as error:
         raise argparse.ArgumentTypeError(f"{text[:60]!r}: {error.strerror or error}") from None
     except (ValueError, RecursionError) as error:

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from tracer.reasons import Why
+from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
 from tracer.told_rays import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.why_in_words import Words, plain
-from viewer.output.legend_parts import named_light
 
 MOST_LIGHTS = 3  # that are named before a sentence that they share; of more, the number is said
 

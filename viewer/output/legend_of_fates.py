@@ -7,8 +7,9 @@ import numpy as np
 from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from tracer.method import Method
+from tracer.scene.lights import named_light
 from viewer.output.legend_counts import fate_legend, moving_shadow_legend
-from viewer.output.legend_parts import Chosen, Entry, Legend, Note, named_light
+from viewer.output.legend_parts import Chosen, Entry, Legend, Note
 from viewer.state import terms
 from viewer.state.views import (
     FATE_COLORS,

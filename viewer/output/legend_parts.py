@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from tracer.scene.lights import Light, number_of
+from tracer.scene.lights import Light, named_light
 from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL
 from viewer.state.tone import Tone as DisplayTone
@@ -98,14 +97,3 @@ class Chosen:
 
 
 AS_USUAL = Chosen()
-
-
-def light_in_words(number: int, name: str) -> str:
-    """A light by its number, and its name where that says more: light 2 (lamp)."""
-    said = f"light {number}"
-    return said if name in ("", said) else f"{said} ({name})"
-
-
-def named_light(lights: Sequence[Light], light: int) -> str:
-    """The same of one of a scene's lights; its number is that in the scene as it was read, whichever are off now."""
-    return light_in_words(number_of(lights, light), lights[light].name if light < len(lights) else "")

@@ -15,6 +15,9 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from tracer.experiments.warmup_frames import WarmupFrame
+from tracer.experiments.warmup_frames import from_json as earlier_from_json
+from tracer.experiments.warmup_frames import to_json as earlier_to_json
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.edits import NO_EDITS, Edits
@@ -24,9 +27,6 @@ from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output.pictures import SHADING
 from viewer.state import edits as scene_edits
-from viewer.state.earlier import Earlier
-from viewer.state.earlier import from_json as earlier_from_json
-from viewer.state.earlier import to_json as earlier_to_json
 from viewer.state.marks import wipe_column
 from viewer.state.session import Snapshot, settings_to_json
 from viewer.state.slices import MIDDLE, Slice
@@ -84,7 +84,7 @@ class Recipe:
     history: str = ""
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
-    before: tuple[Earlier, ...] = ()
+    before: tuple[WarmupFrame, ...] = ()
     modes: str = ""
     meshes: MeshOptions = AS_IN_FILE
     edits: Edits = NO_EDITS

@@ -109,7 +109,7 @@ class Comparing:
         """What is to be known about the two, in a line: sizes that differ, or why nothing is compared."""
         a, b, state = self.a, self.b, self.state
         if a is None and state.source is Source.KEPT:
-            return "Nothing is kept as A yet: keep what is shown (Ctrl+A)." if state.on else ""
+            return "Nothing is kept as A yet: choose Keep as A." if state.on else ""
         if a is None or b is None:
             return f"Tracing by {state.second} as well ..." if state.on else ""
         if state.on and state.way is Way.DIFFERENCE and self.difference(a, b) is None:

@@ -15,6 +15,7 @@ import numpy as np
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, shadow_mode
 from tracer.explanation import explain
 from tracer.frame import Frame
+from tracer.mode_origins import NEVER, Origins
 from tracer.reasons import TaughtBy, Why
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera
@@ -23,7 +24,6 @@ from viewer.services.queries import Ask, Newest
 from viewer.services.record import Record
 from viewer.services.render_request import Traced
 from viewer.services.selection import Selection
-from viewer.state.mode_origins import NEVER, Origins
 from viewer.state.moments import Moment
 from viewer.state.picking import Pick
 from viewer.state.readings import can_record_lights

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
+from tracer.mode_origins import ModeOrigins, Origins
 from tracer.scene.edits import NO_EDITS
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.history import History
-from viewer.state.mode_origins import ModeOrigins, Origins
 from viewer.state.moments import MOST, Moment, Moments
 from viewer.state.picking import Pick
 from viewer.state.rate import Rate

@@ -12,12 +12,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer import fingerprint
 from tracer.culling.modes import word_type
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
 from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
-from viewer.output import capture, fingerprint, kept_modes
+from tracer.version import program_version
+from viewer.output import capture, kept_modes
 from viewer.output.caption import with_caption
 from viewer.output.legend import legend_of
 from viewer.output.legend_parts import Chosen
@@ -25,11 +28,9 @@ from viewer.output.legend_picture import with_legend
 from viewer.output.pictures import lights_in_words, picture
 from viewer.output.recipe import Recipe
 from viewer.output.savings_picture import with_savings
-from viewer.state.earlier import Earlier
 from viewer.state.readings import can_record_lights, records_lights
 from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.util.version import program_version
 
 
 def check_light(recipe: Recipe, scene: Scene) -> None:
@@ -69,7 +70,7 @@ def trace(
     `on_frame` is told how many of these are done, before each.  Raises Cancelled."""
     scene, settings, view = renderer.scene, recipe.settings, recipe.view
     times = times_before(scene, recipe.time, recipe.warmup) + [recipe.time] * recipe.repeats
-    before = [*recipe.before, *(Earlier(time, recipe.camera) for time in times)] if not recipe.modes else []
+    before = [*recipe.before, *(WarmupFrame(time, recipe.camera) for time in times)] if not recipe.modes else []
     modes = settings.modes or view.of_modes or everything or recipe.tells_counters
     renderer.settings = replace(settings, samples=1, verify=False, modes=modes)
     for done, earlier in enumerate(before):

@@ -17,7 +17,9 @@ from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.lights import number_of
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
+from tracer.setting import check_all
 from tracer.settings import RECORDS
+from viewer.state import codec
 from viewer.state import edits as scene_edits
 from viewer.state.comparison import Comparison
 from viewer.state.slices import MIDDLE, Slice
@@ -58,7 +60,7 @@ class Snapshot:
         if self.edits:
             data["edits"] = scene_edits.to_json(self.edits)
         data |= {"slice": list(data.pop("cut"))}
-        return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": self.tone.to_json()}
+        return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": codec.to_json(self.tone)}
 
     @staticmethod
     def from_json(data: Any) -> Snapshot:
@@ -76,7 +78,7 @@ class Snapshot:
                 view=View(data.get("view", View.COLOR)),
                 light=max(0, whole(data.get("light", 0))),
                 wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
-                tone=Tone.from_json(data.get("tone", {})),
+                tone=check_all(codec.patched(NEUTRAL, data.get("tone", {}))),
                 span=_span(data.get("span")),
                 meshes=_meshes_from_json(data.get("meshes", {})),
                 edits=scene_edits.from_json(data.get("edits", {})),

@@ -109,6 +109,11 @@ class View(StrEnum):
         return self in (View.COLOR, View.WIPE)
 
     @property
+    def is_flat(self) -> bool:
+        """Whether it shows flat colours, under which the picture's light and shade can be seen."""
+        return self in _FLAT
+
+    @property
     def is_smooth(self) -> bool:
         """Whether it may be smoothed where it is enlarged."""
         return self in (View.COLOR, View.WIPE)
@@ -159,6 +164,11 @@ _KEYS = {
     View.TREE: "Shift+T",
     View.FATE: "Shift+X",
     View.MOVING_SHADOW: "Shift+O",
+}
+
+_FLAT = {
+    *(View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE, View.PENUMBRA, View.TREE),
+    *(View.FATE, View.MOVING_SHADOW),
 }
 
 _ALSO = {

@@ -36,7 +36,6 @@ from viewer.window.layout import Layout
 from viewer.window.layout_file import LayoutFile
 from viewer.window.panels import dialogs, loading, log, picture, status, strip, tour
 from viewer.window.ui import CaptureKind, Ui
-from viewer.window.widgets import tell_keys
 
 TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
@@ -73,7 +72,6 @@ class App:
         self.ui = Ui(self.controller)
         self.ui.guard = Guard(self.controller.notices, lambda name, fault: log.instead_of_part(self.ui, name, fault))
         self.ui.take_commands(commands.build(self.ui))
-        tell_keys(self.ui.with_keys)
         self.ui.paste_from, self.ui.copy_to = imgui.get_clipboard_text, imgui.set_clipboard_text
         self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
         self.meshes = meshes

@@ -5,7 +5,6 @@ Panels and commands share it; what they do to the scene goes through the control
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
@@ -13,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from tracer.culling.fate import Fate
+from tracer.scene.lights import named_light
 from tracer.why_in_words import Link
 from viewer.output.capture import FIELDS
-from viewer.output.legend_parts import named_light
 from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
@@ -25,7 +24,7 @@ from viewer.state.placing import Rect
 from viewer.state.preferences import default_screenshot_folder
 from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.views import View
-from viewer.window.command import Command, is_key, key_label
+from viewer.window.command import Command, is_key
 from viewer.window.compared import Compared
 from viewer.window.display import Display
 from viewer.window.finder import Finder
@@ -36,8 +35,6 @@ from viewer.window.magnifier import Magnifier
 from viewer.window.preview import PreviewDisplay
 from viewer.window.screening import Screening
 from viewer.window.shots import Shots
-
-_IN_BRACKETS = re.compile(r" \(([^()]+)\)")
 
 
 class CaptureKind(Enum):
@@ -198,7 +195,11 @@ class Ui:
 
     def key(self, name: str) -> str:
         """The key of a command as the user reads it on the keyboard, in brackets after a blank; "" without one."""
-        shown = self.key_label(name)
+        return self.keys(name)
+
+    def keys(self, *names: str) -> str:
+        """The keys of several, as in " (L and Shift+L)"; those that have one."""
+        shown = " and ".join(filter(None, map(self.key_label, names)))
         return f" ({shown})" if shown else ""
 
     def key_label(self, name: str) -> str:
@@ -210,19 +211,6 @@ class Ui:
         command is in the menus."""
         menus = (f"{c.menu} > {c.name}".replace("/", " > ") for c in self.commands if c.name == name)
         return self.key_label(name) or next(menus, name)
-
-    def with_keys(self, text: str) -> str:
-        """A text with the usual keys of commands, each in brackets, or two with an "and", as they are now."""
-        usual = {key_label(command.key): command.name for command in self.commands if command.key}
-
-        def now(found: re.Match[str]) -> str:
-            names = [usual.get(key) for key in found[1].split(" and ")]
-            if None in names:
-                return found[0]
-            keys = [self.key_label(name) for name in names if name]
-            return f" ({' and '.join(filter(None, keys))})" if any(keys) else ""
-
-        return _IN_BRACKETS.sub(now, text) if " (" in text else text
 
     @property
     def default_folder(self) -> Path:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from tests.viewer.fakes import make_frame
+from tracer.experiments.zoom import Approach, Change, Results, Step
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
-from tracer.zoom import Approach, Change, Results, Step
 from viewer.output.film import Film
 from viewer.output.film_figure import COLUMNS, chosen_steps, film_figure
 from viewer.output.pictures import picture, ringed

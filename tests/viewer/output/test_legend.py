@@ -27,12 +27,12 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
-from tracer.scene.lights import Light
+from tracer.scene.lights import Light, light_in_words
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend import legend_of
 from viewer.output.legend_counts import occlusion_legend, shadow_legend, work_legend
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT, TONES, fitting, lay_out, wrapped
-from viewer.output.legend_parts import Chosen, Legend, Tone, light_in_words
+from viewer.output.legend_parts import Chosen, Legend, Tone
 from viewer.output.legend_picture import with_legend
 from viewer.output.pictures import picture
 from viewer.state.readings import voxels_of

@@ -77,9 +77,9 @@ def _from_the_inspector(d: Driver) -> None:
     d.frames(3)
     picked = c.selection.picked
     assert picked is not None
-    taught = c.record.taught(picked)
+    taught = c.record.origins(picked)
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
-    d.wait(lambda: c.teachers.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
+    d.wait(lambda: c.origins.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
     moment = c.record.moments.get(lesson.lit)
     d.scroll_down("Inspector")
     d.context.item_click(f"//Inspector/**/picture {lesson.lit}##taught {light} lit")

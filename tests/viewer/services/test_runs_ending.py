@@ -14,7 +14,7 @@ import pytest
 
 from tests.viewer.desk import ELSEWHERE, SIZE, Desk, is_the_same_picture
 from tests.viewer.fakes import FakeRenderer, make_scene
-from tracer import experiment
+from tracer.experiments import experiment
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info

@@ -11,8 +11,8 @@ import pytest
 from tests.viewer.desk import ELSEWHERE, Desk
 from tracer.culling import modes
 from tracer.frame import Frame
+from tracer.mode_origins import NEVER
 from tracer.scene.edits import NO_EDITS, Edits
-from viewer.state.teaching import NEVER
 from viewer.state.views import View
 
 
@@ -143,9 +143,9 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
     c.selection.select((0.5, 0.75))
     picked = c.selection.picked
     assert picked is not None and picked.primitive >= 0
-    taught = c.record.taught(picked)
+    taught = c.record.origins(picked)
     assert taught is not None
-    desk.until(lambda: all(c.teachers._known.get(n) is not None for one in taught.lights for n in one if n != NEVER))
+    desk.until(lambda: all(c.origins.of(n, 0, True) is not None for one in taught.lights for n in one if n != NEVER))
     import tracer
 
     met = 0
@@ -165,7 +165,7 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
             assert first.get((light, lit), NEVER) == n
             if n == NEVER:
                 continue
-            found, moment = c.teachers.of(n, light, lit), words[n]
+            found, moment = c.origins.of(n, light, lit), words[n]
             assert found is not None
             exact = replace(moment.settings, method="none", record_lights=True, verify=False)
             frame = tracer.Renderer(c.session.scene, exact, world=world).render(moment.time, moment.camera)

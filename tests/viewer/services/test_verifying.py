@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
-from tracer import experiment
+from tracer.experiments import experiment
 from tracer.scene.model import Camera
 from viewer.services.controller import Controller
 from viewer.services.render_request import RenderRequest, Traced

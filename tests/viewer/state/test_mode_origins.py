@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from tracer.culling.modes import FULLY_RENDERED
+from tracer.experiments import warmup_frames
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Settings
+from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.scene.model import Camera
-from viewer.state import earlier
-from viewer.state.earlier import Earlier
 from viewer.state.moments import Moment, Moments
-from viewer.state.mode_origins import NEVER, ModeOrigins
 from viewer.state.views import View
 
 UNITS = 600
@@ -86,10 +86,10 @@ def test_frames_are_kept_by_their_numbers() -> None:
 
 
 def test_frames_before_a_picture_are_json() -> None:
-    frames = (Earlier(0.1), Earlier(1 / 3, Camera((1, 2, 3), (0, 0, -1), angle=33.0)))
-    data = earlier.to_json(frames)
-    assert earlier.from_json(data) == frames == earlier.from_json({"before": data})
+    frames = (WarmupFrame(0.1), WarmupFrame(1 / 3, Camera((1, 2, 3), (0, 0, -1), angle=33.0)))
+    data = warmup_frames.to_json(frames)
+    assert warmup_frames.from_json(data) == frames == warmup_frames.from_json({"before": data})
     for wrong in ("x", {}, [[1]], [["a", None]], [[float("nan"), None]], [[0.0, {"position": 1}]]):
         with pytest.raises(ValueError) as raised:
-            earlier.from_json(wrong)
+            warmup_frames.from_json(wrong)
         assert "\n" not in str(raised.value)

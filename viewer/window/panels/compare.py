@@ -54,7 +54,9 @@ def _controls(ui: Ui) -> None:
     """What A is, and how the two are shown."""
     c = ui.controller
     comparing, state = c.comparing, c.comparing.state
-    if wide_button(f"{icons.ICON_FA_THUMBTACK}  Keep as A", "keep what is shown now, to compare with it (Ctrl+A)", 2):
+    if wide_button(
+        f"{icons.ICON_FA_THUMBTACK}  Keep as A", f"keep what is shown now, to compare with it{ui.key('Keep as A')}", 2
+    ):
         comparing.keep()
     imgui.same_line()
     imgui.begin_disabled(not state.on)
@@ -85,7 +87,7 @@ def _controls(ui: Ui) -> None:
     if state.source is Source.KEPT:
         _kept(ui)
     if comparing.remark:
-        paragraph(ui.with_keys(comparing.remark), WARNING)
+        paragraph(comparing.remark, WARNING)
 
 
 def _way(ui: Ui) -> None:

@@ -7,11 +7,11 @@ from itertools import combinations
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
-from tracer.experiment import REFERENCE, Results
+from tracer.experiments.experiment import REFERENCE, Results
 from tracer.geometry.accelerators import ACCELERATORS
-from tracer.method import Kind, additions
+from tracer.method import Kind, additions, in_order
 from viewer.services.runs import LONGEST_SIDE, Experiment
-from viewer.state.methods import groups, in_order
+from viewer.state.methods import groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
 from viewer.window.panels import experiment_table, going_back

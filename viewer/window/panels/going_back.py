@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from imgui_bundle import imgui, implot
 
-from tracer.experiment import REFERENCE, Results
+from tracer.experiments.experiment import REFERENCE, Results
 from viewer.services.runs import Experiment
 from viewer.util.numbers import whole_percent
 from viewer.window.palette import GREY

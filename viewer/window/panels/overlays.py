@@ -169,13 +169,13 @@ def _occluded_selection(ui: Ui, made: Pen, frame: Frame) -> None:
 # --- clusters of lights -----------------------------------------------------------------------------
 
 Cluster = tuple[list[Stroke], tuple[float, float] | None, float]
-"""The edges of a cluster's box, or where its only light is, and what it sends as a fraction of the most that any does."""
+"""Edges of a cluster's box, or where its only light is, and what it sends as a fraction of the most that one does."""
 
 
 def clusters(cut: LightCut) -> list[Cluster]:
     """What is drawn of a cut: the clusters that send most, those that send least of them first."""
     order = np.argsort(-cut.sent, kind="stable")[:MOST_CLUSTERS][::-1]
-    most, found = max(float(cut.sent.max(initial=0.0)), 1e-30), []
+    most, found = max(float(cut.sent.max(initial=0.0)), 1e-30), list[Cluster]()
     for k in order.tolist():
         box, fraction = cut.boxes[k].astype(np.float64), float(cut.sent[k]) / most
         if int(cut.lights[k]) == 1 or (box[:3] == box[3:]).all():
@@ -194,7 +194,8 @@ def _clusters(ui: Ui, made: Pen, frame: Frame) -> None:
         colors = color_map(64)
         drawn: list[Cluster] = ui.cached("clusters", cut, None, lambda: clusters(cut))
         for pieces, light, fraction in drawn:
-            color = ImVec4(*colors[min(int(63.0 * fraction**0.5), 63)].tolist(), 1.0)
+            red, green, blue = colors[min(int(63.0 * fraction**0.5), 63)].tolist()
+            color = ImVec4(red, green, blue, 1.0)
             made.strokes(pieces, color, _THIN + (_WIDE - _THIN) * fraction**0.5, behind=0.45)
             if light is not None:
                 made.disc(light, color, 0.28)

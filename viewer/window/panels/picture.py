@@ -170,7 +170,7 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
         return  # the progress window speaks
     text = coming.first_picture(c)
     if c.session.scene is None:
-        text = ui.with_keys("Open a scene (Ctrl+O), or drop one on this window")
+        text = f"Open a scene{ui.key('Open...')}, or drop one on this window"
     width = imgui.calc_text_size(text).x
     at = imgui.get_cursor_pos()
     imgui.set_cursor_pos(ImVec2(at.x + max(0.0, (room.x - width) / 2.0), at.y + room.y / 2.0))

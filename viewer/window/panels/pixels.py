@@ -52,8 +52,8 @@ def _watched(ui: Ui) -> None:
     clipped("all of the picture" if c.session.zoom.fits else f"enlarged {c.session.zoom.scale:.3g} times", QUIET)
     frame = c.frame
     if frame is None or not ui.pixels.watched:
-        text = "Ctrl+wheel zooms into the picture, Ctrl+drag moves it. Watch the pixel under the pointer (Shift+P)."
-        paragraph(ui.with_keys(text), QUIET)
+        text = "Ctrl+wheel zooms into the picture, Ctrl+drag moves it. Watch the pixel under the pointer"
+        paragraph(f"{text}{ui.key('Watch pixel')}.", QUIET)
         return
     sides = c.comparing.sides
     of_view = c.tracing.drawn_view not in (View.COLOR, View.WIPE)  # else the value is the colour

@@ -62,8 +62,8 @@ def ray_lines(frame: Frame, tree: RayTree, shown: Filter) -> list[RayLine]:
         if len(places) > left:
             places = places[np.linspace(0, len(places) - 1, left).astype(int)] if left else places[:0]
         left -= len(places)
-        for place in places.tolist():
-            lines += shadow_lines(frame, tree, ray.number, place)
+        for number in places.tolist():
+            lines += shadow_lines(frame, tree, ray.number, number)
     return lines
 
 
@@ -131,12 +131,12 @@ def draw(ui: Ui, made: Pen, frame: Frame, alpha: float) -> None:
         for line in _of_row(tree, frame, lines, row):
             _line(made, line, clicked, 1.0)
     _points(made, tree, frame, rays.pointed or rays.selected)
-    row = rays.selected
-    if row is not None and rays.visits:
-        visit, one = rays.visits[rays.step], int(row.places[0]) if len(row.places) else None
+    chosen = rays.selected
+    if chosen is not None and rays.visits:
+        visit, one = rays.visits[rays.step], int(chosen.places[0]) if len(chosen.places) else None
         box = [stroke for edge in box_edges(visit.corners) for stroke in strokes(frame, edge)]
         made.strokes(box, ImVec4(*(HIT_BOX if visit.hits else BOX), 1.0), 0.2, 0.55, _DARK, 0.11)
-        inside = inside_strokes(frame, tree, row.ray, one, visit)
+        inside = inside_strokes(frame, tree, chosen.ray, one, visit)
         made.strokes(inside, ImVec4(*INSIDE, 1.0), 0.28, 0.55, _DARK, 0.11)
 
 

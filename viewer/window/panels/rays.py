@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from imgui_bundle import ImVec2, imgui
-from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.geometry.visits import Visit
 from viewer.output.ray_rows import RayRows, Row, origin_of, steps_summary, totals
@@ -31,7 +30,7 @@ _SIDE_BY_SIDE = 38.0  # ems of width that leave room for both
 _TREE_SHARE = 0.48
 _ROWS, _ROWS_ABOVE = 14, 6  # lines of the tree, and of the steps; and of the tree above these
 _DRAWN = (
-    "in the picture, the shadow rays of the clicked point (I): yellow as far as light comes, then blue; outlined in "
+    "in the picture, the shadow rays of the clicked point: yellow as far as light comes, then blue; outlined in "
     "red is what blocks it, in orange what a certificate names; dashes are hidden. In the colour of partially "
     "occluded, what hides its primitive; three squares are the pixel and the two that it is compared with (Figure 3)"
 )
@@ -66,7 +65,7 @@ def section(ui: Ui) -> None:
     if wanted:
         imgui.set_next_item_open(True)
     opened = imgui.collapsing_header("Rays")
-    tooltip("what became of each ray of the clicked pixel (X)")
+    tooltip(f"what became of each ray of the clicked pixel{ui.key('Rays of the clicked pixel')}")
     if wanted:
         imgui.set_scroll_here_y(0.0)
     if opened:
@@ -96,7 +95,7 @@ def _section(ui: Ui, rays: RayInspector) -> None:
     if wide:
         imgui.same_line()
     if imgui.begin_child("steps", ImVec2(0.0, _ROWS * line)):
-        _steps(rays, rays.rows, row)
+        _steps(ui, rays, rays.rows, row)
     imgui.end_child()
 
 
@@ -175,14 +174,14 @@ def _row(rays: RayInspector, level: int, row: Row, selected: bool) -> bool:
     imgui.pop_id()
     tip = "\n".join(([] if text == row.text else [row.text]) + ([row.tip] if row.tip else []))
     if rays.pointed is row and tip and not imgui.is_mouse_down(0):
-        tooltip_at(tip, keys=False)
+        tooltip_at(tip)
     return bool(toggled)
 
 
 # --- the steps of one ray ---------------------------------------------------------------------------
 
 
-def _steps(rays: RayInspector, rows: RayRows, row: Row) -> None:
+def _steps(ui: Ui, rays: RayInspector, rows: RayRows, row: Row) -> None:
     """The nodes that the selected ray enters, one by one, and a slider over them."""
     assert rays.tree is not None
     visits = rays.visits
@@ -191,7 +190,7 @@ def _steps(rays: RayInspector, rows: RayRows, row: Row) -> None:
         return
     imgui.set_next_item_width(-1.0)
     changed, step = imgui.slider_int("##step", rays.step + 1, 1, len(visits), f"step %d of {len(visits)}")
-    tooltip("the step that is drawn in the picture (, and .)")
+    tooltip(f"the step that is drawn in the picture; next{ui.key('Next step of the ray')}")
     if changed:
         rays.go(step - 1 - rays.step)
     text, why = steps_summary(rays.tree, row, visits)
@@ -248,7 +247,7 @@ def _step(rays: RayInspector, rows: RayRows, visit: Visit, number: int, length: 
         lines = [f"{kind} {visit.node} of {visit.tree}, {visit.level} below the root"]
         lines += [f"tested: {', '.join(map(rows.name, visit.tested[:8]))}"] if visit.tested else []
         lines += [f"hit: {hits}"] if hits else []
-        tooltip_at("\n".join(lines), keys=False)
+        tooltip_at("\n".join(lines))
     name = f"{visit.node}" if visit.tree == "static" else f"{visit.tree.removesuffix(' objects')} {visit.node}"
     name = f"leaf {name}" if visit.leaf else name
     tests = str(len(visit.tested)) if visit.leaf else ""

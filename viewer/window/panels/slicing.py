@@ -63,9 +63,9 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
         tree, cut = tree_of(frame), c.session.cut
         part = part_seen(frame, tree, cut, x, y)
         return [] if part is None else list(part_words(part, tree.owner))
-    cut = c.inspector.cut
-    if view is View.CUTS and cut is not None and (cut.x, cut.y) == (x, y):
-        return cut_lines(cut)
+    lit = c.inspector.cut
+    if view is View.CUTS and lit is not None and (lit.x, lit.y) == (x, y):
+        return cut_lines(lit)
     if view is View.CUTS and c.selection.picked is None and c.inspector.awaits_cut == (x, y):
         return awaited(c)
     if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:

@@ -84,5 +84,6 @@ def ticks(ui: Ui) -> None:
     """Below the table."""
     s = ui.controller.session
     if s.view in (View.COLOR, View.WIPE):
-        tip = "stripes over pixels that are too bright for the screen, in red, and over black ones, in blue (Shift+M)"
+        tip = "stripes over pixels that are too bright for the screen, in red, and over black ones, in blue"
+        tip += ui.key("Mark clipped pixels")
         checkbox("Mark clipped pixels", s.clipping, lambda on: setattr(s, "clipping", on), tip)

@@ -24,7 +24,7 @@ def show(ui: Ui) -> None:
             row("View", "what is shown of the frame; the key of each view stands beside it in the list")
             _views(ui)
             if c.session.view.of_light and c.session.scene is not None and c.session.scene.lights:
-                row("Light", "the light that the view is about (L and Shift+L)")
+                row("Light", f"the light that the view is about{ui.keys('Next light', 'Previous light')}")
                 lights.combo(ui)
             if c.session.view is View.WIPE:
                 row("Line", "where it is; or drag it in the picture")
@@ -41,14 +41,22 @@ def show(ui: Ui) -> None:
                 changed, shading = imgui.slider_float("##shading", p.shading, 0.0, 1.0, "%.2f")
                 p.shading = min(max(shading, 0.0), 1.0) if changed else p.shading
             tone.rows(ui)
-    checkbox("Legend", p.legend, lambda on: setattr(p, "legend", on), "in the picture (N); drag it where you like")
+    checkbox(
+        "Legend",
+        p.legend,
+        lambda on: setattr(p, "legend", on),
+        f"in the picture{ui.key('Legend')}; drag it where you like",
+    )
     imgui.same_line(0.0, em(1.0))
-    checkbox("Outlines", p.outlines, lambda on: setattr(p, "outlines", on), "borders between primitives (B)")
+    checkbox(
+        "Outlines", p.outlines, lambda on: setattr(p, "outlines", on), f"borders between primitives{ui.key('Outlines')}"
+    )
     if c.session.view.needs_work:
-        tip = "the share of the shadow rays due, or of the rays traced without culling, instead of counts (U)"
+        tip = "the share of the shadow rays due, or of the rays traced without culling, instead of counts"
+        tip += ui.key("Shares of rays")
         checkbox("Shares", p.work_shares, lambda on: setattr(p, "work_shares", on), tip)
     if c.session.view.needs_verify:
-        tip = "rings around pixels with wrong shadow answers, so that a lone one is found (M)"
+        tip = f"rings around pixels with wrong shadow answers, so that a lone one is found{ui.key('Mark wrong pixels')}"
         checkbox("Mark wrong pixels", p.mark_wrong, lambda on: setattr(p, "mark_wrong", on), tip)
     tone.ticks(ui)
     legend.in_panel(ui)

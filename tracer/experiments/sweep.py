@@ -7,15 +7,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from tracer.experiment import FIGURES
+from tracer import fingerprint
+from tracer.experiments.cluster import Cluster
+from tracer.experiments.experiment import FIGURES
+from tracer.experiments.remote_jobs import Emit, Job, do
+from tracer.experiments.study import Study, Task, differences
+from tracer.experiments.sweep_frames import Row, rows_of
+from tracer.experiments.sweep_store import Key, Store, keys_of
 from tracer.scene.model import Scene
-from viewer.output import fingerprint
-from viewer.output.sweep_store import Key, Store, keys_of
-from viewer.services.cluster import Cluster
-from viewer.services.jobs_elsewhere import Emit, Job, do
-from viewer.services.sweep_tasks import Row, rows_of
-from viewer.state.study import Study, Task, differences
-from viewer.util.version import program_version, tracer_code
+from tracer.version import program_version, tracer_code
 
 FORMAT = 1
 SAME = (*(name for name in FIGURES if name != "frame_seconds"), "picture")

@@ -1,7 +1,7 @@
 """A path of frames by several methods under lamps of several sizes and numbers of samples.
 
-Each kind of lamp is an experiment of its own (`tracer.experiment`), in one world.  The method `free`, for which shadow
-rays cost nothing, is always measured as well: its speed-up over `none` is the most that culling can reach.
+Each kind of lamp is an experiment of its own (`tracer.experiments.experiment`), in one world.  The method `free`, for
+which shadow rays cost nothing, is always measured as well: its speed-up over `none` is the most that culling can reach.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tracer.experiment import REFERENCE, Results, run, saved_of, speed_up
+from tracer.experiments.experiment import REFERENCE, Results, run, saved_of, speed_up
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.scene.lights import as_lamps
@@ -78,7 +78,7 @@ def run_lamps(
 ) -> Iterator[LampResults]:
     """Render the path once for each kind of lamp, and yield the same growing results after each frame.
 
-    `kinds` are radii and numbers of samples (`kinds_of_lamps`); everything else is as for `tracer.experiment.run`."""
+    `kinds` are radii and numbers of samples (`kinds_of_lamps`); everything else is as for `experiment.run`."""
     results = LampResults()
     world = world or World(scene, times[0] if times else 0.0, settings.accelerator)
     world.build()  # no frame that is measured has to

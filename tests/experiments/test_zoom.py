@@ -14,9 +14,9 @@ import pytest
 import tracer
 from tests.scenes import loaded
 from tests.tracing.worlds import affine, moved, quad, quadrics, scene
-from tracer import zoom
+from tracer.experiments import zoom
+from tracer.experiments.zoom import Change
 from tracer.scene.model import SPHERE, Camera
-from tracer.zoom import Change
 
 FIGURE_4 = Path(__file__).resolve().parents[2] / "assets" / "scenes" / "figure4.aff"
 SETTINGS = tracer.Settings(width=128, height=128, threads=1)

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-from tracer.experiment import FIGURES, REFERENCE, saved_of, wrong_part
-from viewer.output.sweep_store import Key, keys_of
-from viewer.state.study import ASPECTS
-from viewer.state.terms import SAVED
-from viewer.util.numbers import saved
+from tracer.experiments.experiment import FIGURES, REFERENCE, saved_of, wrong_part
+from tracer.experiments.study import ASPECTS
+from tracer.experiments.sweep_store import Key, keys_of
+from tracer.method import in_order
 
 Group = tuple[str, int, int, tuple[Any, ...]]
 """A scene, a size, and the values of ASPECTS."""
@@ -64,7 +63,7 @@ def summary(table: pa.Table, wanted: Iterable[Key]) -> list[Line]:
     for group in sorted(groups, key=lambda g: (g[0], g[1] * g[2], g[1], str(g[3]))):
         methods, words = groups[group], ", ".join(f"{n} {_shown(group[3][ASPECTS.index(n)])}" for n in aspects)
         reference = {_moment(data, row): row for row in methods.get(REFERENCE, ())}
-        for method in _in_order(methods):
+        for method in in_order(methods):
             lines.append(_line(data, group, words, method, methods[method], reference))
     return lines
 
@@ -114,27 +113,5 @@ def _moment(data: dict[str, list[Any]], row: int) -> tuple[Any, ...]:
     return data["seed"][row], data["path_frames"][row], data["frame"][row]
 
 
-def _in_order(methods: Iterable[str]) -> list[str]:
-    from viewer.state.methods import in_order
-
-    return in_order(methods)
-
-
 def _shown(value: Any) -> str:
     return "as in the scene" if value is None else f"{value:g}" if isinstance(value, float) else str(value).lower()
-
-
-def _saved(value: float, spread: float = NOTHING) -> str:
-    return "" if value != value else saved(value, spread if spread == spread else None)
-
-
-COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
-    ("frames", lambda line: f"{line.frames:,}"),
-    ("steps\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.steps, line.spread)),
-    ("tests\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.tests)),
-    (SAVED, lambda line: "" if line.method == REFERENCE else f"{line.known:.1%}"),
-    ("wrong", lambda line: f"{line.wrong:,}" if line.verified else ""),
-    ("frame,\nmedian\nms", lambda line: "" if line.seconds != line.seconds else f"{1000 * line.seconds:,.1f}"),
-    ("speed-\nup, all\nframes", lambda line: "" if line.speed_up != line.speed_up else f"{line.speed_up:.2f}"),
-)
-"""What a table says of a line: headings, and the cells below them."""

@@ -7,26 +7,27 @@ from dataclasses import dataclass
 from typing import Any
 
 from tracer.scene.model import Camera
-from viewer.util.json_numbers import finite
 
 MOST = 100_000
 """Frames before one picture."""
+MAX_TIME = 1e300
+"""Seconds; JSON may hold numbers that are no finite float."""
 
 
 @dataclass(frozen=True)
-class Earlier:
+class WarmupFrame:
     """A frame's time in seconds and its camera, the scene's own at that time where that is None."""
 
     time: float
     camera: Camera | None = None
 
 
-def to_json(frames: Sequence[Earlier]) -> list[Any]:
+def to_json(frames: Sequence[WarmupFrame]) -> list[Any]:
     """`[time, camera]` for each, as JSON has it: null is the scene's own camera."""
     return [[frame.time, None if frame.camera is None else frame.camera.to_json()] for frame in frames]
 
 
-def from_json(data: Any) -> tuple[Earlier, ...]:
+def from_json(data: Any) -> tuple[WarmupFrame, ...]:
     """The inverse of `to_json`, also of an object that has it as "before", such as the JSON of a find; raises
     ValueError, in one line, on anything else."""
     if isinstance(data, Mapping):
@@ -37,9 +38,7 @@ def from_json(data: Any) -> tuple[Earlier, ...]:
     for item in data:
         if not (isinstance(item, list) and len(item) == 2 and type(item[0]) in (int, float)):
             raise ValueError("a frame before is not understood: give [time, camera]")
-        try:
-            time = finite(item[0])
-        except ValueError:
-            raise ValueError("the time of a frame before is not a finite number") from None
-        frames.append(Earlier(time, None if item[1] is None else Camera.from_json(item[1])))
+        if not abs(item[0]) <= MAX_TIME:
+            raise ValueError("the time of a frame before is not a finite number")
+        frames.append(WarmupFrame(float(item[0]), None if item[1] is None else Camera.from_json(item[1])))
     return tuple(frames)

@@ -14,7 +14,6 @@ from contextlib import ExitStack, contextmanager, suppress
 from typing import Any
 
 from tracer.kernel_cache import cache_root
-from viewer.util.failures import one_line
 
 NEEDS_DASK = "Dask is not installed; install shadowcull[sweep] (pip install distributed pyarrow cryptography)"
 CONNECT = 10.0  # seconds to wait for a scheduler's answer
@@ -30,6 +29,12 @@ def check_dask() -> None:
     except ImportError as error:
         raise ValueError(f"{NEEDS_DASK} ({error})") from None
     del cryptography, distributed, pyarrow
+
+
+def in_one_line(error: BaseException) -> str:
+    """Return an exception as one line; its kind is named unless the message speaks for itself."""
+    text = " ".join(str(error).split())
+    return text if text and isinstance(error, ValueError | OSError) else f"{type(error).__name__}: {text}"
 
 
 class Cluster:
@@ -113,7 +118,7 @@ def connected(address: str) -> Iterator[Cluster]:
         try:
             client = Client(address, timeout=CONNECT, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
-            raise OSError(f"--scheduler {address}: no Dask scheduler answers there: {one_line(error)}") from None
+            raise OSError(f"--scheduler {address}: no Dask scheduler answers there: {in_one_line(error)}") from None
         try:
             yield Cluster(client)
         finally:

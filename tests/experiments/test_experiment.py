@@ -9,7 +9,7 @@ import pytest
 
 import tracer
 from tests.tracing.worlds import quad, scene
-from tracer import experiment
+from tracer.experiments import experiment
 
 SETTINGS = tracer.Settings(width=32, height=32, depth=1, threads=1, verify=True)
 FLOOR = [t for x in range(-2, 2) for t in quad((x, -2, 0), (x + 1, -2, 0), (x + 1, 2, 0), (x, 2, 0))]

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from tests.commands import ROOM
+from tracer.experiments.study import Study, differences
+from tracer.experiments.study_file import StudyError, read_study
 from tracer.scene.load import load_scene
-from viewer.state.study import Study, differences
-from viewer.state.study_file import StudyError, read_study
+from viewer.util.resources import embedded_scenes
 
 GOOD = """\
 # A comment, with methods = [3] in it
@@ -35,7 +36,7 @@ verify = true
 def read(tmp_path: Path, text: str) -> Study:
     (tmp_path / "room.aff").write_text(ROOM)
     (tmp_path / "study.toml").write_text(text)
-    return read_study(tmp_path / "study.toml")
+    return read_study(tmp_path / "study.toml", embedded_scenes())
 
 
 def test_a_study_becomes_tasks(tmp_path: Path) -> None:
@@ -127,9 +128,9 @@ def test_missing_keys_and_frames(tmp_path: Path) -> None:
     with pytest.raises(StudyError, match="no scenes; give a list"):
         read(tmp_path, 'methods = ["none"]\n')
     with pytest.raises(OSError, match=r"elsewhere\.toml: no such file; check the path"):
-        read_study(tmp_path / "elsewhere.toml")
+        read_study(tmp_path / "elsewhere.toml", embedded_scenes())
     with pytest.raises(OSError, match=r"studdy\.toml: no such file: did you mean '.*study\.toml'\?"):
-        read_study(tmp_path / "studdy.toml")
+        read_study(tmp_path / "studdy.toml", embedded_scenes())
     study = read(tmp_path, GOOD.replace("last = 5", "last = 8"))
     with pytest.raises(ValueError, match="the frames 0 to 8 are not all of room.aff, whose path has 8"):
         study.tasks("room.aff", load_scene(tmp_path / "room.aff"), "code")

@@ -10,12 +10,11 @@ import pytest
 
 import tracer
 from tests.viewer.marbles import LAST, STEP, write_marbles
+from tracer.experiments import counterexample, hunt, warmup_frames
+from tracer.experiments.counterexample import AROUND, PATH
+from tracer.experiments.hunt import Results, Search
 from tracer.ray_tree import ray_tree
-from viewer.output import finds
-from viewer.output.finds import AROUND, PATH, Findings
-from viewer.services import hunting
-from viewer.services.hunting import Search, hunt
-from viewer.state import earlier
+from viewer.services.counterexamples import crop_of
 
 SETTINGS = tracer.Settings(width=96, height=96, depth=2, method="paper", threads=1)
 FRAMES = LAST // STEP + 1
@@ -31,23 +30,23 @@ def search(world: tracer.World, **options) -> Search:
     return Search(SETTINGS, times, **options)
 
 
-def result(world: tracer.World, wanted: Search, **options) -> Findings:
-    *_, found = hunt(world.scene, wanted, world, **options)
+def result(world: tracer.World, wanted: Search, **options) -> Results:
+    *_, found = hunt.run(world.scene, wanted, world=world, **options)
     return found
 
 
 @pytest.fixture(scope="module")
-def found(world: tracer.World) -> Findings:
+def found(world: tracer.World) -> Results:
     return result(world, search(world, around=8, keep=5))
 
 
 @pytest.fixture(scope="module")
-def alone(world: tracer.World) -> Findings:
+def alone(world: tracer.World) -> Results:
     """Of the path, and no pictures beside it."""
     return result(world, search(world, keep=5))
 
 
-def test_the_path_is_searched_as_it_is_traced(world: tracer.World, alone: Findings, found: Findings) -> None:
+def test_the_path_is_searched_as_it_is_traced(world: tracer.World, alone: Results, found: Results) -> None:
     """Against frames traced here, one after another: the worst pixel of all is found, if not beside the path."""
     scene = world.scene
     renderer = tracer.Renderer(scene, replace(SETTINGS, verify=True), world=world)
@@ -63,19 +62,19 @@ def test_the_path_is_searched_as_it_is_traced(world: tracer.World, alone: Findin
     assert found.frames == FRAMES + 8 and found.wrong_pixels > wrong and found.finds[0].difference >= worst
 
 
-def test_finds_are_distinct_and_the_worst_first(found: Findings) -> None:
+def test_finds_are_distinct_and_the_worst_first(found: Results) -> None:
     assert len(found.finds) > 2 and len(found.finds) == len({find.key for find in found.finds})
     differences = [find.difference for find in found.finds]
-    assert differences == sorted(differences, reverse=True) and differences[-1] > finds.VISIBLE
+    assert differences == sorted(differences, reverse=True) and differences[-1] > hunt.VISIBLE
     assert AROUND in {find.place for find in found.finds}
 
 
-def test_a_find_is_made_again_by_its_frames(world: tracer.World, alone: Findings, found: Findings) -> None:
+def test_a_find_is_made_again_by_its_frames(world: tracer.World, alone: Results, found: Results) -> None:
     """Its pixel has the same wrong colour, bit for bit, after no more frames than it needs; and its rays say why."""
     scene = world.scene
     assert any(len(find.before) < find.learnt_from for find in alone.finds), "nothing was left out: this shows nothing"
     for find in (*alone.finds, *found.finds):
-        kept = earlier.from_json(json.loads(json.dumps(finds.to_json(find, scene))))
+        kept = warmup_frames.from_json(json.loads(json.dumps(counterexample.to_json(find, scene))))
         assert kept == find.before and kept
         renderer = tracer.Renderer(scene, SETTINGS, world=world)
         for one in kept:
@@ -92,7 +91,7 @@ def test_a_find_is_made_again_by_its_frames(world: tracer.World, alone: Findings
         assert tuple(right.render(find.time, find.seen_camera).color[find.y, find.x].tolist()) == find.reference
 
 
-def test_the_frame_that_taught_has_set_the_mode(world: tracer.World, alone: Findings, found: Findings) -> None:
+def test_the_frame_that_taught_has_set_the_mode(world: tracer.World, alone: Results, found: Results) -> None:
     """Traced along the same path here: the mode that is wrong is first there after that frame."""
     scene = world.scene
     on_path = [find for find in alone.finds if find.taught >= 0]
@@ -109,19 +108,19 @@ def test_the_frame_that_taught_has_set_the_mode(world: tracer.World, alone: Find
 def test_the_frames_before_a_find_are_looked_for_once(world: tracer.World, monkeypatch: pytest.MonkeyPatch) -> None:
     """Before the pictures beside the path, or after them: a find that is short already is left alone."""
     tried: list[tuple[object, object]] = []
-    makes = hunting._Hunter._makes
+    makes = hunt._Hunter._makes
 
     def watched(self, before, find):
         assert len(find.before) == find.learnt_from and set(before) < set(find.before)
         tried.append((find, before))
         return len(before) > 1 and makes(self, before, find)  # so that some stay that have several
 
-    monkeypatch.setattr(hunting._Hunter, "_makes", watched)
+    monkeypatch.setattr(hunt._Hunter, "_makes", watched)
     result(world, search(world, around=1, keep=5))
     assert tried and len(set(tried)) == len(tried), "none is tried twice"
 
 
-def test_the_same_seed_finds_the_same(world: tracer.World, found: Findings) -> None:
+def test_the_same_seed_finds_the_same(world: tracer.World, found: Results) -> None:
     assert result(world, search(world, around=8, keep=5)) == found
     assert result(world, search(world, around=8, keep=5, seed=2)).finds != found.finds
 
@@ -138,21 +137,21 @@ def test_a_hunt_that_is_stopped_keeps_what_it_has(world: tracer.World) -> None:
     stopped = result(
         world,
         search(world, around=8),
-        cancelled=lambda: len(traced) >= 6,
-        on_frame=lambda label, done, total, frame: traced.append(f"{label}: {done} of {total}"),
+        cancel=lambda: len(traced) >= 6,
+        on_frame=lambda label, frame: traced.append(label),
     )
     assert stopped.frames == 6 and stopped.finds
-    assert traced[0] == f"frame 1 of {FRAMES}: 1 of {FRAMES + 8}"
+    assert traced[0] == f"frame 1 of {FRAMES}"
 
 
-def test_words_say_what_is_wrong_and_true(world: tracer.World, found: Findings) -> None:
+def test_words_say_what_is_wrong_and_true(world: tracer.World, found: Results) -> None:
     scene = world.scene
     for find in found.finds:
-        text = " ".join(finds.in_words(find, scene))
+        text = " ".join(counterexample.in_words(find, scene))
         assert f"Pixel {find.x}, {find.y} is too " in text and f" {find.primitive} of " in text
         assert ("but is blocked by" in text or "but the first is blocked by" in text) == find.lit
         assert ("nothing is in" in text) != find.lit
-        crop = finds.crop_of(find, found.size)
+        crop = crop_of(find, found.size)
         assert 0 <= find.x - crop.x < crop.width and 0 <= find.y - crop.y < crop.height
         assert crop.x + crop.width <= 96 and crop.y + crop.height <= 96
 
@@ -160,14 +159,14 @@ def test_words_say_what_is_wrong_and_true(world: tracer.World, found: Findings) 
 def test_cameras_beside_the_path_look_at_what_is_wrong(world: tracer.World, monkeypatch: pytest.MonkeyPatch) -> None:
     """Their pictures have it near where the find had it, and nothing lies between the two cameras."""
     targets, cameras = [], []
-    another = hunting._Hunter._another
+    another = hunt._Hunter._another
 
     def watched(self, camera, target, time, lots):
         moved = another(self, camera, target, time, lots)
         targets.append(target), cameras.append((camera, moved))
         return moved
 
-    monkeypatch.setattr(hunting._Hunter, "_another", watched)
+    monkeypatch.setattr(hunt._Hunter, "_another", watched)
     result(world, search(world, around=5, radius=0.2))
     assert len(cameras) == 5
     for target, (camera, moved) in zip(targets, cameras):

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tracer.experiment import path_times
+from tracer.experiments.experiment import path_times
 from tracer.method import Method
 from tracer.scene.framing import bounds
 from tracer.scene.model import Camera, Scene

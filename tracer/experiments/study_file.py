@@ -7,18 +7,17 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from itertools import product
 from pathlib import Path
 from typing import Any, TypeVar
 
+from tracer.experiments.study import ASPECTS, Study
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.files import read_regular
 from tracer.settings import LIGHT_BUFFER_SIDES, MAX_NODES, Settings
 from tracer.similar import did_you_mean, did_you_mean_file, similar
-from viewer.state.study import ASPECTS, Study
-from viewer.util import resources
 
 T = TypeVar("T")
 KEYS = ("title", "scenes", "methods", "sizes", "seeds", "shake", "warmup", "folders", "settings", "path")
@@ -32,11 +31,11 @@ class StudyError(ValueError):
     """A study cannot be read; the message is one line."""
 
 
-def read_study(path: Path) -> Study:
-    """Read a study; raises StudyError and OSError, in one line."""
+def read_study(path: Path, own_scenes: Mapping[str, Path]) -> Study:
+    """Read a study; `own_scenes` are those that it may name.  Raises StudyError and OSError, in one line."""
     try:
         text = read_regular(path, MOST_BYTES).decode("utf-8")
-        return _Reader(path, text, tomllib.loads(text)).study()
+        return _Reader(path, text, tomllib.loads(text), own_scenes).study()
     except OSError as error:
         if isinstance(error, FileNotFoundError):
             raise OSError(f"{path}: no such file{did_you_mean_file(path)}") from None
@@ -53,7 +52,8 @@ def read_study(path: Path) -> Study:
 class _Reader:
     """Takes one value after another, and knows where each stands."""
 
-    def __init__(self, path: Path, text: str, data: dict[str, Any]) -> None:
+    def __init__(self, path: Path, text: str, data: dict[str, Any], own_scenes: Mapping[str, Path]) -> None:
+        self._own_scenes = own_scenes
         self._path, self._lines, self._data = path, text.splitlines(), data
 
     def study(self) -> Study:
@@ -159,10 +159,9 @@ class _Reader:
 
     def _scene(self, name: str) -> Path:
         """The file of a scene: of the program, or beside the study."""
-        found = resources.embedded_scenes().get(name) or self._beside(name)
+        found = self._own_scenes.get(name) or self._beside(name)
         if not found.is_file():
-            own = resources.embedded_scenes()
-            hint = did_you_mean(name, own) or f" ({', '.join(own)})"
+            hint = did_you_mean(name, self._own_scenes) or f" ({', '.join(self._own_scenes)})"
             raise self._wrong("scenes", "", f"no file {found}, and no scene of the program{hint}", name)
         return found
 

@@ -9,18 +9,17 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 from filelock import FileLock, Timeout
 
-from tracer.experiment import FIGURES
+from tracer.experiments.experiment import FIGURES
+from tracer.experiments.study import ASPECTS
 from tracer.settings import Settings
-from viewer.state.study import ASPECTS
-from viewer.util.files import write_text, write_whole
 
 _COUNTERS = [name for name in FIGURES if name != "frame_seconds"]
 _FIELDS: dict[str, pa.DataType] = {
@@ -69,6 +68,7 @@ _FIELDS: dict[str, pa.DataType] = {
 }
 SCHEMA = pa.schema(list(_FIELDS.items()))
 RESULTS, PARTS, STUDY, LOCK = "results.parquet", "parts", "study.json", ".lock"
+_UNFINISHED = ".unfinished"
 Key = tuple[str, int]
 """A task and the number of a frame."""
 
@@ -90,6 +90,8 @@ class Store:
         try:
             (self.folder / PARTS).mkdir(parents=True, exist_ok=True)
             self._lock.acquire(timeout=0)
+            for left in (self.folder / PARTS).glob(f"*{_UNFINISHED}"):  # by a sweep that was killed
+                left.unlink()
         except Timeout:
             raise OSError(f"{self.folder}: another sweep writes to it; wait, or give another folder") from None
         except OSError as error:
@@ -118,7 +120,8 @@ class Store:
 
     def set_study(self, data: dict[str, Any]) -> None:
         """Say what the results are of; raises OSError in one line."""
-        write_text(self.folder / STUDY, json.dumps(data, indent=1, ensure_ascii=False))
+        text = json.dumps(data, indent=1, ensure_ascii=False)
+        self._write(self.folder / STUDY, lambda file: file.write(text.encode()))
 
     # --- rows -------------------------------------------------------------------------------------
 
@@ -138,7 +141,7 @@ class Store:
     def add(self, rows: Sequence[dict[str, Any]]) -> Path:
         """Write rows, whole, now; raises OSError in one line."""
         path = self.folder / PARTS / f"{time.time_ns():020d}-{os.getpid()}.parquet"
-        _write(path, pa.Table.from_pylist(list(rows), SCHEMA))
+        self._write_table(path, pa.Table.from_pylist(list(rows), SCHEMA))
         return path
 
     def merge(self) -> None:
@@ -147,7 +150,7 @@ class Store:
         if not parts:
             return
         order = ("scene", "width", "height", "method", "task", "frame")
-        _write(self.results, self.read().sort_by([(name, "ascending") for name in order]))
+        self._write_table(self.results, self.read().sort_by([(name, "ascending") for name in order]))
         for path in parts:
             path.unlink(missing_ok=True)
 
@@ -158,6 +161,21 @@ class Store:
 
     def _parts(self) -> list[Path]:
         return sorted((self.folder / PARTS).glob("*.parquet"))
+
+    def _write_table(self, path: Path, table: pa.Table) -> None:
+        self._write(path, lambda file: pq.write_table(table, file, compression="zstd"))
+
+    def _write(self, path: Path, write: Callable[[BinaryIO], object]) -> None:
+        """Let `write` fill a file that takes its name once it is whole and on the disk."""
+        unfinished = self.folder / PARTS / f"{path.name}{_UNFINISHED}"
+        try:
+            with unfinished.open("wb") as file:
+                write(file)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(unfinished, path)
+        except OSError as error:
+            raise OSError(f"{path}: not written: {error.strerror or error}") from None
 
     def _read(self, path: Path) -> pa.Table:
         try:
@@ -179,7 +197,3 @@ def _with_all_settings(table: pa.Table) -> pa.Table:
 def keys_of(table: pa.Table) -> list[Key]:
     """The task and the frame of each row."""
     return list(zip(table["task"].to_pylist(), table["frame"].to_pylist()))
-
-
-def _write(path: Path, table: pa.Table) -> None:
-    write_whole(path, lambda file: pq.write_table(table, file, compression="zstd"))

@@ -21,20 +21,20 @@ import numba
 import numpy as np
 from filelock import FileLock
 
+from tracer import fingerprint
 from tracer.compilation import compiled_before, make_ready, ready_for, warm_up
-from tracer.experiment import figures_of
+from tracer.experiments.experiment import figures_of
+from tracer.experiments.study import ASPECTS, Task
 from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.kernel_cache import cache_root
 from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
-from viewer.output import fingerprint
-from viewer.state.study import ASPECTS, Task
-from viewer.util.version import program_version, tracer_code
+from tracer.version import program_version, tracer_code
 
 Row = dict[str, Any]
-"""A frame that was measured, by the names of the columns in `viewer.output.sweep_store`."""
+"""A frame that was measured, by the names of the columns in `tracer.experiments.sweep_store`."""
 KEPT_WORLDS = 2
 _worlds: OrderedDict[tuple[str, str, float], World] = OrderedDict()
 _last: Renderer | None = None

@@ -15,11 +15,10 @@ from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from typing import Any
 
+from tracer.experiments.cluster import Cluster, in_one_line
+from tracer.experiments.sweep_frames import check_program
 from tracer.scene.model import Cancelled, Scene
-from viewer.services.cluster import Cluster
-from viewer.services.sweep_tasks import check_program
-from viewer.util.failures import one_line
-from viewer.util.version import program_version, tracer_code
+from tracer.version import program_version, tracer_code
 
 Emit = Callable[[Any], None]
 Function = Callable[[Any, Scene, Emit, Callable[[], bool]], Any]
@@ -171,7 +170,7 @@ def _why(future: Any) -> str:
         return "each process that tried it died, perhaps for want of memory"
     if isinstance(error, ModuleNotFoundError):
         return f"a process lacks what it needs; install the same Shadowcull there ({error})"
-    return one_line(error) if error is not None else "it was cancelled by the scheduler"
+    return in_one_line(error) if error is not None else "it was cancelled by the scheduler"
 
 
 # --- in the processes of the cluster ------------------------------------------------------------------
