@@ -20,11 +20,11 @@ from tracer.reasons import TaughtBy, Why
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera
 from tracer.settings import Settings
+from viewer.services.frame_history import FrameHistory
 from viewer.services.queries import Ask, Newest
-from viewer.services.record import Record
 from viewer.services.render_request import Traced
 from viewer.services.selection import Selection
-from viewer.state.moments import Moment
+from viewer.state.history import FrameRecord
 from viewer.state.picking import Pick
 from viewer.state.readings import can_record_lights
 
@@ -139,8 +139,8 @@ def _is_static(renderer: Renderer, frame: Frame, x: int, y: int, light: int) -> 
 class OriginFinder:
     """Looks into the frames that set the modes of what was clicked, one by one; `of` is what is known."""
 
-    def __init__(self, selection: Selection, record: Record, query: Ask) -> None:
-        self._selection, self._record = selection, record
+    def __init__(self, selection: Selection, history: FrameHistory, query: Ask) -> None:
+        self._selection, self._history = selection, history
         self._newest = Newest(query, find_pixels)
         self._frame: Frame | None = None  # with which the newest was asked
         self._subject: tuple[object, object] | None = None
@@ -168,22 +168,22 @@ class OriginFinder:
             return
         if self._frame is None or not self._newest.pending or self._frame.time != shown.frame.time:
             self._frame = shown.frame
-        moment = self._next(pick)
-        if moment is not None:
-            asked = moment.number, moment.time, moment.camera, moment.settings, pick.unit, pick.in_cells
+        record = self._next(pick)
+        if record is not None:
+            asked = record.number, record.time, record.camera, record.settings, pick.unit, pick.in_cells
             self._newest.ask(self._frame, *asked)
             if self._newest.answer is not None:
                 number, found = self._newest.answer
                 self._known[number] = found
 
-    def _next(self, pick: Pick) -> Moment | None:
+    def _next(self, pick: Pick) -> FrameRecord | None:
         """Return a frame that set modes of the unit, and has not been looked into."""
-        origins = self._record.origins(pick)
+        origins = self._history.origins_of(pick)
         if origins is None or self._newest.problem:
             return None
         for number in sorted({number for one in origins.lights for _, number in one.met()} - self._known.keys()):
-            moment = self._record.moments.get(number)
+            record = self._history.records.get(number)
             # Of a picture that was left before it was whole, nobody knows any more which of its pixels were shaded.
-            if moment is not None and moment.whole and can_trace_once_more(moment.settings, len(pick.shadows)):
-                return moment
+            if record is not None and record.whole and can_trace_once_more(record.settings, len(pick.shadows)):
+                return record
         return None

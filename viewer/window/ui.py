@@ -71,8 +71,7 @@ class Ui:
     `editing` is the list and the place in it of a name that is being edited, `edited` that name; `tour_height` is what
     the picture leaves free below it for the tour, `tour_place` where that is: left, top and width. `gesture` is what a
     drag does that moves no camera, from `gesture_at` on, a point of the picture; `menu_at` is the point that the menu
-    over the picture is about, and `plot_frame` the frame that the menu of a plot is about, `plot_named` its name;
-    `plot_pointed` is the one that the pointer was on last.
+    over the picture is about; `plot_pointed` is the frame of a plot that the pointer was on last.
     `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `what_if_below` how high all is
     below its list of lights, `held_light` the light that the pointer drags, and `changed_shown` says that changed
     pixels are to be seen. `find_focus` asks for the keyboard above the table of what is in the scene, of which
@@ -104,8 +103,6 @@ class Ui:
     copy_to: Callable[[str], None] = lambda text: None
     about_open: bool = False
     per_pixel: bool = True
-    plot_frame: int = 0
-    plot_named: str = ""
     plot_pointed: int | None = None
     picture_area: tuple[int, int] = (0, 0)
     picture_focused: bool = False

@@ -11,7 +11,7 @@ from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Settings
 from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.scene.model import Camera
-from viewer.state.moments import Moment, Moments
+from viewer.state.history import FrameRecord, FrameRecords
 from viewer.state.views import View
 
 UNITS = 600
@@ -68,21 +68,21 @@ def test_what_was_known_before_the_record_began_has_no_teacher() -> None:
 
 
 def test_frames_are_kept_by_their_numbers() -> None:
-    moments, camera = Moments(5), Camera((0, 0, 0), (0, 0, 1))
+    records, camera = FrameRecords(5), Camera((0, 0, 0), (0, 0, 1))
 
     def put(number: int, time: float = 0.0) -> None:
-        moments.put(Moment(number, time, camera, True, Settings(), {}, View.COLOR, 0, 0.5, (8, 8), True))
+        records.put(FrameRecord(number, time, camera, True, Settings(), {}, View.COLOR, 0, 0.5, (8, 8), True))
 
     for number in range(8):
         put(number)
-    assert moments.get(2) is None and moments.get(8) is None
-    assert [moments.get(number).number for number in range(3, 8)] == [3, 4, 5, 6, 7]
+    assert records.get(2) is None and records.get(8) is None
+    assert [records.get(number).number for number in range(3, 8)] == [3, 4, 5, 6, 7]
     put(7, 1.5)
-    assert moments.get(7).time == 1.5 and moments.get(3).number == 3
+    assert records.get(7).time == 1.5 and records.get(3).number == 3
     put(9)
-    assert moments.get(9).number == 9 and moments.get(8) is None and moments.get(7).number == 7
+    assert records.get(9).number == 9 and records.get(8) is None and records.get(7).number == 7
     put(0)
-    assert moments.get(0).number == 0 and moments.get(7) is None
+    assert records.get(0).number == 0 and records.get(7) is None
 
 
 def test_frames_before_a_picture_are_json() -> None:

@@ -139,14 +139,14 @@ def _modes(ui: Ui, pick: Pick) -> None:
 
 def _whole_since(ui: Ui, pick: Pick) -> None:
     """The picture since which the primitive is fully rendered.  Pictures are numbered as in the plots."""
-    origins = ui.controller.record.origins(pick)
+    origins = ui.controller.history.origins_of(pick)
     if origins is not None and origins.whole != NEVER and pick.occlusion is OcclusionMode.FULLY_RENDERED:
         sentence(ui, ("since ", Link(f"picture {origins.whole}", frame=origins.whole)), "whole", QUIET)
 
 
 def _origin(ui: Ui, pick: Pick, light: int, mode: ShadowMode) -> None:
     """The pictures in which the point was first seen lit by a light, and first blocked from it, with the pixels."""
-    origins = ui.controller.record.origins(pick)
+    origins = ui.controller.history.origins_of(pick)
     if origins is None or mode is ShadowMode.INIT or light >= len(origins.lights):
         return
     met = origins.lights[light].met()

@@ -75,7 +75,7 @@ def summary(known: Sequence[Explanation]) -> str:
 def _with_origins(ui: Ui, found: Why) -> Why:
     """The same with the pictures and pixels that set the modes of what was clicked."""
     c = ui.controller
-    origins = None if c.selection.picked is None else c.record.origins(c.selection.picked)
+    origins = None if c.selection.picked is None else c.history.origins_of(c.selection.picked)
     if origins is None:
         return found
     known: Why = ui.cached(
