@@ -15,7 +15,7 @@ from viewer.window.closer_commands import comparing, looking
 from viewer.window.command import Command, Condition
 from viewer.window.finding import finding, fly_to_selected
 from viewer.window.taking import taking
-from viewer.window.ui import CaptureKind, Ui
+from viewer.window.ui import CaptureKind, Dialog, Ui
 
 
 def build(ui: Ui) -> list[Command]:
@@ -293,19 +293,25 @@ def _run(ui: Ui) -> list[Command]:
 
 
 def _help(ui: Ui) -> list[Command]:
-    def shortcuts() -> None:
-        ui.shortcuts_open = not ui.shortcuts_open
-
-    def about() -> None:
-        ui.about_open = not ui.about_open
-
     def tour() -> None:
         (ui.tour.start if ui.tour.step is None else ui.tour.end)()
 
     return [
         Command("Tour", "Help", tour, checked=lambda: ui.tour.step is not None),
-        Command("Keyboard and mouse", "Help", shortcuts, "F1", checked=lambda: ui.shortcuts_open),
-        Command("About Shadowcull", "Help", about, checked=lambda: ui.about_open),
+        Command(
+            "Keyboard and mouse",
+            "Help",
+            lambda: ui.toggle(Dialog.KEYS),
+            "F1",
+            checked=lambda: Dialog.KEYS in ui.dialogs,
+            also="keys shortcuts",
+        ),
+        Command(
+            "About Shadowcull",
+            "Help",
+            lambda: ui.toggle(Dialog.ABOUT),
+            checked=lambda: Dialog.ABOUT in ui.dialogs,
+        ),
         Command(
             "Restart graphics",
             "Help",
@@ -337,5 +343,5 @@ def focus(ui: Ui) -> None:
     if point is None or extent is None:
         c.notices.say("there is nothing to focus on")
         return
-    ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
-    c.motion.glide(navigation.focus(c.session.camera, ui.pivot, extent, c.motion.world_up))
+    ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
+    c.motion.glide(navigation.focus(c.session.camera, ui.picture.pivot, extent, c.motion.world_up))

@@ -6,6 +6,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.state.views import color_map
 from viewer.window.panels import marks, slicing, words
+from viewer.window.panels.legend import LegendState
 from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
@@ -52,4 +53,4 @@ def _awaited(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     across, down = (end.x - corner.x) / c.frame.width, (end.y - corner.y) / c.frame.height
     middle = ImVec2(corner.x + (at[0] + 0.5) * across, corner.y + (at[1] + 0.5) * down)
     marks.ring(imgui.get_window_draw_list(), middle, marks.radius_around_pixel(across, down))
-    words.write(lines, middle, (corner.x, corner.y, end.x, end.y), ui.legend_place)
+    words.write(lines, middle, (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place)

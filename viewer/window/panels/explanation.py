@@ -11,6 +11,7 @@ from viewer.services.shadow_inspector import Answer, Part
 from viewer.state.projection import place
 from viewer.state.views import SHADOW_COLORS, ShadowMode
 from viewer.window.panels import marks
+from viewer.window.panels.links import Pointed
 from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
@@ -26,8 +27,9 @@ _BESIDE = 0.2  # and of all of them where clusters of lights are drawn over them
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """Over the picture: the lights' ways to the point, and outlines of what blocks them."""
+    state = ui.state(Pointed)
     c = ui.controller
-    pointed, ui.pointed_light = ui.pointed_light, None  # the inspector says so in each frame
+    pointed, state.light = state.light, None  # the inspector says so in each frame
     answer, frame = c.inspector.answer, c.frame
     if answer is None or frame is None or c.selection.picked is None or not c.preferences.draw_explanation:
         return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from imgui_bundle import imgui, implot
@@ -14,6 +15,15 @@ from viewer.window.palette import GREY
 from viewer.window.ui import Ui
 
 _MENU = "frame of the plot"
+
+
+@dataclass
+class PlotMenu:
+    """The frame that the menu of a plot is about, its name, and the one that the pointer was on last."""
+
+    frame: int = 0
+    name: str = ""
+    pointed: int | None = None
 
 
 def pointed(first: int, last: int, frames: Sequence[int] | None = None) -> int | None:
@@ -69,20 +79,21 @@ def of_experiment(ui: Ui, run: Experiment, results: Results, place: int | None, 
 
 def _menu(ui: Ui, plot: str, number: int | None, name: str, said: list[str], go: Callable[[int, bool], None]) -> None:
     """What the pointer is told, and what it can do."""
+    state = ui.state(PlotMenu)
     imgui.push_id(plot)
     if number is not None:
-        ui.plot_pointed = number
+        state.pointed = number
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
             go(number, False)
         elif imgui.is_mouse_clicked(imgui.MouseButton_.right):
-            ui.plot_frame, ui.plot_named = number, name.split(",")[0]
+            state.frame, state.name = number, name.split(",")[0]
             imgui.open_popup(_MENU)
         elif not imgui.is_popup_open(_MENU) and imgui.begin_tooltip():
             imgui.text_unformatted("\n".join([name, *said, "click: go there; right button: with its modes"]))
             imgui.end_tooltip()
     if imgui.begin_popup(_MENU):
         for modes, what in ((False, ""), (True, " with its modes")):
-            if imgui.menu_item(f"Go to {ui.plot_named}{what}", "", False, True)[0]:
-                go(ui.plot_frame, modes)
+            if imgui.menu_item(f"Go to {state.name}{what}", "", False, True)[0]:
+                go(state.frame, modes)
         imgui.end_popup()
     imgui.pop_id()

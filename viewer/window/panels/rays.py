@@ -9,7 +9,8 @@ from viewer.services.ray_inspector import RayInspector
 from viewer.state.ray_lines import MOST_DRAWN
 from viewer.state.verdicts import Shown
 from viewer.window.panels import lights, ray_steps
-from viewer.window.ui import Ui
+from viewer.window.panels.lights import LightFilters
+from viewer.window.ui import RaysState, Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip
 
 _SIDE_BY_SIDE = 38.0  # ems of width that leave room for both
@@ -32,8 +33,9 @@ _SHOWN_TIPS = {
 
 def section(ui: Ui) -> None:
     """A part of the panel that folds; rays are listed, and drawn in the picture, where it is open."""
+    state = ui.state(RaysState)
     rays, p = ui.controller.rays, ui.controller.preferences
-    wanted, ui.rays_wanted = ui.rays_wanted, max(ui.rays_wanted - 1, 0)
+    wanted, state.unfold = state.unfold, max(state.unfold - 1, 0)
     imgui.dummy(ImVec2(0.0, em(0.15)))
     if wanted:
         imgui.set_next_item_open(True)
@@ -107,7 +109,7 @@ def _filters(ui: Ui, rays: RayInspector) -> None:
     imgui.set_next_item_width(min(em(2.0 * _LIGHT), imgui.get_content_region_avail().x))
     if imgui.begin_combo("##light", "all lights" if light is None else ui.light_name(light)):
         if imgui.is_window_appearing():
-            ui.light_filters["rays"] = ""
+            ui.state(LightFilters).texts["rays"] = ""
         if imgui.selectable("all lights", light is None)[0]:
             rays.refilter(rays.shown._replace(light=None))
         for number in list(lights.found(ui, "rays"))[:64]:

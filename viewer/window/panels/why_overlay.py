@@ -14,6 +14,7 @@ from viewer.state.views import FATE_COLORS
 from viewer.state.whereabouts import lines_of
 from viewer.window.panels import marks
 from viewer.window.panels.area import Area
+from viewer.window.panels.links import Pointed
 from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
@@ -28,8 +29,9 @@ _WIDTH = 0.13  # of outlines
 
 def show(ui: Ui, area: Area) -> None:
     """Draw it, and what the pointer's link stands for."""
+    state = ui.state(Pointed)
     c = ui.controller
-    link, ui.pointed_link = ui.pointed_link, None  # the panel says so in each frame
+    link, state.link = state.link, None  # the panel says so in each frame
     frame, found = c.frame, c.inspector.why
     if frame is None:
         return
