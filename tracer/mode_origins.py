@@ -18,7 +18,7 @@ MOST_BYTES = 64 << 20
 _FIRST_ROWS = 256
 
 
-class Lesson(NamedTuple):
+class Origin(NamedTuple):
     """Numbers of the frames in which a unit was first seen blocked from a light, and first seen lit by it; NEVER where
     it was not."""
 
@@ -31,10 +31,10 @@ class Taught(NamedTuple):
     light that has modes."""
 
     whole: int
-    lights: tuple[Lesson, ...]
+    lights: tuple[Origin, ...]
 
 
-class Ledger:
+class ModeOrigins:
     """The units of one mode history, at one resolution.
 
     A mode that was forgotten and learnt again within one and the same frame counts as learnt when it first was, unless
@@ -90,7 +90,7 @@ class Ledger:
         if row == NEVER:
             return None
         whole, *lessons = self._table[row].tolist()
-        return Taught(whole, tuple(Lesson(*pair) for pair in zip(lessons[::2], lessons[1::2])))
+        return Taught(whole, tuple(Origin(*pair) for pair in zip(lessons[::2], lessons[1::2])))
 
     def _note(
         self, rows: NDArray[np.int32], column: int, number: int, new: NDArray[np.bool_], gone: NDArray[np.bool_]

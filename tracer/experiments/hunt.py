@@ -22,7 +22,7 @@ from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
 from tracer.method import Method
-from tracer.mode_origins import NEVER, Ledger
+from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.ray_tree import ray_tree
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Cancelled, Scene
@@ -130,7 +130,7 @@ class _History:
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         self.frames: list[WarmupFrame] = []
-        self.origins = Ledger(len(scene.lights))
+        self.origins = ModeOrigins(len(scene.lights))
         self._lights: np.ndarray | None = None
 
     def add(self, frame: Frame, traced: WarmupFrame) -> None:

@@ -16,10 +16,10 @@ from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
 from viewer.output import exports
 from viewer.services import counterexamples
+from viewer.services.frame_history import FrameNavigator, JumpTarget
 from viewer.services.recipes import Recipes
 from viewer.services.run_controller import RunController
 from viewer.services.runs import LONGEST_SIDE, Run
-from viewer.services.time_travel import Goal, TimeTravel, pasts
 from viewer.state import flight, zooming
 from viewer.state.edits import as_options
 from viewer.state.notices import Notices
@@ -105,12 +105,12 @@ class HuntController:
         session: Session,
         preferences: Preferences,
         runs: RunController,
-        travel: TimeTravel,
+        navigator: FrameNavigator,
         recipes: Recipes,
         notices: Notices,
         wake: Callable[[], None] = lambda: None,
     ) -> None:
-        self._session, self._preferences, self._runs, self._travel = session, preferences, runs, travel
+        self._session, self._preferences, self._runs, self._navigator = session, preferences, runs, navigator
         self._recipes, self._notices, self._wake = recipes, notices, wake
         self.plan = HuntPlan()
         self.hunt: HuntRun | None = None
@@ -171,9 +171,9 @@ class HuntController:
             settings=settings_to_json(replace(settings, samples=self._session.settings.samples)), light=find.light,
         )  # fmt: skip
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
-        before = pasts([(one.time, one.camera or scene.camera_at(one.time)) for one in find.before], settings)
+        warmup = tuple((one.time, one.camera or scene.camera_at(one.time)) for one in find.before)
         zoom = zooming.around(*point, size[0] / counterexamples.crop_of(find, size).width)
-        self._travel.replay_to(Goal(snapshot, f"find {number + 1}", size, point, zoom, True), before)
+        self._navigator.go_to(JumpTarget(snapshot, f"find {number + 1}", size, point, zoom, warmup))
 
     def save_figure(self, number: int) -> None:
         """Trace and draw the figure of a find, into the folder of the pictures."""

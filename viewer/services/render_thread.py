@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import threading
 import time
-from collections import deque
 from collections.abc import Callable, Generator, Hashable
 from concurrent.futures import Future
 from contextlib import closing
@@ -33,8 +32,6 @@ from viewer.services.queries import Function, Queries, Query
 from viewer.services.render_request import Question, RenderRequest, Spare, Task, Traced, Traces
 from viewer.util.failures import Failure, failure
 
-MOST_LEARNT = 16
-"""Frames that have set modes and wait to be taken; the window takes them before it asks for the next."""
 QUERY_SECONDS = 0.25
 """That a picture waits at most for the answer to a query; a longer one is cancelled, and may be asked for anew."""
 _KNOWN = (MemoryError, OSError)  # what may go wrong here without a mistake of the program's
@@ -61,7 +58,7 @@ class RenderThread:
         self._reset = False
         self._closing = False
         self._finished: Traced | None = None
-        self._learnt: deque[Traced] = deque(maxlen=MOST_LEARNT)
+        self._learnt: list[Traced] = []  # frames that have set modes; the window takes them before it asks for the next
         self._fresh = True  # nothing is known of modes
         self._failure: Failure | None = None  # of a frame
         self._complaints: list[Failure] = []  # of all else
@@ -150,8 +147,7 @@ class RenderThread:
         """The frames that have set modes since the last time, in their order: those that became whole, as they were
         before further samples, and those that were left before, as they were shown last."""
         with self._changed:
-            learnt = list(self._learnt)
-            self._learnt.clear()
+            learnt, self._learnt = self._learnt, []
             return learnt
 
     def take_failure(self) -> Failure | None:
@@ -327,6 +323,8 @@ class RenderThread:
             seconds = max(request.settings.certificate_seconds, request.refinement_seconds)
             patient = request.refinement_seconds > 0.0
             renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
+            if request.warmup is not None:
+                self._warm_up(renderer, request)
             with closing(self._refining(renderer, request)) as refining:
                 for frame, second in refining:
                     first = first or frame.statistics
@@ -346,6 +344,18 @@ class RenderThread:
                 if shown is not None and not shown.whole:
                     self._learnt.append(self._first_to_learn(shown))
         self._wake()
+
+    def _warm_up(self, renderer: Traces, request: RenderRequest) -> None:
+        """Forget all modes, and trace frames that set them."""
+        self._forget(renderer)
+        as_wanted = renderer.settings
+        renderer.settings = replace(as_wanted, verify=False)
+        for moment, camera in request.warmup or ():
+            frame = renderer.render(moment, camera, lambda: self._cancel)
+            traced = Traced(RenderRequest(moment, camera, frame.settings), frame, frame.statistics)
+            with self._changed:
+                self._learnt.append(self._first_to_learn(traced))
+        renderer.settings = as_wanted
 
     def _refining(self, renderer: Traces, request: RenderRequest) -> Generator[tuple[Frame, Frame | None], None, None]:
         """The pictures that a request asks for, each with that by the second method where there is one."""

@@ -164,5 +164,5 @@ def test_a_tree_that_rays_have_had_built_cannot_be_brought_back(odd: Desk) -> No
     odd.c.films.start()
     assert odd.c.films.film.script.recipe.history == BUILT
     odd.run_to_its_end()
-    odd.c.travel.go(odd.c.history.frames - 1)
+    odd.c.navigator.go(odd.c.history.frames - 1)
     assert odd.said.endswith(f"again, though {BUILT}"), odd.said

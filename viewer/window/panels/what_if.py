@@ -237,7 +237,8 @@ def _pixels(ui: Ui, found: Effects) -> None:
     share = 100.0 * found.pixels / max(found.changes.size, 1)
     paragraph(f"{count(found.pixels)} pixels ({share:.1f} %), by up to {found.most} of 255")
     tooltip(f"{count(found.exact)} where differences count that a screen does not show")
-    checkbox("Show changed pixels", ui.state(WhatIfState).changed_shown, lambda on: setattr(ui.state(WhatIfState), "changed_shown", on),
+    state = ui.state(WhatIfState)
+    checkbox("Show changed pixels", state.changed_shown, lambda on: setattr(state, "changed_shown", on),
              "in magenta on the dimmed picture, the brighter the more they changed; in the view Colour")  # fmt: skip
 
 

@@ -73,7 +73,7 @@ def summary(known: Sequence[Explanation]) -> str:
 def _with_teachers(ui: Ui, found: Why) -> Why:
     """The same with the pictures and pixels that gave the modes of what was clicked."""
     c = ui.controller
-    taught = None if c.selection.picked is None else c.record.taught(c.selection.picked)
+    taught = None if c.selection.picked is None else c.history.taught(c.selection.picked)
     if taught is None:
         return found
     known: Why = ui.cached(

@@ -1,18 +1,21 @@
-"""Back to a frame that was traced: the same picture, and if asked for, the same modes; and who taught a mode."""
+"""Back to a frame that was traced; and which frames set a mode."""
 
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+import tracer
 from tests.viewer.desk import ELSEWHERE, Desk
 from tracer.culling import modes
 from tracer.frame import Frame
-from tracer.mode_origins import NEVER
+from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.scene.edits import NO_EDITS, Edits
+from viewer.services.frame_history import JumpTarget
 from viewer.state.views import View
 
 
@@ -47,32 +50,31 @@ def flown(desk: Desk, method: str) -> dict[int, Frame]:
 def test_an_exact_picture_comes_back_bit_for_bit(desk: Desk, method: str) -> None:
     seen, c = flown(desk, method), desk.c
     for number, frame in seen.items():
-        moment = c.record.moments.get(number)
+        moment = c.history.records.get(number)
         assert moment is not None and (moment.time, moment.camera) == (frame.time, frame.camera)
-        c.travel.go(number)
+        c.navigator.go(number)
         of_path = c.session.frame_at(frame.time)
         assert desk.said == f"picture {number}, frame {of_path} of the path, again: the same picture, bit for bit"
         desk.rest()
         assert (c.session.time, c.session.camera) == (frame.time, frame.camera)
         assert (c.session.settings.method, c.session.settings.depth) == (method, frame.settings.depth)
         assert np.array_equal(c.frame.color.view(np.uint32), frame.color.view(np.uint32))
-    assert {c.record.moments.get(number).view for number in seen} == {View.COLOR, View.DEPTH}
+    assert {c.history.records.get(number).view for number in seen} == {View.COLOR, View.DEPTH}
 
 
 def test_frames_of_an_experiment_are_told_from_those_of_the_path(desk: Desk) -> None:
     c, scene = desk.c, desk.c.session.scene
     every = [scene.frame_time(number) for number in range(scene.frames)]
     runs = [SimpleNamespace(times=times, shown="paper", is_of=lambda scene: True) for times in (every, every[::5])]
-    assert c.travel.named_of_experiment(runs[0], 2) == "frame 2 of the path, by paper"
-    assert c.travel.named_of_experiment(runs[1], 2) == "frame 2 of the experiment, by paper, frame 10 of the path"
+    assert c.navigator.name_in_experiment(runs[0], 2) == "frame 2 of the path, by paper"
+    assert c.navigator.name_in_experiment(runs[1], 2) == "frame 2 of the experiment, by paper, frame 10 of the path"
 
 
 def test_going_back_can_be_undone_with_its_time(desk: Desk) -> None:
     seen, c = flown(desk, "paper"), desk.c
     here = c.session.snapshot()
     number = list(seen)[1]
-    c.travel.go(number)
-    assert "with the modes of now" in desk.said
+    c.navigator.go(number)
     desk.rest()
     assert c.session.time == seen[number].time != here.time and c.session.view is View.COLOR
     assert c.undo.undoes == f"going to picture {number}"
@@ -84,43 +86,47 @@ def test_going_back_can_be_undone_with_its_time(desk: Desk) -> None:
     assert c.session.time == seen[number].time and c.session.settings.depth == 3
 
 
-def test_the_modes_of_then_come_back_with_the_picture(desk: Desk) -> None:
-    """Traced again after the frames that had taught them, a picture and all modes are those of then, bit for bit."""
-    c = desk.c
-    seen = flown(desk, "paper")
-    first, *_, number = list(seen)[:4]
-    before = [n for n in c.record.learnt_from or [] if n < number]
-    c.travel.go(number, modes=True, point=(0.5, 0.6))
-    assert c.runs.current is not None, desk.said
-    desk.run_to_its_end()
-    assert_the_same(c.frame, seen[number])
+def test_the_modes_of_a_frame_that_depends_on_them_are_learnt_anew(desk: Desk) -> None:
+    """Nothing that later frames have taught is in its picture."""
+    seen, c = flown(desk, "paper"), desk.c
+    number = list(seen)[1]
+    c.navigator.go(number, point=(0.5, 0.6))
+    assert desk.said.endswith("modes are learnt anew")
+    desk.rest()
     assert c.selection.picked is not None and (c.selection.picked.x, c.selection.picked.y) == (32, 28)
-    assert len(c.record.learnt_from or []) == len(before) + 1, "another frame has followed"
+    learnt = {n for row in next(iter(c.history._origins.values()))._table[:, 1:].tolist() for n in row if n != NEVER}
+    assert learnt and min(learnt) > max(seen)
+    c.navigator.go(99_999)
+    assert "no longer kept" in desk.said
 
-    # The frames that were traced again have numbers of their own, and can be gone back to as well.
-    again = (c.record.learnt_from or [])[before.index(first)]
-    c.travel.go(again, modes=True)
-    desk.run_to_its_end()
-    assert_the_same(c.frame, seen[first])
+
+def test_a_frozen_picture_knows_what_its_warmup_frames_teach_and_no_more(desk: Desk) -> None:
+    """As a find of a hunt is looked at: with the modes of these frames, bit for bit, until something moves."""
+    c = desk.c
+    c.settings.change(method="paper", samples=4)
+    desk.rest()
+    scene, settings = c.session.scene, c.session.settings
+    warmup = tuple((scene.frame_time(n), scene.camera_at(scene.frame_time(n))) for n in range(3))
+    snapshot = replace(c.session.snapshot(), time=scene.frame_time(3))
+    c.navigator.go_to(JumpTarget(snapshot, "a find", (32, 24), warmup=warmup))
+    desk.rest()
+    own = tracer.Renderer(scene, replace(c.frame.settings, samples=1))
+    for then, camera in (*warmup, (c.session.time, c.session.camera)):
+        alone = own.render(then, camera)
+    assert np.array_equal(c.frame.color.view(np.uint32), alone.color.view(np.uint32))
+    assert np.array_equal(c.frame.modes, alone.modes) and settings.samples == 4 and c.frame.settings.samples == 1
     c.motion.move(ELSEWHERE)
     desk.rest()
-    assert len(c.record.learnt_from or []) > before.index(first) + 2, "no frame follows any more"
+    assert c.frame.settings.samples == 4, "having moved, it gets its samples"
 
 
-def assert_the_same(frame: Frame | None, then: Frame) -> None:
-    assert frame is not None and (frame.time, frame.camera) == (then.time, then.camera)
-    assert np.array_equal(frame.color.view(np.uint32), then.color.view(np.uint32))
-    assert np.array_equal(frame.modes, then.modes) and np.array_equal(frame.highest_count, then.highest_count)
-
-
-def test_what_was_forgotten_cannot_be_learnt_again(desk: Desk) -> None:
-    seen, c = flown(desk, "paper"), desk.c
-    c.tracing.reset_modes()
-    desk.rest()
-    c.travel.go(next(iter(seen)), modes=True)
-    assert "were forgotten since" in desk.said and c.runs.current is None
-    c.travel.go(99_999)
-    assert "no longer kept" in desk.said
+def test_who_set_which_mode_is_noted_beside_the_window(monkeypatch: pytest.MonkeyPatch, desk: Desk) -> None:
+    """As it looks at all units of a frame, for which the window would wait."""
+    threads: set[threading.Thread] = set()
+    add = ModeOrigins.add
+    monkeypatch.setattr(ModeOrigins, "add", lambda *args: (threads.add(threading.current_thread()), add(*args))[1])
+    flown(desk, "paper")
+    assert threads and threading.main_thread() not in threads
 
 
 def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> None:
@@ -128,6 +134,7 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
     c, words = desk.c, {}
     c.settings.change(method="paper", depth=2)
     desk.rest()
+    before = c.history.frames
     c.tracing.reset_modes()
     desk.rest()
     for number in (0, 4, 9):
@@ -136,18 +143,16 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
         desk.rest()
     c.motion.move(ELSEWHERE)
     desk.rest()
-    learnt = c.record.learnt_from
-    assert learnt is not None and len(learnt) >= 5
-    words = {n: c.record.moments.get(n) for n in learnt}
+    learnt = range(before, c.history.frames)
+    assert len(learnt) >= 5
+    words = {n: c.history.records.get(n) for n in learnt}
     assert all(words.values())
     c.selection.select((0.5, 0.75))
     picked = c.selection.picked
     assert picked is not None and picked.primitive >= 0
-    taught = c.record.taught(picked)
+    taught = c.history.taught(picked)
     assert taught is not None
     desk.until(lambda: all(c.teachers._known.get(n) is not None for one in taught.lights for n in one if n != NEVER))
-    import tracer
-
     met = 0
     world = tracer.World(c.session.scene)
     again = tracer.Renderer(c.session.scene, replace(words[learnt[0]].settings, verify=False), world=world)
@@ -195,7 +200,7 @@ def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
     hidden, other = c.frame.color.copy(), c.history.frames - 1
     assert not np.array_equal(whole, hidden)
     for to, picture, edits in ((number, whole, NO_EDITS), (other, hidden, without_ball)):
-        c.travel.go(to, point=(0.5, 0.45))
+        c.navigator.go(to, point=(0.5, 0.45))
         desk.until(lambda: not c.editing.under_way)
         desk.rest()
         assert np.array_equal(c.frame.color, picture) and c.session.edits == edits
@@ -203,15 +208,3 @@ def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
         picked = c.selection.picked
         assert (picked is None) == (here.primitive < 0) == bool(edits)
         assert picked is None or (picked.primitive == here.primitive and picked.seen)
-    c.travel.go(number, modes=True)
-    assert "cannot be learnt again" in desk.said
-
-
-def test_a_replay_that_never_began_has_forgotten_nothing(desk: Desk) -> None:
-    seen, c = flown(desk, "paper"), desk.c
-    numbers = list(c.record.learnt_from or [])
-    c.travel.go(list(seen)[2], modes=True)
-    assert c.record.learnt_from == numbers, "nothing has been forgotten yet"
-    desk.until(lambda: c.runs.current is None)
-    desk.rest()
-    assert c.record.learnt_from != numbers and c.travel.replay.whole
