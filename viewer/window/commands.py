@@ -31,9 +31,6 @@ def _file(ui: Ui) -> list[Command]:
     c = ui.controller
     p = c.preferences
 
-    def browse() -> None:
-        ui.browser.open = True
-
     def want(kind: CaptureKind) -> Callable[[], None]:
         def ask() -> None:
             ui.capture_wanted = kind
@@ -41,7 +38,7 @@ def _file(ui: Ui) -> list[Command]:
         return ask
 
     return [
-        Command("Open...", "File", browse, "Ctrl+O"),
+        Command("Open...", "File", lambda: ui.open(Dialog.OPEN_FILE), "Ctrl+O"),
         Command("Reload", "File", c.loader.reload, "F5", enabled=_open_scene(ui)),
         Command(
             "Reload when files change",

@@ -15,7 +15,6 @@ from tracer.culling.fate import Fate
 from tracer.scene.lights import named_light
 from viewer.output.capture import FIELDS
 from viewer.services.controller import Controller
-from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
 from viewer.state.keymap import Keymap
 from viewer.state.pixels import Pixels
@@ -46,6 +45,7 @@ class CaptureKind(Enum):
 class Dialog(Enum):
     """What can come up over the window, by its title."""
 
+    OPEN_FILE = "Open a scene or a captured picture"
     SAVE_AS = "Save picture as"
     PRESETS = "Presets"
     KEYS = "Keyboard and mouse"
@@ -101,7 +101,6 @@ class Ui:
     controller: Controller
     display: Display | None = None
     commands: list[Command] = field(default_factory=list)
-    browser: Browser = field(default_factory=Browser)
     fold: Fold = field(default_factory=Fold)
     full_screen: FullScreen = field(default_factory=FullScreen)
     capture_wanted: CaptureKind | None = None

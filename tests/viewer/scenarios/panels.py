@@ -32,15 +32,14 @@ def panels(d: Driver) -> None:
     d.ui.close(Dialog.ABOUT)
     d.press(int(KEY.o) | int(KEY.mod_ctrl))
     d.frames(4)
-    assert d.ui.browser.open
-    d.ui.browser.folder = d.folder
+    assert d.ui.dialogs == [Dialog.OPEN_FILE]
     d.frames(2)
     before = d.c.session.view
     d.context.key_press(KEY._5)
     d.frames(2)
     assert d.c.session.view is before, "a key reached the window behind a dialog"
     d.press(KEY.escape)
-    assert not d.ui.browser.open
+    assert not d.ui.dialogs
     d.context.menu_click("//##MainMenuBar/View/Depth")
     d.frames(2)
     assert d.c.session.view is View.DEPTH
