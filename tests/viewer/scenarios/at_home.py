@@ -11,6 +11,7 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.state.views import View
 from viewer.window.escape import ANY_POPUP
+from viewer.window.panels.names import NameField
 
 KEY = imgui.Key
 SMALL = (1000, 640)  # still with docked panels, and soon drawn
@@ -115,9 +116,9 @@ def _presets(d: Driver) -> None:
     d.frames(2)
     d.context.key_chars("ours")
     d.press(KEY.enter)
-    assert d.c.presets.own[0]["name"] == "ours" and d.ui.editing is None
+    assert d.c.presets.own[0]["name"] == "ours" and d.ui.state(NameField).place is None
     d.press(KEY.escape)
-    assert not d.ui.presets_open
+    assert not d.ui.dialogs
     d.context.menu_click("//##MainMenuBar/Edit/Presets/ours##preset 5")
     d.settle()
     assert d.c.session.settings == kept and d.c.undo.undoes == "preset ours"

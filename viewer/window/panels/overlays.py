@@ -18,6 +18,8 @@ from viewer.state.views import FATE_COLORS, SHADOW_COLORS, ShadowMode, color_map
 from viewer.window import comparing
 from viewer.window.panels import ray_overlay, slicing, words
 from viewer.window.panels.area import Area
+from viewer.window.panels.legend import LegendState
+from viewer.window.panels.links import Pointed
 from viewer.window.panels.marks import Pen, pen
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
@@ -38,7 +40,8 @@ _THIN, _WIDE = 0.05, 0.13  # ems: boxes of clusters that send least, and of thos
 def show(ui: Ui, area: Area) -> None:
     """Draw all that is to be seen of what was clicked, or is pointed at."""
     c = ui.controller
-    pointed, ui.pointed_light = ui.pointed_light, None  # the inspector says so in each frame
+    state = ui.state(Pointed)
+    pointed, state.light = state.light, None  # the inspector says so in each frame
     frame = c.frame
     if frame is None:
         return
@@ -101,7 +104,8 @@ def _why(ui: Ui, made: Pen, frame: Frame) -> None:
     """What hides the clicked primitive, where, the pixels that the clicked one is compared with, and what the pointer's
     link stands for."""
     c = ui.controller
-    link, ui.pointed_link = ui.pointed_link, None  # the panel says so in each frame
+    state = ui.state(Pointed)
+    link, state.link = state.link, None  # the panel says so in each frame
     found, in_place = c.inspector.why, c.inspector.names_pixels_of(frame)
     if c.selection.picked is not None and c.preferences.draw_explanation and found is not None:
         by = None if found.coverage is None else found.coverage.occluded
@@ -204,7 +208,7 @@ def _clusters(ui: Ui, made: Pen, frame: Frame) -> None:
         where = (at[0] + 0.5) / frame.width, (at[1] + 0.5) / frame.height
         made.ring(where)
         corner, end = made.area.whole, made.area.whole_end
-        words.write(waits, made.area.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.legend_place)
+        words.write(waits, made.area.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place)
 
 
 def show_worst_pixels(ui: Ui, area: Area, frame: Frame) -> None:

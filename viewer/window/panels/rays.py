@@ -12,7 +12,7 @@ from viewer.services.ray_inspector import RayInspector
 from viewer.state.verdicts import Shown
 from viewer.window.panels import lights
 from viewer.window.panels.ray_overlay import BOX, INSIDE, MOST_DRAWN
-from viewer.window.ui import Ui
+from viewer.window.ui import RaysState, Ui
 from viewer.window.widgets import (
     QUIET,
     checkbox,
@@ -59,8 +59,9 @@ _STEP_LEGEND = (
 
 def section(ui: Ui) -> None:
     """A part of the panel that folds; rays are listed, and drawn in the picture, where it is open."""
+    state = ui.state(RaysState)
     rays, p = ui.controller.rays, ui.controller.preferences
-    wanted, ui.rays_wanted = ui.rays_wanted, max(ui.rays_wanted - 1, 0)
+    wanted, state.unfold = state.unfold, max(state.unfold - 1, 0)
     imgui.dummy(ImVec2(0.0, em(0.15)))
     if wanted:
         imgui.set_next_item_open(True)

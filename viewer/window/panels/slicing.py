@@ -19,6 +19,7 @@ from viewer.window.layers_of_slice import go_to, layer_now
 from viewer.window.panels import words
 from viewer.window.panels.area import Area
 from viewer.window.panels.coming import after
+from viewer.window.panels.legend import LegendState
 from viewer.window.ui import Ui
 from viewer.window.widgets import count, em, percent, row
 
@@ -105,4 +106,4 @@ def show(ui: Ui, area: Area) -> None:
     if not lines:
         return
     room = area.corner.x, area.corner.y, area.end.x, area.end.y
-    words.write(lines, imgui.get_io().mouse_pos, room, ui.legend_place)
+    words.write(lines, imgui.get_io().mouse_pos, room, ui.state(LegendState).place)

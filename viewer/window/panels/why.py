@@ -14,7 +14,7 @@ from viewer.services.pixel_inspector import MOST_LIGHTS, nearest_first
 from viewer.state.views import FATE_COLORS, FATE_NAMES
 from viewer.window.panels import lights
 from viewer.window.panels.coming import after
-from viewer.window.panels.links import sentence
+from viewer.window.panels.links import Pointed, sentence
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, count, em, fitted, paragraph, swatch, tooltip_at
 
@@ -109,7 +109,7 @@ def _name(ui: Ui, one: Reason, chosen: bool) -> ImVec2:
     if clicked:
         ui.controller.settings.set_light(one.light)
     if imgui.is_item_hovered():
-        ui.pointed_light = one.light
+        ui.state(Pointed).light = one.light
     imgui.pop_id()
     return ImVec2(start.x + imgui.calc_text_size(name).x, start.y)
 
