@@ -155,7 +155,7 @@ class Controller:
         cuts = traced is not None and traced.whole and self.tracing.drawn_view is View.CUTS
         self.inspector.update(self.frame if run is None else None, not motion.lively, cuts)
         self.rays.update(self.frame if run is None else None)
-        self.table.follow(traced, motion.lively)
+        self.table.update(traced, motion.lively)
         edits, focus = self.editing.at_work, self.selection.hovered
         scene, settings = self.session.scene, self.session.settings
         if scene is not None:
