@@ -13,7 +13,6 @@ from tracer.method import additions, bases
 from tracer.renderer import Renderer
 from viewer.output.legend_counts import occlusion_legend
 from viewer.output.pictures import picture
-from viewer.services.shadow_inspector import Part
 from viewer.state.slices import slice_seen
 from viewer.state.tree_slice import layer_of
 from viewer.state.views import View
@@ -21,6 +20,7 @@ from viewer.window.command import chord
 from viewer.window.panels import slicing
 from viewer.window.panels.light_buffer import CubeState
 from viewer.window.panels.links import Pointed
+from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
 
 KEY = imgui.Key
 
@@ -219,12 +219,12 @@ def explaining(d: Driver) -> None:
     d.press(KEY.i)
     assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
     d.press(KEY.i)
-    lines = explaining.lines(d.c.frame)
-    assert {line.part for line in lines} >= {Part.BLOCKER, Part.REACHING, Part.STOPPED}
+    colors = {color for color, *_ in shadow_lines(explaining.answer, d.c.frame)}
+    assert colors >= {BLOCKER, LIT, STOPPED}
     d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
     d.wait(lambda: all(one.lit for one in explaining.answer.lights if one.due), "an answer about another pixel", 20.0)
-    parts = {line.part for line in explaining.lines(d.c.frame)}
-    assert Part.REACHING in parts and not parts & {Part.STOPPED, Part.BLOCKER}  # candidates there may be
+    colors = {color for color, *_ in shadow_lines(explaining.answer, d.c.frame)}
+    assert LIT in colors and not colors & {STOPPED, BLOCKER}  # candidates there may be
     d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
     d.context.mouse_click(0)
     d.frames(3)
