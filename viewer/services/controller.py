@@ -88,7 +88,7 @@ class Controller:
             session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
         )
         self.inspector = PixelInspector(self.selection, renderer.query)
-        self.rays = RayInspector(session, self.selection, self.inspector, renderer.query)
+        self.rays = RayInspector(session, self.selection, self.inspector)
         self.origins = OriginFinder(self.selection, self.history, renderer.query)
         self.navigator = FrameNavigator(
             session, preferences, self.history, self.tracing, self.runs, self.undo, self.selection, notices,
