@@ -177,10 +177,10 @@ def _region(d: Driver) -> None:
     depth = depth[np.isfinite(depth)]
     d.context.item_click("//Pixels/**/Use as the range of colours")
     d.frames(3)
-    assert np.allclose(d.c.session.spans[View.DEPTH], (depth.min(), depth.max()))
-    expected = picture(d.c.frame, View.DEPTH, span=d.c.session.spans[View.DEPTH])
+    assert np.allclose(d.c.session.draw.span, (depth.min(), depth.max()))
+    expected = picture(d.c.frame, View.DEPTH, span=d.c.session.draw.span)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
-    d.c.session.spans.clear()
+    d.c.session.set_draw(spans=())
     d.c.settings.set_view(View.COLOR)
     d.ui.pixels.region = None
     d.settle()

@@ -56,7 +56,7 @@ def views(d: Driver) -> None:
         assert np.abs(expected - picture(d.c.frame, view)).max() > 20
     d.settle()
     assert d.c.history.frames == traced + 5, "only what a view needs more is traced for"
-    assert not d.c.session.settings.verify
+    assert not d.c.session.settings.verify and not d.c.preferences.verify
 
 
 def difference(d: Driver) -> None:
@@ -113,18 +113,17 @@ def wiping(d: Driver) -> None:
     frame = d.c.frame
     assert (frame.color != frame.reference).any()
     left, top, right, bottom = d.picture_edges()
-    camera, pivot, middle = d.c.session.camera, d.ui.pivot, (top + bottom) / 2.0
+    camera, pivot, middle = d.c.session.camera, d.ui.picture.pivot, (top + bottom) / 2.0
 
     def drag_line(start: float, end: float, height: float) -> None:
         x = left + start * (right - left)
         d.drag((x, height), ((end - start) * (right - left), 7.0))
         assert abs(d.c.session.draw.wipe - end) < 0.02
-        assert d.c.session.camera == camera and d.ui.pivot is pivot and d.c.selection.picked is None
+        assert d.c.session.camera == camera and d.ui.picture.pivot is pivot and d.c.selection.picked is None
 
     drag_line(0.5, 0.3, middle)
-    assert (
-        np.abs(d.shown().astype(int) - picture(frame, View.WIPE, marked=False, wipe=d.c.session.draw.wipe)).max() <= 1
-    )
+    expected = picture(frame, View.WIPE, marked=False, wipe=d.c.session.draw.wipe)
+    assert np.abs(d.shown().astype(int) - expected).max() <= 1
     drag_line(0.3, 0.9, top + 0.2 * (bottom - top))
     pixels, column = d.shown(), wipe_column(128, d.c.session.draw.wipe)
     assert np.array_equal(pixels[:, :column], picture(frame)[:, :column]), "left of the line is the traced picture"
