@@ -54,7 +54,7 @@ def _dragged(d: Driver) -> None:
     """About the picture, and into two corners; nothing but the legend moves, and a click on it selects nothing."""
     d.c.settings.set_view(View.OCCLUSION)
     d.settle()
-    p, camera, frame = d.c.preferences, d.c.session.camera, d.c.frame
+    camera, frame = d.c.session.camera, d.c.frame
     left, top, right, bottom = d.picture_edges()
 
     def drag_to(x: float, y: float) -> tuple[float, float, float, float]:

@@ -20,6 +20,7 @@ from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
 from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 HERE = Conditions(size=(16, 8))
@@ -84,7 +85,10 @@ class Window:
     """Tracing as the window drives it, of a scene with lamps."""
 
     def __init__(self, scene: Scene | None = None, **settings: int | float) -> None:
-        self.session, self.renders = Session(settings=Settings(method="none", samples=2, **settings)), Renders()
+        self.session, self.renders = (
+            Session(state=ViewState(settings=Settings(method="none", samples=2, **settings))),
+            Renders(),
+        )
         self.session.open(scene or make_scene())
         self.tracing = Tracing(self.session, Preferences(), self.renders)
 
