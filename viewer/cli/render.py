@@ -30,7 +30,7 @@ from viewer.output import exr, figure1_svg, png, recipe, tev
 from viewer.output.buffers import buffers
 from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
-from viewer.services.lamps import LampSamples
+from viewer.services.refinement import LampSamples
 from viewer.state import terms
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
 from viewer.state.readings import MOST_RECORDED

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.method import Method, bases
 from viewer.services.settings_controller import SettingsController
-from viewer.services.tracing import Tracing
+from viewer.services.frame_scheduler import Tracing
 from viewer.state.comparison import (
     ENDLESS,
     Apart,
@@ -56,7 +56,7 @@ class Comparing:
     """`state` is what was chosen; panels and commands may change it by the methods here."""
 
     def __init__(self, session: Session, tracing: Tracing, settings: SettingsController, notices: Notices) -> None:
-        self._session, self._tracing, self._settings, self._notices = session, tracing, settings, notices
+        self._session, self._scheduler, self._settings, self._notices = session, tracing, settings, notices
         self.state = session.comparison
         self._difference: tuple[Side, Side, Slice, Difference | None] | None = None
         self._span: tuple[Frame, Frame, dict[View, tuple[float, float]]] | None = None
@@ -66,22 +66,22 @@ class Comparing:
     @property
     def b(self) -> Side | None:
         """The live picture."""
-        frame = self._tracing.frame
-        return None if frame is None else self._side(frame, self._tracing.drawn_view)
+        frame = self._scheduler.frame
+        return None if frame is None else self._side(frame, self._scheduler.drawn_view)
 
     @property
     def a(self) -> Side | None:
         """What it is compared with, as far as it is there."""
         state, session = self.state, self._session
         if state.source is Source.METHOD:
-            second = self._tracing.traced.second if self._tracing.traced is not None else None
+            second = self._scheduler.traced.second if self._scheduler.traced is not None else None
             if second is None:
                 return None
-            view = self._tracing.drawn_view
+            view = self._scheduler.drawn_view
             return self._side(second, view if can_draw(second, view, session.light) else View.COLOR)
         kept = state.kept
         if kept is not None and state.same_view and can_draw(kept.frame, session.view, session.light):
-            view, light = self._tracing.drawn_view, session.light
+            view, light = self._scheduler.drawn_view, session.light
             return replace(kept, view=view, light=light, light_number=session.light_number)
         if kept is not None and not can_draw(kept.frame, kept.view, kept.light):
             return replace(kept, view=View.COLOR)  # what it showed is gone, as a tree is with its world
@@ -116,7 +116,7 @@ class Comparing:
             return f"A has nothing for the view {b.view.label}: choose another view, or keep A in this one."
         if state.on and state.source is Source.METHOD and a.view is not b.view:
             return f"The frame by {a.method} has nothing for the view {b.view.label}: its picture is shown."
-        coarse = self._tracing.traced is not None and self._tracing.traced.request.divisor > 1
+        coarse = self._scheduler.traced is not None and self._scheduler.traced.request.divisor > 1
         return "" if coarse and state.source is Source.KEPT else sizes_in_words(a.frame, b.frame)
 
     def difference(self, a: Side, b: Side) -> Difference | None:
@@ -243,7 +243,7 @@ class Comparing:
 
     def _follow_second(self) -> None:
         """Have frames traced by a second method while that is to be seen."""
-        self._tracing.second = self.measures
+        self._scheduler.second = self.measures
 
     def blinks(self) -> bool:
         """Whether the window must be drawn again and again."""

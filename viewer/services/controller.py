@@ -44,7 +44,7 @@ from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.shadow_inspector import ShadowInspector
 from viewer.services.teachers import Teachers
-from viewer.services.tracing import Conditions, Tracing
+from viewer.services.frame_scheduler import Conditions, Tracing
 from viewer.services.undo import Undo
 from viewer.state.arriving import fitting_view
 from viewer.state.notices import Notices

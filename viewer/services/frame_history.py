@@ -24,7 +24,7 @@ from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.run_controller import RunController
 from viewer.services.runs import Experiment
 from viewer.services.selection import Point, Selection
-from viewer.services.tracing import Tracing
+from viewer.services.frame_scheduler import Tracing
 from viewer.services.undo import Undo
 from viewer.state.history import FrameRate, FrameRecord, FrameRecords, History
 from viewer.state.notices import Notices
@@ -171,7 +171,7 @@ class FrameNavigator:
         notices: Notices,
         restore: Callable[[Snapshot], None],
     ) -> None:
-        self._session, self._preferences, self._history, self._tracing = session, preferences, history, tracing
+        self._session, self._preferences, self._history, self._scheduler = session, preferences, history, tracing
         self._runs, self._undo, self._selection, self._notices = runs, undo, selection, notices
         self._restore = restore
         self._wanted: tuple[float, Camera, Point] | None = None
@@ -217,12 +217,12 @@ class FrameNavigator:
             self._session.zoom = target.zoom
         self._selection.clear()
         if self._depends_on_modes:
-            self._tracing.reset_modes()
+            self._scheduler.reset_modes()
         if target.warmup is not None:
             p, (width, height) = self._preferences, target.size
-            if target.size != self._tracing.full_size:
+            if target.size != self._scheduler.full_size:
                 p.fixed_resolution, p.fixed_width, p.fixed_height = True, width, height
-            self._tracing.freeze(target.warmup)
+            self._scheduler.freeze(target.warmup)
         camera = self._session.camera
         self._wanted = (self._session.time, camera, target.point) if target.point is not None else None
 
@@ -242,7 +242,7 @@ class FrameNavigator:
     def _edits_are_shown(self) -> bool:
         """Whether the newest picture is of the scene that is wanted."""
         edited = self._session.edited
-        return self._tracing.shows_edits and edited is not None and edited.edits == self._session.edits
+        return self._scheduler.shows_edits and edited is not None and edited.edits == self._session.edits
 
     def name_of(self, number: int) -> str:
         """Return what a frame is called: by its number in the plots, and in the scene's path, where it is another."""
@@ -261,7 +261,7 @@ class FrameNavigator:
 
     def _may_differ(self, record: FrameRecord) -> str:
         """Return what else its picture depends on, in words."""
-        if record.size != self._tracing.full_size:
+        if record.size != self._scheduler.full_size:
             width, height = record.size
             return f", though its picture had {width} x {height} pixels"
         if record.view is View.TREE:

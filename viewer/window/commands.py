@@ -225,7 +225,7 @@ def _culling(ui: Ui) -> list[Command]:
 
     def toggle_tracing() -> None:
         p.keep_tracing = not p.keep_tracing
-        c.tracing.trace_again()
+        c.scheduler.trace_again()
 
     s = lambda: c.session.settings  # noqa: E731
     method = lambda: Method.parse(s().method)  # noqa: E731
@@ -249,8 +249,8 @@ def _culling(ui: Ui) -> list[Command]:
         Command("Symmetric occlusion test", "Culling", lambda: c.settings.change(symmetric=not s().symmetric), "Y",
                 checked=lambda: s().symmetric),
         Command("Verify", "Culling", lambda: c.settings.change(verify=not s().verify), "V", checked=lambda: s().verify),
-        Command("Reset modes", "Culling", c.tracing.reset_modes, "Backspace", separated=True),
-        Command("Trace again", "Culling", c.tracing.trace_again, "T"),
+        Command("Reset modes", "Culling", c.scheduler.reset_modes, "Backspace", separated=True),
+        Command("Trace again", "Culling", c.scheduler.trace_again, "T"),
         Command("Keep tracing when idle", "Culling", toggle_tracing, "K", checked=lambda: p.keep_tracing),
     ]  # fmt: skip
 

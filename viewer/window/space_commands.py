@@ -10,7 +10,7 @@ from viewer.window.ui import Ui
 def build(ui: Ui) -> list[Command]:
     """Those of the menu View."""
     sliced = Condition(
-        lambda: ui.controller.tracing.drawn_view.has_slice, "no slice is shown: choose the view Voxels or Tree built"
+        lambda: ui.controller.scheduler.drawn_view.has_slice, "no slice is shown: choose the view Voxels or Tree built"
     )
     return [
         Command("Next layer of the slice", "View", lambda: step(ui, 1), "Shift+RightBracket", enabled=sliced,

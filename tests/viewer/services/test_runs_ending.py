@@ -129,7 +129,7 @@ def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_sho
         raise Cancelled()
 
     renderer.refine = never
-    desk.c.tracing.trace_again()
+    desk.c.scheduler.trace_again()
     desk.tick()
     assert begun.wait(20.0)
     desk.came.clear()
@@ -144,13 +144,13 @@ def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_sho
 
 def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> None:
     scene, frames = weakref.ref(desk.c.session.scene), []
-    show = desk.c.tracing.show
+    show = desk.c.scheduler.show
 
     def showing(traced: Traced) -> None:
         frames.append(weakref.ref(traced.frame))
         show(traced)
 
-    desk.c.tracing.show = showing
+    desk.c.scheduler.show = showing
     desk.runs.start_experiment()
     desk.run_to_its_end()
     desk.came.clear()

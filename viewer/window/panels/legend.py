@@ -21,7 +21,7 @@ _MOST = 0.62  # of the picture's width, and of its height
 def of_picture(ui: Ui) -> Legend | None:
     """The legend of what is drawn of the newest frame; None where there is none."""
     c = ui.controller
-    frame, scene, view = c.frame, c.session.scene, c.tracing.drawn_view
+    frame, scene, view = c.frame, c.session.scene, c.scheduler.drawn_view
     if frame is None or scene is None:
         return None
     of_both = comparing.legend(ui)

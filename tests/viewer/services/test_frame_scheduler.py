@@ -13,7 +13,7 @@ from tracer.frame import Settings
 from tracer.scene.model import Camera, Cancelled
 from viewer.services.controller import Controller
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.services.tracing import Conditions, Tracing
+from viewer.services.frame_scheduler import Conditions, Tracing
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
