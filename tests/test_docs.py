@@ -19,7 +19,7 @@ from PIL import Image
 
 import tracer
 from tracer.experiments import experiment
-from tracer.experiments.study_file import read_study
+from tracer.experiments.study import read_study
 from tracer.scene.load import load_scene
 from viewer.__main__ import main
 from viewer.cli.sweep import RESULTS

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.commands import ROOM
-from tracer.experiments.study import Study, differences
-from tracer.experiments.study_file import StudyError, read_study
+from tracer.experiments.study import Study, StudyError, differences, read_study
 from tracer.scene.load import load_scene
 from viewer.util.resources import embedded_scenes
 
@@ -74,45 +73,24 @@ def test_changes_are_said(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"paper"', '"papper"', "line 5: methods: no method 'papper': did you mean 'paper'?"),
-        ('"paper"', '"telepathy"', "line 5: methods: no method 'telepathy'; it is one of none"),
-        ("depth = [2, 10]", 'accelerator = "kdtree-lasy"', 'accelerator: "kdtree-lasy" will not do: did you mean'),
-        ("depth = [2, 10]", 'accelerator = "grid"', 'settings.accelerator: "grid" will not do; give "'),
-        ("methods = [\n", "method = [\n", "line 3: method: no such key; did you mean methods?"),
-        ('"64x48"', '"64*48"', 'line 8: sizes: "64*48" will not do; give sizes, such as "640x480"'),
-        ("frames = 8", 'frames = "8"', 'line 12: path.frames: "8" will not do; give a whole number from 1'),
-        ("last = 5", "lats = 5", "line 13: path.lats: no such key; did you mean last?"),
-        ("depth = [2, 10]", "depth = [2, 200]", "line 16: settings.depth: 200 will not do; each is a whole number"),
+        ('"paper"', '"papper"', "line 3: methods: no method 'papper': did you mean 'paper'?"),
+        ('"paper"', '"telepathy"', "line 3: methods: no method 'telepathy'; it is one of none"),
+        ("depth = [2, 10]", 'accelerator = "grid"', "line 16: settings.accelerator: accelerator is one of bvh8"),
+        ("methods = [\n", "method = [\n", "line 3: method: no such key: did you mean 'methods'?"),
+        ('"64x48"', '"64*48"', "line 8: sizes: '64*48' is no size; give one such as \"640x480\""),
+        ('"64x48"', '"64x0"', "line 8: sizes: height is a whole number from 1"),
+        ("frames = 8", 'frames = "8"', "line 12: path.frames: expected a whole number, got text"),
+        ("last = 5", "lats = 5", "line 13: path.lats: no such key: did you mean 'last'?"),
+        ("depth = [2, 10]", "depth = [2, 200]", "line 16: settings.depth: depth is a whole number from 0"),
         ("depth = [2, 10]", "zoom_factor = 0.5", "line 16: settings.zoom_factor: zoom_factor is a finite number"),
-        ("depth = [2, 10]", "depth = []", "line 16: settings.depth: the list is empty"),
-        (
-            "verify = true",
-            "lightcut_error = 0.1",
-            "line 17: settings.lightcut_error: no such key; did you mean lightcuts_",
-        ),
-        (
-            "verify = true",
-            "lightcuts_error = -1",
-            "line 17: settings.lightcuts_error: -1 will not do; give a number from",
-        ),
-        (
-            "verify = true",
-            "lightcuts_nodes = 0",
-            "line 17: settings.lightcuts_nodes: 0 will not do; give a whole number",
-        ),
-        (
-            "verify = true",
-            "light_buffer_side = [64, 100]",
-            "100 will not do; each is one of 16, 32, 64, 128, 256, 512 and",
-        ),
-        ("verify = true", "light_buffer_memory = 1e99", "line 17: settings.light_buffer_memory: 1e+99 will not do"),
-        ("verify = true", "verify = 1", "line 17: settings.verify: 1 will not do; give true or false"),
+        ("depth = [2, 10]", "depth = []", "line 16: settings.depth: expected a list of length >= 1"),
+        ("verify = true", "lightcut_error = 0.1", "settings.lightcut_error: no such key: did you mean 'lightcuts_err"),
+        ("verify = true", "verify = 1", "line 17: settings.verify: expected true or false or a list, got a whole"),
         ('"default"', '"defautl"', "line 2: scenes: no file"),
-        ('"default"', '"room.aff"', 'line 2: scenes: "room.aff" is given twice'),
-        ("seeds = [1, 2]", "seeds = 1", "line 9: seeds: give a list of whole numbers"),
+        ('"default"', '"room.aff"', "line 2: scenes: 'room.aff' is given twice"),
+        ("seeds = [1, 2]", "seeds = 1", "line 9: seeds: expected a list, got a whole number"),
         ("seeds = [1, 2]", "seeds = [1, 2", "not TOML: "),
-        ("[path]", "path = 3\n[paths]", "paths: no such key; did you mean path?"),
-        ("[path]\nframes = 8\nlast = 5", "path = 3", "line 11: path: it is a table; write [path]"),
+        ("[path]\nframes = 8\nlast = 5", "path = 3", "line 11: path: expected a table, got a whole number"),
         ("sizes =", 'sizes = ["1x1"]\nsizes =', "line 9, column"),
     ],
 )

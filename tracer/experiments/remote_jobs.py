@@ -7,16 +7,22 @@ scheduler and the others from one another, and a process that dies takes nothing
 from __future__ import annotations
 
 import pickle
+import platform
 import secrets
-from collections import Counter
+from collections import Counter, OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from typing import Any
 
+from filelock import FileLock
+
+from tracer.compilation import compiled_before, make_ready, ready_for, warm_up
 from tracer.experiments.cluster import Cluster, in_one_line
-from tracer.experiments.sweep_frames import check_program
+from tracer.geometry.world import World
+from tracer.kernel_cache import cache_root
+from tracer.method import Method
 from tracer.scene.model import Cancelled, Scene
 from tracer.version import program_version, tracer_code
 
@@ -174,6 +180,40 @@ def _why(future: Any) -> str:
 
 
 # --- in the processes of the cluster ------------------------------------------------------------------
+
+KEPT_WORLDS = 2
+_worlds: OrderedDict[tuple[str, str, float], World] = OrderedDict()
+
+
+def world_of(scene: Scene, code: str, accelerator: str, start: float) -> World:
+    """The geometry of a scene of this code, as it is kept or built at `start`; for one renderer at a time."""
+    key = (code, accelerator, start)
+    if key not in _worlds:
+        while len(_worlds) >= KEPT_WORLDS:
+            _worlds.popitem(last=False)
+        _worlds[key] = World(scene, start, accelerator)
+    _worlds.move_to_end(key)
+    return _worlds[key]
+
+
+def prepare(lights: int, accelerator: str, method: str) -> None:
+    """Make ready the kernels; of the processes that share a cache, one compiles and the others wait for it."""
+    certificates = Method.parse(method).has_certificates
+    if compiled_before(lights, accelerator, certificates) and ready_for(method, lights, accelerator):
+        warm_up(None, lights, accelerator, certificates)
+        return
+    with FileLock(cache_root() / "sweep.lock"):
+        warm_up(None, lights, accelerator, certificates)
+        make_ready(method, lights, accelerator)
+
+
+def check_program(version: str, tracer: str) -> None:
+    """Raise ValueError, in one line, where this process runs another program than the one that asks."""
+    if (version, tracer) != (program_version(), tracer_code()):
+        raise ValueError(
+            f"{platform.node()} has Shadowcull {program_version()} ({tracer_code()}), not {version} ({tracer}); "
+            "install the same there"
+        )
 
 
 def _unpacked(blob: bytes) -> Scene:

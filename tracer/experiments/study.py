@@ -1,29 +1,34 @@
-"""What a sweep traces: scenes by methods by settings by seeds, frame by frame, cut into tasks that know nothing of one
-another.
+"""A study: what a sweep traces, read from a TOML file, and cut into tasks that know nothing of one another.
 
-A frame of a method that learns nothing is a task of its own.  A method that learns from frame to frame traces its whole
-path in one task; or, where the study names a `warmup`, each of its frames is a task that first traces so many frames
-before it.  Every task is traced by one thread, so that even certificates are made in the same order each time.
+It names scenes by methods by settings by seeds, frame by frame.  A frame of a method that learns nothing is a task of
+its own.  A method that learns from frame to frame traces its whole path in one task; or, where the study names a
+`warmup`, each of its frames is a task that first traces so many frames before it.  Every task is traced by one thread,
+so that even certificates are made in the same order each time.
 """
 
 from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Sequence
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
+import msgspec
 import numpy as np
 
 from tracer.experiments.experiment import path_times
 from tracer.method import Method
+from tracer.scene.files import read_regular
 from tracer.scene.framing import bounds
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
+from tracer.similar import did_you_mean, did_you_mean_file
 
 ASPECTS = (
     "depth", "symmetric", "zoom_factor", "verify", "accelerator", "lamp_radius", "lamp_samples", "certificates",
@@ -31,6 +36,8 @@ ASPECTS = (
     "light_buffer_memory",
 )  # fmt: skip
 """Settings that a study may vary, beside sizes and methods."""
+MOST_BYTES = 1 << 20
+MOST_SETTINGS = 10_000
 
 
 @dataclass(frozen=True)
@@ -182,3 +189,182 @@ def differences(kept: dict[str, Any], now: dict[str, Any]) -> list[str]:
         else:
             found.append(f"{key}: {old} → {new}")
     return found
+
+
+# --- the file -----------------------------------------------------------------------------------------
+
+T = TypeVar("T")
+_Listed = Annotated[tuple[T, ...], msgspec.Meta(min_length=1)]
+_Number = Annotated[int, msgspec.Meta(ge=0, le=1_000_000)]
+
+
+class _Path(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The table `path`."""
+
+    frames: Annotated[int, msgspec.Meta(ge=1, le=1_000_000)] | None = None
+    first: _Number = 0
+    last: _Number | None = None
+
+
+if TYPE_CHECKING:
+    _Varied = Any
+else:
+    _TYPES = get_type_hints(Settings)
+    _Varied = msgspec.defstruct(
+        "_Varied",
+        [(name, _TYPES[name] | _Listed[_TYPES[name]], None) for name in ASPECTS],
+        frozen=True,
+        forbid_unknown_fields=True,
+    )
+    """The table `settings`: each has one value or several; None stands for the usual one."""
+
+
+class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What a study's file may hold."""
+
+    scenes: _Listed[str]
+    methods: _Listed[str]
+    title: str = ""
+    sizes: _Listed[str] = ("512x512",)
+    seeds: _Listed[Annotated[int, msgspec.Meta(ge=0, lt=2**31)]] = (0,)
+    shake: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
+    warmup: _Number | None = None
+    folders: tuple[str, ...] = ()
+    path: _Path = _Path()
+    settings: _Varied = _Varied()
+
+
+class StudyError(ValueError):
+    """A study cannot be read; the message is one line."""
+
+
+def read_study(path: Path, own_scenes: Mapping[str, Path]) -> Study:
+    """Read a study; `own_scenes` are those that it may name.
+
+    Raises StudyError and OSError, in one line that names the file, the line in it and the key."""
+    try:
+        text = read_regular(path, MOST_BYTES).decode("utf-8")
+        data = tomllib.loads(text)
+    except FileNotFoundError:
+        raise OSError(f"{path}: no such file{did_you_mean_file(path)}") from None
+    except OSError as error:
+        raise OSError(f"{path}: no study can be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise StudyError(f"{path}: no study: it is not text in UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        raise StudyError(f"{path}: not TOML: {error}") from None
+    return _Reader(path, text).study(data, own_scenes)
+
+
+class _Reader:
+    """Makes a study of the contents of a file, and knows where in it each key stands."""
+
+    def __init__(self, path: Path, text: str) -> None:
+        self._path, self._lines = path, text.splitlines()
+
+    def study(self, data: dict[str, Any], own_scenes: Mapping[str, Path]) -> Study:
+        try:
+            file = msgspec.convert(data, _File)
+        except msgspec.ValidationError as error:
+            raise self._explained(str(error)) from None
+        varied = {name: getattr(file.settings, name) for name in ASPECTS}
+        for name, values in (msgspec.structs.asdict(file) | varied).items():
+            self._check_once(name, "settings" if name in varied else "", values)
+        scenes = {name: self._scene(name, own_scenes) for name in file.scenes}
+        try:
+            methods = tuple(str(Method.parse(method)) for method in file.methods)
+        except ValueError as error:
+            raise self._wrong("methods", "", str(error)) from None
+        return Study(
+            path=self._path,
+            title=file.title or self._path.stem,
+            scenes=scenes,
+            methods=methods,
+            settings=self._combinations(file, varied),
+            seeds=file.seeds,
+            shake=file.shake,
+            path_frames=file.path.frames,
+            first=file.path.first,
+            last=file.path.last,
+            warmup=file.warmup,
+            folders=tuple(self._beside(folder) for folder in file.folders),
+        )
+
+    def _combinations(self, file: _File, varied: dict[str, Any]) -> tuple[Settings, ...]:
+        """Every size with every combination of the settings' values."""
+        usual = {"verify": False, "accelerator": "kdtree"}  # as in `bench`
+        values = {name: value if value is not None else usual.get(name) for name, value in varied.items()}
+        lists = [value if isinstance(value, tuple) else (value,) for value in values.values()]
+        if math.prod(len(some) for some in [file.sizes, *lists]) > MOST_SETTINGS:
+            raise self._wrong("settings", "", f"more than {MOST_SETTINGS:,} combinations; leave some out")
+        found = []
+        for size, *chosen in product(file.sizes, *lists):
+            sides = re.fullmatch(r"(\d{1,5})x(\d{1,5})", size)
+            if sides is None:
+                raise self._wrong("sizes", "", f'{size!r} is no size; give one such as "640x480"')
+            given = {name: value for name, value in zip(ASPECTS, chosen) if value is not None}
+            try:
+                found.append(Settings(int(sides[1]), int(sides[2]), method="none", **given).validated())
+            except ValueError as error:
+                name = next((name for name in ASPECTS if name in str(error)), "sizes")
+                raise self._wrong(name, "settings" if name in given else "", str(error)) from None
+        return tuple(found)
+
+    def _scene(self, name: str, own_scenes: Mapping[str, Path]) -> Path:
+        """The file of a scene: of the program, or beside the study."""
+        found = own_scenes.get(name) or self._beside(name)
+        if not found.is_file():
+            hint = did_you_mean(name, own_scenes) or f" ({', '.join(own_scenes)})"
+            raise self._wrong("scenes", "", f"no file {found}, and no scene of the program{hint}")
+        return found
+
+    def _beside(self, name: str) -> Path:
+        return self._path.parent / Path(name).expanduser()
+
+    # --- what is wrong, and where -----------------------------------------------------------------
+
+    def _check_once(self, name: str, table: str, values: Any) -> None:
+        twice = [value for value in values if values.count(value) > 1] if isinstance(values, tuple) else []
+        if twice:
+            raise self._wrong(name, table, f"{twice[0]!r} is given twice; once is enough")
+
+    def _explained(self, message: str) -> StudyError:
+        """What msgspec says of a value, such as "Expected `int`, got `str` - at `$.path.frames`", in plain words."""
+        what, _, place = message.partition(" - at `$")
+        keys = re.findall(r"\w+", re.sub(r"\[.*?\]", "", place))
+        unknown, missing = re.search(r"unknown field `(.*)`", what), re.search(r"missing required field `(.*)`", what)
+        if unknown is not None:
+            kind: type[msgspec.Struct] = {"path": _Path, "settings": _Varied}.get(keys[0] if keys else "", _File)
+            known = kind.__struct_fields__
+            hint = did_you_mean(unknown[1], known) or f"; there is {', '.join(known)}"
+            return self._wrong(unknown[1], keys[0] if keys else "", f"no such key{hint}")
+        if missing is not None:
+            return StudyError(f"{self._path}: no {missing[1]}; give a list")
+        *table, name = keys
+        return self._wrong(name, ".".join(table), re.sub(r"`(.*?)`", _kinds_in_words, what[:1].lower() + what[1:]))
+
+    def _wrong(self, name: str, table: str, message: str) -> StudyError:
+        line = self._line(name, table)
+        return StudyError(f"{self._path}{f', line {line}' * (line > 0)}: {f'{table}.' * bool(table)}{name}: {message}")
+
+    def _line(self, name: str, table: str) -> int:
+        """The line where a key stands, 0 where it is not found."""
+        inside = ""
+        for number, line in enumerate(self._lines, 1):
+            header = re.match(r"\s*\[\s*([^\]\s]+)\s*\]", line)
+            if header:
+                inside = header[1]
+            is_key = inside == table and re.match(rf"\s*[\"']?{re.escape(name)}[\"']?\s*=", line)
+            if is_key or (header and not table and inside == name):
+                return number
+        return 0
+
+
+_WORDS = {
+    "int": "a whole number", "float": "a number", "str": "text", "bool": "true or false", "array": "a list",
+    "object": "a table",
+}  # fmt: skip
+
+
+def _kinds_in_words(kinds: re.Match[str]) -> str:
+    return " or ".join(_WORDS.get(kind, kind) for kind in kinds[1].split(" | ") if kind != "null")

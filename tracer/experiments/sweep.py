@@ -3,21 +3,35 @@ soon as it is traced."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+import os
+import platform
+import sys
+import time as clocks
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from functools import cache
+from pathlib import Path
 from typing import Any
+
+import numba
+import numpy as np
 
 from tracer import fingerprint
 from tracer.experiments.cluster import Cluster
-from tracer.experiments.experiment import FIGURES
-from tracer.experiments.remote_jobs import Emit, Job, do
-from tracer.experiments.study import Study, Task, differences
-from tracer.experiments.sweep_frames import Row, rows_of
+from tracer.experiments.experiment import FIGURES, figures_of
+from tracer.experiments.remote_jobs import Emit, Job, do, prepare, world_of
+from tracer.experiments.study import ASPECTS, Study, Task, differences
 from tracer.experiments.sweep_store import Key, Store, keys_of
+from tracer.frame import Frame
+from tracer.method import Method
+from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version, tracer_code
 
 FORMAT = 1
+Row = dict[str, Any]
+"""A frame that was measured, by the names of the columns in `tracer.experiments.sweep_store`."""
 SAME = (*(name for name in FIGURES if name != "frame_seconds"), "picture")
 """What a frame that is traced again must have in common with what was kept of it."""
 
@@ -170,14 +184,99 @@ class _Kept:
         return ", ".join(name for name, old in zip(SAME, before) if row[name] != old)
 
 
+def in_words(failures: Sequence[tuple[Task, str]]) -> str:
+    """Which tasks failed, in one line."""
+    task, why = failures[0]
+    line = f"{task.in_words()}: {why}"
+    return line if len(failures) == 1 else f"{len(failures)} tasks failed, the first of them {line}"
+
+
+# --- in the processes of the cluster ------------------------------------------------------------------
+
+_last: Renderer | None = None
+
+
 def trace(task: Task, scene: Scene, emit: Emit, cancelled: Callable[[], bool]) -> None:
     """In a process of the cluster: trace a task's frames, and send each row off at once."""
     for row in rows_of(task, scene, cancelled):
         emit(row)
 
 
-def in_words(failures: Sequence[tuple[Task, str]]) -> str:
-    """Which tasks failed, in one line."""
-    task, why = failures[0]
-    line = f"{task.in_words()}: {why}"
-    return line if len(failures) == 1 else f"{len(failures)} tasks failed, the first of them {line}"
+def rows_of(task: Task, scene: Scene, cancelled: Callable[[], bool] = lambda: False) -> Iterator[Row]:
+    """Trace a task's frames; yields a row for each as soon as it is traced.  Raises Cancelled."""
+    settings = task.settings
+    prepare(len(scene.lights), settings.accelerator, settings.method)
+    renderer = _renderer(task, scene)
+    renderer.settings = replace(settings, verify=False)  # of frames that only teach
+    for _, time in task.before:
+        renderer.render(time, task.camera(scene, time), cancelled)
+    renderer.settings = settings
+    for number, time in task.frames:
+        start = clocks.process_time()  # of a process that does nothing else
+        frame = renderer.render(time, task.camera(scene, time), cancelled)
+        yield _row(task, number, time, frame, clocks.process_time() - start)
+
+
+def _renderer(task: Task, scene: Scene) -> Renderer:
+    """A renderer that knows nothing of earlier frames; the last one again where its method learns nothing, as what a
+    renderer makes for its first frame is no part of the others' time."""
+    global _last
+    settings, world = task.settings, world_of(scene, task.code, task.settings.accelerator, task.start)
+    if _last is None or _last.world is not world or _last.settings != settings or Method.parse(settings.method).learns:
+        _last = Renderer(scene, settings, world=world)
+    return _last
+
+
+def _row(task: Task, number: int, time: float, frame: Frame, processor_seconds: float) -> Row:
+    settings = task.settings
+    replays = Method.parse(settings.method).kind.measures  # what it records first is none of its time
+    return {
+        "task": task.key,
+        "scene": task.scene,
+        "scene_code": task.code,
+        "method": settings.method,
+        "width": settings.width,
+        "height": settings.height,
+        **{name: getattr(settings, name) for name in ASPECTS},
+        "seed": task.seed,
+        "shake": task.shake,
+        "warmup": task.warmup,
+        "frame": number,
+        "path_frames": task.path_frames,
+        "time": time,
+        **figures_of(frame.statistics),
+        "processor_seconds": None if replays else processor_seconds,
+        "picture": fingerprint.of_pixels(frame.color),
+        "repeats": task.repeats,
+        "version": program_version(),
+        "tracer": tracer_code(),
+        **machine(),
+        "finished": datetime.now(UTC),
+    }
+
+
+@cache
+def machine() -> Row:
+    """What traces: processor, cores, and the versions of what compiles."""
+    return {
+        "host": platform.node(),
+        "process": os.getpid(),
+        "processor": _processor(),
+        "cores": os.cpu_count() or 1,
+        "system": f"{platform.system()} {platform.release()}",
+        "python": ".".join(str(part) for part in sys.version_info[:3]),
+        "numpy": np.__version__,
+        "numba": numba.__version__,
+    }
+
+
+def _processor() -> str:
+    """The name that the system gives the processor."""
+    try:
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines():
+            name, _, value = line.partition(":")
+            if name.strip() == "model name":
+                return value.strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()

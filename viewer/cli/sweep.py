@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tracer.experiments.cluster import check_dask
-from tracer.experiments.study import Study
-from tracer.experiments.study_file import read_study
+from tracer.experiments.study import Study, read_study
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Cancelled, Scene

@@ -18,8 +18,7 @@ from PIL import Image
 
 from tracer import fingerprint
 from tracer.experiments.cluster import Cluster
-from tracer.experiments.remote_jobs import Emit, Job, do
-from tracer.experiments.sweep_frames import prepare, world_of
+from tracer.experiments.remote_jobs import Emit, Job, do, prepare, world_of
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version
