@@ -28,7 +28,7 @@ from tracer.renderer import Renderer
 from tracer.shading.blocks import TURNS
 from tracer.statistics import FrameStatistics
 from viewer.output.pictures import picture
-from viewer.services.frame_budget import AT_ONCE, LARGEST_DIVISOR, SPARE, FrameBudget, Plan, divided
+from viewer.services.frame_budget import AT_ONCE, LARGEST_DIVISOR, FINER_BELOW, FrameBudget, Plan, divided
 from viewer.state import navigation
 from viewer.window.app import App
 
@@ -69,7 +69,7 @@ class CoarserInMotion(FrameBudget):
             return AT_ONCE
         for divisor in range(1, LARGEST_DIVISOR + 1):
             w, h = divided(width, height, divisor)
-            if self._each * w * h <= (SPARE * seconds if divisor < self._divided_by else seconds):
+            if self._each * w * h <= (FINER_BELOW * seconds if divisor < self._divided_by else seconds):
                 break
         self._divided_by = divisor
         return Plan(divisor, AT_ONCE.parts)
@@ -268,7 +268,7 @@ def main() -> int:
     geometry.window_geometry.size, geometry.restore_previous_geometry = (width, height), False
     script = Script(app, int(bursts))
     code = app.run()
-    size, scene = app.controller.scheduler.now.size, app.controller.session.scene
+    size, scene = app.controller.scheduler.inputs.size, app.controller.session.scene
     assert scene is not None
     renderer = Renderer(scene, app.controller.session.settings)
     told = []

@@ -24,7 +24,7 @@ from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.run_controller import RunController
 from viewer.services.runs import Experiment
 from viewer.services.selection import Point, Selection
-from viewer.services.frame_scheduler import Tracing
+from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.undo import Undo
 from viewer.state.history import FrameRate, FrameRecord, FrameRecords, History
 from viewer.state.notices import Notices
@@ -164,16 +164,17 @@ class FrameNavigator:
         session: Session,
         preferences: Preferences,
         history: FrameHistory,
-        tracing: Tracing,
+        tracing: FrameScheduler,
         runs: RunController,
         undo: Undo,
         selection: Selection,
         notices: Notices,
         restore: Callable[[Snapshot], None],
+        reset_modes: Callable[[], None],
     ) -> None:
         self._session, self._preferences, self._history, self._scheduler = session, preferences, history, tracing
         self._runs, self._undo, self._selection, self._notices = runs, undo, selection, notices
-        self._restore = restore
+        self._restore, self._reset_modes = restore, reset_modes
         self._wanted: tuple[float, Camera, Point] | None = None
 
     def go(self, number: int, point: Point | None = None) -> None:
@@ -216,8 +217,8 @@ class FrameNavigator:
         if target.zoom is not None:
             self._session.zoom = target.zoom
         self._selection.clear()
-        if self._depends_on_modes:
-            self._scheduler.reset_modes()
+        if target.warmup is not None or self._depends_on_modes:
+            self._reset_modes()
         if target.warmup is not None:
             p, (width, height) = self._preferences, target.size
             if target.size != self._scheduler.full_size:

@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 
 from tracer.frame import Frame, Settings
 from tracer.method import Method
+from tracer.one_light import with_light
+from tracer.renderer import Renderer
 from tracer.scene.model import Camera
 from tracer.settings import RECORDS
 from viewer.services import refinement
@@ -106,10 +108,16 @@ class FrameScheduler:
         """Take a frame that was not asked for here; what should be seen is asked for again after it."""
         self.traced, self._asked = traced, None
 
-    def complete(self, frame: Frame, more: Frame) -> None:
-        """Show the frame with what has been found out about it since, unless another has come."""
-        if self.traced is not None and self.traced.frame is frame:
-            self.traced = replace(self.traced, frame=more)
+    def record_light(self) -> None:
+        """Have the chosen light recorded for the newest frame, where the view needs it and the frame lacks it, as there
+        are too many lights to record all of them in every frame."""
+        frame, view, light = self.frame, self._session.view, self._session.light
+        if frame is None or not (view.needs_lights and view.of_light) or light >= frame.lights:
+            return
+        if not (frame.settings.record_lights or can_draw(frame, view, light)):
+            answer = self._thread.query(_with_light, frame, light)
+            if answer.done() and not answer.cancelled() and answer.exception() is None:
+                self.traced = replace(self.traced, frame=answer.result()) if self.traced is not None else None
 
     # --- what is forgotten, and traced again --------------------------------------------------------
 
@@ -407,6 +415,10 @@ class FrameScheduler:
         if not (settings.record_lights if wanted is View.LIGHTS else comes):  # the picture says why
             return f"{wanted.label}: none here, {view.label.lower()} shown"
         return f"{wanted.label}: {'verifying' if wanted.needs_verify else 'counting'} ..."
+
+
+def _with_light(renderer: Renderer, frame: Frame, light: int, _cancelled: Callable[[], bool]) -> Frame:
+    return with_light(renderer, frame, light)
 
 
 def _recording(settings: Settings, other: Settings) -> Settings:

@@ -11,7 +11,7 @@ from tracer.scene.edits import NO_EDITS
 from viewer.output import recipe
 from viewer.output.recipe import BUILT, Recipe, Style
 from viewer.services.scene_loader import SceneLoader
-from viewer.services.frame_scheduler import Tracing
+from viewer.services.frame_scheduler import FrameScheduler
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -26,7 +26,7 @@ class Recipes:
     """See the module."""
 
     def __init__(
-        self, session: Session, preferences: Preferences, tracing: Tracing, loader: SceneLoader, notices: Notices
+        self, session: Session, preferences: Preferences, tracing: FrameScheduler, loader: SceneLoader, notices: Notices
     ) -> None:
         self._session, self._preferences, self._scheduler = session, preferences, tracing
         self._loader, self._notices = loader, notices

@@ -50,7 +50,7 @@ def comparing(ui: Ui) -> list[Command]:
             "Compare",
             comparing.toggle_methods,
             "Shift+C",
-            checked=lambda: bool(c.scheduler.second),
+            checked=lambda: bool(c.comparing.second_method),
             enabled=there,
             tip="trace each frame by a second method as well, with modes and counters of its own",
         ),

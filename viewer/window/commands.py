@@ -249,7 +249,7 @@ def _culling(ui: Ui) -> list[Command]:
         Command("Symmetric occlusion test", "Culling", lambda: c.settings.change(symmetric=not s().symmetric), "Y",
                 checked=lambda: s().symmetric),
         Command("Verify", "Culling", lambda: c.settings.change(verify=not s().verify), "V", checked=lambda: s().verify),
-        Command("Reset modes", "Culling", c.scheduler.reset_modes, "Backspace", separated=True),
+        Command("Reset modes", "Culling", c.reset_modes, "Backspace", separated=True),
         Command("Trace again", "Culling", c.scheduler.trace_again, "T"),
         Command("Keep tracing when idle", "Culling", toggle_tracing, "K", checked=lambda: p.keep_tracing),
     ]  # fmt: skip

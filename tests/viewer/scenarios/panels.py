@@ -144,7 +144,7 @@ def hiding(d: Driver) -> None:
     d.frames(3)
     assert set(_places_of_panels()) == {PICTURE} and _picture_share() > 0.9
     d.settle()
-    assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.now.size and d.c.scheduler.now.size[0] > 1200
+    assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.scheduler.inputs.size[0] > 1200
     d.hold(KEY.d, 0.1)
     assert not d.c.session.follow, "keys fly while the panels are hidden"
     d.press(KEY.tab)

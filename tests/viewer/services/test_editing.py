@@ -244,10 +244,10 @@ def test_what_is_forgotten_is_forgotten_of_all_scenes(desk: Desk):
     edit(desk, lambda: c.editing.hide("ball"))
     assert known() > 0, "it is kept"
     edit(desk, lambda: c.editing.hide("ball"))
-    c.scheduler.reset_modes()
+    c.reset_modes()
     desk.rest()
     assert known() == 0
-    c.scheduler.reset_modes()
+    c.reset_modes()
     edit(desk, lambda: c.editing.hide("ball"))  # before a picture
     assert known() == 0
 

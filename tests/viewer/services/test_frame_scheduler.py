@@ -13,7 +13,7 @@ from tracer.frame import Settings
 from tracer.scene.model import Camera, Cancelled
 from viewer.services.controller import Controller
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.services.frame_scheduler import Conditions, Tracing
+from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
@@ -47,8 +47,8 @@ def test_pictures_are_asked_for_once_and_again_after_a_run():
     """A run drops what was asked for, and leaves the world at its own last frame."""
     pictures, session = Pictures(), Session(settings=Settings(method="none", samples=1))
     session.open(make_scene())
-    tracing = Tracing(session, Preferences(dynamic_resolution=False), pictures)
-    here = Conditions(size=(16, 8))
+    tracing = FrameScheduler(session, Preferences(dynamic_resolution=False), pictures)
+    here = FrameInputs(size=(16, 8))
     for _ in range(3):
         tracing.ask(here)
     (request,) = pictures.asked[1:] if len(pictures.asked) > 1 else pictures.asked
@@ -63,9 +63,9 @@ def test_pictures_are_asked_for_once_and_again_after_a_run():
 
 def test_until_certificates_can_be_made_pictures_come_without():
     session = Session(settings=Settings(method="certified+rest"))
-    tracing = Tracing(session, Preferences(), Pictures())
+    tracing = FrameScheduler(session, Preferences(), Pictures())
     assert tracing.settings.method == "certified+rest"
-    tracing.ask(Conditions(ready=False))
+    tracing.ask(FrameInputs(ready=False))
     assert tracing.settings.method == "none+rest"
     session.settings = replace(session.settings, method="paper")
     assert tracing.settings.method == "paper"
@@ -73,7 +73,7 @@ def test_until_certificates_can_be_made_pictures_come_without():
 
 def test_nothing_is_reset_while_it_is_locked():
     pictures = Pictures()
-    Tracing(Session(), Preferences(), pictures, locked=lambda: True).reset_modes()
+    FrameScheduler(Session(), Preferences(), pictures, locked=lambda: True).reset_modes()
     assert pictures.resets == 0
 
 

@@ -15,13 +15,13 @@ from viewer.services.frame_budget import FrameBudget
 from viewer.services.refinement import LampSamples, after, first
 from viewer.services.light_recorder import LightQuestion, LightRecorder
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.services.frame_scheduler import Conditions, Tracing
+from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.state.preferences import Preferences
 from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER
 from viewer.state.session import Session
 from viewer.state.views import View
 
-HERE = Conditions(size=(16, 8))
+HERE = FrameInputs(size=(16, 8))
 MOVING = replace(HERE, moving=True)
 
 
@@ -85,14 +85,14 @@ class Window:
     def __init__(self, scene: Scene | None = None, **settings: int | float) -> None:
         self.session, self.renders = Session(settings=Settings(method="none", samples=2, **settings)), Renders()
         self.session.open(scene or make_scene())
-        self.tracing = Tracing(self.session, Preferences(), self.renders)
+        self.scheduler = FrameScheduler(self.session, Preferences(), self.renders)
 
-    def rest(self, now: Conditions = HERE, frames: int = 12) -> list[tuple[int | None, int]]:
+    def rest(self, now: FrameInputs = HERE, frames: int = 12) -> list[tuple[int | None, int]]:
         """Samples of lamps, and of pixels, that are asked for in so many frames of the window."""
         before = len(self.renders.asked)
         for _ in range(frames):
-            self.tracing.take()
-            self.tracing.ask(now)
+            self.scheduler.take()
+            self.scheduler.ask(now)
         return [(one.settings.lamp_samples, one.samples) for one in self.renders.asked[before:]]
 
     def move(self) -> None:

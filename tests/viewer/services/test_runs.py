@@ -97,7 +97,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
         lambda: desk.c.motion.step(3),
         lambda: desk.c.settings.change(depth=2),
         lambda: desk.c.settings.toggle_culling(),
-        lambda: desk.c.scheduler.reset_modes(),
+        lambda: desk.c.reset_modes(),
     ):
         desk.c.notices.message = None
         disturb()

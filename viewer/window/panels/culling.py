@@ -80,7 +80,7 @@ def show(ui: Ui) -> None:
     if wide_button(
         f"{icons.ICON_FA_ERASER}  Reset modes", f"forget all modes and certificates{ui.key('Reset modes')}", 2
     ):
-        c.scheduler.reset_modes()
+        c.reset_modes()
     imgui.same_line()
     if wide_button(
         f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again",
