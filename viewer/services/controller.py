@@ -196,6 +196,15 @@ class Controller:
         self.cuts.follow(traced.frame if traced is not None and whole else None, not moving)
         self.teachers.follow(None if moving else traced)
 
+    def list_scene(self) -> None:
+        """Fill the table of what is in the scene, while it is seen."""
+        self.table.follow(self.own_traced, self.motion.lively)
+
+    def record_light(self) -> None:
+        """Have the chosen light recorded where the view needs it, unless a run has the render thread."""
+        if self.runs.current is None:
+            self.scheduler.record_light()
+
     def request_frame(self, size: tuple[int, int]) -> None:
         """Ask for the frame that should come next, in a window that has room for so many pixels."""
         session, scene = self.session, self.session.scene
