@@ -28,7 +28,7 @@ from tracer.renderer import Renderer
 from tracer.shading.blocks import TURNS
 from tracer.statistics import FrameStatistics
 from viewer.output.pictures import picture
-from viewer.services.frame_budget import AT_ONCE, LARGEST_DIVISOR, FINER_BELOW, FrameBudget, Plan, divided
+from viewer.services.frame_budget import AT_ONCE, FINER_BELOW, LARGEST_DIVISOR, FrameBudget, Plan, divided
 from viewer.state import navigation
 from viewer.window.app import App
 

@@ -40,8 +40,9 @@ class Desk:
         self.rest()
 
     def tick(self) -> None:
+        before = self.c.frame
         advance(self.c, SIZE)
-        if self.c.frame is not None and (not self.came or self.c.frame is not self.came[-1]):
+        if self.c.frame is not None and self.c.frame is not before:
             self.came.append(self.c.frame)
         time.sleep(0.001)
 

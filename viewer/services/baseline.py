@@ -169,8 +169,8 @@ class Baseline:
         self._stop()
 
     def update(self, traced: Traced | None, second: str, moving: bool, busy: bool) -> None:
-        """Measure the picture that is shown, compared with one by a `second` method, unless anything is `moving`, or the
-        thread is `busy` with what is wanted more.  Called in each frame of the window."""
+        """Measure the picture that is shown, and compared with one by a `second` method, in each frame of the window;
+        not while anything is `moving`, or the thread is `busy` with what is wanted more."""
         self.moving = moving
         whole = traced is not None and traced.whole and traced.request.divisor == 1
         if moving or not whole:

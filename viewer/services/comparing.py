@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.method import Method, bases
-from viewer.services.settings_controller import SettingsController
 from viewer.services.frame_scheduler import FrameScheduler
+from viewer.services.settings_controller import SettingsController
 from viewer.state.comparison import (
     ENDLESS,
     Apart,
@@ -55,8 +55,10 @@ class Difference:
 class Comparing:
     """`state` is what was chosen; panels and commands may change it by the methods here."""
 
-    def __init__(self, session: Session, tracing: FrameScheduler, settings: SettingsController, notices: Notices) -> None:
-        self._session, self._scheduler, self._settings, self._notices = session, tracing, settings, notices
+    def __init__(
+        self, session: Session, scheduler: FrameScheduler, settings: SettingsController, notices: Notices
+    ) -> None:
+        self._session, self._scheduler, self._settings, self._notices = session, scheduler, settings, notices
         self.state = session.comparison
         self._difference: tuple[Side, Side, Slice, Difference | None] | None = None
         self._span: tuple[Frame, Frame, dict[View, tuple[float, float]]] | None = None

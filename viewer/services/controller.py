@@ -24,6 +24,7 @@ from viewer.services.cut_inspector import CutInspector
 from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
 from viewer.services.frame_history import FrameHistory, FrameNavigator
+from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.hunt_controller import HuntController
 from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
@@ -43,7 +44,6 @@ from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.shadow_inspector import ShadowInspector
 from viewer.services.teachers import Teachers
-from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.undo import Undo
 from viewer.state.arriving import fitting_view
 from viewer.state.notices import Notices

@@ -1,12 +1,12 @@
 """How much of a frame is traced before it is shown, so that frames come as fast as they should.
 
-Each frame begins with its primary rays at full resolution and with some sixteenths of its pixels shaded, the rest filled
-in from them; then it becomes whole.  How many sixteenths fit into the time of a frame follows from what the last frames
-have cost: a fixed part, a part for each primary ray and a part for each shaded pixel, estimated separately, and the rest
-of the frame (placing objects, making certificates).  Shaded pixels are estimated apart for each number of samples that
-lamps have.  Only where the primary rays alone do not fit is the resolution divided by 2, 3, ... as well; before that,
-frames take a little longer than they should.  More is traced only with some time to spare, so that pictures do not
-flutter between two steps.
+Each frame begins with its primary rays at full resolution and with some sixteenths of its pixels shaded, the rest
+filled in from them; then it becomes whole. How many sixteenths fit into the time of a frame follows from what the
+last frames have cost: a fixed part, a part for each primary ray and a part for each shaded pixel, estimated
+separately, and the rest of the frame (placing objects, making certificates). Shaded pixels are estimated apart for
+each number of samples that lamps have. Only where the primary rays alone do not fit is the resolution divided by 2,
+3, ... as well; before that, frames take a little longer than they should. More is traced only with some time to
+spare, so that pictures do not flutter between two steps.
 """
 
 from __future__ import annotations

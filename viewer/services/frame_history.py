@@ -20,11 +20,11 @@ from tracer.mode_origins import ModeOrigins, Taught
 from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Camera
 from viewer.output.recipe import BUILT
+from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.run_controller import RunController
 from viewer.services.runs import Experiment
 from viewer.services.selection import Point, Selection
-from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.undo import Undo
 from viewer.state.history import FrameRate, FrameRecord, FrameRecords, History
 from viewer.state.notices import Notices

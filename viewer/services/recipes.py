@@ -10,8 +10,8 @@ from tracer.frame import Frame, Settings
 from tracer.scene.edits import NO_EDITS
 from viewer.output import recipe
 from viewer.output.recipe import BUILT, Recipe, Style
-from viewer.services.scene_loader import SceneLoader
 from viewer.services.frame_scheduler import FrameScheduler
+from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session

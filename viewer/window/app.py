@@ -38,7 +38,7 @@ from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
-Step = Callable[[str, Callable[[], object]], None]
+Step = Callable[[str, Callable[[], object]], object]
 Runner = Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None]
 WINDOW_SIZE = (1440, 900)
 SMALLEST_SIZE = (240, 160)

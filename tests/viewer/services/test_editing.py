@@ -228,15 +228,15 @@ def test_what_is_forgotten_is_forgotten_of_all_scenes(desk: Desk):
     c, first = desk.c, desk.c.renderer._renderer
     c.settings.change(method="paper")
     desk.rest()
-    ask = c.scheduler.ask
+    ask = c.scheduler.request
 
     def known() -> int:
         """Histories of the scene as it was read, once it is back and before a frame of it is traced."""
-        c.scheduler.ask = lambda now: None
+        c.scheduler.request = lambda now: None
         c.editing.clear()
         desk.until(lambda: not c.editing.under_way)
         assert c.renderer._renderer is first
-        c.scheduler.ask = ask
+        c.scheduler.request = ask
         found = len(first.state.histories)
         desk.rest()
         return found

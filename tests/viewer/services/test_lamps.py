@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
 from dataclasses import replace
 
 import pytest
@@ -12,10 +13,9 @@ from tracer.scene.lights import Light, as_lamps
 from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
 from viewer.services.frame_budget import FrameBudget
-from viewer.services.refinement import LampSamples, after, first
-from viewer.services.light_recorder import LightQuestion, LightRecorder
-from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
+from viewer.services.refinement import LampSamples, after, first
+from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.preferences import Preferences
 from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER
 from viewer.state.session import Session
@@ -92,7 +92,7 @@ class Window:
         before = len(self.renders.asked)
         for _ in range(frames):
             self.scheduler.take()
-            self.scheduler.ask(now)
+            self.scheduler.request(now)
         return [(one.settings.lamp_samples, one.samples) for one in self.renders.asked[before:]]
 
     def move(self) -> None:
@@ -197,87 +197,81 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
         assert window.scheduler.title == title
 
 
-class Questions:
-    """Takes down what the recorder asks the render thread."""
-
-    def __init__(self) -> None:
-        self.asked: list[LightQuestion] = []
-
-    def ask(self, question: LightQuestion) -> None:
-        self.asked.append(question)
-
-
 def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
     window = Window(make_scene(lights=MOST_TOGETHER + 1))
-    questions = Questions()
-    recorder = LightRecorder(window.session, questions, window.scheduler)
+    scheduler, asked = window.scheduler, []
+
+    def query(_function, frame, light):
+        if not asked or (asked[-1][0], asked[-1][1]) != (frame, light):
+            asked.append((frame, light, Future()))
+        return asked[-1][2]
+
+    window.renders.query = query
     window.rest()
-    recorder.follow()
-    assert not questions.asked, "the picture needs none"
+    scheduler.record_light()
+    assert not asked, "the picture needs none"
     window.session.view = View.PENUMBRA
     for _ in range(3):
-        recorder.follow()
-    (question,) = questions.asked
-    assert (question.frame, question.light) == (window.scheduler.frame, 0)
+        scheduler.record_light()
+    ((frame, light, _),) = asked
+    assert (frame, light) == (scheduler.frame, 0)
     window.session.light = 1
-    recorder.follow()
-    (_, question) = questions.asked
-    first = with_lamps(question.frame)
-    question.found = replace(first, asked=first.asked[..., 1:2], reached=first.reached[..., 1:2], only_light=1)
-    recorder.follow()
-    assert window.scheduler.frame is question.found and window.scheduler.drawn_view is View.PENUMBRA
-    recorder.follow()
-    assert len(questions.asked) == 2
+    scheduler.record_light()
+    *_, (frame, _, future) = asked
+    first = with_lamps(frame)
+    found = replace(first, asked=first.asked[..., 1:2], reached=first.reached[..., 1:2], only_light=1)
+    future.set_result(found)
+    scheduler.record_light()
+    assert scheduler.frame is found and scheduler.drawn_view is View.PENUMBRA
+    scheduler.record_light()
+    assert len(asked) == 2
     window.session.light = 2
-    recorder.follow()
-    assert window.scheduler.drawn_view is View.COLOR and len(questions.asked) == 3, "another light"
-    window.move()
-    window.rest()
-    newest = window.scheduler.frame
-    questions.asked[-1].found = first
-    recorder.follow()
-    assert window.scheduler.frame is newest and questions.asked[-1].frame is newest, "it is about an older frame"
+    scheduler.record_light()
+    assert scheduler.drawn_view is View.COLOR and len(asked) == 3, "another light"
+    asked[-1][2].set_exception(ValueError("no memory"))
+    scheduler.record_light()
+    assert scheduler.frame is found, "what fails is reported by the render thread"
 
 
 def test_between_steps_it_is_known_that_more_is_to_come():
     """Whatever the thread is at: it may be between two pictures."""
     window = Window(lamp_radius=0.5, lamp_samples=64)
-    tracing, seen = window.scheduler, []
-    assert not tracing.awaits and not tracing.adds_samples
+    scheduler, seen = window.scheduler, []
+    assert not scheduler.awaits and not scheduler.adds_samples
     for _ in range(12):
-        tracing.ask(HERE)
-        seen.append((tracing.lamp_samples_shown, tracing.awaits, tracing.refines_lamps))
-        tracing.take()
+        scheduler.request(HERE)
+        seen.append((scheduler.lamp_samples_shown, scheduler.awaits, scheduler.refines_lamps))
+        scheduler.take()
     assert seen[:4] == [(0, True, False), (4, True, True), (16, True, True), (64, True, False)], "the last knows more"
     assert seen[-1] == (64, False, False)
     window.move()
-    tracing.ask(HERE)
-    assert tracing.awaits
-    tracing.give_up()
-    assert not tracing.awaits and not tracing.adds_samples, "it has failed"
+    scheduler.request(HERE)
+    assert scheduler.awaits
+    scheduler.give_up()
+    assert not scheduler.awaits and not scheduler.adds_samples, "it has failed"
 
 
 def test_samples_of_pixels_come_after_certificates():
     window = Window()
     window.session.settings = replace(window.session.settings, method="certified", samples=4)
-    tracing = window.scheduler
-    tracing.ask(HERE)
-    assert tracing.awaits and not tracing.certifies, "there is no picture yet"
-    tracing.take()
-    tracing.ask(HERE)
-    assert tracing.certifies and not tracing.adds_samples
+    scheduler = window.scheduler
+    scheduler.request(HERE)
+    assert scheduler.awaits and not scheduler.certifies, "there is no picture yet"
+    scheduler.take()
+    scheduler.request(HERE)
+    assert scheduler.certifies and not scheduler.adds_samples
     for _ in range(3):
-        tracing.take()
-        tracing.ask(HERE)
-    assert not tracing.certifies and not tracing.awaits and not tracing.adds_samples, "all samples are there"
-    part = replace(tracing.traced.frame, settings=replace(tracing.traced.frame.settings, samples=2))
-    tracing.traced = replace(tracing.traced, frame=part)
-    assert tracing.adds_samples and not tracing.awaits
-    tracing.traced = None
-    assert tracing.awaits
+        scheduler.take()
+        scheduler.request(HERE)
+    assert not scheduler.certifies and not scheduler.awaits and not scheduler.adds_samples, "all samples are there"
+    part = replace(scheduler.traced.frame, settings=replace(scheduler.traced.frame.settings, samples=2))
+    scheduler.traced = replace(scheduler.traced, frame=part)
+    assert scheduler.adds_samples and not scheduler.awaits
+    scheduler.traced = None
+    assert scheduler.awaits
     window = Window()
     window.session.settings = replace(window.session.settings, method="auto")
-    window.scheduler.ask(HERE)
+    window.scheduler.request(HERE)
     window.scheduler.take()
-    window.scheduler.ask(HERE)
+    window.scheduler.request(HERE)
     assert window.scheduler.awaits and not window.scheduler.certifies, "where it chooses by itself, what follows learns"

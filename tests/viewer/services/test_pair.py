@@ -20,7 +20,6 @@ from viewer.services.render_thread import RenderThread
 CAMERA = Camera((0.0, 1.0, 4.0), (0.0, -0.25, -1.0))
 
 
-
 def never() -> bool:
     return False
 

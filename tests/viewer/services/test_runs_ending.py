@@ -23,6 +23,7 @@ from viewer.services.controller import Controller
 from viewer.services.render_request import Traced
 from viewer.state.preferences import Preferences
 from viewer.util.resources import embedded_scenes
+from viewer.window.app import advance
 
 
 def test_another_scene_ends_a_run_and_its_results_stay(desk: Desk) -> None:
@@ -93,7 +94,7 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
     end = time.monotonic() + 20.0
     while controller.runs.current is not None or controller.frame is None:
         assert time.monotonic() < end
-        controller.tick(SIZE)
+        advance(controller, SIZE)
     assert controller.notices.newest_fault.text == "the experiment failed: AttributeError: no world"
     assert "no world" in controller.notices.newest_fault.details
     assert controller.close()

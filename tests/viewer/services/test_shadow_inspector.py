@@ -19,6 +19,7 @@ from viewer.services.controller import Controller
 from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, drawn_lights, drawn_lines
 from viewer.state import navigation
 from viewer.state.preferences import Preferences
+from viewer.window.app import advance
 from viewer.window.panels.links import follow
 from viewer.window.panels.why import summary, unanswered
 from viewer.window.ui import Ui
@@ -42,7 +43,7 @@ class Desk:
         end, held = time.monotonic() + 120.0, 0  # kernels may be compiled first
         while held < ticks:
             assert time.monotonic() < end, "in vain"
-            self.c.tick(SIZE)
+            advance(self.c, SIZE)
             held = held + 1 if holds() else 0
             time.sleep(0.001)
 

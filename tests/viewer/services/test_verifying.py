@@ -17,6 +17,7 @@ from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.preferences import Preferences
 from viewer.state.session import Snapshot
 from viewer.state.views import View
+from viewer.window.app import advance
 
 SIZE = (16, 8)
 
@@ -34,7 +35,7 @@ class Desk:
         before, quiet, end = len(self.renderer.asked), 0, time.monotonic() + 20.0
         while quiet < 10:
             assert time.monotonic() < end, "it does not come to rest"
-            self.c.tick(SIZE)
+            advance(self.c, SIZE)
             quiet = 0 if self.c.active else quiet + 1
             time.sleep(0.002)
         return [settings.verify for _, settings in self.renderer.asked[before:]]
@@ -126,13 +127,13 @@ def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk:
     desk.renderer.go.clear()
     desk.renderer.started.clear()
     desk.c.scheduler.trace_again()
-    desk.c.tick(SIZE)
+    advance(desk.c, SIZE)
     assert desk.renderer.started.wait(10.0)
     desk.c.runs.start_experiment()
     end = time.monotonic() + 10.0
     while desk.c.runs.current is not None:
         assert time.monotonic() < end
-        desk.c.tick(SIZE)
+        advance(desk.c, SIZE)
     assert desk.c.notices.newest_fault is not None, "the run fails at once"
     assert desk.renderer.cancelled, "the run came before the frame"
     desk.renderer.go.set()

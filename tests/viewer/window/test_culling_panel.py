@@ -14,7 +14,7 @@ from viewer.window.widgets import ERROR
 def test_wrong_answers_are_those_of_the_method_that_is_shown():
     settings = Settings(16, 8, method="paper", verify=True)
     c = SimpleNamespace(
-        frame=make_frame(settings), tracing=SimpleNamespace(settings=settings), runs=SimpleNamespace(current=None),
+        frame=make_frame(settings), scheduler=SimpleNamespace(settings=settings), runs=SimpleNamespace(current=None),
         session=SimpleNamespace(settings=settings, view=View.DIFFERENCE),
     )  # fmt: skip
     text, color = wrong_answers(c)
