@@ -20,7 +20,6 @@ from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
-from viewer.services.cut_inspector import CutInspector
 from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
 from viewer.services.frame_history import FrameHistory, FrameNavigator
@@ -28,7 +27,9 @@ from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.hunt_controller import HuntController
 from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
+from viewer.services.origin_pixels import OriginFinder
 from viewer.services.picture_controller import PictureController
+from viewer.services.pixel_inspector import PixelInspector
 from viewer.services.presets import Presets
 from viewer.services.preview import Preview
 from viewer.services.questions import Questions
@@ -42,8 +43,6 @@ from viewer.services.scene_table import SceneTable
 from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
-from viewer.services.shadow_inspector import ShadowInspector
-from viewer.services.teachers import Teachers
 from viewer.services.undo import Undo
 from viewer.state.arriving import fitting_view
 from viewer.state.notices import Notices
@@ -80,10 +79,9 @@ class Controller:
             lambda meshes: self.loader.read_as(meshes), lambda: self.loader.load_job is not None,
         )  # fmt: skip
         self.presets = Presets(session, preferences, notices, runs.refuses, settings.save, undo.call_next)
-        self.inspector = ShadowInspector(selection, renderer)
-        self.rays = RayInspector(session, selection, renderer)
-        self.cuts = CutInspector(selection, renderer)
-        self.teachers = Teachers(session, selection, self.history, renderer)
+        self.inspector = PixelInspector(selection, renderer.query)
+        self.rays = RayInspector(session, selection, self.inspector, renderer.query)
+        self.origins = OriginFinder(selection, self.history, renderer.query)
         self.navigator = navigator = FrameNavigator(
             session, preferences, self.history, scheduler, runs, undo, selection, notices, self.restore,
             self.reset_modes,
@@ -189,12 +187,11 @@ class Controller:
     def inspect_pixel(self) -> None:
         """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
         traced, moving = self.own_traced, self.motion.lively
-        self.inspector.follow(traced.frame if traced is not None else None, not moving)
-        known = self.inspector.answer.why if self.inspector.answer is not None else None
-        self.rays.follow(traced, None if known is None else known.tree)
-        whole = traced is not None and traced.whole and self.scheduler.drawn_view is View.CUTS
-        self.cuts.follow(traced.frame if traced is not None and whole else None, not moving)
-        self.teachers.follow(None if moving else traced)
+        frame = traced.frame if traced is not None else None
+        cuts = traced is not None and traced.whole and self.scheduler.drawn_view is View.CUTS
+        self.inspector.update(frame, not moving, cuts)
+        self.rays.update(frame)
+        self.origins.update(self.session.scene, None if moving else traced)
 
     def list_scene(self) -> None:
         """Fill the table of what is in the scene, while it is seen."""

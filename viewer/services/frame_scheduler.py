@@ -116,8 +116,10 @@ class FrameScheduler:
             return
         if not (frame.settings.record_lights or can_draw(frame, view, light)):
             answer = self._thread.query(_with_light, frame, light)
-            if answer.done() and not answer.cancelled() and answer.exception() is None:
-                self.traced = replace(self.traced, frame=answer.result()) if self.traced is not None else None
+            if answer.done() and not answer.cancelled() and answer.exception() is None and self.traced is not None:
+                found: Frame = answer.result()  # with as many samples, or fewer: the light is the same
+                frame = replace(frame, asked=found.asked, reached=found.reached, only_light=light)
+                self.traced = replace(self.traced, frame=frame)
 
     # --- what is forgotten, and traced again --------------------------------------------------------
 

@@ -116,12 +116,3 @@ class Spare(Protocol):
     same step is then asked for again."""
 
     def step(self, renderer: Traces, cancelled: Callable[[], bool]) -> bool: ...
-
-
-class Question(Protocol):
-    """A moment's work with the renderer as the frame of this time left it."""
-
-    @property
-    def time(self) -> float: ...
-
-    def answer(self, renderer: Traces) -> None: ...

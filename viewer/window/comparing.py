@@ -109,7 +109,7 @@ def filling(ui: Ui) -> Display | SignedDifference | None:
 
 def magnify(ui: Ui, look: Look) -> None:
     """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
-    magnifier, size = ui.magnifier, ui.picture_size
+    magnifier, size = ui.magnifier, ui.picture.size
     if magnifier is None or min(size) < 1:
         return
     seen = shown(ui)
