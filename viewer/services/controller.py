@@ -80,7 +80,7 @@ class Controller:
         )  # fmt: skip
         self.presets = Presets(session, preferences, notices, runs.refuses, settings.save, undo.call_next)
         self.inspector = PixelInspector(selection, renderer.query)
-        self.rays = RayInspector(session, selection, self.inspector, renderer.query)
+        self.rays = RayInspector(session, selection, self.inspector)
         self.origins = OriginFinder(selection, self.history, renderer.query)
         self.navigator = navigator = FrameNavigator(
             session, preferences, self.history, scheduler, runs, undo, selection, notices, self.restore,
@@ -195,7 +195,7 @@ class Controller:
 
     def list_scene(self) -> None:
         """Fill the table of what is in the scene, while it is seen."""
-        self.table.follow(self.own_traced, self.motion.lively)
+        self.table.update(self.own_traced, self.motion.lively)
 
     def record_light(self) -> None:
         """Have the chosen light recorded where the view needs it, unless a run has the render thread."""
