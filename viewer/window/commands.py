@@ -127,16 +127,7 @@ def _view(ui: Ui) -> list[Command]:
 
 
 def _rays(ui: Ui) -> list[Command]:
-    """The tree of the clicked pixel's rays, and the steps of one of them."""
-    rays = ui.controller.rays
-    walked = Condition(lambda: bool(rays.visits), "no ray is followed: click a row of Rays in the Inspector")
-    return [
-        Command("Rays of the clicked pixel", "View", ui.show_rays, "X", separated=True),
-        Command("Next step of the ray", "View", lambda: rays.go(1), "Period", enabled=walked, repeats=True),
-        Command("Previous step of the ray", "View", lambda: rays.go(-1), "Comma", enabled=walked, repeats=True),
-        Command("Play the steps of the ray", "View", rays.play, "Shift+Period", checked=lambda: rays.playing,
-                enabled=walked),
-    ]  # fmt: skip
+    return [Command("Rays of the clicked pixel", "View", ui.show_rays, "X", separated=True)]
 
 
 def _looks(ui: Ui) -> list[Command]:

@@ -16,7 +16,7 @@ def build(ui: Ui) -> list[Command]:
                 enabled=Condition(lambda: bool(undo.undoes), "there is nothing to undo")),
         Command("Redo", "Edit", undo.redo, "Ctrl+Shift+Z", repeats=True, title=lambda: f"Redo {undo.redoes}".rstrip(),
                 enabled=Condition(lambda: bool(undo.redoes), "there is nothing to redo"), other_keys=("Ctrl+Y",)),
-        Command("Command palette", "Edit", ui.finder.begin, "Ctrl+Shift+P", separated=True,
+        Command("Command palette", "Edit", lambda: ui.open(Dialog.PALETTE), "Ctrl+Shift+P", separated=True,
                 tip="finds commands, settings, scenes, bookmarks and presets as you type"),
         Command("Presets...", "Edit/Presets", lambda: ui.toggle(Dialog.PRESETS),
                 checked=lambda: Dialog.PRESETS in ui.dialogs,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from viewer.state.scene_rows import Level
-from viewer.state.whereabouts import looking_at, place_of, place_of_part
+from viewer.state.selection_lookup import looking_at, place_of, place_of_part
 from viewer.window.command import Command, Condition
 from viewer.window.ui import Ui
 

@@ -18,6 +18,4 @@ def build(ui: Ui) -> list[Command]:
         Command("Previous layer of the slice", "View", lambda: step(ui, -1), "Shift+LeftBracket",
                 enabled=sliced, repeats=True),
         Command("Slice across another axis", "View", lambda: turn(ui), enabled=sliced),
-        Command("What a light sees", "View", lambda: ui.show_panel("Light buffer"),
-                tip="the cube that the method lightbuffer keeps around each light"),
     ]  # fmt: skip

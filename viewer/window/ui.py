@@ -24,7 +24,6 @@ from viewer.state.views import View
 from viewer.window.command import Command, is_key
 from viewer.window.compared import Compared
 from viewer.window.display import Display
-from viewer.window.finder import Finder
 from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard
@@ -49,6 +48,7 @@ class Dialog(Enum):
     SAVE_AS = "Save picture as"
     PRESETS = "Presets"
     KEYS = "Keyboard and mouse"
+    PALETTE = "Command palette"
     ABOUT = "About Shadowcull"
 
 
@@ -109,7 +109,6 @@ class Ui:
     keyboard: Keyboard = field(default_factory=Keyboard)
     fate_shown: Fate | None = None
     key_wanted: str = ""
-    finder: Finder = field(default_factory=Finder)
     paste_from: Callable[[], str] = lambda: ""
     copy_to: Callable[[str], None] = lambda text: None
     modifiers: int = 0

@@ -11,6 +11,7 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.state.views import View
 from viewer.window.escape import ANY_POPUP
+from viewer.window.finder import Finder
 from viewer.window.panels.names import NameField
 
 KEY = imgui.Key
@@ -45,15 +46,15 @@ def _palette(d: Driver) -> None:
         assert imgui.is_popup_open("", ANY_POPUP) == (typed == "500")
     find(d, "redo")
     d.press(KEY.enter)
-    assert imgui.is_popup_open("", ANY_POPUP) and "nothing to redo" in d.ui.finder.problem
+    assert imgui.is_popup_open("", ANY_POPUP) and "nothing to redo" in d.ui.state(Finder).problem
     d.press(KEY.escape)
     assert not imgui.is_popup_open("", ANY_POPUP)
     d.press(CTRL | SHIFT | int(KEY.p))
-    assert [found.item.name for found in d.ui.finder.found[:2]] == ["setting Bounces", "Occlusion mode"]
+    assert [item.name for item in d.ui.state(Finder).found[:2]] == ["setting Bounces", "Occlusion mode"]
     d.press(KEY.down_arrow)
     d.press(KEY.up_arrow)
     d.press(KEY.down_arrow)
-    assert d.ui.finder.aimed.name == "Occlusion mode"
+    assert d.ui.state(Finder).aimed.name == "Occlusion mode"
     d.press(KEY.escape)
 
 

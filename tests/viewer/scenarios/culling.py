@@ -13,14 +13,13 @@ from tracer.method import additions, bases
 from tracer.renderer import Renderer
 from viewer.output.legend_counts import occlusion_legend
 from viewer.output.pictures import picture
-from viewer.services.shadow_inspector import Part
 from viewer.state.slices import slice_seen
 from viewer.state.tree_slice import layer_of
 from viewer.state.views import View
 from viewer.window.command import chord
 from viewer.window.panels import slicing
-from viewer.window.panels.light_buffer import CubeState
 from viewer.window.panels.links import Pointed
+from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
 
 KEY = imgui.Key
 
@@ -124,8 +123,8 @@ def _clusters(d: Driver) -> None:
 
 
 def _space(d: Driver) -> None:
-    """What methods keep of space: a slice through voxels, which keys and a slider move; cells by the lights that they
-    ask; and a light's cube in a panel, whose cells say what they list."""
+    """What methods keep of space: a slice through voxels, which keys and a slider move; and cells by the lights that
+    they ask."""
     d.c.settings.change(lamp_radius=None, lamp_samples=None)
     for view, name in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact")):
         d.press(chord(view.key))
@@ -139,16 +138,6 @@ def _space(d: Driver) -> None:
         if view is View.VOXELS:
             _slice(d)
     _tree(d)
-    d.ui.show_panel("Light buffer")
-    d.frames(3)
-    d.context.item_click("//Light buffer/Use lightbuffer##instead")
-    d.settle()
-    assert "light cubes" in d.c.frame.structures
-    d.frames(3)
-    panel, cube = imgui.internal.find_window_by_name("Light buffer"), d.c.frame.structures["light cubes"][0].cube
-    assert cube is not None and panel.draw_list.vtx_buffer.size() > 0
-    d.context.item_click("//Light buffer/**/full shadow##cube")
-    assert d.ui.state(CubeState).shows == 1
 
 
 def _tree(d: Driver) -> None:
@@ -219,12 +208,12 @@ def explaining(d: Driver) -> None:
     d.press(KEY.i)
     assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
     d.press(KEY.i)
-    lines = explaining.lines(d.c.frame)
-    assert {line.part for line in lines} >= {Part.BLOCKER, Part.REACHING, Part.STOPPED}
+    colors = {color for color, *_ in shadow_lines(explaining.answer, d.c.frame)}
+    assert colors >= {BLOCKER, LIT, STOPPED}
     d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
     d.wait(lambda: all(one.lit for one in explaining.answer.lights if one.due), "an answer about another pixel", 20.0)
-    parts = {line.part for line in explaining.lines(d.c.frame)}
-    assert Part.REACHING in parts and not parts & {Part.STOPPED, Part.BLOCKER}  # candidates there may be
+    colors = {color for color, *_ in shadow_lines(explaining.answer, d.c.frame)}
+    assert LIT in colors and not colors & {STOPPED, BLOCKER}  # candidates there may be
     d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
     d.context.mouse_click(0)
     d.frames(3)

@@ -70,12 +70,12 @@ def _from_the_inspector(d: Driver) -> None:
     d.frames(3)
     picked = c.selection.picked
     assert picked is not None
-    taught = c.history.taught(picked)
+    taught = c.history.origins_of(picked)
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
-    d.wait(lambda: c.teachers.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
+    d.wait(lambda: c.origins.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
     moment = c.history.records.get(lesson.lit)
     d.scroll_down("Inspector")
-    d.context.item_click(f"//Inspector/**/picture {lesson.lit}##taught {light} lit")
+    d.context.item_click(f"//Inspector/**/{light} lit/picture {lesson.lit}##0")
     d.settle()
     assert (c.session.time, c.session.camera) == (moment.time, moment.camera)
 

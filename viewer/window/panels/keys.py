@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.state.fuzzy import match
 from viewer.state.keymap import HELD
 from viewer.window.command import MENUS
+from viewer.window.finder import match
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
 

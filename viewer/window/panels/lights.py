@@ -6,7 +6,7 @@ A scene may have thousands: a list draws the rows that are seen, and finds light
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from imgui_bundle import imgui
@@ -21,6 +21,7 @@ from viewer.window.widgets import QUIET, count, em, paragraph, row, tooltip
 FEW = 8
 """Lights that are listed without a field to find them."""
 _ROWS = 6  # of the list that are seen at once
+_MOST_IN_COMBO = 64
 _SMALLEST, _LARGEST = 1e-5, 0.1  # radius on the slider, of the scene's diagonal
 _SCENE_SAYS = "as the scene says"
 _RADIUS = (
@@ -96,6 +97,19 @@ def combo(ui: Ui) -> None:
             if _rows(ui, shown, described=False):
                 imgui.close_current_popup()
         imgui.end_child()
+        imgui.end_combo()
+
+
+def combo_of_all(ui: Ui, place: str, chosen: int | None, choose: Callable[[int | None], None]) -> None:
+    """One light, or None for all of them together."""
+    if imgui.begin_combo("##light", "all lights" if chosen is None else ui.light_name(chosen)):
+        if imgui.is_window_appearing():
+            ui.state(LightFilters).texts[place] = ""
+        if imgui.selectable("all lights", chosen is None)[0]:
+            choose(None)
+        for number in list(found(ui, place))[:_MOST_IN_COMBO]:
+            if imgui.selectable(f"{ui.light_name(number)}##{number}", chosen == number)[0]:
+                choose(number)
         imgui.end_combo()
 
 

@@ -22,24 +22,19 @@ from viewer.window.palette import ON_PICTURE_ERROR
 from viewer.window.panels import (
     closeup,
     coming,
-    cut_overlay,
     edited_picture,
-    explanation,
     film,
     layers,
     legend,
     missing,
+    overlays,
     preview,
-    ray_overlay,
     savings,
     sides,
     slicing,
     timeline,
     tour,
-    unseen,
-    why_overlay,
     wipe,
-    worst_pixels,
 )
 from viewer.window.panels.area import Area
 from viewer.window.panels.legend import LegendState
@@ -119,17 +114,11 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         sides.draw_a(ui, area, seen)
     with _inside(area):
         edited_picture.show_changed(ui, area.whole, area.whole_end)
-        if c.rays.visible:  # it shows the same rays, and more
-            ray_overlay.show(ui, area.whole, area.whole_end)
-        else:
-            explanation.show(ui, area.whole, area.whole_end)
-        why_overlay.show(ui, area)
-        unseen.show(ui, area.whole, area.whole_end)
-        cut_overlay.show(ui, area.whole, area.whole_end)
+        overlays.show(ui, area)
     _pointer(ui, area)
     closeup.show(ui, area)
     if seen is not None:
-        worst_pixels.show(ui, area, seen)
+        overlays.show_worst_pixels(ui, area, seen[1].frame)
     wipe.show(ui, area)
     lower = _overlay(ui, area.corner, area.end)
     with _inside(area):

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
 from viewer.services.controller import Controller
-from viewer.services.cut_inspector import MOST_DRAWN
+from viewer.services.pixel_inspector import MOST_CLUSTERS
 from viewer.state.picking import pixel_at
 from viewer.state.readings import cell_lights, tree_of, voxels_of
 from viewer.state.slices import AXES, slice_seen, voxel_seen
@@ -64,9 +64,10 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
         tree, cut = tree_of(frame), c.session.cut
         part = part_seen(frame, tree, cut, x, y)
         return [] if part is None else list(part_words(part, tree.owner))
-    if view is View.CUTS and c.cuts.cut is not None and (c.cuts.cut.x, c.cuts.cut.y) == (x, y):
-        return cut_lines(c.cuts.cut)
-    if view is View.CUTS and c.selection.picked is None and c.cuts.waits_for == (x, y):
+    lit = c.inspector.cut
+    if view is View.CUTS and lit is not None and (lit.x, lit.y) == (x, y):
+        return cut_lines(lit)
+    if view is View.CUTS and c.selection.picked is None and c.inspector.awaits_cut == (x, y):
         return awaited(c)
     if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:
         asked = int(cell_lights(frame)[y, x])
@@ -90,8 +91,8 @@ def cut_lines(cut: LightCut) -> list[str]:
     if total > 0.0:
         top = np.sort(cut.sent)[::-1]
         lines.append(f"the brightest sends {percent(float(top[0]), total)} of their light")
-    if many > MOST_DRAWN:
-        lines.append(f"drawn are the {MOST_DRAWN} that send most")
+    if many > MOST_CLUSTERS:
+        lines.append(f"drawn are the {MOST_CLUSTERS} that send most")
     return lines
 
 
