@@ -98,7 +98,7 @@ class Controller:
         self.films = FilmController(session, preferences, runs, recipes, bookmarks, notices, wake)
         self.pictures = PictureController(session, preferences, runs, recipes, notices, wake)
         self.hunts = HuntController(session, preferences, runs, navigator, recipes, notices, wake)
-        self.watcher = SceneWatcher(preferences, lambda: loader.files, self._may_reload, loader.follow_change, wake)
+        self.watcher = SceneWatcher(preferences, lambda: loader.files, self._may_reload, loader.reload_changed, wake)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}
@@ -130,7 +130,7 @@ class Controller:
 
     def take_scene(self) -> None:
         """Show the scene that has been read, if one has."""
-        arrival, flown = self.loader.follow(), self.preview.flown
+        arrival, flown = self.loader.take_finished(), self.preview.flown
         if arrival is None:
             return
         said = ""
@@ -155,7 +155,7 @@ class Controller:
             self.notices.report(failed)
             self.session.playing = False
             self.scheduler.give_up()
-        run = self.runs.follow()
+        run = self.runs.take_progress()
         if run.ended:
             self.scheduler.trace_once_more()  # else the world might stay where the run has put it
         if run.picture is not None:
@@ -182,7 +182,7 @@ class Controller:
     def apply_edits(self) -> None:
         """Have the scene edited as is wanted, once what was edited last has been seen."""
         seen = self.scheduler.shows_edits or not self.renderer.busy
-        self.editing.follow(self.runs.current is not None, seen)
+        self.editing.apply(self.runs.current is not None, seen)
 
     def inspect_pixel(self) -> None:
         """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
@@ -228,7 +228,7 @@ class Controller:
         if self.runs.current is None:
             of_edits = fine and not self.motion.lively and scheduler.shows_edits
             more_comes = scheduler.awaits or scheduler.adds_samples or self.renderer.busy
-            self.before_edits.follow(traced.frame if traced is not None and of_edits else None, not more_comes)
+            self.before_edits.take(traced.frame if traced is not None and of_edits else None, not more_comes)
 
     def measure(self) -> None:
         """Measure in spare time how fast the picture is traced by the method and by none, while that is to be seen."""

@@ -60,9 +60,9 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     this name, so that a mistake in one ends no other."""
     # What threads have finished.
     step("Showing a scene that was read", c.take_scene)
-    step("Reloading what has changed", c.watcher.follow)
+    step("Reloading what has changed", c.watcher.reload_changed)
     step("Saving files", c.captures.report_saved)
-    step("Saving pictures", c.pictures.follow)
+    step("Saving pictures", c.pictures.report_done)
     step("Quitting once all is saved", c.questions.follow)
     step("Taking the newest frame", c.take_frame)
     step("Previewing the scene", lambda: c.preview.update(traced=c.frame is not None))
@@ -190,11 +190,11 @@ class App:
         """Draw what is no docked panel, and read the keys."""
         ui, step, overlay = self.ui, self.ui.guard.step, self.ui.guard.overlay
         style.fill_windows(True)
-        step("The layout", self.layout.follow)
+        step("The layout", self.layout.update)
         overlay("The strip of folded panels", lambda: strip.show(ui), lambda: setattr(ui.fold, "drawer", ""))
         step("Reading the keys", lambda: menus.handle_keys(ui))
         step("Flying", lambda: picture.fly(ui))
-        step("Comparing", lambda: comparing.follow_key(ui))
+        step("Comparing", lambda: comparing.read_key(ui))
         overlay("The progress of loading", lambda: loading.show(ui))
         dialogs.show(ui)
         overlay("The tour", lambda: tour.show(ui), ui.tour.end)
@@ -210,7 +210,7 @@ class App:
 
     def _set_theme(self) -> None:
         p = self.controller.preferences
-        if style.follow(p.theme, p.ui_scale):
+        if style.update(p.theme, p.ui_scale):
             self.params.imgui_window_params.background_color = palette.BACKGROUND
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
 
