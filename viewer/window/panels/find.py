@@ -8,10 +8,10 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.services.scene_table import Listing, SceneTable
 from viewer.state.row_filter import HELP, HINTS
 from viewer.state.scene_rows import Level
-from viewer.window.finding import FindState
 from viewer.window.panels import find_rows, lights
 from viewer.window.panels.lights import LightFilters
 from viewer.window.ui import Ui
+from viewer.window.view_commands import FindState
 from viewer.window.widgets import ERROR, QUIET, clipped, count, em, fitted, paragraph, same_line_for, tooltip
 
 _FIELD, _LIGHT = 12.0, 8.0  # ems of width, at least, for the filter, and for the name of a light
