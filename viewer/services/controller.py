@@ -88,7 +88,7 @@ class Controller:
             session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
         )
         self.inspector = PixelInspector(self.selection, renderer.query)
-        self.rays = RayInspector(session, self.selection, self.inspector, renderer.query)
+        self.rays = RayInspector(session, self.selection, self.inspector)
         self.origins = OriginFinder(self.selection, self.history, renderer.query)
         self.navigator = FrameNavigator(
             session, preferences, self.history, self.tracing, self.runs, self.undo, self.selection, notices,
@@ -155,7 +155,7 @@ class Controller:
         cuts = traced is not None and traced.whole and self.tracing.drawn_view is View.CUTS
         self.inspector.update(self.frame if run is None else None, not motion.lively, cuts)
         self.rays.update(self.frame if run is None else None)
-        self.table.follow(traced, motion.lively)
+        self.table.update(traced, motion.lively)
         edits, focus = self.editing.at_work, self.selection.hovered
         scene, settings = self.session.scene, self.session.settings
         if scene is not None:

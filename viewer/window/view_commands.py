@@ -57,7 +57,7 @@ def view(ui: Ui) -> list[Command]:
         switch("Outlines", "View", p, "outlines", "B"),
         switch("Mark wrong pixels", "View", p, "mark_wrong", "M"),
         switch("Shares of rays", "View", p, "work_shares", "U"),
-        *_rays(ui),
+        Command("Rays of the clicked pixel", "View", ui.show_rays, "X", separated=True),
         *_find(ui),
         switch("Draw shadow rays", "View", p, "draw_explanation", "I"),
         switch("Smooth upscaling", "View", p, "smooth_upscaling"),
@@ -69,7 +69,7 @@ def view(ui: Ui) -> list[Command]:
 
 
 def _space(ui: Ui) -> list[Command]:
-    """What methods keep of space: the slice through it, and what a light sees."""
+    """What methods keep of space: the slice through it."""
     sliced = Condition(
         lambda: ui.controller.tracing.drawn_view.has_slice, "no slice is shown: choose the view Voxels or Tree built"
     )
@@ -79,19 +79,6 @@ def _space(ui: Ui) -> list[Command]:
         Command("Previous layer of the slice", "View", lambda: step(ui, -1), "Shift+LeftBracket",
                 enabled=sliced, repeats=True),
         Command("Slice across another axis", "View", lambda: turn(ui), enabled=sliced),
-        Command("What a light sees", "View", lambda: ui.show_panel("Light buffer"),
-                tip="the cube that the method lightbuffer keeps around each light"),
-    ]  # fmt: skip
-
-
-def _rays(ui: Ui) -> list[Command]:
-    """The tree of the clicked pixel's rays, and the steps of one of them."""
-    rays = ui.controller.rays
-    walked = Condition(lambda: bool(rays.visits), "no ray is selected: click a row of Rays in the Inspector")
-    return [
-        Command("Rays of the clicked pixel", "View", ui.show_rays, "X", separated=True),
-        Command("Next step of the ray", "View", lambda: rays.go(1), "Period", enabled=walked, repeats=True),
-        Command("Previous step of the ray", "View", lambda: rays.go(-1), "Comma", enabled=walked, repeats=True),
     ]  # fmt: skip
 
 

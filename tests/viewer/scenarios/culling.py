@@ -18,7 +18,6 @@ from viewer.state.tree_slice import layer_of
 from viewer.state.views import View
 from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
-from viewer.window.panels.light_buffer import CubeState
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
 
@@ -124,8 +123,8 @@ def _clusters(d: Driver) -> None:
 
 
 def _space(d: Driver) -> None:
-    """What methods keep of space: a slice through voxels, which keys and a slider move; cells by the lights that they
-    ask; and a light's cube in a panel, whose cells say what they list."""
+    """What methods keep of space: a slice through voxels, which keys and a slider move; and cells by the lights that
+    they ask."""
     d.c.settings.change(lamp_radius=None, lamp_samples=None)
     for view, name in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact")):
         d.press(chord(view.key))
@@ -139,16 +138,6 @@ def _space(d: Driver) -> None:
         if view is View.VOXELS:
             _slice(d)
     _tree(d)
-    d.ui.show_panel("Light buffer")
-    d.frames(3)
-    d.context.item_click("//Light buffer/Use lightbuffer##instead")
-    d.settle()
-    assert "light cubes" in d.c.frame.structures
-    d.frames(3)
-    panel, cube = imgui.internal.find_window_by_name("Light buffer"), d.c.frame.structures["light cubes"][0].cube
-    assert cube is not None and panel.draw_list.vtx_buffer.size() > 0
-    d.context.item_click("//Light buffer/**/full shadow##cube")
-    assert d.ui.state(CubeState).shows == 1
 
 
 def _tree(d: Driver) -> None:
