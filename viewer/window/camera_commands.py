@@ -161,7 +161,7 @@ def _text(ui: Ui, here: Condition) -> list[Command]:
     c = ui.controller
 
     def aspect() -> float:
-        width, height = c.tracing.full_size
+        width, height = c.scheduler.full_size
         return width / height if min(width, height) > 0 else 1.0
 
     def copy(text: Callable[[], str], what: str) -> Callable[[], None]:

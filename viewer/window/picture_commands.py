@@ -40,7 +40,7 @@ def comparing(ui: Ui) -> list[Command]:
         Command("Keep as A", "Compare", keep, "Ctrl+A", enabled=there),
         Command("Clear A", "Compare", comparing.forget, enabled=kept),
         Command("Two methods live", "Compare", comparing.toggle_methods, "Shift+C", enabled=there,
-                checked=lambda: bool(c.tracing.second),
+                checked=lambda: bool(c.comparing.second_method),
                 tip="trace each frame by a second method as well, with modes and counters of its own"),
         Command("Next way to compare", "Compare", comparing.next_way, "Shift+Z", enabled=there, separated=True),
         *[by(way) for way in Way],

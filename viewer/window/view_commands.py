@@ -71,7 +71,7 @@ def view(ui: Ui) -> list[Command]:
 def _space(ui: Ui) -> list[Command]:
     """What methods keep of space: the slice through it."""
     sliced = Condition(
-        lambda: ui.controller.tracing.drawn_view.has_slice, "no slice is shown: choose the view Voxels or Tree built"
+        lambda: ui.controller.scheduler.drawn_view.has_slice, "no slice is shown: choose the view Voxels or Tree built"
     )
     return [
         Command("Next layer of the slice", "View", lambda: step(ui, 1), "Shift+RightBracket", enabled=sliced,
@@ -141,7 +141,7 @@ def culling(ui: Ui) -> list[Command]:
 
     def toggle_tracing() -> None:
         p.keep_tracing = not p.keep_tracing
-        c.tracing.trace_again()
+        c.scheduler.trace_again()
 
     s = lambda: c.session.settings  # noqa: E731
     method = lambda: Method.parse(s().method)  # noqa: E731
@@ -165,7 +165,7 @@ def culling(ui: Ui) -> list[Command]:
         Command("Symmetric occlusion test", "Culling", lambda: c.settings.change(symmetric=not s().symmetric), "Y",
                 checked=lambda: s().symmetric),
         Command("Verify", "Culling", lambda: c.settings.change(verify=not s().verify), "V", checked=lambda: s().verify),
-        Command("Reset modes", "Culling", c.tracing.reset_modes, "Backspace", separated=True),
-        Command("Trace again", "Culling", c.tracing.trace_again, "T"),
+        Command("Reset modes", "Culling", c.reset_modes, "Backspace", separated=True),
+        Command("Trace again", "Culling", c.scheduler.trace_again, "T"),
         Command("Keep tracing when idle", "Culling", toggle_tracing, "K", checked=lambda: p.keep_tracing),
     ]  # fmt: skip

@@ -141,7 +141,7 @@ def reopening(d: Driver) -> None:
         d.c.notices.say("what could not be saved has been told")
         d.c.renderer.take = take
         d.settle()
-        assert d.c.tracing.drawn_view is view
+        assert d.c.scheduler.drawn_view is view
         expected = picture(d.c.frame, view, shading=d.c.preferences.shading)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
 

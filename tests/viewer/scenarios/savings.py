@@ -98,7 +98,7 @@ def _pixels(d: Driver) -> None:
     """A click on a part of the bar shows its pixels, another one those of all parts again."""
     d.context.item_click("//Picture/traced##savings")
     d.settle()
-    assert d.c.tracing.drawn_view is View.FATE
+    assert d.c.scheduler.drawn_view is View.FATE
     d.context.item_click("//Picture/traced##savings")
     d.frames(2)
     assert d.ui.fate_shown is None

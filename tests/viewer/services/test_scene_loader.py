@@ -102,7 +102,7 @@ def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(door: Door, tiny_sce
     door.captures.capture(frame, np.zeros((8, 16, 3), np.uint8))
     (job,) = door.captures.saving
     assert job.join(20.0)
-    door.captures.follow()
+    door.captures.report_saved()
     (picture,) = (tmp_path / "pictures").iterdir()
     assert door.said == f"saved {picture}" and not door.captures.busy
     door.loader.open(picture)

@@ -163,7 +163,7 @@ def show_changed(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     if not ui.state(WhatIfState).changed_shown or ui.shots is None:
         return
     found, frame = c.before_edits.effects, c.before_edits.frame
-    if found is None or frame is None or found.changes is None or c.tracing.drawn_view is not View.COLOR:
+    if found is None or frame is None or found.changes is None or c.scheduler.drawn_view is not View.COLOR:
         return
     changes = found.changes
     shot = ui.cached("changed pixels", found, None, lambda: ChangedPixels(frame, changes))

@@ -283,19 +283,19 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
     frame, request = c.frame, c.traced.request if c.traced is not None else None
     if frame is None or request is None:
         return corner.y
-    text = f"{c.tracing.title}   {frame.width} x {frame.height}"
+    text = f"{c.scheduler.title}   {frame.width} x {frame.height}"
     if request.divisor > 1:
         text += f"   1/{request.divisor}"
     if frame.statistics.part < 1.0:
         text += f"   {whole_percent(frame.statistics.part)} shaded"
     elif request.samples > 1:
-        text += f"   {c.tracing.samples_shown} of {request.samples} samples"
+        text += f"   {c.scheduler.samples_shown} of {request.samples} samples"
     if not c.session.zoom.fits:
         text += f"   {c.session.zoom.scale:.3g} x"
     tone = c.session.tone.in_words()
-    text += f"   {tone}" if tone and c.tracing.drawn_view.shows_picture else ""
+    text += f"   {tone}" if tone and c.scheduler.drawn_view.shows_picture else ""
     counter = ""
-    if c.tracing.drawn_view.needs_verify and not ui.state(LegendState).shown:
+    if c.scheduler.drawn_view.needs_verify and not ui.state(LegendState).shown:
         counter = f"   {verified.in_short(frame.statistics)}"
     size = imgui.calc_text_size(text + counter)
     if end.x - corner.x < size.x + em(2.0):
