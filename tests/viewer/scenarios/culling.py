@@ -16,7 +16,7 @@ from viewer.output.pictures import picture
 from viewer.state.slices import slice_seen
 from viewer.state.tree_slice import layer_of
 from viewer.state.views import View
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines

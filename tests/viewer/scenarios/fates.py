@@ -11,7 +11,7 @@ from viewer.output.legend_counts import fate_legend, occlusion_legend
 from viewer.output.pictures import picture
 from viewer.state.views import OCCLUSION_COLORS, View
 from viewer.util.resources import embedded_scenes
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 
 SOME = 12  # pictures in motion that are looked at
 

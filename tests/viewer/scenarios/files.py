@@ -15,7 +15,7 @@ from tests.viewer.scenarios.studios import standing
 from viewer.output.pictures import picture
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 from viewer.window.panels import open_file
 from viewer.window.panels.open_file import OpenFileState
 

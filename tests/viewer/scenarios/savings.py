@@ -12,7 +12,7 @@ from viewer.state.savings import bar_of, in_words, sentence
 from viewer.state.views import View
 from viewer.util.numbers import percent
 from viewer.util.resources import default_scene
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 from viewer.window.panels.savings import standing
 
 KEY = imgui.Key

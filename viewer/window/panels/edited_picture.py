@@ -15,9 +15,9 @@ from tracer.scene.lights import light_in_words
 from viewer.state import edit_effects
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.views import View
+from viewer.window.edit_commands import WhatIfState
 from viewer.window.panels.marks import SHADE
 from viewer.window.ui import Ui
-from viewer.window.what_if_commands import WhatIfState
 from viewer.window.widgets import count, em, tooltip_at
 
 _REACH = 0.7  # ems from a mark's middle at which it can be taken hold of

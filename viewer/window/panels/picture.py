@@ -246,13 +246,20 @@ def _wheel(ui: Ui, notches: float) -> None:
 def fly(ui: Ui) -> None:
     """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
     c, io = ui.controller, imgui.get_io()
-    if ui.key_wanted or io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.seen is None:
+    if (
+        ui.keyboard.wanted_for
+        or io.want_text_input
+        or io.key_ctrl
+        or io.key_alt
+        or io.key_super
+        or c.session.seen is None
+    ):
         return
     if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup_id | imgui.PopupFlags_.any_popup_level)):
         return
 
     def down(name: str) -> float:
-        return float(name not in ui.chorded and ui.keyboard.is_down(ui.keymap.of(name)))
+        return float(name not in ui.keyboard.chorded and ui.keyboard.is_down(ui.keymap.of(name)))
 
     def axis(plus: str, minus: str) -> float:
         return down(plus) - down(minus)

@@ -13,7 +13,7 @@ from viewer.state.pixels import ALL, Histogram, histogram
 from viewer.state.readings import can_draw
 from viewer.state.values import CHANNELS, values_of, words_at
 from viewer.state.views import View
-from viewer.window import closer, comparing
+from viewer.window import comparing, picture_commands
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
 
@@ -47,7 +47,7 @@ def _watched(ui: Ui) -> None:
     imgui.same_line(0.0, em(1.0))
     if not c.session.zoom.fits:
         if imgui.small_button("Fit"):
-            closer.fit(ui)
+            picture_commands.fit(ui)
         imgui.same_line()
     clipped("all of the picture" if c.session.zoom.fits else f"enlarged {c.session.zoom.scale:.3g} times", QUIET)
     frame = c.frame
