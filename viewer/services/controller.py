@@ -142,7 +142,7 @@ class Controller:
         self.watcher.follow()
         self.captures.follow()
         self.pictures.follow()
-        self.questions.follow()
+        self.questions.leave_when_saved()
         frame = self._take_frame()
         self.preview.follow(traced=self.frame is not None)
         self.comparing.follow()
@@ -297,7 +297,7 @@ class Controller:
         self.tracing.follow_edits(same)
         self.baseline.forget()
         if not same:
-            self.selection.follow_edits(before, now)
+            self.selection.update_for_edits(before, now)
             self.reloaded = True
 
     def restore(self, snapshot: Snapshot) -> None:

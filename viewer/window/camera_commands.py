@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 
 from viewer.state import camera_text, navigation
+from viewer.state.picking import extent_at, point_at
+from viewer.state.selection_lookup import looking_at, place_of, place_of_part
 from viewer.window.command import Command, Condition
 from viewer.window.ui import Ui
 
@@ -147,3 +149,41 @@ def _bookmarks(ui: Ui, here: Condition) -> list[Command]:
         Command("Previous bookmark", "Camera/Bookmarks", lambda: c.next_bookmark(-1), "PageUp", enabled=some),
         *[go(index) for index in range(KEYED_BOOKMARKS)],
     ]
+
+
+def focus(ui: Ui) -> None:
+    """Turn to what is under the pointer, else to what is selected, and go near it; orbits turn around it then."""
+    c = ui.controller
+    at = c.selection.hovered
+    pixel = c.selection.pixel
+    if at is None and pixel is not None and c.frame is not None:
+        at = (pixel[0] + 0.5) / c.frame.width, (pixel[1] + 0.5) / c.frame.height
+    if c.selection.picked is not None and c.selection.hovered is None and (at is None or c.selection.part is not None):
+        fly_to_selected(ui)
+        return
+    if at is None or c.frame is None:
+        c.notices.say("point at something, or click it, to focus on it")
+        return
+    point, extent = point_at(c.frame, *at), extent_at(c.frame, *at)
+    if point is None or extent is None:
+        c.notices.say("there is nothing to focus on")
+        return
+    ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
+    c.motion.glide(navigation.focus(c.session.camera, ui.picture.pivot, extent, c.motion.world_up))
+
+
+def fly_to_selected(ui: Ui) -> None:
+    """Go near what is selected, whether or not it is seen from here; orbits turn around it then."""
+    c = ui.controller
+    now, picked, part = c.session.edited, c.selection.picked, c.selection.part
+    if now is None or picked is None:
+        return
+    time = c.session.time
+    place = place_of(now.scene, picked.primitive, time) if part is None else place_of_part(now, part, time)
+    if place is None:
+        c.notices.say("what is selected is nowhere in the world at this moment")
+        return
+    x, y, z = place.middle.tolist()
+    ui.picture.pivot = x, y, z
+    seen = c.selection.pixel is not None
+    c.motion.fly_to(looking_at(c.session.camera, place, c.motion.world_up, seen))

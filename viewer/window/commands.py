@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tracer.method import Kind, Method, additions, bases
-from viewer.state import navigation
 from viewer.state.methods import toggled, with_base
-from viewer.state.picking import extent_at, point_at
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window import camera_commands, edit_commands, mesh_commands, space_commands, what_if_commands
 from viewer.window.closer_commands import comparing, looking
 from viewer.window.command import Command, Condition
-from viewer.window.finding import finding, fly_to_selected
+from viewer.window.panels.find import finding
 from viewer.window.taking import taking
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
@@ -169,7 +167,7 @@ def _camera(ui: Ui) -> list[Command]:
     return [
         Command("Fly", "Camera", mode("fly"), "G", checked=lambda: p.navigation == "fly"),
         Command("Orbit", "Camera", mode("orbit"), "O", checked=lambda: p.navigation == "orbit"),
-        Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True),
+        Command("Focus", "Camera", lambda: camera_commands.focus(ui), "F", enabled=here, separated=True),
         Command("Reset camera", "Camera", c.motion.reset_camera, "R", enabled=here),
         Command(
             "Follow the scene's path",
@@ -312,24 +310,3 @@ def _help(ui: Ui) -> list[Command]:
 
 def _open_scene(ui: Ui) -> Condition:
     return Condition(lambda: ui.controller.session.scene is not None, "no scene is open")
-
-
-def focus(ui: Ui) -> None:
-    """Turn to what is under the pointer, else to what is selected, and go near it; orbits turn around it then."""
-    c = ui.controller
-    at = c.selection.hovered
-    pixel = c.selection.pixel
-    if at is None and pixel is not None and c.frame is not None:
-        at = (pixel[0] + 0.5) / c.frame.width, (pixel[1] + 0.5) / c.frame.height
-    if c.selection.picked is not None and c.selection.hovered is None and (at is None or c.selection.part is not None):
-        fly_to_selected(ui)
-        return
-    if at is None or c.frame is None:
-        c.notices.say("point at something, or click it, to focus on it")
-        return
-    point, extent = point_at(c.frame, *at), extent_at(c.frame, *at)
-    if point is None or extent is None:
-        c.notices.say("there is nothing to focus on")
-        return
-    ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
-    c.motion.glide(navigation.focus(c.session.camera, ui.picture.pivot, extent, c.motion.world_up))
