@@ -27,6 +27,7 @@ from viewer.services.pixel_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer,
 from viewer.services.queries import Newest, Queries, Query
 from viewer.state import navigation
 from viewer.state.preferences import Preferences
+from viewer.window.app import advance
 from viewer.window.panels.links import go_to
 from viewer.window.panels.overlays import BLOCKER, LIT, OCCLUDER, STOPPED, shadow_lines
 from viewer.window.panels.why import summary, unanswered
@@ -51,7 +52,7 @@ class Desk:
         end, held = time.monotonic() + 120.0, 0  # kernels may be compiled first
         while held < ticks:
             assert time.monotonic() < end, "in vain"
-            self.c.tick(SIZE)
+            advance(self.c, SIZE)
             held = held + 1 if holds() else 0
             time.sleep(0.001)
 

@@ -4,8 +4,6 @@ Only the rows that are seen are drawn, however many there are."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
@@ -16,9 +14,9 @@ from viewer.state.row_filter import HELP, HINTS
 from viewer.state.scene_rows import COLUMNS, Column, Level
 from viewer.state.views import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.window.camera_commands import fly_to_selected
-from viewer.window.command import Command, Condition
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
+from viewer.window.view_commands import FindState
 from viewer.window.widgets import (
     ERROR,
     QUIET,
@@ -33,7 +31,6 @@ from viewer.window.widgets import (
     tooltip,
 )
 
-PANEL = "Find"
 _WIDTHS = {
     "number": 6.2, "kind": 4.4, "pixels": 4.8, "occlusion": 9.0, "shadow": 8.0, "due": 5.0, "saved": 5.0, "share": 4.6,
     "wrong": 4.2, "motion": 4.6, "primitives": 5.4, "seen": 4.4, "rendered": 5.4, "full_shadow": 5.4, "non_shadow": 4.4,
@@ -49,42 +46,6 @@ _LEVEL_TIPS = {
     Level.OBJECTS: "one row for each object, and for each named part of the static geometry",
     Level.PRIMITIVES: "one row for each triangle, sphere and cone",
 }
-
-
-@dataclass
-class FindState:
-    """`focus` asks for the keyboard above the table, of which `drawn` rows were drawn last, each `height` pixels high,
-    in the order `order`."""
-
-    focus: bool = False
-    drawn: int = 0
-    height: float = 0.0
-    order: object = None
-
-
-def finding(ui: Ui) -> list[Command]:
-    """Open the table, choose what its rows are, and save it."""
-    table = ui.controller.table
-    listed = Condition(lambda: table.listing is not None, "there is no table yet: open the panel Find")
-
-    def find() -> None:
-        ui.show_panel(PANEL)
-        ui.state(FindState).focus = True
-
-    def show(level: Level) -> None:
-        table.level = level
-        ui.show_panel(PANEL)
-
-    return [
-        Command("Find objects and primitives", "View", find, "Ctrl+F",
-                tip="a table of all, with modes, pixels, rays saved and wrong answers"),
-        Command("Table of objects", "View/Table", lambda: show(Level.OBJECTS),
-                checked=lambda: table.level is Level.OBJECTS),
-        Command("Table of primitives", "View/Table", lambda: show(Level.PRIMITIVES),
-                checked=lambda: table.level is Level.PRIMITIVES),
-        Command("Save the table as CSV", "View/Table", table.save, enabled=listed, separated=True,
-                tip="the rows that the filter finds, in their order, into the folder of the pictures"),
-    ]  # fmt: skip
 
 
 def show(ui: Ui) -> None:

@@ -13,7 +13,7 @@ from tracer.frame import Frame, Settings
 from tracer.reasons import SECTIONS
 from tracer.why_in_words import Link, Sentence
 from viewer.state.pixels import Point
-from viewer.window import closer
+from viewer.window import picture_commands
 from viewer.window.camera_commands import fly_to_selected
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, fitted, tooltip
@@ -128,7 +128,7 @@ def _menu(ui: Ui, link: Link) -> None:
         if imgui.menu_item(f"{icons.ICON_FA_ARROW_POINTER}  Select", "", False)[0]:
             go_to(ui, link)
         if imgui.menu_item(f"{icons.ICON_FA_MAP_PIN}  Mark and watch it", ui.key("Watch pixel").strip(" ()"), False)[0]:
-            closer.pin(ui, _point(ui, link))
+            picture_commands.pin(ui, _point(ui, link))
     elif link.primitive is not None:
         if imgui.menu_item(f"{icons.ICON_FA_ARROW_POINTER}  Select", "", False)[0]:
             go_to(ui, link)
