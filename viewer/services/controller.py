@@ -308,7 +308,7 @@ class Controller:
         self.scheduler.take_edits(same)
         self.baseline.forget()
         if not same:
-            self.selection.follow_edits(before, now)
+            self.selection.update_for_edits(before, now)
             self.reloaded = True
 
     def restore(self, snapshot: Snapshot) -> None:
