@@ -93,7 +93,7 @@ def _slider(one: Setting, now: Any) -> Any:
 # --- menus and the palette -------------------------------------------------------------------------
 
 
-def switch(ui: Ui, path: str, menu: str, key: str = "", **more: Any) -> Command:
+def setting_command(ui: Ui, path: str, menu: str, key: str = "", **more: Any) -> Command:
     """Return the command that switches a setting on or off."""
     one = ALL[path]
 

@@ -99,7 +99,7 @@ def _in_saved_pictures(d: Driver) -> None:
         p.screenshot_template = f"{name}.png"
         d.press(KEY.f12)
         d.wait(lambda: not d.c.captures.busy, "the picture to be written")
-        assert capture.read(folder / f"{name}.png").view is d.c.session.draw.view
+        assert capture.read(folder / f"{name}.png").draw.view is d.c.session.draw.view
         with Image.open(folder / f"{name}.png") as image:
             return np.asarray(image)
 

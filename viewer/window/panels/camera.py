@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state import navigation
-from viewer.window.commands import focus
+from viewer.window.camera_commands import focus
 from viewer.window.panels import bookmarks
 from viewer.window.setting_rows import ALL, setting_row, setting_switch
 from viewer.window.ui import Ui
