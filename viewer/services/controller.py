@@ -98,7 +98,7 @@ class Controller:
         self.films = FilmController(session, preferences, runs, recipes, bookmarks, notices, wake)
         self.pictures = PictureController(session, preferences, runs, recipes, notices, wake)
         self.hunts = HuntController(session, preferences, runs, navigator, recipes, notices, wake)
-        self.watcher = SceneWatcher(preferences, lambda: loader.files, self._may_reload, loader.follow_change, wake)
+        self.watcher = SceneWatcher(preferences, lambda: loader.files, self._may_reload, loader.reload_changed, wake)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}
@@ -130,7 +130,7 @@ class Controller:
 
     def take_scene(self) -> None:
         """Show the scene that has been read, if one has."""
-        arrival, flown = self.loader.follow(), self.preview.flown
+        arrival, flown = self.loader.arrived(), self.preview.flown
         if arrival is None:
             return
         said = ""

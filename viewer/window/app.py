@@ -26,14 +26,14 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, graphics, menus, palette, style
+from viewer.window import commands, comparing, graphics, menus, style
 from viewer.window.full_screen import Rect
 from viewer.window.gl_window import PATIENCE, ContextLoss, closing_by_signals, open_window
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
-from viewer.window.layout import Layout
+from viewer.window.layout import Layout, show_strip
 from viewer.window.layout_file import LayoutFile
-from viewer.window.panels import dialogs, loading, log, picture, presets, status, strip, tour
+from viewer.window.panels import dialogs, loading, log, picture, presets, status, tour
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -60,7 +60,7 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     this name, so that a mistake in one ends no other."""
     # What threads have finished.
     step("Showing a scene that was read", c.take_scene)
-    step("Reloading what has changed", c.watcher.follow)
+    step("Reloading what has changed", c.watcher.reload_changed)
     step("Saving files", c.captures.report_saved)
     step("Saving pictures", c.pictures.follow)
     step("Quitting once all is saved", c.questions.follow)
@@ -190,8 +190,8 @@ class App:
         """Draw what is no docked panel, and read the keys."""
         ui, step, overlay = self.ui, self.ui.guard.step, self.ui.guard.overlay
         style.fill_windows(True)
-        step("The layout", self.layout.follow)
-        overlay("The strip of folded panels", lambda: strip.show(ui), lambda: setattr(ui.fold, "drawer", ""))
+        step("The layout", self.layout.update)
+        overlay("The strip of folded panels", lambda: show_strip(ui), lambda: setattr(ui.fold, "drawer", ""))
         step("Reading the keys", lambda: menus.handle_keys(ui))
         step("Flying", lambda: picture.fly(ui))
         step("Comparing", lambda: comparing.follow_key(ui))
@@ -210,8 +210,8 @@ class App:
 
     def _set_theme(self) -> None:
         p = self.controller.preferences
-        if style.follow(p.theme, p.ui_scale):
-            self.params.imgui_window_params.background_color = palette.BACKGROUND
+        if style.update(p.theme, p.ui_scale):
+            self.params.imgui_window_params.background_color = style.BACKGROUND
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
 
     def _open_dropped(self) -> None:
@@ -283,7 +283,7 @@ class App:
         window.show_menu_bar = window.show_status_bar = True
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
         window.remember_theme = window.remember_status_bar_settings = False
-        window.background_color = palette.BACKGROUND
+        window.background_color = style.BACKGROUND
         params.renderer_backend_options.open_gl_options = hello_imgui.OpenGlOptions(
             glsl_version="330", major_version=3, minor_version=3, use_core_profile=True, use_forward_compat=True,
             anti_aliasing_samples=0,  # text and widgets are smooth by themselves
