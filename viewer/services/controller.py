@@ -130,7 +130,7 @@ class Controller:
 
     def take_scene(self) -> None:
         """Show the scene that has been read, if one has."""
-        arrival, flown = self.loader.arrived(), self.preview.flown
+        arrival, flown = self.loader.take_finished(), self.preview.flown
         if arrival is None:
             return
         said = ""
@@ -155,7 +155,7 @@ class Controller:
             self.notices.report(failed)
             self.session.playing = False
             self.scheduler.give_up()
-        run = self.runs.follow()
+        run = self.runs.take_progress()
         if run.ended:
             self.scheduler.trace_once_more()  # else the world might stay where the run has put it
         if run.picture is not None:
@@ -182,7 +182,7 @@ class Controller:
     def apply_edits(self) -> None:
         """Have the scene edited as is wanted, once what was edited last has been seen."""
         seen = self.scheduler.shows_edits or not self.renderer.busy
-        self.editing.follow(self.runs.current is not None, seen)
+        self.editing.apply(self.runs.current is not None, seen)
 
     def inspect_pixel(self) -> None:
         """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
@@ -228,7 +228,7 @@ class Controller:
         if self.runs.current is None:
             of_edits = fine and not self.motion.lively and scheduler.shows_edits
             more_comes = scheduler.awaits or scheduler.adds_samples or self.renderer.busy
-            self.before_edits.follow(traced.frame if traced is not None and of_edits else None, not more_comes)
+            self.before_edits.take(traced.frame if traced is not None and of_edits else None, not more_comes)
 
     def measure(self) -> None:
         """Measure in spare time how fast the picture is traced by the method and by none, while that is to be seen."""
@@ -308,7 +308,7 @@ class Controller:
         self.scheduler.take_edits(same)
         self.baseline.forget()
         if not same:
-            self.selection.follow_edits(before, now)
+            self.selection.update_for_edits(before, now)
             self.reloaded = True
 
     def restore(self, snapshot: Snapshot) -> None:

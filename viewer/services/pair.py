@@ -30,7 +30,7 @@ class Pair:
 
         The world is always left as the first has placed it: queries may be answered between two parts."""
         self._second.settings = replace(self._first.settings, method=request.second)
-        self._second.follow(self._first)
+        self._second.take_scene(self._first)
         first, second = request.refine(self._first, cancel), request.refine(self._second, cancel)
         with closing(first) as ours, closing(second) as theirs:
             begun = False

@@ -57,7 +57,7 @@ class _Load:
 
 
 class SceneLoader:
-    """Runs `scene_files.open_scene` on threads; `arrived` hands out what has come."""
+    """Runs `scene_files.open_scene` on threads; `take_finished` hands out what has come."""
 
     def __init__(
         self,
@@ -138,7 +138,7 @@ class SceneLoader:
             compile_it = partial(make_ready, method, lights, accelerator)
             self.method_job = Job(f"compiling the kernels of {method}", compile_it, self._wake)
 
-    def arrived(self) -> Arrival | None:
+    def take_finished(self) -> Arrival | None:
         """Take up what the jobs have finished; returns what has been opened, once."""
         if self.warm_up_job is not None and self.warm_up_job.done:
             job, self.warm_up_job = self.warm_up_job, None

@@ -98,7 +98,7 @@ class Tour:
         if self.step is not None:
             self._script, self._resumes_at = self.step.show(self._c, self._show_panel), 0.0
 
-    def follow(self) -> None:
+    def update(self) -> None:
         """Once per frame: see whether the step is done, and go on with what is being shown."""
         if self.at is None or self._c.frame is None:
             return

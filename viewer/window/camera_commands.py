@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from viewer.state import camera_text, navigation
 from viewer.state.picking import extent_at, point_at
-from viewer.state.selection_lookup import looking_at, place_of, place_of_part
+from viewer.state.selection_lookup import looking_at, part_points, place_of, primitive_points
 from viewer.window.command import Command, Condition, scene_open, switch
 from viewer.window.ui import Ui
 
@@ -104,7 +104,8 @@ def fly_to_selected(ui: Ui) -> None:
     if now is None or picked is None:
         return
     time = c.session.time
-    place = place_of(now.scene, picked.primitive, time) if part is None else place_of_part(now, part, time)
+    points = primitive_points(now.scene, picked.primitive, time) if part is None else part_points(now, part, time)
+    place = place_of(points)
     if place is None:
         c.notices.say("what is selected is nowhere in the world at this moment")
         return

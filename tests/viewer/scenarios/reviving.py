@@ -15,6 +15,7 @@ from tests.viewer.driver import Driver
 from tracer.frame import Frame
 from viewer.state.views import View
 from viewer.window import graphics
+from viewer.window import style as window_style
 
 KEY = imgui.Key
 SMALL = (1100, 700)

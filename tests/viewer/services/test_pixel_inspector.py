@@ -28,7 +28,7 @@ from viewer.services.queries import Newest, Queries, Query
 from viewer.state import navigation
 from viewer.state.preferences import Preferences
 from viewer.window.app import advance
-from viewer.window.panels.links import follow
+from viewer.window.panels.links import go_to
 from viewer.window.panels.overlays import BLOCKER, LIT, OCCLUDER, STOPPED, shadow_lines
 from viewer.window.panels.why import summary, unanswered
 from viewer.window.ui import Ui
@@ -203,12 +203,12 @@ def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: Desk):
     desk.until(lambda: desk.c.frame is not first, ticks=1)
     assert desk.c.inspector.why is answer.why and not desk.c.inspector.names_pixels_of(desk.c.frame)
     before = desk.c.selection.picked
-    follow(ui, neighbour)
+    go_to(ui, neighbour)
     assert desk.c.selection.picked is before, "it would be another pixel"
     desk.until(lambda: not desk.c.active)
     desk.answered()
     assert desk.c.inspector.names_pixels_of(desk.c.frame)
-    follow(ui, neighbour)
+    go_to(ui, neighbour)
     assert (desk.c.selection.picked.x, desk.c.selection.picked.y) == neighbour.pixel
 
 

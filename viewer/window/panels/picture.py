@@ -92,7 +92,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     if frame is None or texture is None or c.session.scene is None:
         _placeholder(ui, room)
         return
-    ui.pixels.follow(c.session.scene.path)
+    ui.pixels.enter(c.session.scene.path)
     width, height = c.traced.full_size if c.traced is not None else (1, 1)
     ui.picture.shape = width, height
     seen, gap = comparing.shown(ui), em(sides.GAP)
