@@ -9,8 +9,7 @@ from tests.viewer.fakes import make_frame, with_certificates
 from tracer.settings import Settings
 from viewer.state import terms
 from viewer.window.panels import loading
-from viewer.window.panels.coming import first_picture
-from viewer.window.panels.status import doing
+from viewer.window.panels.status import doing, first_picture
 from viewer.window.panels.why import unanswered
 
 
