@@ -26,14 +26,14 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, graphics, menus, palette, style
+from viewer.window import commands, comparing, graphics, menus, style
 from viewer.window.full_screen import Rect
 from viewer.window.gl_window import PATIENCE, ContextLoss, closing_by_signals, open_window
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
-from viewer.window.layout import Layout
+from viewer.window.layout import Layout, show_strip
 from viewer.window.layout_file import LayoutFile
-from viewer.window.panels import dialogs, loading, log, picture, presets, status, strip, tour
+from viewer.window.panels import dialogs, loading, log, picture, presets, status, tour
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -192,7 +192,7 @@ class App:
         ui, step, overlay = self.ui, self.ui.guard.step, self.ui.guard.overlay
         style.fill_windows(True)
         step("The layout", self.layout.update)
-        overlay("The strip of folded panels", lambda: strip.show(ui), lambda: setattr(ui.fold, "drawer", ""))
+        overlay("The strip of folded panels", lambda: show_strip(ui), lambda: setattr(ui.fold, "drawer", ""))
         step("Reading the keys", lambda: menus.handle_keys(ui))
         step("Flying", lambda: picture.fly(ui))
         step("Comparing", lambda: comparing.read_key(ui))
@@ -212,7 +212,7 @@ class App:
     def _set_theme(self) -> None:
         p = self.controller.preferences
         if style.update(p.theme, p.ui_scale):
-            self.params.imgui_window_params.background_color = palette.BACKGROUND
+            self.params.imgui_window_params.background_color = style.BACKGROUND
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
 
     def _open_dropped(self) -> None:
@@ -284,7 +284,7 @@ class App:
         window.show_menu_bar = window.show_status_bar = True
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
         window.remember_theme = window.remember_status_bar_settings = False
-        window.background_color = palette.BACKGROUND
+        window.background_color = style.BACKGROUND
         params.renderer_backend_options.open_gl_options = hello_imgui.OpenGlOptions(
             glsl_version="330", major_version=3, minor_version=3, use_core_profile=True, use_forward_compat=True,
             anti_aliasing_samples=0,  # text and widgets are smooth by themselves
