@@ -74,7 +74,8 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     # The scheduler: queries about the newest frame are answered before the next.
     step("Inspecting the pixel", c.inspect_pixel)
     step("Listing the scene", c.list_scene)
-    step("Asking for the next frame", lambda: c.request_frame(size))
+    step("Compiling the method", c.compile_method)
+    step("Asking for the next frame", lambda: c.scheduler.request(c.frame_inputs(size)))
     step("Recording the light", c.record_light)
     # What the newest frame is kept for.
     step("Keeping the frame", c.keep_frame)

@@ -107,7 +107,7 @@ def fly_to_selected(ui: Ui) -> None:
     points = primitive_points(now.scene, picked.primitive, time) if part is None else part_points(now, part, time)
     place = place_of(points)
     if place is None:
-        c.notices.say("what is selected is nowhere in the world at this moment")
+        c.notices.say("the selection is not in the scene at this time")
         return
     x, y, z = place.middle.tolist()
     ui.picture.pivot = x, y, z
