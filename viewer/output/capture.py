@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import string
 from collections.abc import Mapping
-from contextlib import ExitStack
 from datetime import datetime
 from io import BytesIO
 from pathlib import Path
@@ -26,7 +25,7 @@ from tracer.scene.model import SceneError
 from tracer.scene.textures import open_image
 from viewer.state import codec
 from viewer.state.view_state import ViewState
-from viewer.util.files import reserved, write_whole
+from viewer.util.files import write_new, write_whole
 
 CHUNK = "shadowcull"
 FIELDS = {
@@ -104,16 +103,14 @@ def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
     info.add_itxt(CHUNK, text)
     info.add_text("Software", "Shadowcull")
     image = Image.fromarray(np.ascontiguousarray(pixels))
-    with ExitStack() as stack:
-        try:
-            path = stack.enter_context(reserved(folder, name.removesuffix(".png"), ".png"))
-        except OSError as error:
-            raise CaptureError(f"no picture saved: {error}") from None
-        try:
-            write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
-        except (OSError, ValueError) as error:
-            raise CaptureError(f"no picture saved: {error}") from None
-    return path
+
+    def write(path: Path) -> None:
+        write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
+
+    try:
+        return write_new(folder, name.removesuffix(".png"), ".png", write)
+    except (OSError, ValueError) as error:
+        raise CaptureError(f"no picture saved: {error}") from None
 
 
 def read(path: Path) -> ViewState:

@@ -22,8 +22,7 @@ from tracer.setting import setting, settings_of
 from viewer.state import codec
 from viewer.state.merging import merged
 from viewer.state.methods import ADAPTIVE, NO_CULLING, is_method, with_base
-from viewer.util.files import write_text
-from viewer.util.part_files import claimed
+from viewer.util.files import file_lock, write_text
 
 SETTINGS_FILE = "settings.json"
 FORMAT = 3
@@ -146,7 +145,7 @@ def save_preferences(
     path, mine = folder / SETTINGS_FILE, codec.to_json(preferences)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with claimed(path, PATIENCE):
+        with file_lock(path, PATIENCE):
             if base is not None:
                 stored, _ = _read(path)
                 mine = merged(base, mine, {**base, **(stored or {})})

@@ -16,8 +16,8 @@ from viewer.state.projection import Stroke, place, strokes
 from viewer.state.selection_lookup import outline_of, part_points, primitive_points
 from viewer.state.views import FATE_COLORS, SHADOW_COLORS, ShadowMode, color_map
 from viewer.window import comparing
-from viewer.window.panels import ray_overlay, slicing, words
-from viewer.window.panels.area import Area
+from viewer.window.panels import ray_overlay, slicing
+from viewer.window.panels.area import Area, write_beside
 from viewer.window.panels.legend import LegendState
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.marks import Pen, pen
@@ -211,7 +211,9 @@ def _clusters(ui: Ui, made: Pen, frame: Frame) -> None:
         where = (at[0] + 0.5) / frame.width, (at[1] + 0.5) / frame.height
         made.ring(where)
         corner, end = made.area.whole, made.area.whole_end
-        words.write(waits, made.area.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place)
+        write_beside(
+            waits, made.area.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place
+        )
 
 
 def show_worst_pixels(ui: Ui, area: Area, frame: Frame) -> None:

@@ -13,7 +13,7 @@ from tracer.method import Method
 from tracer.statistics import FrameStatistics
 from viewer.state import terms, verified
 from viewer.util.numbers import whole_percent
-from viewer.window.panels import coming
+from viewer.window.panels import status
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, count, em, heading, paragraph, percent, right, short, tooltip
 
@@ -36,7 +36,7 @@ def show(ui: Ui) -> None:
     c = ui.controller
     frame = c.frame
     if frame is None or c.traced is None:
-        paragraph(coming.first_picture(c), QUIET)
+        paragraph(status.first_picture(c), QUIET)
         return
     s = frame.statistics
     divisor = c.traced.request.divisor
