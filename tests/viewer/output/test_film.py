@@ -12,8 +12,8 @@ from tracer.experiments.zoom import Approach, Change, Results, Step
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
 from viewer.output.film import Film
-from viewer.output.film_figure import COLUMNS, chosen_steps, film_figure
 from viewer.output.pictures import picture, ringed
+from viewer.output.run_figures import COLUMNS, chosen_steps, film_figure
 from viewer.state.marks import Mark, wrong_marks
 from viewer.state.views import WRONG
 
