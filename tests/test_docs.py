@@ -28,7 +28,7 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
 from viewer.util.resources import embedded_scenes
 from viewer.window import commands
-from viewer.window.command import key_label
+from viewer.window.keyboard import key_label
 from viewer.window.ui import Ui
 
 ROOT = Path(__file__).resolve().parent.parent

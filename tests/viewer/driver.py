@@ -36,7 +36,7 @@ class Driver:
         self.context, self.folder = context, folder
         self._in_frame: list[Callable[[], None]] = []
         self._of_window: list[Callable[[], None]] = []  # done when the window is drawn, pixels and all
-        stay_awake, wake = app._stay_awake, app.controller.wake
+        stay_awake, wake = app._set_frame_rate, app.controller.wake
         self._news = threading.Event()
 
         def tell() -> None:
@@ -52,7 +52,7 @@ class Driver:
             if not dozes:
                 app.params.fps_idling.enable_idling = False
 
-        app._stay_awake = with_errands  # type: ignore[method-assign]
+        app._set_frame_rate = with_errands  # type: ignore[method-assign]
         if not dozes:
             app.params.fps_idling.fps_max = FASTEST
         self._fill_only_what_is_seen()

@@ -31,7 +31,7 @@ Words = tuple[Frame, Callable[[int, int], tuple[str, ...]]]
 Seen = tuple[Side, Side, Way]
 
 
-def follow_key(ui: Ui) -> None:
+def read_key(ui: Ui) -> None:
     """While the key is held, A is seen."""
     io, state = imgui.get_io(), ui.controller.comparing.state
     free = not (io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or io.key_shift)

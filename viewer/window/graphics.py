@@ -117,21 +117,21 @@ def look_of(ui: Ui, selected: int = -1) -> Look:
     """How the view is to be drawn, with an outline around a primitive unless it is -1."""
     c, p = ui.controller, ui.controller.preferences
     return Look(
-        view=c.tracing.drawn_view,
+        view=c.scheduler.drawn_view,
         light=c.session.light,
         shading=p.shading,
         outlines=p.outlines,
         selected=selected,
         smooth=p.smooth_upscaling and c.session.zoom.fits,
         marked=p.mark_wrong,
-        magnified=c.tracing.magnified,
+        magnified=c.scheduler.magnified,
         wipe=c.session.wipe,
-        line=not c.tracing.becoming_finer,
+        line=not c.scheduler.becoming_finer,
         shares=p.work_shares,
         beneath=p.beneath,
         tone=c.session.tone,
         clipping=c.session.clipping,
-        span=c.comparing.span(c.tracing.drawn_view),
+        span=c.comparing.span(c.scheduler.drawn_view),
         cut=c.session.cut,
     )
 
@@ -148,8 +148,8 @@ def capture(ui: Ui) -> None:
         ui.capture_wanted = ui.capture_view = None
         c.notices.say(f"no picture of the view {view.label}: {why}", error=True)
         return
-    shown = c.tracing.drawn_view is c.session.view
-    ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
+    shown = c.scheduler.drawn_view is c.session.view
+    ready = shown and not c.scheduler.becoming_finer  # else the picture is saved when it has come
     if ui.display is not None and ready:
         ui.capture_wanted = ui.capture_view = None
         look = look_of(ui, selected=-1)  # the mark is for the user, not for the picture
@@ -172,11 +172,11 @@ def capture(ui: Ui) -> None:
 def _why_none(c: Controller) -> str:
     """Why there is no picture in the chosen view, and none is on its way; nothing where there is, or may be."""
     frame, view, run = c.frame, c.session.view, c.runs.current
-    if frame is None or c.tracing.drawn_view is view:
+    if frame is None or c.scheduler.drawn_view is view:
         return ""
     if run is not None and (lacks := run.lacks(view)):
         return f"the {run.name} {lacks}"
-    if run is None and (c.tracing.awaits or c.renderer.busy):
+    if run is None and (c.scheduler.awaits or c.renderer.busy):
         return ""
     found = missing(view, frame, c.preferences.work_shares)
     return found.text if found is not None else ""

@@ -16,7 +16,7 @@ from viewer.output.pictures import picture
 from viewer.state.slices import slice_seen
 from viewer.state.tree_slice import layer_of
 from viewer.state.views import View
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
@@ -60,7 +60,7 @@ def certifying(d: Driver) -> None:
         traced = d.c.history.frames
         for key, view in ((KEY._2, View.OCCLUSION), (KEY._3, View.SHADOW), (KEY._7, View.PIXEL_COUNT)):
             d.press(key)
-            assert d.c.tracing.drawn_view is view and d.c.history.frames == traced
+            assert d.c.scheduler.drawn_view is view and d.c.history.frames == traced
             assert np.abs(d.shown().astype(int) - picture(d.c.frame, view, d.c.session.light)).max() <= 2
         seen = [row.name for row in occlusion_legend(d.c.frame) if row.pixels]
         assert "FULLY_RENDERED" in seen, seen
@@ -73,11 +73,11 @@ def certifying(d: Driver) -> None:
         assert d.c.frame.settings.method == "paper"
     d.press(KEY._0)
     assert d.c.session.view is View.CERTIFICATE and d.c.frame.certificates is None
-    assert d.c.tracing.drawn_view is View.COLOR
+    assert d.c.scheduler.drawn_view is View.COLOR
     d.certify()
     d.context.item_click("//Picture/**/Use certified##instead")
     d.settle()
-    assert d.c.frame.settings.method == "certified" and d.c.tracing.drawn_view is View.CERTIFICATE
+    assert d.c.frame.settings.method == "certified" and d.c.scheduler.drawn_view is View.CERTIFICATE
     d.context.menu_click("//##MainMenuBar/Culling/Method certified")
     d.context.item_click("//Culling/method/##method")
     names = [*(kind.name for kind in bases()), *(f"+{kind.name}" for kind in additions("certified"))]
@@ -98,7 +98,7 @@ def certifying(d: Driver) -> None:
     for key in ("H", "Shift+H"):
         d.press(chord(key))
         d.settle()
-        assert d.c.tracing.drawn_view is d.c.session.view and not d.c.tracing.outdated
+        assert d.c.scheduler.drawn_view is d.c.session.view and not d.c.scheduler.outdated
     _clusters(d)
     _space(d)
 
@@ -110,7 +110,7 @@ def _clusters(d: Driver) -> None:
     d.context.item_click("//Picture/**/Use lightcuts##instead")
     d.c.settings.change(lamp_radius=0.3, lamp_samples=16)
     d.settle()
-    assert d.c.frame.settings.method.startswith("lightcuts") and d.c.tracing.drawn_view is View.CUTS
+    assert d.c.frame.settings.method.startswith("lightcuts") and d.c.scheduler.drawn_view is View.CUTS
     assert d.c.frame.statistics.cuts.most > 3
     expected = picture(d.c.frame, View.CUTS)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
@@ -129,10 +129,10 @@ def _space(d: Driver) -> None:
     for view, name in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact")):
         d.press(chord(view.key))
         d.settle()
-        assert d.c.tracing.drawn_view is View.COLOR, "the method has nothing to show"
+        assert d.c.scheduler.drawn_view is View.COLOR, "the method has nothing to show"
         d.context.item_click(f"//Picture/**/Use {name}##instead")
         d.settle()
-        assert d.c.frame.settings.method.startswith(name) and d.c.tracing.drawn_view is view
+        assert d.c.frame.settings.method.startswith(name) and d.c.scheduler.drawn_view is view
         expected = picture(d.c.frame, view, beneath=d.c.preferences.beneath, cut=d.c.session.cut)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
         if view is View.VOXELS:
@@ -146,7 +146,7 @@ def _tree(d: Driver) -> None:
     d.settle()
     d.context.item_click("//Picture/**/Use kdtree-lazy##instead")
     d.settle()
-    assert d.c.frame.settings.accelerator == "kdtree-lazy" and d.c.tracing.drawn_view is View.TREE
+    assert d.c.frame.settings.accelerator == "kdtree-lazy" and d.c.scheduler.drawn_view is View.TREE
     d.c.settings.change(method="none")
     d.settle()
     at = d.c.session.cut
@@ -160,7 +160,7 @@ def _tree(d: Driver) -> None:
     x, y, z = home.direction
     d.c.motion.move(replace(home, direction=(-x, -y, -z)))
     d.settle()
-    assert (d.c.frame.primitive < 0).all() and d.c.tracing.drawn_view is View.TREE
+    assert (d.c.frame.primitive < 0).all() and d.c.scheduler.drawn_view is View.TREE
     assert d.c.frame.statistics.built.primitives == 3, "what was built stays"
     d.c.motion.move(home)
     d.c.settings.change(accelerator="bvh8")

@@ -12,7 +12,7 @@ from tests.viewer.scenarios.steps import figure4
 from viewer.output.pictures import picture
 from viewer.state.marks import wipe_column
 from viewer.state.views import WRONG, View
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 
 KEY = imgui.Key
 

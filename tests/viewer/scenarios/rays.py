@@ -20,7 +20,7 @@ def rays(d: Driver) -> None:
     c.settings.change(method="paper")
     d.settle()
     for _ in range(2):
-        c.tracing.trace_again()
+        c.scheduler.trace_again()
         d.settle()
     d.press(KEY.x)
     d.frames(4)

@@ -89,7 +89,7 @@ def test_frame_after_frame_is_looked_into(desk: Desk) -> None:
     rays = looked_at(desk)
     desk.c.selection.select(middle(desk))
     desk.c.preferences.keep_tracing = True
-    desk.c.tracing.trace_again()
+    desk.c.scheduler.trace_again()
     seen = []
 
     def others() -> bool:

@@ -9,8 +9,8 @@ from tracer.experiments.zoom import Approach, Step
 from viewer.output.film import Shot
 from viewer.output.reports import changes_in_words
 from viewer.services.runs import ZoomTest
-from viewer.window.palette import MARK
 from viewer.window.screening import Screening, approaches_of
+from viewer.window.style import MARK
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, count, em, paragraph, tooltip
 

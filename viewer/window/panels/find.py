@@ -13,9 +13,10 @@ from viewer.services.scene_table import Listing, SceneTable
 from viewer.state.row_filter import HELP, HINTS
 from viewer.state.scene_rows import COLUMNS, Column, Level
 from viewer.state.views import OCCLUSION_COLORS, SHADOW_COLORS
-from viewer.window.finding import FindState, fly_to_selected
+from viewer.window.camera_commands import fly_to_selected
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
+from viewer.window.view_commands import FindState
 from viewer.window.widgets import (
     ERROR,
     QUIET,

@@ -33,7 +33,7 @@ class LegendState:
 def of_picture(ui: Ui) -> Legend | None:
     """The legend of what is drawn of the newest frame; None where there is none."""
     c = ui.controller
-    frame, scene, view = c.frame, c.session.scene, c.tracing.drawn_view
+    frame, scene, view = c.frame, c.session.scene, c.scheduler.drawn_view
     if frame is None or scene is None:
         return None
     of_both = comparing.legend(ui)

@@ -16,10 +16,9 @@ from viewer.state.tree_slice import part_seen, part_words
 from viewer.state.views import View
 from viewer.util.numbers import several
 from viewer.window.layers_of_slice import go_to, layer_now
-from viewer.window.panels import words
-from viewer.window.panels.area import Area
-from viewer.window.panels.coming import after
+from viewer.window.panels.area import Area, write_beside
 from viewer.window.panels.legend import LegendState
+from viewer.window.panels.status import traced_before_an_answer
 from viewer.window.ui import Ui
 from viewer.window.widgets import count, em, percent, row
 
@@ -46,7 +45,7 @@ def rows(ui: Ui) -> None:
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     """What a pixel of the newest frame shows of space, in a view of that; nothing where it shows none."""
     c = ui.controller
-    frame, view, light = c.frame, c.tracing.drawn_view, c.session.light
+    frame, view, light = c.frame, c.scheduler.drawn_view, c.session.light
     if frame is None:
         return []
     if view is View.VOXELS:
@@ -77,7 +76,8 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
 
 def awaited(c: Controller) -> list[str]:
     """That the clusters of a pixel are to come, where they do not come at once."""
-    return [f"its clusters are drawn after {after(c)}"] if after(c) else []
+    before = traced_before_an_answer(c)
+    return [f"its clusters are drawn after {before}"] if before else []
 
 
 def cut_lines(cut: LightCut) -> list[str]:
@@ -106,4 +106,4 @@ def show(ui: Ui, area: Area) -> None:
     if not lines:
         return
     room = area.corner.x, area.corner.y, area.end.x, area.end.y
-    words.write(lines, imgui.get_io().mouse_pos, room, ui.state(LegendState).place)
+    write_beside(lines, imgui.get_io().mouse_pos, room, ui.state(LegendState).place)

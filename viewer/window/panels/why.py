@@ -13,8 +13,8 @@ from viewer.services.origin_pixels import with_origins
 from viewer.services.pixel_inspector import MOST_LIGHTS, nearest_first
 from viewer.state.views import FATE_COLORS, FATE_NAMES
 from viewer.window.panels import lights
-from viewer.window.panels.coming import after
 from viewer.window.panels.links import Pointed, sentence
+from viewer.window.panels.status import traced_before_an_answer
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, count, em, fitted, paragraph, swatch, tooltip_at
 
@@ -60,7 +60,7 @@ def unanswered(ui: Ui) -> str:
         return f"No answer: {c.inspector.problem}."
     if c.motion.lively:
         return "answered when nothing moves"
-    return f"answered after {after(c)}" if after(c) else "looking into it ..."
+    return f"answered after {traced_before_an_answer(c)}" if traced_before_an_answer(c) else "looking into it ..."
 
 
 def summary(known: Sequence[Explanation]) -> str:
