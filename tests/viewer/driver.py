@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from imgui_bundle import glfw_utils, imgui
+from imgui_bundle import glfw_utils, hello_imgui, imgui
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
@@ -36,14 +36,14 @@ class Driver:
         self.context, self.folder = context, folder
         self._in_frame: list[Callable[[], None]] = []
         self._of_window: list[Callable[[], None]] = []  # done when the window is drawn, pixels and all
-        stay_awake, wake = app._set_frame_rate, app.controller.wake
+        stay_awake = app._set_frame_rate
         self._news = threading.Event()
 
         def tell() -> None:
             self._news.set()
-            wake()
+            hello_imgui.request_refresh()
 
-        app.controller.wake = tell
+        app.controller.wake.connect(tell)
 
         def with_errands() -> None:
             while self._in_frame:
