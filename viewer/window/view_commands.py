@@ -64,7 +64,7 @@ def view(ui: Ui) -> list[Command]:
         *_interface(ui),
         switch("Hide panels", "View", ui.fold, "hidden", "Tab", separated=True),
         switch("Full screen", "View", ui.full_screen, "wanted", "F11"),
-        Command("Default layout", "View", lambda: ui.reset_layout()),
+        Command("Default layout", "View", lambda: ui.desktop.reset_layout()),
     ]  # fmt: skip
 
 

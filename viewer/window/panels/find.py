@@ -328,4 +328,4 @@ def _menu(ui: Ui, table: SceneTable, listing: Listing, row: int) -> None:
     if imgui.menu_item(verb, "", False)[0]:
         table.hide(row, not hidden)
     if imgui.menu_item(f"{icons.ICON_FA_COPY}  Copy {copied if len(copied) < 24 else 'its name'}", "", False)[0]:
-        ui.copy_to(copied)
+        ui.desktop.copy(copied)

@@ -102,9 +102,9 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     at = imgui.get_cursor_pos()
     left = at.x + (room.x - (2.0 * size.x + gap if beside else size.x)) / 2.0
     top = at.y + (room.y - size.y) / 2.0
-    if beside and seen is not None and ui.compared is not None:
+    if beside and seen is not None and ui.graphics.compared is not None:
         area = _area(ui, "picture of A", left, top, size)
-        layers.draw(ui, comparing.OF_A, ui.compared.a_texture or 0, area)
+        layers.draw(ui, comparing.OF_A, ui.graphics.compared.a_texture or 0, area)
         _pointer(ui, area, takes_edits=False)
         closeup.show(ui, area, seen[0])
         left += size.x + gap
