@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.geometry.camera import pinhole
 from tracer.geometry.tree_parts import NOWHERE, PartsAt, TreeParts, nothing_at
-from viewer.state.slices import FEWEST, Slice
+from viewer.state.draw_options import Slice
+from viewer.views.paint import on_line
+from viewer.views.voxel_slice import FEWEST
 
 LEVEL, WAITS, LINE, BORDER, HIDDEN = 0xFF, 0x100, 0x200, 0x400, 0x800  # of a code: a mask, and flags
 NOTHING = 0xFFFF  # the code of no part
@@ -75,18 +77,10 @@ def tree_codes(frame: Frame, parts: TreeParts, cut: Slice) -> NDArray[np.uint16]
     found, there = seen.parts, seen.parts.numbers != NOWHERE
     codes = found.levels.astype(np.uint16)
     codes[found.built == 0] |= WAITS
-    codes[_apart(found.numbers) & (_least(seen.wide) >= FEWEST)] |= LINE
-    codes[_in_company(_apart(found.owners))] |= BORDER
+    codes[on_line(found.numbers) & (_least(seen.wide) >= FEWEST)] |= LINE
+    codes[_in_company(on_line(found.owners))] |= BORDER
     codes[seen.hidden] |= HIDDEN
     return np.where(there, codes, np.uint16(NOTHING))
-
-
-def _apart(of: NDArray) -> NDArray[np.bool_]:
-    """Pixels whose neighbour to the right, or below, has another of these (h, w)."""
-    line = np.zeros(of.shape, np.bool_)
-    line[:, :-1] |= of[:, 1:] != of[:, :-1]
-    line[:-1] |= of[1:] != of[:-1]
-    return line
 
 
 def _in_company(line: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -7,7 +7,7 @@ is seen instead.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,42 +16,12 @@ from tracer.culling.voxels.grid import BLOCK, VoxelGrid
 from tracer.culling.voxels.tell import STATE_NAMES, VoxelStates, index_of
 from tracer.frame import Frame
 from tracer.geometry.camera import pinhole
-from viewer.util.json_numbers import number
+from viewer.state.draw_options import Slice
+from viewer.views.paint import on_line
 
-AXES = ("x", "y", "z")
 NOTHING, LINE = 255, 4  # a code of no voxel, and a flag of the code of one that has its border at a pixel
 STATE = 3  # a mask of codes
 FEWEST = 6.0  # pixels that voxels, or blocks of them, must be wide for their borders to be drawn
-
-
-class Slice(NamedTuple):
-    """Across which axis, 0 to 2, and where along it, 0 to 1 of the grid."""
-
-    axis: int = 1
-    at: float = 0.25
-
-    def layer(self, shape: tuple[int, int, int]) -> int:
-        """The number of the layer of voxels along the axis."""
-        return min(int(self.at * shape[self.axis]), shape[self.axis] - 1)
-
-    def in_words(self) -> str:
-        """As the option `--slice` takes it."""
-        return f"{AXES[self.axis]}:{np.format_float_positional(self.at, trim='-')}"
-
-    @staticmethod
-    def from_json(data: Any) -> Slice:
-        """The inverse of `list`; raises ValueError, in one line, on anything else."""
-        try:
-            axis, at = data
-            found = Slice(AXES.index(AXES[axis]), number(at))
-        except (TypeError, ValueError, IndexError):
-            raise ValueError("its slice is damaged") from None
-        if not 0.0 <= found.at <= 1.0:
-            raise ValueError("its slice lies nowhere")
-        return found
-
-
-MIDDLE = Slice()
 
 
 def middle_of(grid: VoxelGrid, cut: Slice) -> float:
@@ -101,17 +71,9 @@ def slice_codes(frame: Frame, states: VoxelStates, light: int, cut: Slice) -> ND
     grid = states.grid
     i, rest = np.divmod(seen.numbers, grid.ny * grid.nz)
     blocks = (i // BLOCK * 1024 + rest // grid.nz // BLOCK) * 1024 + rest % grid.nz // BLOCK
-    lines = np.where(seen.wide >= FEWEST, _on_border(seen.numbers), _on_border(np.where(there, blocks, -1)))
+    lines = np.where(seen.wide >= FEWEST, on_line(seen.numbers), on_line(np.where(there, blocks, -1)))
     codes[lines & (BLOCK * seen.wide >= FEWEST)] |= LINE
     return np.where(there, codes, np.uint8(NOTHING))
-
-
-def _on_border(cells: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Pixels whose neighbour to the right, or below, lies in another cell."""
-    line = np.zeros(cells.shape, np.bool_)
-    line[:, :-1] |= cells[:, 1:] != cells[:, :-1]
-    line[:-1] |= cells[1:] != cells[:-1]
-    return line
 
 
 class VoxelSeen(NamedTuple):

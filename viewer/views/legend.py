@@ -1,4 +1,8 @@
-"""What a legend consists of, and what is chosen of its view."""
+"""What a legend consists of: the colours of a view, what each stands for, and how much of the frame has it.
+
+The window draws it into the picture, or beside it, and a saved picture may carry it; `legend_layout` says where its
+parts lie.
+"""
 
 from __future__ import annotations
 
@@ -7,23 +11,11 @@ from dataclasses import dataclass
 from enum import Enum
 
 from tracer.scene.lights import Light, number_of
-from viewer.state.slices import MIDDLE, Slice
-from viewer.state.tone import NEUTRAL
-from viewer.state.tone import Tone as DisplayTone
-from viewer.state.views import Arrival, Color
-
-ARRIVAL_NAMES = {
-    Arrival.AWAY: "faces away",
-    Arrival.DARK: "fully dark",
-    Arrival.FEW: "penumbra, at most half",
-    Arrival.MOST: "penumbra, more than half",
-    Arrival.LIT: "fully lit",
-    Arrival.UNKNOWN: "not known yet",
-}
-"""What a pixel has of a light, in words."""
+from viewer.state.palette import Color
+from viewer.util.numbers import count
 
 
-class Tone(Enum):
+class NoteKind(Enum):
     """How a note is meant."""
 
     PLAIN = "a fact"
@@ -62,7 +54,7 @@ class Note:
     """A sentence below the rest."""
 
     text: str
-    tone: Tone = Tone.PLAIN
+    kind: NoteKind = NoteKind.PLAIN
 
 
 @dataclass(frozen=True)
@@ -77,35 +69,31 @@ class Legend:
     notes: tuple[Note, ...] = ()
 
 
-@dataclass(frozen=True)
-class Chosen:
-    """What else is chosen of a view: its light, of these of the scene, whether wrong pixels are marked, shares of rays,
-    the range of its numbers, the tone of its picture, whether what this clips is marked, and the slice through
-    space."""
-
-    light: int = 0
-    lights: tuple[Light, ...] = ()
-    marked: bool = True
-    shares: bool = False
-    span: tuple[float, float] | None = None
-    tone: DisplayTone = NEUTRAL
-    clipping: bool = False
-    cut: Slice = MIDDLE
-
-    @property
-    def light_in_words(self) -> str:
-        return named_light(self.lights, self.light)
+def fact(name: str, value: str, meaning: str = "") -> Entry:
+    """Return a line without a colour."""
+    return Entry(name, None, (value,), meaning)
 
 
-AS_USUAL = Chosen()
+def counts_scale(most: int, span: tuple[float, float] | None) -> Scale:
+    """Return the scale of a count: over what was chosen, or up to the most that there is."""
+    if span is not None:
+        return Scale(f"{span[0]:.4g}", f"{span[1]:.4g}")
+    return Scale("0", count(most), count(most // 2) if most % 2 == 0 else "")
 
 
 def light_in_words(number: int, name: str) -> str:
-    """A light by its number, and its name where that says more: light 2 (lamp)."""
+    """Return a light by its number, and its name where that says more: light 2 (lamp)."""
     said = f"light {number}"
     return said if name in ("", said) else f"{said} ({name})"
 
 
 def named_light(lights: Sequence[Light], light: int) -> str:
-    """The same of one of a scene's lights; its number is that in the scene as it was read, whichever are off now."""
+    """Return the same of one of a scene's lights; its number is that in the scene as it was read, whichever are off."""
     return light_in_words(number_of(lights, light), lights[light].name if light < len(lights) else "")
+
+
+def lights_in_words(lights: int) -> str:
+    """Return what numbers the lights of a scene have."""
+    if lights == 0:
+        return "the scene has no lights"
+    return "the scene has one light, number 0" if lights == 1 else f"the scene's lights are 0 to {lights - 1}"

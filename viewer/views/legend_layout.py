@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from viewer.output.legend_parts import Entry, Legend, Tone
-from viewer.state.views import Color
+from viewer.state.palette import Color
+from viewer.views.legend import Entry, Legend, NoteKind
 
 Measure = Callable[[str], float]
 
@@ -20,7 +20,11 @@ BACKDROP: Color = (0.05, 0.06, 0.08)
 BACKDROP_OPACITY = 0.82
 TEXT: Color = (0.93, 0.94, 0.96)
 QUIET: Color = (0.68, 0.71, 0.76)
-TONES: dict[Tone, Color] = {Tone.PLAIN: QUIET, Tone.GOOD: (0.36, 0.80, 0.64), Tone.WARNING: (0.96, 0.74, 0.31)}
+NOTES: dict[NoteKind, Color] = {
+    NoteKind.PLAIN: QUIET,
+    NoteKind.GOOD: (0.36, 0.80, 0.64),
+    NoteKind.WARNING: (0.96, 0.74, 0.31),
+}
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,7 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
         y += step
     for note in legend.notes:
         for text in wrapped(note.text, measure, inner):
-            words.append(Words(pad, y, text, TONES[note.tone]))
+            words.append(Words(pad, y, text, NOTES[note.kind]))
             y += step
     height = y - (step - line) + pad
     return Layout(inner + 2.0 * pad, height, tuple(words), tuple(swatches), tuple(tips))
