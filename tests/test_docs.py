@@ -18,13 +18,14 @@ import yaml
 from PIL import Image
 
 import tracer
-from tracer import experiment
+from tracer.experiments import experiment
+from tracer.experiments.study import read_study
 from tracer.scene.load import load_scene
 from viewer.__main__ import main
 from viewer.cli.sweep import RESULTS
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
-from viewer.state.study_file import read_study
+from viewer.util.resources import embedded_scenes
 from viewer.window import commands
 from viewer.window.command import key_label
 from viewer.window.ui import Ui
@@ -157,12 +158,12 @@ def test_lamps_are_read_as_shown(tmp_path: Path) -> None:
 def test_studies_are_read(tmp_path: Path) -> None:
     """Those that come with the documentation, and the one that a page shows."""
     studies = sorted((DOCS / "studies").glob("*.toml"))
-    assert studies and all(read_study(path).methods[0] == "none" for path in studies)
+    assert studies and all(read_study(path, embedded_scenes()).methods[0] == "none" for path in studies)
     (shown,) = blocks(DOCS / "sweeps.md", "toml")
     (tmp_path / "kitchen").mkdir()
     (tmp_path / "kitchen/kitchen.aff").touch()
     (tmp_path / "study.toml").write_text(shown)
-    study = read_study(tmp_path / "study.toml")
+    study = read_study(tmp_path / "study.toml", embedded_scenes())
     assert len(study.settings) == 4 and study.seeds == (1, 2, 3) and study.shake == 0.01
 
 

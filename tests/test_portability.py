@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 from tracer import parallel
-from viewer.services.cluster import Cluster
+from tracer.experiments.cluster import Cluster
 
 ROOT = Path(__file__).resolve().parent.parent
 

@@ -13,7 +13,9 @@ frame = renderer.render(time=5.0)
 frame.statistics.shadow.traversal_steps
 """
 
-from tracer import experiment
+import sys
+
+from tracer.experiments import experiment, lamp_experiment, zoom
 from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch as RayBatch
 from tracer.geometry.world import World
@@ -34,6 +36,13 @@ __all__ = [
     "Settings",
     "World",
     "experiment",
+    "lamp_experiment",
     "load_scene",
     "scene_info",
+    "zoom",
 ]
+
+# Scripts import from these under their shorter names, too.
+sys.modules["tracer.experiment"] = experiment
+sys.modules["tracer.lamp_experiment"] = lamp_experiment
+sys.modules["tracer.zoom"] = zoom

@@ -8,7 +8,7 @@ help texts made, before any kernel is loaded.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
@@ -300,3 +300,14 @@ _TABLE: tuple[tuple[str, str, dict[str, Any], str], ...] = (
 
 for _name, _class, _can, _sentence in _TABLE:
     register(Kind(_name, _sentence, f"tracer.methods.{_class}", **_can))
+
+
+def in_order(methods: Iterable[str]) -> list[str]:
+    """Return methods, each once, in the order of bases, and those with more additions later."""
+    names, extras = [kind.name for kind in bases(measures=True)], [kind.name for kind in additions(measures=True)]
+
+    def rank(name: str) -> tuple[int, list[bool]]:
+        method = Method.parse(name)
+        return names.index(method.base), [method.has(extra) for extra in extras]
+
+    return sorted(set(methods), key=rank)

@@ -3,104 +3,136 @@
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass, replace
 from typing import Any
 
-from tracer.geometry.accelerators import ACCELERATORS
+from tracer.geometry.accelerators import BVH8, KD_TREE, LAZY
 from tracer.method import DEFAULT_METHOD, Method
 from tracer.scene.lights import MAX_SAMPLES
+from tracer.setting import NEVER, PICTURES, check_all, documented, setting
 
 MAX_SIDE = 16384
 MAX_NODES = 65536  # of a cut: each takes a kilobyte for each thread
 RECORDS = ("verify", "record_lights", "record_fates", "record_work")
 """Settings that only add to what a frame holds: the picture is the same."""
 LIGHT_BUFFER_SIDES = (16, 32, 64, 128, 256, 512, 1024)
+TREES = {
+    BVH8: "the fast one, which counts steps and tests for whole packets of rays",
+    KD_TREE: "the paper's, whose steps are those that it counts, ray by ray",
+    LAZY: "one kd-tree over everything, built where rays arrive",
+}
+"""What rays are traced through, and what it is."""
 
 
+def _keeps_modes(settings: Settings) -> bool:
+    return not _clusters(settings)  # methods by clusters of lights keep none
+
+
+def _clusters(settings: Settings) -> bool:
+    return Method.parse(settings.method).clusters
+
+
+@documented
 @dataclass(frozen=True)
 class Settings:
-    """How to render.
+    """How to render."""
 
-    Parameters
-    ----------
-    width, height : int
-        Size of the picture in pixels.
-    depth : int
-        Bounces of a ray, at most.
-    method : str
-        What culls shadow rays, by its name (see `tracer.method`).
-    symmetric : bool
-        Run the occlusion test in both directions between neighbouring pixels, not in one as published (§2.3).
-    zoom_factor : float
-        A primitive that covers more than this many times its highest pixel count is judged again (§2.6).
-    modes : bool
-        Keep the paper's modes also beside a method that does not cull by them: exactly those that "paper" would have,
-        or "paper+rest" beside methods for which objects that rest count as static.
-    verify : bool
-        Trace every culled answer as well, count the wrong ones, and fill `Frame.reference` and `Frame.wrong`.
-    lamp_radius : float or None
-        Every point light and sphere of the scene becomes a sphere of this radius, or a point with 0; None leaves them.
-    lamp_samples : int or None
-        Points from which each lamp shines (`tracer.scene.lights`). None leaves what the scene says, and gives 16 to a
-        point that becomes a sphere.
-    samples : int
-        Rays per pixel, averaged. Modes and statistics are those of the first, which goes through the pixel's centre.
-    threads : int
-        Threads that work at once; 0 for one on each core.
-    accelerator : str
-        "bvh8", the fast structure, which counts steps and tests for whole packets of rays; "kdtree", the paper's, which
-        counts them ray by ray; or "kdtree-lazy", one kd-tree over everything, which is built where rays arrive.
-    record_lights : bool
-        Fill `Frame.due` and `Frame.lit`.
-    record_fates : bool
-        Fill `Frame.fates`, what became of each shadow ray.
-    record_work : bool
-        Fill `Frame.saved`, `Frame.cost` and `Frame.due_rays`.
-    certificates : int
-        Certificates that a frame makes, at most.
-    certificate_seconds : float
-        Seconds that a frame spends on certificates, at most; a quarter of them is reserved for making them. With a
-        limit, chance decides how many are made. Without one (inf), counters repeat exactly.
-    patient : bool
-        Nobody waits for the frame, so that "auto" may spend the whole budget and not only what certificates are worth.
-    certificate_memory : float
-        Megabytes that certificates take, at most.
-    lightcuts_error : float
-        The part of the light of a point that a cluster of lights may be wrong by, for methods that shade by cuts of
-        lights. With 0 every light is looked at.
-    lightcuts_nodes : int
-        Clusters of a cut, at most.
-    light_buffer_side : int
-        Cells along an edge of the cube around a light, a power of two from 16 to 1024; for the method "lightbuffer".
-    light_buffer_memory : float
-        Megabytes that all cubes take, at most. Where these are too few for a light, its cells are made larger, and at
-        last the light is traced.
-    """
-
-    width: int = 512
-    height: int = 512
-    depth: int = 10
-    method: str = DEFAULT_METHOD
-    symmetric: bool = False
-    zoom_factor: float = 4.0
-    modes: bool = False
-    verify: bool = False
-    samples: int = 1
-    lamp_radius: float | None = None
-    lamp_samples: int | None = None
-    threads: int = 0
-    accelerator: str = "bvh8"
-    record_lights: bool = False
-    record_fates: bool = False
-    record_work: bool = False
-    certificates: int = 100_000
-    certificate_seconds: float = math.inf
-    patient: bool = False
-    certificate_memory: float = 256.0
-    lightcuts_error: float = 0.02
-    lightcuts_nodes: int = 1000
-    light_buffer_side: int = 256
-    light_buffer_memory: float = 256.0
+    width: int = setting(512, "Width", "Pixels from left to right.", low=1, high=MAX_SIDE, stored=PICTURES)
+    height: int = setting(512, "Height", "Pixels from top to bottom.", low=1, high=MAX_SIDE, stored=PICTURES)
+    depth: int = setting(
+        10, "Bounces", "How often a ray is reflected or refracted, at most.", low=0, high=100, slider=(0, 20),
+        option="--depth", panel="Rendering",
+    )  # fmt: skip
+    method: str = setting(
+        DEFAULT_METHOD, "Method", "Which shadow rays are not traced, and what that trusts.", check=Method.parse,
+        option="--method",
+    )  # fmt: skip
+    symmetric: bool = setting(
+        False, "Symmetric occlusion test",
+        "Test two neighbouring pixels both ways, not one way as published (§2.3): each one's ray against the other's "
+        "primitive.", option="--symmetric", panel="Culling", applies=_keeps_modes,
+    )  # fmt: skip
+    zoom_factor: float = setting(
+        4.0, "Zoom factor",
+        "Examine a primitive anew once it covers this many times its highest pixel count (§2.6).",
+        low=1.0, slider=(1.0, 64.0), log=True, option="--zoom-factor", panel="Culling", applies=_keeps_modes,
+    )  # fmt: skip
+    modes: bool = setting(
+        False, "Modes beside the method",
+        "Keep the paper's modes also beside a method that does not cull by them: exactly those that paper would have, "
+        "or paper+rest beside methods for which objects that rest count as static.", stored=NEVER,
+    )  # fmt: skip
+    verify: bool = setting(
+        False, "Verify",
+        "Trace every culled shadow ray as well, and count wrong answers.", option="--verify", panel="Culling",
+    )  # fmt: skip
+    samples: int = setting(
+        1, "Samples per pixel",
+        "Rays per pixel, averaged; modes and statistics are those of the first, which goes through the pixel's centre.",
+        low=1, high=4096, slider=(1, 64), log=True, option="--samples", panel="Rendering", in_window=16,
+    )  # fmt: skip
+    lamp_radius: float | None = setting(
+        None, "Lamp radius",
+        "Make every point light and sphere a sphere of this radius, in the scene's units; 0 makes them points.",
+        low=0.0, unset="scene", option="--lamp-radius", panel="Lamps", remembered=False,
+    )  # fmt: skip
+    lamp_samples: int | None = setting(
+        None, "Lamp samples",
+        "Points from which each lamp shines, as the scene says if not set, or 16 for a point that became a sphere.",
+        low=1, high=MAX_SAMPLES, unset="scene", option="--lamp-samples", panel="Lamps",
+    )  # fmt: skip
+    threads: int = setting(
+        0, "Threads", "Threads that work at once, 0 for one on each core: the picture and the counters stay the same.",
+        low=0, high=1024, slider=(0, os.cpu_count() or 1), option="--threads", panel="Rendering", stored=PICTURES,
+    )  # fmt: skip
+    accelerator: str = setting(
+        BVH8, "Tree",
+        "The tree that rays are traced through; a change builds it anew, and modes and certificates are learnt again.",
+        choices=TREES, option="--accelerator", panel="Rendering", stored=PICTURES, remembered=False,
+    )  # fmt: skip
+    record_lights: bool = setting(False, "Record lights", "Fill `Frame.due` and `Frame.lit`.", stored=NEVER)
+    record_fates: bool = setting(
+        False, "Record fates", "Fill `Frame.fates`, what became of each shadow ray.", stored=NEVER
+    )
+    record_work: bool = setting(
+        False, "Record work", "Fill `Frame.saved`, `Frame.cost` and `Frame.due_rays`.", stored=NEVER
+    )
+    certificates: int = setting(
+        100_000, "Certificates", "Certificates that a frame makes, at most.", low=0, stored=NEVER
+    )
+    certificate_seconds: float = setting(
+        math.inf, "Seconds for certificates",
+        "Seconds that a frame spends on certificates, at most; a quarter of them is reserved for making them. With a "
+        "limit, chance decides how many are made; without one (inf), counters repeat exactly.", low=0.0, stored=NEVER,
+    )  # fmt: skip
+    patient: bool = setting(
+        False, "Patient",
+        "Nobody waits for the frame, so that auto may spend the whole budget and not only what certificates are worth.",
+        stored=NEVER,
+    )  # fmt: skip
+    certificate_memory: float = setting(
+        256.0, "Memory for certificates", "Megabytes that certificates take, at most.", low=0.0, unit=" MB"
+    )
+    lightcuts_error: float = setting(
+        0.02, "Error of clusters",
+        "The part of a point's light that a cluster of lights may be wrong by; 0 looks at every light.",
+        low=0.0, slider=(0.0, 1.0), percent=True, log=True, option="--lightcuts-error", panel="Culling",
+        applies=_clusters,
+    )  # fmt: skip
+    lightcuts_nodes: int = setting(
+        1000, "Clusters at most", "Clusters of lights for a point, at most.", low=1, high=MAX_NODES, log=True,
+        option="--lightcuts-nodes", panel="Culling", applies=_clusters,
+    )  # fmt: skip
+    light_buffer_side: int = setting(
+        256, "Cells of a light buffer",
+        "Cells along an edge of the cube around a light, for the method lightbuffer.", choices=LIGHT_BUFFER_SIDES,
+    )  # fmt: skip
+    light_buffer_memory: float = setting(
+        256.0, "Memory for light buffers",
+        "Megabytes that all cubes take, at most. Where these are too few for a light, its cells are made larger, and "
+        "at last the light is traced.", low=0.0, unit=" MB",
+    )  # fmt: skip
 
     @property
     def keeps_modes(self) -> bool:
@@ -130,38 +162,4 @@ class Settings:
         ValueError
             If a value is out of range; the message is one line.
         """
-        Method.parse(self.method)
-        checks = (
-            (1 <= self.width <= MAX_SIDE and 1 <= self.height <= MAX_SIDE, f"width and height lie in 1 to {MAX_SIDE}"),
-            (0 <= self.depth <= 100, "depth lies in 0 to 100"),
-            (math.isfinite(self.zoom_factor) and self.zoom_factor >= 1.0, "zoom_factor is a finite number from 1 up"),
-            (self.accelerator in ACCELERATORS, f"accelerator is one of {', '.join(ACCELERATORS)}"),
-            (1 <= self.samples <= 4096, "samples lie in 1 to 4096"),
-            (
-                self.lamp_radius is None or (math.isfinite(self.lamp_radius) and self.lamp_radius >= 0),
-                "lamp_radius is 0 or more",
-            ),
-            (
-                self.lamp_samples is None or 1 <= self.lamp_samples <= MAX_SAMPLES,
-                f"lamp_samples lie in 1 to {MAX_SAMPLES}",
-            ),
-            (0 <= self.threads <= 1024, "threads lie in 0 to 1024"),
-            (
-                self.light_buffer_side in LIGHT_BUFFER_SIDES,
-                "light_buffer_side is a power of two from 16 to 1024",
-            ),
-            (self.light_buffer_memory >= 0, "light_buffer_memory is 0 or more"),
-            (
-                all(budget >= 0 for budget in (self.certificates, self.certificate_seconds, self.certificate_memory)),
-                "budgets of certificates are 0 or more",
-            ),
-            (
-                math.isfinite(self.lightcuts_error) and self.lightcuts_error >= 0,
-                "lightcuts_error is a finite number from 0 up",
-            ),
-            (1 <= self.lightcuts_nodes <= MAX_NODES, f"lightcuts_nodes lie in 1 to {MAX_NODES}"),
-        )
-        for holds, message in checks:
-            if not holds:
-                raise ValueError(message)
-        return self
+        return check_all(self)

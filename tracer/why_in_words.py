@@ -52,6 +52,14 @@ def named(scene: Scene, primitive: int) -> str:
     return f"{scene.name_of(primitive)} ({kind_of(scene, primitive)} {primitive})"
 
 
+def primitive_in_words(scene: Scene, primitive: int) -> str:
+    """Return a primitive as people find it again: its kind and number, its object and its material."""
+    if not 0 <= primitive < scene.primitive_count:
+        return f"primitive {primitive}"
+    material = scene.material_of(primitive).name
+    return f"{kind_of(scene, primitive)} {primitive} of {scene.name_of(primitive)} ({material})"
+
+
 class Words:
     """Writes the sentences about a pixel of a scene."""
 

@@ -26,7 +26,7 @@ from tests.bench.embree import MODES, EmbreeRays, EmbreeScene
 from tests.bench.frame_rays import FrameRays, frame_rays
 from tests.bench.frame_times import METHODS, faults_of_work
 from tests.bench.rays import Surfaces
-from tracer.experiment import path_times
+from tracer.experiments.experiment import path_times
 from tracer.frame import Frame, Settings
 from tracer.geometry.rays import Rays
 from tracer.geometry.world import World

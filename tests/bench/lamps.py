@@ -3,8 +3,8 @@
     make lamps                                          the default scene, and BART's scenes where they are there
     make lamps ARGS="--radius 0.03 0.1 --samples 64 --frames 100 kitchen.aff"
 
-The methods take turns frame by frame, each with a renderer of its own in one world (`tracer.lamp_experiment`).  A
-speed-up is the time of `none` over that of the method, certificates included; `free` gives the ceiling, what it would
+The methods take turns frame by frame, each with a renderer of its own in one world (`tracer.lamp_experiment`).
+A speed-up is the time of `none` over that of the method, certificates included; `free` gives the ceiling, what it would
 be if shadow rays cost nothing.
 Every picture by an exact method must be that of `none`, bit for bit; a run in which one is not ends with exit code 1.
 """
@@ -22,10 +22,10 @@ from rich.table import Table
 
 from tests.bench.frame_times import machine
 from tests.bench.of_scenes import add_options, finish, prepared
-from tracer import lamp_experiment
-from tracer.experiment import REFERENCE, with_reference
+from tracer.experiments import lamp_experiment
+from tracer.experiments.experiment import REFERENCE, with_reference
+from tracer.experiments.lamp_experiment import CEILING, run_lamps
 from tracer.frame import Frame, Settings
-from tracer.lamp_experiment import CEILING, run_lamps
 from tracer.method import Method
 from tracer.parallel import thread_count
 from tracer.renderer import Renderer

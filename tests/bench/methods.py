@@ -30,7 +30,7 @@ from tests.bench.frame_times import machine
 from tests.bench.of_scenes import SCENES
 from tracer.compilation import make_ready, warm_up
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.experiment import REFERENCE, figures_of
+from tracer.experiments.experiment import REFERENCE, figures_of
 from tracer.frame import Settings
 from tracer.method import Method, line_up
 from tracer.renderer import Renderer

@@ -27,9 +27,9 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.shading.blocks import TURNS
 from tracer.statistics import FrameStatistics
-from viewer.output.pictures import picture
 from viewer.services.governor import AT_ONCE, LARGEST_DIVISOR, SPARE, Governor, Plan, divided
 from viewer.state import navigation
+from viewer.views import colorize
 from viewer.window.app import App
 
 BURST = 2.0  # seconds of motion
@@ -110,8 +110,8 @@ class Script:
         self._lead(self.began)
         had = self.c.traced
         self._before()
-        if self.c.notices.faults.notice is not None:  # the window lives on, but what it shows is worth nothing
-            raise RuntimeError(self.c.notices.faults.notice.as_text)
+        if self.c.notices.newest_fault is not None:  # the window lives on, but what it shows is worth nothing
+            raise RuntimeError(self.c.notices.newest_fault.as_text)
         new = self.c.traced
         if new is had or new is None or self.burst is None:
             return
@@ -186,8 +186,8 @@ def compared(burst: Burst, size: tuple[int, int], renderer: Renderer) -> list[di
     found, exactly = [], {"width": size[0], "height": size[1], "method": "none", "modes": False}
     for frame in kept:
         renderer.settings = replace(frame.settings, **exactly)
-        exact = picture(renderer.render(frame.time, frame.camera))
-        shown = on_screen(picture(frame), size)
+        exact = colorize(renderer.render(frame.time, frame.camera))
+        shown = on_screen(colorize(frame), size)
         found.append(
             {
                 "ssim": float(structural_similarity(exact, shown, channel_axis=2)),

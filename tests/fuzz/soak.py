@@ -185,7 +185,7 @@ class Soak:
 
     def _go_back(self) -> None:
         if self.c.history.frames:
-            self.c.travel.go(int(self.rng.integers(self.c.history.frames)), modes=bool(self.rng.random() < 0.2))
+            self.c.navigator.go(int(self.rng.integers(self.c.history.frames)))
 
     def _two_methods(self) -> None:
         self.c.comparing.toggle_methods()

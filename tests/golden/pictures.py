@@ -30,11 +30,11 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
 from viewer.output.light_cube import picture_of
-from viewer.output.pictures import picture
+from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.readings import LIGHT_CUBES
-from viewer.state.slices import MIDDLE, Slice
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
+from viewer.views import colorize
 
 FOLDER = Path(__file__).resolve().parent
 SETTINGS = Settings(width=160, height=120)
@@ -64,12 +64,12 @@ class Golden:
 
     def views(self, frame: Frame) -> Iterator[tuple[str, NDArray[np.uint8]]]:
         """Name of the file, without its ending, and picture (height, width, 3) of each view."""
-        yield f"{self.name}-color", picture(frame, View.COLOR)
-        yield f"{self.name}-occlusion", picture(frame, View.OCCLUSION)
+        yield f"{self.name}-color", colorize(frame, View.COLOR)
+        yield f"{self.name}-occlusion", colorize(frame, View.OCCLUSION)
         for light in self.lights:
-            yield f"{self.name}-shadow-{light}", picture(frame, View.SHADOW, light)
+            yield f"{self.name}-shadow-{light}", colorize(frame, View.SHADOW, light)
         for view in self.fates:
-            yield f"{self.name}-{view.value}", picture(frame, view, self.lights[0])
+            yield f"{self.name}-{view.value}", colorize(frame, view, self.lights[0])
 
 
 GOLDEN = (
@@ -109,9 +109,9 @@ class OfMethod:
         renderer = Renderer(scene, settings, world=world)
         return renderer.render(scene.frame_time(0))
 
-    def picture(self, frame: Frame) -> NDArray[np.uint8]:
+    def colorize(self, frame: Frame) -> NDArray[np.uint8]:
         """(height, width, 3)."""
-        return picture(frame, self.view, cut=self.cut)
+        return colorize(frame, self.view, cut=self.cut)
 
 
 EXACT = "figure3-exact"

@@ -150,3 +150,14 @@ def number_of(lights: Sequence[Light], light: int) -> int:
     """The number that people know a scene's light by: that in the scene as it was read, whichever others are off."""
     number = lights[light].number if light < len(lights) else None
     return light if number is None else number
+
+
+def light_in_words(number: int, name: str) -> str:
+    """Return a light by its number, and its name where that says more: light 2 (lamp)."""
+    said = f"light {number}"
+    return said if name in ("", said) else f"{said} ({name})"
+
+
+def named_light(lights: Sequence[Light], light: int) -> str:
+    """Return one of a scene's lights in the same words; its number is that in the scene as it was read."""
+    return light_in_words(number_of(lights, light), lights[light].name if light < len(lights) else "")

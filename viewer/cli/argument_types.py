@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 from viewer.state.plans import parse_factors
 
 if TYPE_CHECKING:
-    from viewer.state.annotations import Annotation
-    from viewer.state.earlier import Earlier
-    from viewer.state.slices import Slice
+    from tracer.experiments.warmup_frames import WarmupFrame
+    from viewer.state.draw_options import Slice
     from viewer.state.tone import Curve
     from viewer.state.views import View
 
@@ -140,30 +139,15 @@ def place(text: str) -> tuple[float, float]:
     return at
 
 
-def annotation_list(text: str) -> tuple[Annotation, ...]:
-    """Annotations as JSON, or a file that holds it."""
-    from tracer.scene.files import read_regular
-    from viewer.state.annotations import from_json
-
-    try:
-        if not text.lstrip().startswith("["):
-            text = read_regular(Path(text), 1 << 20).decode("utf-8")
-        return from_json(json.loads(text))
-    except OSError as error:
-        raise argparse.ArgumentTypeError(f"{text[:60]!r}: {error.strerror or error}") from None
-    except (ValueError, RecursionError) as error:
-        raise argparse.ArgumentTypeError(f"not understood: {error}") from None
-
-
-def before(text: str) -> tuple[Earlier, ...]:
+def before(text: str) -> tuple[WarmupFrame, ...]:
     """Frames before, as JSON, or a file that holds it."""
+    from tracer.experiments import warmup_frames
     from tracer.scene.files import read_regular
-    from viewer.state import earlier
 
     try:
         if not text.lstrip().startswith("["):
             text = read_regular(Path(text), 1 << 26).decode("utf-8")
-        return earlier.from_json(json.loads(text))
+        return warmup_frames.from_json(json.loads(text))
     except OSError as error:
         raise argparse.ArgumentTypeError(f"{text[:60]!r}: {error.strerror or error}") from None
     except (ValueError, RecursionError) as error:
@@ -215,7 +199,7 @@ def view(text: str) -> ChosenView:
 
 def slice_(text: str) -> Slice:
     """An axis and a place along it: x:0.5."""
-    from viewer.state.slices import AXES, MIDDLE, Slice
+    from viewer.state.draw_options import AXES, MIDDLE, Slice
 
     axis, colon, at = text.partition(":")
     if (

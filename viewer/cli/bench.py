@@ -9,11 +9,11 @@ from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
-from tracer import experiment
-from tracer.experiment import REFERENCE, Results
+from tracer.experiments import experiment
+from tracer.experiments.experiment import REFERENCE, Results
+from tracer.experiments.lamp_experiment import kinds_of_lamps
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
-from tracer.lamp_experiment import kinds_of_lamps
 from tracer.method import line_up
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene

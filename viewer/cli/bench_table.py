@@ -7,8 +7,8 @@ from pathlib import Path
 
 from rich.table import Table
 
-from tracer import experiment
-from tracer.experiment import Results, Row
+from tracer.experiments import experiment
+from tracer.experiments.experiment import Results, Row
 from viewer.cli.console import width_of
 from viewer.cli.narrow_tables import left_out, named
 from viewer.output.reports import SPEED_UP, WRONG, caveats, frames_in_words, lines

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from tracer import fingerprint
 from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.method import Method
@@ -24,9 +25,10 @@ from tracer.scene.files import read_regular
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Cancelled, Scene, SceneError
+from tracer.version import program_version
 from viewer.cli.console import Work, working
 from viewer.cli.tracing_options import prepare_kernels
-from viewer.output import capture, comparison_figure, exr, fingerprint, recipe
+from viewer.output import capture, comparison_figure, exr, recipe
 from viewer.output.recipe import BUILT, CHANCE, Recipe
 from viewer.services import comparison, stills
 from viewer.services.scene_files import find_scene
@@ -34,7 +36,6 @@ from viewer.state.methods import NO_CULLING
 from viewer.state.session import Snapshot
 from viewer.state.views import View
 from viewer.util.messages import ERROR, in_one_line, printable
-from viewer.util.version import program_version
 
 KINDS = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", exr.ENDING: b"\x76\x2f\x31\x01"}
 """How a file of each kind that is checked begins."""
@@ -83,6 +84,8 @@ class Checker:
         if data.get("window"):
             return Verdict(None, "it shows two pictures, or the window with its panels, which cannot be rendered again")
         wanted = self._wanted(data)
+        if data.get("picture", {}).get("style", {}).get("annotations"):
+            return Verdict(None, "arrows, boxes or words are drawn on it, which are not drawn any more")
         if wanted.history and not wanted.modes and wanted.view is View.COLOR and not wanted.tells_counters:
             return self._against_tracing_all(path, kept, wanted)
         frame, wanted = self._traced(path, wanted)

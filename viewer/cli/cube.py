@@ -11,14 +11,14 @@ from rich.table import Table
 
 from tracer.methods.lightbuffer import LightBuffer
 from tracer.renderer import Renderer
+from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file, load_visible_scene
 from viewer.cli.console import print_table, working
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
-from viewer.output.legend_parts import named_light
 from viewer.output.light_cube import EMPTY, FEW, MANY, ONE, described, picture_of, seen
-from viewer.output.pictures import lights_in_words
 from viewer.util.messages import printable
+from viewer.views.legend import lights_in_words
 
 
 def cube(path: Path, options: Namespace) -> None:

@@ -99,7 +99,7 @@ def light_index(options: Namespace, option: str, number: int, scene: Scene) -> i
     """Which of the lights of the scene, as it is edited, has this number in its file.
 
     Raises ValueError, in one line, where none has."""
-    from viewer.output.pictures import lights_in_words
+    from viewer.views.legend import lights_in_words
 
     edits = edits_of(options)
     index = edits.light_index(number)

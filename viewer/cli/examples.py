@@ -59,9 +59,6 @@ An .exr needs OpenEXR (install shadowcull[exr]). It holds the linear colours and
 each light as lit.0, lit.1 and so on for up to 32 lights, and the scene, camera, settings and statistics as JSON in the
 attribute shadowcull.
 
---annotations takes a list of {"kind": "arrow", "x0": 0.2, "y0": 0.3, "x1": 0.5, "y1": 0.6}, of the kind box with the
-same corners, and of {"kind": "text", "x0": 0.1, "y0": 0.1, "text": "here"}, in parts of the picture's width and height.
-
 --view difference and --view wipe verify by themselves: the first shows the pixels with wrong shadow answers,
 the second the traced picture left of a line, and the correct one right of it; wipe:0.3 puts the line at 30 % of
 the width. Rings show where wrong pixels are, unless --no-marks is given. --view saved and --view cost are maps of

@@ -15,10 +15,13 @@ from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
 from tracer.method import DEFAULT_METHOD, Method
+from tracer.mode_origins import ModeOrigins
 from tracer.reasons import Why
 from tracer.renderer import Renderer
+from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Scene
 from tracer.told_rays import RayTree
@@ -28,13 +31,10 @@ from viewer.cli.edit_options import edited_scene, light_index
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.render import times_before
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
-from viewer.output.legend_parts import named_light
 from viewer.output.ray_json import ray_data
 from viewer.output.ray_rows import RayRows, Row, totals
 from viewer.output.why_lines import why_data, why_lines
 from viewer.services.teachers import Answers, Teacher, answers_at, can_be_asked, with_teachers
-from viewer.state.earlier import Earlier
-from viewer.state.teaching import Ledger
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
 
@@ -56,8 +56,8 @@ def explain(path: Path, options: Namespace) -> None:
         renderer = Renderer(scene, settings, work.progress)
         times = times_before(scene, time, options.warmup, work)
         times += [time] * _repeats(options)
-        before = [*options.before, *(Earlier(then, options.camera) for then in times)]
-        ledger, moves = Ledger(len(scene.lights)), _Moves(scene)
+        before = [*options.before, *(WarmupFrame(then, options.camera) for then in times)]
+        ledger, moves = ModeOrigins(len(scene.lights)), _Moves(scene)
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
             modes = renderer.render(earlier.time, earlier.camera, work.cancelled).modes
@@ -97,7 +97,9 @@ class _Moves:
         return None if before is None else (before != self._before).any(axis=1)
 
 
-def _with_teachers(found: Why, renderer: Renderer, frame: Frame, ledger: Ledger, before: Sequence[Earlier]) -> Why:
+def _with_teachers(
+    found: Why, renderer: Renderer, frame: Frame, ledger: ModeOrigins, before: Sequence[WarmupFrame]
+) -> Why:
     """The same with the frames, and the pixels of these, that gave the primitive its modes."""
     unit = int(frame.cell[found.y, found.x])
     taught = ledger.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None

@@ -16,7 +16,7 @@ def is_wanted(recipe: Recipe, options: Namespace, work: Work) -> bool:
     """Whether several processes are to share the film, and can; raises ValueError, in one line, without Dask."""
     if options.workers is None and options.scheduler is None:
         return False
-    from viewer.services.cluster import check_dask
+    from tracer.experiments.cluster import check_dask
     from viewer.services.films_elsewhere import filmed_alone
 
     check_dask()

@@ -11,6 +11,8 @@ from pathlib import Path
 
 from rich.table import Table
 
+from tracer.experiments import counterexample, hunt
+from tracer.experiments.hunt import Search
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.scene.lights import number_of
@@ -19,10 +21,7 @@ from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import Work, print_table, working
 from viewer.cli.mesh_arguments import as_arguments, mesh_options
 from viewer.cli.tracing_options import prepare_kernels, tracing_settings
-from viewer.output import finds
-from viewer.output.finds import Findings
-from viewer.services import find_figures, hunting
-from viewer.services.hunting import Search
+from viewer.services import counterexamples
 from viewer.state import flight
 from viewer.state.methods import NO_CULLING
 from viewer.util.messages import printable
@@ -41,18 +40,18 @@ def run(path: Path, options: Namespace) -> bool:
             work.note(f"warning: {warning}")
         search = _search(scene, settings, options)
         if options.output is not None:
-            find_figures.check_folder(options.output)
+            counterexamples.check_folder(options.output)
         prepare_kernels(work, len(scene.lights), options.accelerator, settings.method, NO_CULLING)
         world = World(scene, search.times[0], settings.accelerator, work.progress)
         done = 0
 
-        def on_frame(label: str, number: int, total: int, frame: Frame) -> None:
+        def on_frame(label: str, frame: Frame) -> None:
             nonlocal done
-            done = number
-            work.count(label, number, total)
+            done += 1
+            work.count(label, done, search.frames)
 
         work.count(f"frame 1 of {len(search.times)}", 0, search.frames)
-        for grown in hunting.hunt(scene, search, world, work.cancelled, on_frame):
+        for grown in hunt.run(scene, search, work.cancelled, world, on_frame):
             found = grown
         if found is None:
             raise Cancelled("cancelled")
@@ -82,34 +81,36 @@ def _search(scene: Scene, settings: Settings, options: Namespace) -> Search:
     )
 
 
-def _write(found: Findings, scene: Scene, search: Search, world: World, options: Namespace, work: Work) -> list[Path]:
+def _write(
+    found: hunt.Results, scene: Scene, search: Search, world: World, options: Namespace, work: Work
+) -> list[Path]:
     """The files of all finds; of a hunt that was stopped the JSON alone, as figures take long."""
     written = []
     for number, find in enumerate(found.finds, 1):
-        stem = options.output / find_figures.name_of(number)
-        find_figures.save_json(find, found, scene, stem.with_suffix(".json"), as_arguments(mesh_options(options)))
+        stem = options.output / f"find-{number}"
+        counterexamples.save_json(find, found, scene, stem.with_suffix(".json"), as_arguments(mesh_options(options)))
         if not work.stopped:
             work.count(f"figure {number} of {len(found.finds)}", number - 1, len(found.finds))
             meshes = mesh_options(options).of_file(Path(scene.path))
             folders = tuple(options.folder)
-            wanted = find_figures.comparison_of(find, found, scene, search.settings, folders, meshes)
+            wanted = counterexamples.comparison_of(find, found, scene, search.settings, folders, meshes)
             try:
-                find_figures.save_figure(wanted, scene, world, stem.with_suffix(".png"), cancelled=work.cancelled)
+                counterexamples.save_figure(wanted, scene, world, stem.with_suffix(".png"), cancelled=work.cancelled)
                 written.append(stem.with_suffix(".png"))
             except Cancelled:
                 work.note("cancelled: the figures from here on are not drawn")
         written.append(stem.with_suffix(".json"))
-    find_figures.save_all(found, scene, options.output)
-    return [*written, options.output / find_figures.ALL]
+    counterexamples.save_all(found, scene, options.output)
+    return [*written, options.output / counterexamples.ALL]
 
 
-def _table(found: Findings, scene: Scene) -> Table:
+def _table(found: hunt.Results, scene: Scene) -> Table:
     size = f"{found.size[0]} × {found.size[1]}"
     title = f"{Path(found.scene).name}, {size}, method {found.method}: the worst wrong pixels"
     table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
     for heading in ("", "difference", "pixel", "wrong pixels"):
         table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("where", no_wrap=True)
+    table.add_column("frame", no_wrap=True)
     for heading in ("primitive", "light", "culled by", "truly", "learnt"):
         table.add_column(heading, overflow="fold")
     for number, find in enumerate(found.finds, 1):
@@ -118,12 +119,12 @@ def _table(found: Findings, scene: Scene) -> Table:
             f"{find.difference:.3f}",
             f"{find.x},{find.y}",
             f"{find.pixels:,}",
-            finds.where(find, scene),
-            printable(finds.primitive_of(find, scene)),
+            counterexample.frame_of(find, scene),
+            printable(counterexample.primitive_of(find, scene)),
             f"{number_of(scene.lights, find.light)}" + (f" (+{find.more_lights})" if find.more_lights else ""),
-            finds.verdict_of(find),
+            counterexample.verdict_of(find),
             "blocked" if find.lit else "lit",
-            finds.taught(find, scene),
+            counterexample.taught_by(find, scene),
         )
     table.caption = "difference: of the colour, of 1; wrong pixels: of the picture; light: (+ others)"
     return table

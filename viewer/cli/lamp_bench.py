@@ -7,10 +7,10 @@ from pathlib import Path
 
 from rich.table import Table
 
-from tracer.experiment import REFERENCE, in_turn, with_reference
+from tracer.experiments.experiment import REFERENCE, in_turn, with_reference
+from tracer.experiments.lamp_experiment import CEILING, LampResults, LampRow, run_lamps, table
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
-from tracer.lamp_experiment import CEILING, LampResults, LampRow, run_lamps, table
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli.console import Work
 from viewer.cli.narrow_tables import left_out, named

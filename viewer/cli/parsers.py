@@ -9,6 +9,7 @@ from pathlib import Path
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import DEFAULT_METHOD
 from tracer.settings import MAX_NODES
+from tracer.version import program_version
 from viewer.cli import examples
 from viewer.cli.argument_types import (
     BeyondMemory,
@@ -28,7 +29,6 @@ from viewer.cli.edit_options import add_edits
 from viewer.cli.mesh_arguments import add_mesh_options
 from viewer.cli.parser import Parser
 from viewer.util import resources
-from viewer.util.version import program_version
 
 WARMUP = "first trace the N frames before it"
 CAMERA = "position, direction, up, angle; a file with that, or a saved picture"

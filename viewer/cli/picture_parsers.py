@@ -7,7 +7,6 @@ from pathlib import Path
 from tracer.method import DEFAULT_METHOD
 from viewer.cli import examples, parsers
 from viewer.cli.argument_types import (
-    annotation_list,
     count,
     crops,
     curve,
@@ -174,8 +173,8 @@ def _add_display(parser: Parser) -> None:
 
 def _add_style(parser: Parser) -> None:
     """How `render` draws, beside the view."""
-    from viewer.state.slices import MIDDLE
-    from viewer.state.views import BENEATH
+    from viewer.state.draw_options import MIDDLE
+    from viewer.state.palette import BENEATH
 
     add = parser.add_argument
     add("--legend-at", type=place, metavar="X,Y", help="where the legend is: 0,0 is the upper left (default: 0,1)")
@@ -184,7 +183,6 @@ def _add_style(parser: Parser) -> None:
     )
     add("--savings", nargs="?", const="", metavar="TEXT", help=help_)
     add("--caption", default="", metavar="TEXT", help="a line below the picture, like '{scene}, frame {frame}'")
-    add("--annotations", type=annotation_list, default=(), metavar="JSON", help="arrows, boxes and words; see below")
     add("--outlines", action="store_true", help="draw the borders between primitives")
     help_ = "how much of the light shows under flat colours, 0 to 1 (default: 0.35)"
     add("--shading", type=number(0.0, 1.0), default=0.35, metavar="S", help=help_)

@@ -7,8 +7,8 @@ import time
 from argparse import Namespace
 from contextlib import AbstractContextManager
 
+from tracer.experiments.cluster import Cluster, connected, local_cluster
 from viewer.cli.console import Work
-from viewer.services.cluster import Cluster, connected, local_cluster
 
 
 def cluster_of(options: Namespace, tasks: int) -> AbstractContextManager[Cluster]:

@@ -32,9 +32,9 @@ from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
 from viewer.services.lamps import LampSamples
 from viewer.state import terms
+from viewer.state.draw_options import MIDDLE
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
 from viewer.state.readings import MOST_RECORDED
-from viewer.state.slices import MIDDLE
 from viewer.state.tone import Tone
 from viewer.state.views import View
 from viewer.util.files import check_writable, write_whole
@@ -133,7 +133,6 @@ def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) 
         outlines=options.outlines,
         legend=(options.legend_at or LEGEND_PLACE) if options.legend else None,
         caption=options.caption,
-        annotations=options.annotations,
         tone=_tone(options),
         clipping=options.mark_clipped,
         span=options.range,

@@ -23,7 +23,7 @@ _SETTINGS = (
     "method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples", "accelerator",
     "lightcuts_error", "lightcuts_nodes",
 )  # fmt: skip
-_STYLE = ("magnified", "shading", "beneath", "outlines", "annotations", "savings")
+_STYLE = ("magnified", "shading", "beneath", "outlines", "savings")
 _TONE = ("exposure", "white", "tone")
 
 

@@ -10,6 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tracer.experiments.cluster import check_dask
+from tracer.experiments.study import Study, read_study
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Cancelled, Scene
@@ -17,16 +19,14 @@ from viewer.cli import sweep_table
 from viewer.cli.console import Work, print_table, terminal_width, working
 from viewer.cli.processes import Watch, cluster_of
 from viewer.cli.tracing_options import prepare_kernels
-from viewer.services.cluster import check_dask
-from viewer.state.study import Study
-from viewer.state.study_file import read_study
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
+from viewer.util.resources import embedded_scenes
 
 if TYPE_CHECKING:  # these need pyarrow
-    from viewer.output.sweep_store import Store
-    from viewer.output.sweep_summary import Line
-    from viewer.services.sweeping import Plan, Report
+    from tracer.experiments.sweep import Plan, Report
+    from tracer.experiments.sweep_store import Store
+    from tracer.experiments.sweep_summary import Line
 
 RESULTS = "-results"
 """What the folder of a study's results is called after it."""
@@ -37,10 +37,10 @@ def sweep(path: Path, options: Namespace) -> bool:
 
     Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished."""
     check_dask()
-    from viewer.output.sweep_store import Store
-    from viewer.services import sweeping
+    from tracer.experiments import sweep as sweeping
+    from tracer.experiments.sweep_store import Store
 
-    study = read_study(path)
+    study = read_study(path, embedded_scenes())
     if options.plot is not None:
         from viewer.output.figures import check_ending
 
@@ -89,7 +89,7 @@ def _scenes(study: Study, work: Work) -> dict[str, Scene]:
 
 def _trace(plan: Plan, store: Store, options: Namespace, work: Work) -> tuple[bool, Report]:
     """Trace what is missing; returns whether it was not stopped, and what came of it."""
-    from viewer.services import sweeping
+    from tracer.experiments import sweep as sweeping
 
     report = sweeping.Report()
     for change in plan.changes:
@@ -130,8 +130,8 @@ def _trace(plan: Plan, store: Store, options: Namespace, work: Work) -> tuple[bo
 
 
 def _summary(plan: Plan, store: Store) -> list[Line]:
-    from viewer.output.sweep_summary import summary
-    from viewer.services.sweeping import frames_of
+    from tracer.experiments.sweep import frames_of
+    from tracer.experiments.sweep_summary import summary
 
     lines = summary(store.read(), (key for task in plan.tasks for key in frames_of(task)))
     return [replace(line, scene=plan.study.label(line.scene)) for line in lines]
@@ -151,7 +151,7 @@ def _plot(study: Study, lines: list[Line], path: Path) -> None:
 
 def _check(report: Report) -> None:
     """Raise OSError, in one line, where not everything went well."""
-    from viewer.services.sweeping import in_words
+    from tracer.experiments.sweep import in_words
 
     if report.unequal:
         task, number, names = report.unequal[0]

@@ -2,25 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rich.table import Table
 
-from tracer.experiment import REFERENCE
+from tracer.experiments.experiment import REFERENCE
+from tracer.experiments.study import Study
 from viewer.cli.console import width_of
 from viewer.cli.narrow_tables import left_out, named
 from viewer.state import terms
-from viewer.state.study import Study
+from viewer.util import numbers
 from viewer.util.messages import printable
 
 if TYPE_CHECKING:  # this needs pyarrow
-    from viewer.output.sweep_summary import Line
+    from tracer.experiments.sweep_summary import Line
 
 LEAST_WANTED = ("frames", "saved", "tests\nsaved", "wrong")
 """Columns that are left out, one after another, where there is no room for all."""
+
+
+def _saved(value: float, spread: float = float("nan")) -> str:
+    return "" if value != value else numbers.saved(value, spread if spread == spread else None)
+
+
+COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
+    ("frames", lambda line: f"{line.frames:,}"),
+    ("steps\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.steps, line.spread)),
+    ("tests\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.tests)),
+    (terms.SAVED, lambda line: "" if line.method == REFERENCE else f"{line.known:.1%}"),
+    ("wrong", lambda line: f"{line.wrong:,}" if line.verified else ""),
+    ("frame,\nmedian\nms", lambda line: "" if line.seconds != line.seconds else f"{1000 * line.seconds:,.1f}"),
+    ("speed-\nup, all\nframes", lambda line: "" if line.speed_up != line.speed_up else f"{line.speed_up:.2f}"),
+)
+"""What a table says of a line: headings, and the cells below them."""
 
 
 def tables(study: Study, lines: list[Line], width: int | None) -> Iterator[Table]:
@@ -55,8 +72,6 @@ def _of_part(part: list[Line], lines: list[Line], left: Sequence[str]) -> Table:
 
 def _table(title: str, shown: list[Line], lines: list[Line], left: Sequence[str] = (), where: bool = True) -> Table:
     """A section for each scene, size and combination of settings, a row for each method."""
-    from viewer.output.sweep_summary import COLUMNS
-
     verified = all(line.verified for line in lines)
     saved = f"\n{terms.SAVED} are shadow rays {terms.MEANINGS[terms.SAVED]}" * (terms.SAVED not in left)
     table = Table(title=printable(title), title_justify="left", title_style="bold", caption_justify="left")

@@ -11,13 +11,13 @@ from pathlib import Path
 
 from rich.table import Table
 
-from tracer import zoom
+from tracer.experiments import zoom
+from tracer.experiments.zoom import Aim, Approach, Results
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.model import Cancelled, Scene
-from tracer.zoom import Aim, Approach, Results
 from viewer.cli.console import Work, print_table, working
 from viewer.cli.mesh_arguments import mesh_options
 from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings

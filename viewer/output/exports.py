@@ -16,10 +16,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from tracer import experiment, lamp_experiment, zoom
+from tracer.experiments import experiment, lamp_experiment, zoom
+from tracer.version import program_version
 from viewer.output import reports
 from viewer.util.files import check_outputs, reserved, write_each, write_text
-from viewer.util.version import program_version
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

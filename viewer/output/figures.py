@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
-from tracer.experiment import REFERENCE, Results, Row, table
+from tracer.experiments.experiment import REFERENCE, Results, Row, table
 from viewer.output.reports import frames_in_words
 from viewer.util.files import write_whole
 from viewer.util.numbers import saved

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from tracer import zoom
+from tracer.experiments import zoom
 from viewer.output.figures import COLORS, SIZE, styled
 from viewer.output.film import Film, Shot
 from viewer.output.reports import happenings, zoom_title

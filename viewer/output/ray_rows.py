@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
 from tracer.reasons import MEANING, WHY_TRACED
+from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
 from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
-from viewer.output.legend_parts import named_light
-from viewer.state.picking import primitive_in_words
+from tracer.why_in_words import primitive_in_words
+from viewer.state.palette import Color
 from viewer.state.verdicts import SAID, Filter, color_of, color_of_all
-from viewer.state.views import Color
 from viewer.util.numbers import count
 
 MOST_LIGHTS = 12

@@ -15,6 +15,9 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from tracer.experiments.warmup_frames import WarmupFrame
+from tracer.experiments.warmup_frames import from_json as earlier_from_json
+from tracer.experiments.warmup_frames import to_json as earlier_to_json
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.edits import NO_EDITS, Edits
@@ -22,20 +25,15 @@ from tracer.scene.load import AFF_EXTENSIONS
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
-from viewer.output.pictures import SHADING
 from viewer.state import edits as scene_edits
-from viewer.state.annotations import Annotation
-from viewer.state.annotations import from_json as annotations_from_json
-from viewer.state.earlier import Earlier
-from viewer.state.earlier import from_json as earlier_from_json
-from viewer.state.earlier import to_json as earlier_to_json
-from viewer.state.marks import wipe_column
+from viewer.state.draw_options import MIDDLE, SHADING, DrawOptions, Slice
+from viewer.state.palette import BENEATH
 from viewer.state.session import Snapshot, settings_to_json
-from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
-from viewer.state.views import BENEATH, View
+from viewer.state.views import View
 from viewer.util import resources
 from viewer.util.json_numbers import number, whole
+from viewer.views.wipe import wipe_column
 
 MOST_BEFORE = 100_000  # frames
 CHANCE = "what is certified depends on time and threads"
@@ -46,9 +44,9 @@ BUILT = "what rays have had built depends on all that has been seen"
 class Style:
     """How a frame is drawn, without tracing it: shares instead of counts in maps of work, rings around wrong pixels for
     a picture that is shown `magnified` times, how much of the light shows under flat colours, how bright the picture
-    beneath the difference is, borders between primitives, where the legend is if there is one, the caption, what was
-    drawn on it, the tone of its colours, whether what this clips is marked, the range of a map of numbers, the slice
-    `cut` through space, and, where what culling saves stands above it, what that says of steps and time (`savings`)."""
+    beneath the difference is, borders between primitives, where the legend is if there is one, the caption, the
+    tone of its colours, whether what this clips is marked, the range of a map of numbers, the slice `cut` through
+    space, and, where what culling saves stands above it, what that says of steps and time (`savings`)."""
 
     shares: bool = False
     marked: bool = True
@@ -58,7 +56,6 @@ class Style:
     outlines: bool = False
     legend: tuple[float, float] | None = None
     caption: str = ""
-    annotations: tuple[Annotation, ...] = ()
     tone: Tone = NEUTRAL
     clipping: bool = False
     span: tuple[float, float] | None = None
@@ -87,7 +84,7 @@ class Recipe:
     history: str = ""
     by_gpu: bool = False
     folders: tuple[Path, ...] = ()
-    before: tuple[Earlier, ...] = ()
+    before: tuple[WarmupFrame, ...] = ()
     modes: str = ""
     meshes: MeshOptions = AS_IN_FILE
     edits: Edits = NO_EDITS
@@ -95,6 +92,17 @@ class Recipe:
     @property
     def size(self) -> tuple[int, int]:
         return self.settings.width, self.settings.height
+
+    @property
+    def draw(self) -> DrawOptions:
+        """How the frame is drawn."""
+        style = self.style
+        options = DrawOptions(
+            view=self.view, light=self.light, wipe=self.wipe, slice=style.cut, beneath=style.beneath,
+            shading=style.shading, tone=style.tone, outlines=style.outlines, shares=style.shares,
+            mark_wrong=style.marked, clipping=style.clipping, magnified=style.magnified,
+        )  # fmt: skip
+        return options.with_span(style.span)
 
     @property
     def needs_history(self) -> bool:
@@ -125,7 +133,7 @@ class Recipe:
 
     def to_json(self) -> dict[str, Any]:
         """What a capture carries beside its state."""
-        style = asdict(self.style) | {"annotations": [a.to_json() for a in self.style.annotations]}
+        style = asdict(self.style)
         del style["tone"], style["span"], style["cut"]  # these are of its state
         return {
             "accelerator": self.settings.accelerator,
@@ -224,7 +232,6 @@ def _style(data: Mapping[str, Any]) -> Style:
         outlines=bool(data.get("outlines", False)),
         legend=place,
         caption=str(data.get("caption", "")),
-        annotations=annotations_from_json(data.get("annotations", [])),
         clipping=bool(data.get("clipping", False)),
         savings=None if data.get("savings") is None else str(data["savings"]),
     )
@@ -286,8 +293,6 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
     if recipe.before:
         words += ["--before", json.dumps(earlier_to_json(recipe.before))]
-    if style.annotations:
-        words += ["--annotations", json.dumps([a.to_json() for a in style.annotations])]
     words += scene_edits.as_options(recipe.edits)
     for folder in recipe.folders:
         words += ["--folder", str(folder.absolute())]

@@ -9,11 +9,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import astuple, fields
 from pathlib import Path
 
-from tracer import experiment, lamp_experiment, zoom
-from tracer.experiment import REFERENCE, Row
-from tracer.lamp_experiment import LampResults, LampRow
+from tracer.experiments import experiment, lamp_experiment, zoom
+from tracer.experiments.experiment import REFERENCE, Row
+from tracer.experiments.lamp_experiment import LampResults, LampRow
+from tracer.experiments.zoom import Approach, Change, Step
 from tracer.method import Method
-from tracer.zoom import Approach, Change, Step
 from viewer.state import terms
 from viewer.util.numbers import memory, saved
 

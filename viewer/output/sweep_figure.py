@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, NullLocator, PercentFormatter
 
-from tracer.experiment import REFERENCE
+from tracer.experiments.experiment import REFERENCE
+from tracer.experiments.sweep_summary import Line
 from viewer.output.figures import COLORS, DASHES, MARKS, SIZE, styled
-from viewer.output.sweep_summary import Line
 
 MOST_PANELS = 6
 _ROWS: tuple[tuple[str, Callable[[Line], float]], ...] = (

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from tracer.reasons import Why
+from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
 from tracer.why_in_words import Words, plain
-from viewer.output.legend_parts import named_light
 
 MOST_LIGHTS = 3  # that are named before a sentence that they share; of more, the number is said
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatter, MaxNLocator
 
-from tracer import zoom
+from tracer.experiments import zoom
 from viewer.output.figures import COLORS, DASHES, SIZE, styled
 from viewer.output.reports import NEVER_WHOLE, WRONG_PIXELS, modes_in_words, never_whole, zoom_title
 from viewer.state.plans import MOST_FACTORS

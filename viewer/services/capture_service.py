@@ -16,8 +16,6 @@ from tracer.frame import Frame
 from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Progress
 from viewer.output import capture
-from viewer.output.annotations import annotated
-from viewer.output.legend_parts import Legend
 from viewer.output.legend_picture import with_legend
 from viewer.output.recipe import Recipe
 from viewer.output.savings_picture import with_savings
@@ -26,6 +24,7 @@ from viewer.services.jobs import Job
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session, settings_to_json
+from viewer.views.legend import Legend
 
 
 class CaptureService:
@@ -108,7 +107,7 @@ class CaptureService:
             described = with_legend(pixels, legend, place) if legend is not None else None
             saved = pixels if described is None else described
             if recipe is not None:
-                saved = with_savings(annotated(saved, recipe.style.annotations), frame, recipe.style.savings)
+                saved = with_savings(saved, frame, recipe.style.savings)
             if recipe is None:
                 return capture.save(saved, folder, name, text)
             kept = recipe if described is not None else replace(recipe, style=replace(recipe.style, legend=None))

@@ -6,18 +6,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from tracer import fingerprint
 from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
-from viewer.output import capture, fingerprint, recipe
+from tracer.version import program_version
+from viewer.output import capture, recipe
 from viewer.output.comparison_figure import EDITION, Crop, Shown
 from viewer.output.recipe import Recipe
 from viewer.services import stills
 from viewer.state.session import Session, Snapshot
 from viewer.util.json_numbers import whole
-from viewer.util.version import program_version
 
 MOST_METHODS, MOST_CROPS = 6, 6
 

@@ -11,11 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from tracer.experiments.zoom import Step
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
-from tracer.zoom import Step
 from viewer.services.baseline import Baseline
 from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
@@ -24,17 +24,16 @@ from viewer.services.comparing import Comparing
 from viewer.services.cut_inspector import CutInspector
 from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
+from viewer.services.frame_history import FrameHistory, FrameNavigator
 from viewer.services.hunt_controller import HuntController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
-from viewer.services.pad_flight import PadFlight
 from viewer.services.picture_controller import PictureController
 from viewer.services.presets import Presets
 from viewer.services.preview import Preview
 from viewer.services.questions import Questions
 from viewer.services.ray_inspector import RayInspector
 from viewer.services.recipes import Recipes
-from viewer.services.record import Record
 from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
 from viewer.services.run_controller import RunController
@@ -45,11 +44,9 @@ from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.shadow_inspector import ShadowInspector
 from viewer.services.teachers import Teachers
-from viewer.services.time_travel import TimeTravel
 from viewer.services.tracing import Conditions, Tracing
 from viewer.services.undo import Undo
 from viewer.state.arriving import fitting_view
-from viewer.state.history import History
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session, Snapshot
@@ -71,8 +68,7 @@ class Controller:
         self.session = session = Session(settings=preferences.settings(), view=preferences.chosen_view())
         self.notices = notices = Notices(awaken)
         self.renderer = renderer = RenderThread(awaken)
-        self.history = History()
-        self.record = Record(session, self.history)
+        self.history = FrameHistory(session)
         self.selection = Selection(session, lambda: self.frame)
         self.captures = CaptureService(session, preferences, notices, awaken)
         self.runs = RunController(
@@ -92,14 +88,13 @@ class Controller:
         self.presets = Presets(
             session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
         )
-        self.pads = PadFlight(session, preferences, self.motion, notices)
         self.inspector = ShadowInspector(self.selection, renderer)
         self.rays = RayInspector(session, self.selection, renderer)
         self.cuts = CutInspector(self.selection, renderer)
-        self.teachers = Teachers(session, self.selection, self.record, renderer)
-        self.travel = TimeTravel(
-            session, preferences, self.record, self.tracing, self.runs, self.undo, self.selection, notices,
-            self.restore, awaken,
+        self.teachers = Teachers(session, self.selection, self.history, renderer)
+        self.navigator = FrameNavigator(
+            session, preferences, self.history, self.tracing, self.runs, self.undo, self.selection, notices,
+            self.restore,
         )  # fmt: skip
         self.recorder = LightRecorder(session, renderer, self.tracing)
         refuses, overlook = self.runs.refuses, self.undo.overlook
@@ -113,7 +108,7 @@ class Controller:
         films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
         self.films = films
         self.pictures = PictureController(session, preferences, self.runs, self.recipes, notices, awaken)
-        self.hunts = HuntController(session, preferences, self.runs, self.travel, self.recipes, notices, awaken)
+        self.hunts = HuntController(session, preferences, self.runs, self.navigator, self.recipes, notices, awaken)
         self.watcher = SceneWatcher(
             preferences, lambda: self.loader.files, self._may_reload, self.loader.follow_change, awaken
         )
@@ -176,7 +171,7 @@ class Controller:
         whole = run is None and self.traced is not None and self.traced.whole
         wanted = whole and self.tracing.drawn_view is View.CUTS
         self.cuts.follow(self.frame if wanted else None, not motion.lively)
-        self.travel.follow(self.traced)
+        self.navigator.select_when_shown(self.traced)
         if not motion.lively:
             self._keep_preferences()
         self.teachers.follow(self.traced if run is None and not motion.lively else None)
@@ -260,7 +255,6 @@ class Controller:
         run = self.runs.follow()
         if run.ended:
             self.tracing.again()  # else the world might stay where the run has put it
-        self._take_replayed()
         if run.picture is not None:
             self.tracing.show(run.picture)
             frame = run.picture.frame
@@ -269,7 +263,7 @@ class Controller:
             learnt = self.renderer.take_learnt()
             for traced in learnt:
                 self.tracing.learnt.add(traced.frame)
-            self.record.add(learnt, newest, self.drawn_seconds)
+            self.history.take(learnt, newest, self.drawn_seconds)
             if newest is None:
                 return None
             frame = newest.frame
@@ -277,18 +271,6 @@ class Controller:
         self.motion.look_around(frame)
         self.selection.refresh(frame)
         return frame
-
-    def _take_replayed(self) -> None:
-        """Take up what a replay has forgotten, and which frames have taught the window's own modes since."""
-        replay = self.travel.replay
-        if replay is None:
-            return
-        if replay.take_reset():
-            self.record.forget_modes()
-        replayed = replay.take_traced()
-        self.record.add(replayed, None, self.drawn_seconds)
-        for traced in replayed:
-            self.tracing.learnt.add(traced.frame)
 
     # --- going elsewhere -------------------------------------------------------------------------
 
@@ -302,7 +284,7 @@ class Controller:
         self.renderer.use(renderer)
         self.editing.enter(renderer)
         self.before_edits.forget()
-        self.record.forget()
+        self.history.clear()
         self.tracing.forget()
         self.baseline.forget()
         self.selection.clear()
@@ -316,7 +298,7 @@ class Controller:
         same = before is not None and before.made_as(now)
         self.undo.overlook(lambda: self.session.take(now))
         self.renderer.use(renderer, fresh=False)
-        self.record.follow_edits()
+        self.history.forget_modes(blank=False)
         self.tracing.follow_edits(same)
         self.baseline.forget()
         if not same:

@@ -16,18 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from tracer import fingerprint
+from tracer.experiments.cluster import Cluster
+from tracer.experiments.remote_jobs import Emit, Job, do, prepare, world_of
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
-from viewer.output import capture, fingerprint, png
+from tracer.version import program_version
+from viewer.output import capture, png
 from viewer.output.movie import Video, frame_name, video
 from viewer.output.recipe import Recipe
 from viewer.services import filming, stills
-from viewer.services.cluster import Cluster
 from viewer.services.filming import Script
-from viewer.services.jobs_elsewhere import Emit, Job, do
-from viewer.services.sweep_tasks import prepare, world_of
 from viewer.util.files import write_bytes
-from viewer.util.version import program_version
 
 _SCENE = "film"
 

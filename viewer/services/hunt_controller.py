@@ -6,19 +6,20 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from tracer.experiments import hunt
+from tracer.experiments.counterexample import Counterexample
+from tracer.experiments.hunt import Search
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
-from viewer.output import exports, finds
-from viewer.output.finds import Find, Findings
-from viewer.services import find_figures, hunting
-from viewer.services.hunting import Search
+from viewer.output import exports
+from viewer.services import counterexamples
+from viewer.services.frame_history import FrameNavigator, JumpTarget
 from viewer.services.recipes import Recipes
 from viewer.services.run_controller import RunController
 from viewer.services.runs import LONGEST_SIDE, Run
-from viewer.services.time_travel import Goal, TimeTravel, pasts
 from viewer.state import flight, zooming
 from viewer.state.edits import as_options
 from viewer.state.notices import Notices
@@ -28,7 +29,7 @@ from viewer.state.session import Session, settings_to_json
 from viewer.state.views import View
 
 
-class HuntRun(Run[Findings]):
+class HuntRun(Run[hunt.Results]):
     """A hunt under way; its pictures are the window's.  Raises ValueError for a size that is none."""
 
     name = "hunt"
@@ -41,17 +42,17 @@ class HuntRun(Run[Findings]):
         self.search = search
         super().__init__(scene, search.frames, wake)
 
-    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[Findings]:
-        def on_frame(label: str, done: int, total: int, frame: Frame) -> None:
+    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[hunt.Results]:
+        def on_frame(label: str, frame: Frame) -> None:
             self._count(label)
             self._show(frame, wait=False)
 
-        return hunting.hunt(scene, self.search, renderer.world, cancelled, on_frame)
+        return hunt.run(scene, self.search, cancelled, renderer.world, on_frame)
 
-    def _copy(self, results: Findings) -> Findings:
+    def _copy(self, results: hunt.Results) -> hunt.Results:
         return replace(results, finds=list(results.finds))
 
-    def write(self, results: Findings, path: Path) -> None:
+    def write(self, results: hunt.Results, path: Path) -> None:
         raise ValueError("each find is saved by itself")
 
 
@@ -62,11 +63,11 @@ class FigureRun(Run[Path]):
     endings = ()
 
     def __init__(
-        self, scene: Scene, found: Findings, find: Find, search: Search, folder: Path, folders: tuple[Path, ...],
-        meshes: MeshOptions, edits: Edits, wake: Callable[[], None],
+        self, scene: Scene, found: hunt.Results, find: Counterexample, search: Search, folder: Path,
+        folders: tuple[Path, ...], meshes: MeshOptions, edits: Edits, wake: Callable[[], None],
     ) -> None:  # fmt: skip
         self._found, self._find, self._folder, self._edits = found, find, folder, edits
-        self._comparison = find_figures.comparison_of(find, found, scene, search.settings, folders, meshes, edits)
+        self._comparison = counterexamples.comparison_of(find, found, scene, search.settings, folders, meshes, edits)
         super().__init__(scene, len(find.before) + 2, wake)
 
     def lacks(self, view: View) -> str:
@@ -82,12 +83,12 @@ class FigureRun(Run[Path]):
             self.traced = min(self.traced + 1, self.frames - 1)
 
         def write(path: Path) -> None:
-            find_figures.save_figure(self._comparison, scene, renderer.world, path, tell, cancelled)
+            counterexamples.save_figure(self._comparison, scene, renderer.world, path, tell, cancelled)
 
         name = f"{scene.path.stem}-find-{self._find.primitive}-{self._find.light}"
         path = exports.save(self._folder, name, ".png", write)
         options = as_options(self._edits)
-        find_figures.save_json(self._find, self._found, scene, path.with_suffix(".json"), options)
+        counterexamples.save_json(self._find, self._found, scene, path.with_suffix(".json"), options)
         self.traced = self.frames
         yield path
 
@@ -104,12 +105,12 @@ class HuntController:
         session: Session,
         preferences: Preferences,
         runs: RunController,
-        travel: TimeTravel,
+        navigator: FrameNavigator,
         recipes: Recipes,
         notices: Notices,
         wake: Callable[[], None] = lambda: None,
     ) -> None:
-        self._session, self._preferences, self._runs, self._travel = session, preferences, runs, travel
+        self._session, self._preferences, self._runs, self._navigator = session, preferences, runs, navigator
         self._recipes, self._notices, self._wake = recipes, notices, wake
         self.plan = HuntPlan()
         self.hunt: HuntRun | None = None
@@ -122,7 +123,7 @@ class HuntController:
         return frames_within(self.plan.first, self.plan.last, scene.frames if scene is not None else 1)
 
     @property
-    def found(self) -> Findings | None:
+    def found(self) -> hunt.Results | None:
         """What the last hunt has found so far."""
         return self.hunt.results if self.hunt is not None else None
 
@@ -147,7 +148,7 @@ class HuntController:
         settings = replace(settings, certificate_seconds=float("inf"), verify=True).validated()
         return Search(settings, times, None, plan.around, plan.radius, plan.seed, plan.keep)
 
-    def find(self, number: int) -> Find | None:
+    def find(self, number: int) -> Counterexample | None:
         """A find by its place in the list, if the scene that it was found in is still open; else one line."""
         hunt, found = self.hunt, self.found
         if hunt is None or found is None or not 0 <= number < len(found.finds) or self._runs.refuses():
@@ -170,9 +171,9 @@ class HuntController:
             settings=settings_to_json(replace(settings, samples=self._session.settings.samples)), light=find.light,
         )  # fmt: skip
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
-        before = pasts([(one.time, one.camera or scene.camera_at(one.time)) for one in find.before], settings)
-        zoom = zooming.around(*point, size[0] / finds.crop_of(find, size).width)
-        self._travel.replay_to(Goal(snapshot, f"find {number + 1}", size, point, zoom, True), before)
+        warmup = tuple((one.time, one.camera or scene.camera_at(one.time)) for one in find.before)
+        zoom = zooming.around(*point, size[0] / counterexamples.crop_of(find, size).width)
+        self._navigator.go_to(JumpTarget(snapshot, f"find {number + 1}", size, point, zoom, warmup))
 
     def save_figure(self, number: int) -> None:
         """Trace and draw the figure of a find, into the folder of the pictures."""

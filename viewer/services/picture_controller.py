@@ -16,7 +16,6 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import clipboard, exr, png, tev
-from viewer.output.legend_parts import Legend
 from viewer.output.legend_picture import with_legend
 from viewer.output.recipe import Recipe, cannot_come_back
 from viewer.services import stills
@@ -30,6 +29,7 @@ from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
 from viewer.util.files import reserved
+from viewer.views.legend import Legend
 
 MOST_PIXELS = 1 << 26
 JPEG = ".jpg"
@@ -155,7 +155,7 @@ class PictureController:
     ) -> None:
         """Put what is shown, (h, w, 3), on the clipboard, with its legend.
 
-        With the recipe that makes it again, and its annotations; without one, as for two pictures, it says nothing."""
+        With the recipe that makes it again; without one, as for two pictures, it says nothing."""
         scene, place = self._session.scene, (self._preferences.legend_x, self._preferences.legend_y)
         if pixels is None or frame is None or scene is None:
             self._notices.say("there is no picture to copy yet", error=True)

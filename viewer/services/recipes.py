@@ -12,10 +12,10 @@ from viewer.output import recipe
 from viewer.output.recipe import BUILT, Recipe, Style
 from viewer.services.scene_loader import SceneLoader
 from viewer.services.tracing import Tracing
+from viewer.state.draw_options import MIDDLE
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
-from viewer.state.slices import MIDDLE
 from viewer.state.tone import NEUTRAL
 from viewer.state.views import View
 
@@ -68,7 +68,6 @@ class Recipes:
             beneath=p.beneath,
             outlines=p.outlines,
             legend=(p.legend_x, p.legend_y) if legend else None,
-            annotations=tuple(session.annotations),
             tone=session.tone if view.shows_picture else NEUTRAL,
             clipping=session.clipping and view.shows_clipped,
             span=session.spans.get(view) if ranged else None,

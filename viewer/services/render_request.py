@@ -11,6 +11,9 @@ from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
 from viewer.services.pair import Paired
 
+Warmup = tuple[tuple[float, Camera], ...]
+"""Frames by time and camera."""
+
 
 class Traces(Paired, Protocol):
     """The part of `tracer.Renderer` that is used here."""
@@ -34,7 +37,8 @@ class RenderRequest:
     `divisor` is how much coarser than the window it is; `serial` tells requests apart that are otherwise alike;
     `refinement_seconds` is how long, at least, certificates may be made for it where nobody waits for the picture.  How
     the picture comes about does not tell requests apart: `parts` of it, in sixteenths, around a `focus`.  A `quick`
-    request is not cut short before some of it has been shown, except by one that is `final`: nothing moves any more."""
+    request is not cut short before some of it has been shown, except by one that is `final`: nothing moves any more.
+    With `warmup` frames, all modes are forgotten and these are traced before it."""
 
     time: float
     camera: Camera
@@ -48,6 +52,7 @@ class RenderRequest:
     quick: bool = field(default=False, compare=False)
     final: bool = field(default=False, compare=False)
     focus: tuple[float, float] | None = field(default=None, compare=False)
+    warmup: Warmup | None = None
 
     def supersedes(self, running: RenderRequest, shown: bool = False) -> bool:
         """Whether a trace of `running`, part of which has been shown or not, is no longer worth going on with now that

@@ -16,21 +16,24 @@ at a time while nothing else is wanted, and anything that is wanted ends a step.
 from __future__ import annotations
 
 import threading
-from collections import deque
-from collections.abc import Callable, Generator
+import time
+from collections.abc import Callable, Generator, Hashable
+from concurrent.futures import Future
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 from tracer.renderer import Frame
 from tracer.scene.model import Cancelled
 from viewer.services.jobs import TRACER, step_back
 from viewer.services.pair import Asked, Pair
+from viewer.services.queries import Function, Queries, Query
 from viewer.services.render_request import Question, RenderRequest, Spare, Task, Traced, Traces
 from viewer.util.failures import Failure, failure
 
-MOST_LEARNT = 16
-"""Frames that have set modes and wait to be taken; the window takes them before it asks for the next."""
+QUERY_SECONDS = 0.25
+"""That a picture waits at most for the answer to a query; a longer one is cancelled, and may be asked for anew."""
 _KNOWN = (MemoryError, OSError)  # what may go wrong here without a mistake of the program's
 
 
@@ -47,6 +50,7 @@ class RenderThread:
         self._shown = self._whole = False  # whether a part of what is running, or all of it, has been
         self._task: tuple[Traces, Task] | None = None
         self._questions: dict[type[Question], Question] = {}  # the newest of each kind
+        self._queries = Queries()
         self._spare: Spare | None = None
         self._placed_at: float | None = None  # the time of what was traced last
         self._performing = False
@@ -54,7 +58,7 @@ class RenderThread:
         self._reset = False
         self._closing = False
         self._finished: Traced | None = None
-        self._learnt: deque[Traced] = deque(maxlen=MOST_LEARNT)
+        self._learnt: list[Traced] = []  # frames that have set modes; the window takes them before it asks for the next
         self._fresh = True  # nothing is known of modes
         self._failure: Failure | None = None  # of a frame
         self._complaints: list[Failure] = []  # of all else
@@ -71,6 +75,7 @@ class RenderThread:
             self._learnt.clear()
             self._fresh = fresh
             self._questions.clear()
+            self._queries.cancel()
             self._spare = None
             self._cancel = True
             self._changed.notify_all()
@@ -113,6 +118,13 @@ class RenderThread:
             self._questions[type(question)] = question
             self._changed.notify_all()
 
+    def query(self, function: Function, frame: Frame, *arguments: Hashable) -> Future[Any]:
+        """Return the future of `function(renderer, frame, *arguments, cancelled)` (see `viewer.services.queries`)."""
+        with self._changed:
+            future = self._queries.ask(function, frame, arguments)
+            self._changed.notify_all()
+            return future
+
     def in_spare_time(self, work: Spare | None) -> None:
         """Do this, and nothing else of its kind, while nothing is wanted; None for nothing."""
         with self._changed:
@@ -135,8 +147,7 @@ class RenderThread:
         """The frames that have set modes since the last time, in their order: those that became whole, as they were
         before further samples, and those that were left before, as they were shown last."""
         with self._changed:
-            learnt = list(self._learnt)
-            self._learnt.clear()
+            learnt, self._learnt = self._learnt, []
             return learnt
 
     def take_failure(self) -> Failure | None:
@@ -173,6 +184,7 @@ class RenderThread:
             self._closing = True
             self._cancel = True
             self._waiting = None
+            self._queries.cancel()
             self._changed.notify_all()
         self._thread.join(timeout)
         return not self._thread.is_alive()
@@ -201,6 +213,12 @@ class RenderThread:
                     _, question = self._questions.popitem()
                     if question.time == self._placed_at:
                         return partial(self._answer, self._renderer, question)
+                elif self._renderer is not None and self._placed_at is not None and (query := self._queries.take()):
+                    moved = query.frame.time != self._placed_at  # a later frame has failed, or has not been taken yet
+                    if not moved or self._waiting is None:
+                        self._placed_at = query.frame.time
+                        return partial(self._answer_query, self._renderer, query, moved)
+                    query.future.cancel()
                 elif self._renderer is not None and self._waiting is not None:
                     request, reset = self._waiting, self._reset
                     self._cancel = False
@@ -236,11 +254,11 @@ class RenderThread:
                 self._performing = False
             self._wake()
 
-    def _spend(self, renderer: Traces, work: Spare, time: float) -> None:
+    def _spend(self, renderer: Traces, work: Spare, moment: float) -> None:
         """One step of spare work; the world stands as it did before when it ends."""
 
         def wanted() -> bool:
-            others = self._task, self._waiting, self._questions or None
+            others = self._task, self._waiting, self._questions or None, self._queries or None
             return self._closing or self._reset or self._spare is not work or any(one is not None for one in others)
 
         more = False
@@ -251,11 +269,27 @@ class RenderThread:
         except Exception as problem:
             self._complain(problem, "not measured")
         finally:
-            renderer.take_turn(time)
+            renderer.take_turn(moment)
         if not more:
             with self._changed:
                 self._spare = None if self._spare is work else self._spare
             self._wake()
+
+    def _answer_query(self, renderer: Traces, query: Query, moved: bool = False) -> None:
+        """Answer a query; `moved` says that the world stands as in another frame than the query's."""
+        began = time.monotonic()
+
+        def cancelled() -> bool:
+            if query.future.cancelled() or self._closing or self._task is not None or renderer is not self._renderer:
+                return True
+            return self._waiting is not None and time.monotonic() - began > QUERY_SECONDS
+
+        if moved:
+            renderer.take_turn(query.frame.time)
+        problem = query.answer(renderer, cancelled)
+        if problem is not None:
+            self._complain(problem, "no answer")
+        self._wake()
 
     def _answer(self, renderer: Traces, question: Question) -> None:
         try:
@@ -264,15 +298,21 @@ class RenderThread:
             self._complain(problem, "no answer")
         self._wake()
 
-    def _answer_meanwhile(self, renderer: Traces, time: float) -> None:
+    def _answer_meanwhile(self, renderer: Traces, moment: float) -> None:
         """Answer what was asked about the picture that is being refined."""
         with self._changed:
             if renderer is not self._renderer:
                 return
             questions = list(self._questions.values())
             self._questions.clear()
+            queries = list(iter(self._queries.take, None))
+        for query in queries:
+            if query.frame.time == moment:
+                self._answer_query(renderer, query)
+            else:
+                query.future.cancel()
         for question in questions:
-            if question.time == time:
+            if question.time == moment:
                 self._answer(renderer, question)
 
     def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
@@ -283,6 +323,8 @@ class RenderThread:
             seconds = max(request.settings.certificate_seconds, request.refinement_seconds)
             patient = request.refinement_seconds > 0.0
             renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
+            if request.warmup is not None:
+                self._warm_up(renderer, request)
             with closing(self._refining(renderer, request)) as refining:
                 for frame, second in refining:
                     first = first or frame.statistics
@@ -302,6 +344,18 @@ class RenderThread:
                 if shown is not None and not shown.whole:
                     self._learnt.append(self._first_to_learn(shown))
         self._wake()
+
+    def _warm_up(self, renderer: Traces, request: RenderRequest) -> None:
+        """Forget all modes, and trace frames that set them."""
+        self._forget(renderer)
+        as_wanted = renderer.settings
+        renderer.settings = replace(as_wanted, verify=False)
+        for moment, camera in request.warmup or ():
+            frame = renderer.render(moment, camera, lambda: self._cancel)
+            traced = Traced(RenderRequest(moment, camera, frame.settings), frame, frame.statistics)
+            with self._changed:
+                self._learnt.append(self._first_to_learn(traced))
+        renderer.settings = as_wanted
 
     def _refining(self, renderer: Traces, request: RenderRequest) -> Generator[tuple[Frame, Frame | None], None, None]:
         """The pictures that a request asks for, each with that by the second method where there is one."""

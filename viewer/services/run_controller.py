@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from tracer import zoom
+from tracer.experiments import zoom
+from tracer.experiments.zoom import Step
 from tracer.scene.model import Camera
-from tracer.zoom import Step
 from viewer.output import exports
 from viewer.services.capture_service import CaptureService
 from viewer.services.render_request import RenderRequest, Task, Traced
@@ -68,7 +68,7 @@ class RunController:
         """Whether a run is under way that must not be disturbed; says so."""
         if self.current is None or self.current.stopping:
             return False
-        self._notices.say(f"the {self.current.name} is still under way; stop it first (Escape)")
+        self._notices.say(f"the {self.current.name} is still under way; stop it first")
         return True
 
     def start_experiment(self) -> None:

@@ -17,15 +17,15 @@ from datetime import datetime
 from pathlib import Path
 from typing import Generic, TypeVar, cast
 
-from tracer import experiment, zoom
+from tracer.experiments import experiment, zoom
 from tracer.frame import Frame, Settings
+from tracer.method import in_order
 from tracer.renderer import Renderer
 from tracer.scene.edits import Origin
 from tracer.scene.model import Cancelled, Scene
 from viewer.output import exports
 from viewer.output.film import Film
 from viewer.services.render_request import Traces
-from viewer.state.methods import in_order
 from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
 from viewer.state.views import View
 from viewer.util.failures import Failure, failure

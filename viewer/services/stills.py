@@ -12,25 +12,24 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer import fingerprint
 from tracer.culling.modes import word_type
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
 from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
-from viewer.output import capture, fingerprint, kept_modes
-from viewer.output.annotations import annotated
+from tracer.version import program_version
+from viewer.output import capture, kept_modes
 from viewer.output.caption import with_caption
-from viewer.output.legend import legend_of
-from viewer.output.legend_parts import Chosen
 from viewer.output.legend_picture import with_legend
-from viewer.output.pictures import lights_in_words, picture
 from viewer.output.recipe import Recipe
 from viewer.output.savings_picture import with_savings
-from viewer.state.earlier import Earlier
 from viewer.state.readings import can_record_lights, records_lights
 from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.util.version import program_version
+from viewer.views import colorize, legend_of
+from viewer.views.legend import lights_in_words
 
 
 def check_light(recipe: Recipe, scene: Scene) -> None:
@@ -70,7 +69,7 @@ def trace(
     `on_frame` is told how many of these are done, before each.  Raises Cancelled."""
     scene, settings, view = renderer.scene, recipe.settings, recipe.view
     times = times_before(scene, recipe.time, recipe.warmup) + [recipe.time] * recipe.repeats
-    before = [*recipe.before, *(Earlier(time, recipe.camera) for time in times)] if not recipe.modes else []
+    before = [*recipe.before, *(WarmupFrame(time, recipe.camera) for time in times)] if not recipe.modes else []
     modes = settings.modes or view.of_modes or everything or recipe.tells_counters
     renderer.settings = replace(settings, samples=1, verify=False, modes=modes)
     for done, earlier in enumerate(before):
@@ -102,26 +101,20 @@ def lights_fit(recipe: Recipe, scene: Scene, everything: bool = False) -> bool:
 def draw(frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8], str]:
     """(h, w, 3) uint8, the frame as the recipe draws it, with all that goes with it; and why there is no legend where
     one was wanted, in words."""
-    style, view, light = recipe.style, recipe.view, recipe.light
-    pixels = picture(
-        frame, view, light, style.shading, style.marked, recipe.wipe, style.shares, style.beneath,
-        style.outlines, style.magnified, style.tone, style.clipping, style.span, style.cut,
-    )  # fmt: skip
+    pixels = colorize(frame, recipe.draw)
     return dressed(pixels, frame, scene, recipe)
 
 
 def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8], str]:
     """What lies over a drawn view (h, w, 3), above and below it; as `draw`."""
-    style, view, light, missing = recipe.style, recipe.view, recipe.light, ""
+    style, missing = recipe.style, ""
     if style.legend is not None:
-        looks = style.marked, style.shares, style.span, style.tone, style.clipping
-        chosen = Chosen(light, scene.lights, *looks, style.cut)
-        legend = legend_of(frame, view, chosen)
+        legend = legend_of(frame, recipe.draw, scene.lights)
         described = with_legend(pixels, legend, style.legend) if legend is not None else None
         if described is None:
             missing = f"no legend: {'the picture is too small for it' if legend else 'the traced picture needs none'}"
         pixels = pixels if described is None else described
-    pixels = with_savings(annotated(pixels, style.annotations), frame, style.savings)
+    pixels = with_savings(pixels, frame, style.savings)
     return with_caption(pixels, style.caption), missing
 
 

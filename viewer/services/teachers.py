@@ -16,18 +16,18 @@ import numpy as np
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, shadow_mode
 from tracer.explanation import explain
 from tracer.frame import Frame
+from tracer.mode_origins import NEVER, Taught
 from tracer.reasons import TaughtBy, Why
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera
 from tracer.settings import Settings
-from viewer.services.record import Record
+from viewer.services.frame_history import FrameHistory
 from viewer.services.render_request import Question, Traced, Traces
 from viewer.services.selection import Selection
-from viewer.state.moments import Moment
+from viewer.state.history import FrameRecord
 from viewer.state.picking import Pick
 from viewer.state.readings import can_record_lights
 from viewer.state.session import Session
-from viewer.state.teaching import NEVER, Taught
 
 _LOOKED_INTO = 6  # pixels in shadow of which one may be in that of something static
 MOST_PIXELS = 1 << 22
@@ -52,8 +52,8 @@ class TeacherQuestion:
 
     `time` is that of the frame that is shown now, for which the world stands again afterwards."""
 
-    def __init__(self, time: float, moment: Moment, pick: Pick) -> None:
-        self._time, self.moment, self.pick = time, moment, pick
+    def __init__(self, time: float, record: FrameRecord, pick: Pick) -> None:
+        self._time, self.record, self.pick = time, record, pick
         self.found: Answers | None = None
 
     @property
@@ -61,9 +61,9 @@ class TeacherQuestion:
         return self._time
 
     def answer(self, renderer: Traces) -> None:
-        real, moment, pick = cast(Renderer, renderer), self.moment, self.pick
+        real, record, pick = cast(Renderer, renderer), self.record, self.pick
         try:
-            self.found = answers_at(real, moment.time, moment.camera, moment.settings, pick.unit, pick.in_cells)
+            self.found = answers_at(real, record.time, record.camera, record.settings, pick.unit, pick.in_cells)
         finally:
             real.world.place(self._time, real.state.rest.now.since > 0)
 
@@ -146,8 +146,8 @@ class Asks(Protocol):
 class Teachers:
     """Asks about the primitive that was clicked, frame after frame; `of` is what is known."""
 
-    def __init__(self, session: Session, selection: Selection, record: Record, renderer: Asks) -> None:
-        self._session, self._selection, self._record, self._renderer = session, selection, record, renderer
+    def __init__(self, session: Session, selection: Selection, history: FrameHistory, renderer: Asks) -> None:
+        self._session, self._selection, self._history, self._renderer = session, selection, history, renderer
         self._asked: TeacherQuestion | None = None
         self._subject: object = None
         self._known: dict[int, Answers] = {}
@@ -170,25 +170,25 @@ class Teachers:
             self._subject, self._asked, self._known = subject, None, {}
         asked = self._asked
         if asked is not None and asked.found is not None:
-            self._known[asked.moment.number] = asked.found
+            self._known[asked.record.number] = asked.found
             self._asked = asked = None
         if pick is None or shown is None or not shown.whole:
             return
         if asked is not None and asked.time == shown.request.time:
             return
-        moment = self._next(pick)
-        if moment is not None:
-            self._asked = TeacherQuestion(shown.request.time, moment, pick)
+        record = self._next(pick)
+        if record is not None:
+            self._asked = TeacherQuestion(shown.request.time, record, pick)
             self._renderer.ask(self._asked)
 
-    def _next(self, pick: Pick) -> Moment | None:
+    def _next(self, pick: Pick) -> FrameRecord | None:
         """A frame that taught the unit, and has not been asked about."""
-        taught = self._record.taught(pick)
+        taught = self._history.taught(pick)
         if taught is None:
             return None
         for number in sorted({n for lesson in taught.lights for n in lesson if n != NEVER} - self._known.keys()):
-            moment = self._record.moments.get(number)
+            record = self._history.records.get(number)
             # Of a picture that was left before it was whole, nobody knows any more which of its pixels were shaded.
-            if moment is not None and moment.whole and can_be_asked(moment.settings, len(pick.shadows)):
-                return moment
+            if record is not None and record.whole and can_be_asked(record.settings, len(pick.shadows)):
+                return record
         return None

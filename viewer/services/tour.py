@@ -14,10 +14,10 @@ import numpy as np
 
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, occlusion_mode
+from tracer.experiments.zoom import Results
 from tracer.explanation import Explanation
 from tracer.frame import Frame
 from tracer.method import Method
-from tracer.zoom import Results
 from viewer.services.controller import Controller
 from viewer.state import navigation
 from viewer.state.methods import BY_MODES, with_base

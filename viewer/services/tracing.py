@@ -17,7 +17,7 @@ from viewer.services import lamps, refinement
 from viewer.services.governor import AT_ONCE, Governor, Plan, divided
 from viewer.services.lamps import LampSteps
 from viewer.services.refinement import Refinement
-from viewer.services.render_request import Pictures, RenderRequest, Traced
+from viewer.services.render_request import Pictures, RenderRequest, Traced, Warmup
 from viewer.services.requests import as_asked, fulfils, lacks, settings_for
 from viewer.services.runs import Run
 from viewer.state.learnt import Learnt
@@ -43,14 +43,15 @@ class Conditions:
 
 
 @dataclass(frozen=True)
-class Held:
-    """A picture that no other is to follow: what it shows, by which method, and, where it is to have one sample a pixel
-    whatever is chosen, how many were chosen then."""
+class FrozenFrame:
+    """A picture that stays as it was found, with one sample a pixel: what it shows, the frames before it that set the
+    modes, and what was chosen then."""
 
     time: float
     camera: Camera
     method: str
-    samples: int | None
+    samples: int
+    warmup: Warmup
 
 
 class Tracing:
@@ -78,7 +79,7 @@ class Tracing:
         self.lamps = LampSteps(session)
         self.learnt = Learnt()
         self._serial = 0
-        self._held: Held | None = None  # the picture that no other is to follow
+        self._frozen: FrozenFrame | None = None
         self._refines = False  # whether the last picture was asked for to refine what is known
         self._asked: RenderRequest | None = None
         self._chosen: Settings | None = None
@@ -184,6 +185,7 @@ class Tracing:
         wanted = RenderRequest(
             session.time, session.camera, settings, plan.divisor, self._serial, seconds, samples, self._second,
             plan.parts, moving or session.playing, focus=now.focus,
+            warmup=self._frozen.warmup if self._frozen is not None and self.is_frozen else None,
         )  # fmt: skip
         if self._answered(wanted):
             self._make_final(wanted)
@@ -191,22 +193,16 @@ class Tracing:
         self._asked, self._chosen = wanted, session.settings
         self._renderer.submit(wanted)
 
-    def begin_replay(self, one_sample: bool = False) -> None:
-        """The modes are about to be forgotten, and learnt from other frames; of what is looked at now, one picture is
-        to come after these, and no further one that would know more.  It stays at `one_sample` a pixel if that is so,
-        until something else is looked at, or asked for."""
-        self.learnt.forget()
-        self.refinement.forget()
-        session = self._session
-        samples = session.settings.samples if one_sample else None
-        self._held = Held(session.time, session.camera, session.settings.method, samples)
+    def freeze(self, warmup: Warmup) -> None:
+        """Forget all modes, trace these frames, and then what is looked at now, with one sample a pixel; no further
+        picture follows, as that would know more, until something else is looked at, or asked for."""
+        session, s = self._session, self._session.settings
+        self._frozen = FrozenFrame(session.time, session.camera, s.method, s.samples, warmup)
 
     def _refine(self) -> None:
         """At idle, let one more frame of the same view follow where it will know more about shadows."""
-        if self._held is not None and not self._preferences.keep_tracing:
-            if (self._held.time, self._held.camera) == (self._session.time, self._session.camera):
-                return
-            self._held = None
+        if self.is_frozen and not self._preferences.keep_tracing:
+            return
         if self.refinement.wants_another(self.traced, self._session.view, self._preferences.keep_tracing):
             self._serial += 1
             self._refines = True
@@ -345,15 +341,15 @@ class Tracing:
     @property
     def samples_wanted(self) -> int:
         """How many it should have at idle."""
-        return 1 if self.holds_one_sample else self._session.settings.samples
+        return 1 if self.is_frozen else self._session.settings.samples
 
     @property
-    def holds_one_sample(self) -> bool:
-        """Whether the picture stays as it was found, with fewer samples than the user has chosen."""
-        held, s = self._held, self._session
-        if held is None or held.samples in (None, 1):
-            return False
-        return held == Held(s.time, s.camera, s.settings.method, s.settings.samples)
+    def is_frozen(self) -> bool:
+        """Whether the picture stays as it was found, with one sample a pixel."""
+        s = self._session
+        now = (s.time, s.camera, s.settings.method, s.settings.samples)
+        held = self._frozen
+        return held is not None and now == (held.time, held.camera, held.method, held.samples)
 
     @property
     def outdated(self) -> bool:

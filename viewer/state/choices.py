@@ -10,11 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from tracer.setting import check_all
+from viewer.state import codec
 from viewer.state.comparison import Chosen
+from viewer.state.draw_options import Slice
 from viewer.state.preferences import Preferences, checked
 from viewer.state.session import Session, settings_from_json, settings_to_json
-from viewer.state.slices import Slice
-from viewer.state.tone import Tone
+from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
 from viewer.state.zooming import Zoom
 from viewer.util.json_numbers import number, whole
@@ -98,7 +100,7 @@ class Choices:
 
     def to_json(self) -> dict[str, Any]:
         values = {"settings": self.settings, "view": self.view.value, "light": self.light, "wipe": self.wipe}
-        tone = {} if self.tone is None else {"tone": self.tone.to_json()}
+        tone = {} if self.tone is None else {"tone": codec.to_json(self.tone)}
         clipping = {} if self.clipping is None else {"clipping": self.clipping}
         return values | {"looks": self.looks} | tone | clipping
 
@@ -117,7 +119,7 @@ class Choices:
                 max(0, whole(data.get("light", 0))),
                 min(max(number(data.get("wipe", 0.5)), 0.0), 1.0),
                 {name: checked(name, looks[name], getattr(defaults, name)) for name in LOOKS if name in looks},
-                Tone.from_json(data["tone"]) if "tone" in data else None,
+                check_all(codec.patched(NEUTRAL, data["tone"])) if "tone" in data else None,
                 bool(data["clipping"]) if "clipping" in data else None,
             )
         except TypeError:

@@ -1,18 +1,29 @@
-"""The last frames' numbers, ready to plot.
+"""What is kept of past frames: counters to plot, records to go back to, and how many come in a second.
 
-Each series is kept twice in one buffer, half its length apart, so that the newest values are
-always one contiguous slice, which is what ImPlot reads without a copy.
+Each series of counters is kept twice in one buffer, half its length apart, so that the newest values are always one
+contiguous slice, which is what ImPlot reads without a copy.
 """
 
 from __future__ import annotations
 
+from collections import deque
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.frame import Frame
+from tracer.frame import Frame, Settings
+from tracer.scene.edits import NO_EDITS, Edits
+from tracer.scene.model import Camera
 from tracer.statistics import SampleCounts
+from viewer.state.views import View
 
 CAPACITY = 600
+MOST_RECORDS = 10_000
+"""Frames that can be gone back to, the newest."""
+RATE_SECONDS = 1.0
+"""Seconds back that frames count for their rate, or as far as the last two reach."""
 
 SERIES = (
     "due",
@@ -134,3 +145,78 @@ class History:
         for name, value in numbers.items():
             self._values[name][at] = self._values[name][at + self.capacity] = value
         self.frames += 1
+
+
+@dataclass(frozen=True)
+class FrameRecord:
+    """What it takes to come back to a traced frame, by its `number` in the plots.
+
+    `settings` are those that it was traced with, `chosen` those of the user as a snapshot keeps them; `size` is that of
+    the window's picture then, of which this may be a coarser version; `whole` says that all of its pixels were shaded,
+    so that it set modes.  `edits` are those of the scene."""
+
+    number: int
+    time: float
+    camera: Camera
+    follow: bool
+    settings: Settings
+    chosen: dict[str, Any]
+    view: View
+    light: int
+    wipe: float
+    size: tuple[int, int]
+    whole: bool
+    edits: Edits = NO_EDITS
+
+
+class FrameRecords:
+    """The last MOST_RECORDS frames."""
+
+    def __init__(self, most: int = MOST_RECORDS) -> None:
+        self._kept: dict[int, FrameRecord] = {}
+        self._most = most
+
+    def put(self, record: FrameRecord) -> None:
+        """Keep a frame; it takes the place of those with its number and later ones."""
+        while self._kept and next(reversed(self._kept)) >= record.number:
+            self._kept.popitem()
+        self._kept[record.number] = record
+        if len(self._kept) > self._most:
+            del self._kept[next(iter(self._kept))]
+
+    def get(self, number: int) -> FrameRecord | None:
+        """Return the frame of this number; None where it is not kept."""
+        return self._kept.get(number)
+
+    def clear(self) -> None:
+        self._kept.clear()
+
+
+class FrameRate:
+    """Times of the newest frames, in seconds."""
+
+    def __init__(self) -> None:
+        self._came: deque[float] = deque()
+
+    def count(self, now: float) -> None:
+        """Note that a frame has come."""
+        self._came.append(now)
+        while len(self._came) > 2 and self._came[0] < now - RATE_SECONDS:
+            self._came.popleft()
+
+    def per_second(self, now: float) -> float | None:
+        """Return frames a second, None while none are coming: before the second, and when the next is long overdue."""
+        if len(self._came) < 2:
+            return None
+        first, last = self._came[0], self._came[-1]
+        apart = (last - first) / (len(self._came) - 1)
+        return 1.0 / apart if apart > 0.0 and now - last <= max(RATE_SECONDS, 2.0 * apart) else None
+
+    def clear(self) -> None:
+        self._came.clear()
+
+
+def rate_in_words(rate: float) -> str:
+    """Return frames a second as text; nothing where so few come that it would read 0.0."""
+    shown = f"{rate:.0f}" if rate >= 9.5 else f"{rate:.1f}"
+    return f"{shown} frames/s" if shown != "0.0" else ""

@@ -1,4 +1,4 @@
-"""Which keys do what: those that commands have by themselves, those of a habit, and those that the user has chosen.
+"""Which keys do what: those that commands have by themselves, and those that the user has chosen.
 
 A key is written as "Ctrl+Shift+P", "W" or "Keypad7".  Without Ctrl, Alt or Super it is a *place* on the keyboard,
 called by the letter that a US keyboard has there, so that W A S D lie together on every keyboard."""
@@ -6,7 +6,6 @@ called by the letter that a US keyboard has there, so that W A S D lie together 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 
 from viewer.state.preferences import Preferences
 
@@ -28,94 +27,12 @@ HELD = {
 """What is done for as long as a key is held, and its key; Shift makes it faster."""
 
 
-@dataclass(frozen=True)
-class Habits:
-    """How another program is steered.  `keys` are those of commands, and of HELD, that differ from ours; `drags` says
-    what a drag on the picture does, by button and modifier; `wheel` and `says` what the wheel does."""
-
-    name: str
-    tip: str
-    keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    drags: Mapping[tuple[str, str], str] = field(default_factory=dict)
-    wheel: str = "by mode"
-
-
-# What drags do: "by mode" looks around (fly) or turns around what was clicked (orbit), "pan by mode" looks or pans.
-HABITS = {
-    habits.name: habits
-    for habits in (
-        Habits(
-            "Shadowcull",
-            "drag to look around, or to orbit around what was clicked; the wheel sets the speed, or comes nearer",
-            drags={("left", ""): "by mode", ("right", ""): "pan by mode", ("middle", ""): "pan"},
-        ),
-        Habits(
-            "pbrt",
-            "as pbrt's own window: any drag and the arrow keys turn, W A S D Q E move, + and - set the speed, R "
-            "resets, and Shift+C copies the camera as pbrt's statements",
-            keys={
-                "Turn left": ("LeftArrow",),
-                "Turn right": ("RightArrow",),
-                "Turn up": ("UpArrow",),
-                "Turn down": ("DownArrow",),
-                "Step forward": ("Ctrl+RightArrow",),
-                "Step back": ("Ctrl+LeftArrow",),
-                "Fly faster": ("Equal", "KeypadAdd"),
-                "Fly slower": ("Minus", "KeypadSubtract"),
-                "Copy camera for pbrt": ("Shift+C",),
-                "Two methods live": (),
-                "Zoom in": (),
-                "Zoom out": (),
-            },
-            drags={("left", ""): "look", ("right", ""): "look", ("middle", ""): "look"},
-            wheel="speed",
-        ),
-        Habits(
-            "Blender",
-            "the middle button orbits, with Shift it pans, with Ctrl it comes nearer, as the wheel does; the left one "
-            "selects; keypad 1, 3 and 7 look from the front, the right and the top, 0 is the scene's own camera",
-            keys={
-                "Focus": ("KeypadDecimal", "F"),
-                "Reset camera": ("Keypad0", "R"),
-                "Orbit left": ("Keypad4",),
-                "Orbit right": ("Keypad6",),
-                "Orbit up": ("Keypad8",),
-                "Orbit down": ("Keypad2",),
-                "Nearer": ("KeypadAdd",),
-                "Farther": ("KeypadSubtract",),
-                "Zoom in": ("Equal", "Shift+Equal"),
-                "Zoom out": ("Minus",),
-                "Command palette": ("F3", "Ctrl+Shift+P"),
-            },
-            drags={
-                ("middle", ""): "orbit",
-                ("middle", "Shift"): "pan",
-                ("middle", "Ctrl"): "dolly",
-                ("left", ""): "none",
-                ("left", "Alt"): "orbit",
-                ("right", ""): "look",
-            },
-            wheel="dolly",
-        ),
-    )
-}
-DEFAULT_HABITS = "Shadowcull"
-
-
 class Keymap:
     """`defaults` maps names of commands, and of HELD, to their keys, first the one to be shown."""
 
     def __init__(self, preferences: Preferences, defaults: Mapping[str, tuple[str, ...]]) -> None:
         self._preferences = preferences
         self._defaults = {**{name: (key,) if key else () for name, key in HELD.items()}, **defaults}
-
-    @property
-    def habits(self) -> Habits:
-        return HABITS.get(self._preferences.habits, HABITS[DEFAULT_HABITS])
-
-    def use(self, name: str) -> None:
-        """Steer as in another program; keys that the user has chosen stay."""
-        self._preferences.habits = name
 
     @property
     def names(self) -> Iterable[str]:
@@ -129,7 +46,7 @@ class Keymap:
 
     def usual(self, name: str) -> tuple[str, ...]:
         """Its keys unless the user chooses others."""
-        return self.habits.keys.get(name, self._defaults.get(name, ()))
+        return self._defaults.get(name, ())
 
     def shown(self, name: str) -> str:
         """Its first key, "" where it has none."""
@@ -165,11 +82,6 @@ class Keymap:
             for name in self._defaults
         }
         return {name: found for name, found in others.items() if found}
-
-    def drag(self, button: str, modifiers: str) -> str:
-        """What a drag does; a modifier that means nothing in a habit is as none."""
-        drags = self.habits.drags
-        return drags.get((button, modifiers), drags.get((button, ""), "none"))
 
 
 def tidy(key: str) -> str:

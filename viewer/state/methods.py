@@ -56,17 +56,6 @@ def toggled(method: str, addition: str) -> str:
     return _named(parsed.base, set(parsed.additions) ^ {addition})
 
 
-def in_order(methods: Iterable[str]) -> list[str]:
-    """Each once: in the order of bases, and those with more additions later."""
-    names, extras = [kind.name for kind in bases(measures=True)], [kind.name for kind in additions(measures=True)]
-
-    def rank(name: str) -> tuple[int, list[bool]]:
-        method = Method.parse(name)
-        return names.index(method.base), [method.has(extra) for extra in extras]
-
-    return sorted(set(methods), key=rank)
-
-
 def _named(base: str, chosen: Iterable[str]) -> str:
     """The name of a method with these additions, in their usual order."""
     wanted = set(chosen)

@@ -1,4 +1,4 @@
-"""The colours of modes, certificates and fates, and what each stands for: declared once, for views, legends, panels and figures.
+"""The colours of modes, certificates and fates, and what each stands for: declared once, for all that shows them.
 
 The colours of modes are those of Okabe and Ito, which every kind of colour-blindness tells apart, and greys do too.
 """

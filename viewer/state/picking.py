@@ -92,15 +92,6 @@ def _seen(frame: Frame) -> tuple[float, Camera, int, int]:
     return frame.time, frame.camera, frame.width, frame.height
 
 
-def primitive_in_words(scene: Scene, primitive: int) -> str:
-    """A primitive as people find it again: its kind and number, its object and its material."""
-    if not 0 <= primitive < scene.primitive_count:
-        return f"primitive {primitive}"
-    return (
-        f"{kind_of(scene, primitive)} {primitive} of {scene.name_of(primitive)} ({scene.material_of(primitive).name})"
-    )
-
-
 def shadow_mode_of(frame: Frame, unit: int, light: int) -> ShadowMode | None:
     """A unit's shadow mode for a light; None where culling does not cover the light."""
     if not modes.has_shadow_mode(frame.modes, light):

@@ -22,7 +22,8 @@ from tracer.method import DEFAULT_METHOD, Method
 from tracer.scene.lights import MAX_SAMPLES
 from viewer.state.merging import merged
 from viewer.state.methods import ADAPTIVE, NO_CULLING, is_method, with_base
-from viewer.state.views import BENEATH, View
+from viewer.state.palette import BENEATH
+from viewer.state.views import View
 from viewer.util.files import write_text
 from viewer.util.json_numbers import finite
 from viewer.util.part_files import claimed
@@ -58,7 +59,6 @@ _RANGES: dict[str, tuple[float, float]] = {
     "threads": (0, 1024),
     "shading": (0.0, 1.0),
     "beneath": (0.0, 0.6),
-    "pad_dead_zone": (0.0, 0.9),
     "legend_x": (0.0, 1.0),
     "legend_y": (0.0, 1.0),
 }
@@ -72,9 +72,9 @@ class Preferences:
     many each lamp has, 0 for as many as the scene says (the radius of lamps is measured in units of the scene, and not
     kept); `savings` says that what culling saves is shown above the picture; `legend_x` and `legend_y` say where in the
     room that the picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the tour has not
-    been shown yet, `last` is the snapshot, as JSON, to start from where that is asked for; `habits` names the program
-    that the viewer is steered like, `keys` are those that the user has chosen, by the names of commands, and `used`
-    what the command palette ran last, newest first."""
+    been shown yet, `last` is the snapshot, as JSON, to start from where that is asked for; `keys` are
+    those that the user has chosen, by the names of commands, and `used` what the command palette ran last, newest
+    first."""
 
     format: int = FORMAT
     target_fps: float = 15.0
@@ -122,9 +122,6 @@ class Preferences:
     start_where_left: bool = False
     last: dict = field(default_factory=dict)
     watch_scene: bool = True
-    pads: bool = True
-    pad_dead_zone: float = 0.15
-    habits: str = "Shadowcull"
     keys: dict[str, list[str]] = field(default_factory=dict)
     used: list[str] = field(default_factory=list)
     presets: list[dict] = field(default_factory=list)

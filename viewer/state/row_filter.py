@@ -40,7 +40,7 @@ _OPERATORS: dict[str, Callable[[NDArray, float], NDArray]] = {
 }  # fmt: skip
 _ALSO = {"name": "object", "id": "number", "primitive": "number", "lit": "non_shadow", "in_shadow": "full_shadow"}
 _WHEN_KNOWN = {
-    "wrong": "wrong answers are known while frames are verified (V)",
+    "wrong": "wrong answers are known while frames are verified",
     "occlusion": "this picture has no modes",
     "shadow": "this picture has no modes for this light",
 }

@@ -19,7 +19,7 @@ from tracer.statistics import ShadowCounts
 from viewer.state import terms, verified
 from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import BY_MODES, NO_CULLING
-from viewer.state.views import FATE_MEANING, FATE_NAMES, FATE_WOULD
+from viewer.state.palette import FATE_MEANING, FATE_NAMES, FATE_WOULD
 from viewer.util.numbers import count, percent, whole_percent
 
 LONGEST = ": 29.6 % of shadow rays saved, 15 % fewer steps, not verified, 1.08 × as fast as none (± 0.02)"
@@ -98,13 +98,15 @@ class Tone(Enum):
 @dataclass(frozen=True)
 class Clause:
     """A part of the sentence, and more about it; `compares` says that it compares the method with none.  Where there is
-    too little room for the sentence it is the `short` text, and nothing where that is empty."""
+    too little room for the sentence it is the `short` text, and nothing where that is empty. `command` is what it tells
+    to do, whose key the window adds."""
 
     text: str
     tip: str = ""
     tone: Tone = Tone.PLAIN
     compares: bool = False
     short: str | None = None
+    command: str = ""
 
 
 @dataclass(frozen=True)
@@ -162,7 +164,9 @@ def _clauses(frame: Frame, standing: Standing) -> Iterator[Clause]:
     s, method = frame.statistics, Method.parse(frame.settings.method)
     yield _saved(frame, standing)
     if not method.culls and standing.back:
-        yield Clause(f"turn {standing.back} on again (C)", "the method that culled last", Tone.QUIET)
+        yield Clause(
+            f"turn {standing.back} on again", "the method that culled last", Tone.QUIET, command="Shadow culling"
+        )
     if frame.settings.method == NO_CULLING or not s.shadow.due:
         return
     measured = standing.measured
@@ -177,11 +181,11 @@ def _clauses(frame: Frame, standing: Standing) -> Iterator[Clause]:
     if standing.run:
         return  # whose panel compares the methods, on a whole path
     if standing.unproved and method.has_certificates and not standing.moving:
-        text, made = "not all is proved yet, keep tracing (K)", terms.things(terms.made(frame.settings.method)[0])
+        text, made = "not all is proved yet, keep tracing", terms.things(terms.made(frame.settings.method)[0])
         tip = (
             f"The last picture has made {count(s.certificates)} {made}: there are more to make, while tracing goes on."
         )
-        yield Clause(text, tip, Tone.QUIET, short="unfinished (K)")
+        yield Clause(text, tip, Tone.QUIET, short="unfinished", command="Keep tracing when idle")
     if standing.moving:
         yield Clause("speed not measurable while moving", _IN_MOTION, Tone.QUIET, compares=True)
     elif standing.proves:
@@ -274,9 +278,10 @@ def _wrong(frame: Frame, method: Method) -> Clause:
         )
     if method.exact:
         return Clause(
-            "exact", "its pictures are those of none, bit for bit; to check, trace every culled ray as well (V)"
+            "exact", "its pictures are those of none, bit for bit; Verify traces every culled ray as well, to check"
         )
-    return Clause("not verified", "trace every culled ray as well, to count wrong answers (V)", Tone.QUIET)
+    tip = "trace every culled ray as well, to count wrong answers"
+    return Clause("not verified", tip, Tone.QUIET, command="Verify")
 
 
 def _speed(measured: InTurn, frame: Frame, method: Method) -> Iterator[Clause]:

@@ -17,11 +17,12 @@ from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.lights import number_of
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
+from tracer.setting import check_all
 from tracer.settings import RECORDS
+from viewer.state import codec
 from viewer.state import edits as scene_edits
-from viewer.state.annotations import Annotation
 from viewer.state.comparison import Comparison
-from viewer.state.slices import MIDDLE, Slice
+from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
 from viewer.state.zooming import FIT, Zoom
@@ -59,7 +60,7 @@ class Snapshot:
         if self.edits:
             data["edits"] = scene_edits.to_json(self.edits)
         data |= {"slice": list(data.pop("cut"))}
-        return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": self.tone.to_json()}
+        return data | {"camera": self.camera.to_json(), "view": self.view.value, "tone": codec.to_json(self.tone)}
 
     @staticmethod
     def from_json(data: Any) -> Snapshot:
@@ -77,16 +78,26 @@ class Snapshot:
                 view=View(data.get("view", View.COLOR)),
                 light=max(0, whole(data.get("light", 0))),
                 wipe=wipe if 0.0 <= wipe <= 1.0 else 0.5,
-                tone=Tone.from_json(data.get("tone", {})),
+                tone=check_all(codec.patched(NEUTRAL, data.get("tone", {}))),
                 span=_span(data.get("span")),
                 meshes=_meshes_from_json(data.get("meshes", {})),
                 edits=scene_edits.from_json(data.get("edits", {})),
-                cut=Slice.from_json(data.get("slice", list(MIDDLE))),
+                cut=_slice(data.get("slice", list(MIDDLE))),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
         except TypeError:
             raise ValueError("its saved state is damaged") from None
+
+
+def _slice(data: Any) -> Slice:
+    """A slice through space, if it is one."""
+    try:
+        found = Slice(int(data[0]), number(data[1]))
+        found.check()
+    except (TypeError, ValueError, IndexError):
+        raise ValueError("its slice is damaged") from None
+    return found
 
 
 def _span(data: Any) -> tuple[float, float] | None:
@@ -162,7 +173,6 @@ class Session:
     comparison: Comparison = field(default_factory=Comparison)
     selected: tuple[float, float] | None = None
     meshes: MeshOptions = AS_IN_FILE  # how the scene was read
-    annotations: list[Annotation] = field(default_factory=list)
     _on_path: tuple[Scene, float, Camera] | None = field(default=None, init=False, repr=False, compare=False)
 
     @property
@@ -203,7 +213,6 @@ class Session:
         self.free_camera = None
         self.playing = False
         self.selected = None
-        self.annotations = []
         self.light = min(self.light, max(len(scene.lights) - 1, 0))
 
     @property

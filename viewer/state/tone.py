@@ -7,7 +7,6 @@ It changes what is shown and saved, never what was traced.  `toned` is the twin 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -15,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.util.json_numbers import number
+from tracer.setting import setting
 
 MOST_EXPOSURE = 16.0
 """Stops of exposure, up and down."""
@@ -57,13 +56,27 @@ _MEANINGS = {
 }
 
 
+def _in_pictures(state: Any) -> bool:
+    return bool(state.draw.view.shows_picture)
+
+
 @dataclass(frozen=True)
 class Tone:
     """`exposure` in stops, which doubles colours with each; `white` is the colour, once exposed, that becomes white."""
 
-    exposure: float = 0.0
-    white: float = 1.0
-    curve: Curve = Curve.NONE
+    exposure: float = setting(
+        0.0, "Exposure", "Make colours brighter or darker by so many stops, each of which doubles them.",
+        low=-MOST_EXPOSURE, high=MOST_EXPOSURE, slider=(-6.0, 6.0), unit=" EV", option="--exposure", panel="Tone",
+        applies=_in_pictures, remembered=False,
+    )  # fmt: skip
+    white: float = setting(
+        1.0, "White", "The colour, once exposed, that becomes white.", low=WHITES[0], high=WHITES[1], log=True,
+        option="--white", panel="Tone", applies=_in_pictures, remembered=False,
+    )  # fmt: skip
+    curve: Curve = setting(
+        Curve.NONE, "Tone curve", "How colours up to white become those of the screen.", option="--tone", panel="Tone",
+        applies=_in_pictures, remembered=False,
+    )  # fmt: skip
 
     @property
     def neutral(self) -> bool:
@@ -84,23 +97,6 @@ class Tone:
         parts = [f"{self.exposure:+.3g} EV"] if self.exposure else []
         parts += [f"white {self.white:.3g}"] if self.white != 1.0 else []
         return ", ".join([*parts, self.curve.value] if self.curve is not Curve.NONE else parts)
-
-    def to_json(self) -> dict[str, Any]:
-        return {"exposure": self.exposure, "white": self.white, "curve": self.curve.value}
-
-    @staticmethod
-    def from_json(data: Any) -> Tone:
-        """The inverse of `to_json`, where what is missing has its default; raises ValueError, in one line."""
-        if not isinstance(data, Mapping):
-            raise ValueError("its tone is damaged")
-        try:
-            exposure, white = number(data.get("exposure", 0.0)), number(data.get("white", 1.0))
-            tone = Tone(exposure, white, Curve(data.get("curve", Curve.NONE)))
-        except (TypeError, ValueError):
-            raise ValueError("its tone is not understood") from None
-        if not (abs(exposure) <= MOST_EXPOSURE and WHITES[0] <= white <= WHITES[1]):
-            raise ValueError("its tone is out of range")
-        return tone
 
 
 NEUTRAL = Tone()

@@ -15,6 +15,7 @@ from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Word
 from viewer.views.legend import Legend, lights_in_words
 
 AS_SAVED = Highlight()
+USUAL = DrawOptions()
 
 
 def view_of(view: View) -> FrameView:
@@ -22,7 +23,7 @@ def view_of(view: View) -> FrameView:
     return cast(FrameView, view.declared)
 
 
-def colorize(frame: Frame, draw: DrawOptions = DrawOptions(), highlight: Highlight = AS_SAVED) -> Pixels:
+def colorize(frame: Frame, draw: DrawOptions = USUAL, highlight: Highlight = AS_SAVED) -> Pixels:
     """Draw a frame, (h, w, 3) uint8, row 0 at the top.
 
     Raises ValueError where there is no such light, or where the frame has not recorded what the view shows."""
@@ -51,3 +52,13 @@ def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
     if not view.everywhere and frame.primitive[y, x] < 0:
         return ("miss",)
     return view.words(frame, draw, x, y)
+
+
+def picture_options(draw: DrawOptions) -> tuple[object, ...]:
+    """Return what of the options counts for the pixels of a view: another one whenever they must be drawn anew."""
+    used = draw.as_needed()
+    light, wipe = draw.light if draw.view.of_light else 0, draw.wipe if draw.view is View.WIPE else 0.0
+    return (
+        used.view, light, wipe, used.slice, used.beneath, used.shading, used.tone, used.span, used.outlines,
+        used.shares, used.mark_wrong, used.clipping, used.magnified,
+    )  # fmt: skip

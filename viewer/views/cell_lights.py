@@ -22,8 +22,8 @@ class CellLights(Count):
     label = "Lights per cell"
     key = "Shift+K"
     help = (
-        "How many lights the cell of each pixel must look at, with the methods lie and lie-exact: all but those that it "
-        "knows to be hidden. Lines are the borders of cells."
+        "How many lights the cell of each pixel must look at, with the methods lie and lie-exact: all but those that "
+        "it knows to be hidden. Lines are the borders of cells."
     )
     name = "lights that the cell asks"
     has_cells = True

@@ -10,7 +10,7 @@ from tracer.frame import Frame
 from tracer.method import Method
 from viewer.state.draw_options import DrawOptions
 from viewer.state.readings import CUT_BOUND, CUT_NODES
-from viewer.util.numbers import count, percent
+from viewer.util.numbers import percent
 from viewer.views.base import Lights, Words, hits
 from viewer.views.counts import Count
 from viewer.views.legend import Legend, Note, NoteKind, counts_scale, fact

@@ -16,7 +16,16 @@ from viewer.state.palette import WRONG
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import (
-    FrameView, Highlight, Lights, Pixels, Values, Words, is_shaded, once, shaded_pixels, single,
+    FrameView,
+    Highlight,
+    Lights,
+    Pixels,
+    Values,
+    Words,
+    is_shaded,
+    once,
+    shaded_pixels,
+    single,
 )  # fmt: skip
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Note, NoteKind, fact

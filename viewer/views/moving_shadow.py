@@ -62,8 +62,8 @@ class MovingShadows(FrameView):
     key = "Shift+O"
     also = "dynamic only NON_SHADOW darkened objects"
     help = (
-        "Where a moving object darkens what nothing static has ever hidden from the chosen light (NON_SHADOW): its rays "
-        "ask dynamic objects only, so that no stale shadow stays behind."
+        "Where a moving object darkens what nothing static has ever hidden from the chosen light (NON_SHADOW): its "
+        "rays ask dynamic objects only, so that no stale shadow stays behind."
     )
     records = Record.FATES
     of_light = is_flat = True

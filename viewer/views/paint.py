@@ -212,9 +212,7 @@ def _paint_classes(
 
 
 @kernel
-def _paint_numbers(
-    place, colors, unknown, color, shading, primitive, background, cells, line, outline, pixels
-):
+def _paint_numbers(place, colors, unknown, color, shading, primitive, background, cells, line, outline, pixels):
     one, zero = np.float64(1), np.float64(0)
     h, w = primitive.shape
     shade, border, edge = np.ones(w, np.float32), np.ones(w), np.ones(w)

@@ -14,7 +14,17 @@ from viewer.state.palette import FACES_AWAY, SHADOW_COLORS, UNKNOWN, Color, hex_
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import (
-    NOT_RECORDED, FrameView, Highlight, Lights, Pixels, Values, Words, hits, is_shaded, shaded_pixels, single,
+    NOT_RECORDED,
+    FrameView,
+    Highlight,
+    Lights,
+    Pixels,
+    Values,
+    Words,
+    hits,
+    is_shaded,
+    shaded_pixels,
+    single,
 )  # fmt: skip
 from viewer.views.legend import Entry, Legend, fact, named_light
 from viewer.views.paint import by_color
@@ -44,7 +54,7 @@ ARRIVALS: dict[Arrival, tuple[str, Color, str]] = {
     Arrival.LIT: ("fully lit", SHADOW_COLORS[ShadowMode.NON_SHADOW], "all samples that it faces reach it"),
     Arrival.UNKNOWN: ("not known yet", UNKNOWN, "this pixel has not been shaded yet"),
 }  # fmt: skip
-"""Names, colours and meanings; in the penumbra, colours go from that of FEW, where next to no samples arrive, to that of
+"""Names, colours and meanings; in the penumbra, colours go from that of FEW, where hardly a sample arrives, to that of
 MOST."""
 
 _PALETTE = np.asarray([color for _, color, _ in ARRIVALS.values()], np.float32)

@@ -11,7 +11,17 @@ from viewer.state.palette import GREY
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import (
-    NOT_RECORDED, FrameView, Highlight, Lights, Pixels, Values, Words, is_shaded, once, shaded_pixels, single,
+    NOT_RECORDED,
+    FrameView,
+    Highlight,
+    Lights,
+    Pixels,
+    Values,
+    Words,
+    is_shaded,
+    once,
+    shaded_pixels,
+    single,
 )  # fmt: skip
 from viewer.views.legend import Entry, Legend, Note, Scale, fact
 from viewer.views.paint import by_number, in_range

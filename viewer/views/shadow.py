@@ -12,7 +12,13 @@ from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS, SHADOW_MEANING
 from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, per_pixel, single, spoken
 from viewer.views.legend import Legend, Note, NoteKind, named_light
 from viewer.views.modes import (
-    Class, culled_by_modes, dynamic_meaning, mode_entries, shadow_modes, units_of, untrusted,
+    Class,
+    culled_by_modes,
+    dynamic_meaning,
+    mode_entries,
+    shadow_modes,
+    units_of,
+    untrusted,
 )  # fmt: skip
 from viewer.views.paint import by_class
 

@@ -15,8 +15,20 @@ from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Scale, fact
 from viewer.views.paint import FAINT_LINE, OUTLINE, checkered, in_range, mapped, on_line, shaded
 from viewer.views.tree_slice import (
-    BORDER, HIDDEN, LEVEL, LINE, NOTHING, SAMPLES, STRIPE, WAITS, part_seen, part_words, place_of, share_built,
-    tree_codes, tree_seen,
+    BORDER,
+    HIDDEN,
+    LEVEL,
+    LINE,
+    NOTHING,
+    SAMPLES,
+    STRIPE,
+    WAITS,
+    part_seen,
+    part_words,
+    place_of,
+    share_built,
+    tree_codes,
+    tree_seen,
 )  # fmt: skip
 
 WAITS_COLORS = hex_color("4A4E57"), hex_color("6B707B")
@@ -87,7 +99,9 @@ class Tree(FrameView):
 
 def _behind(frame: Frame, draw: DrawOptions) -> Pixels:
     """Draw the dimmed picture.  It is rounded as float64, as the slice is: dimmed white lies between two bytes."""
-    colors = np.where(hits(frame)[..., None], dimmed(frame, draw.tone, draw.beneath), np.float32(BACKGROUND))
+    colors = np.where(
+        hits(frame)[..., None], dimmed(frame, draw.tone, draw.beneath), np.asarray(BACKGROUND, np.float32)
+    )
     if draw.outlines:
         colors[on_line(frame.primitive)] *= np.float32(OUTLINE)
     return np.round(colors.astype(np.float64) * 255.0).astype(np.uint8)

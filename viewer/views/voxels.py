@@ -38,8 +38,8 @@ class Voxels(FrameView):
     label = "Voxels"
     key = "Shift+V"
     help = (
-        "A slice through the voxels of the method voxels: which are in shadow of the chosen light as a whole, which see "
-        "all of it, and of which neither is known. Behind it the picture is dimmed."
+        "A slice through the voxels of the method voxels: which are in shadow of the chosen light as a whole, which "
+        "see all of it, and of which neither is known. Behind it the picture is dimmed."
     )
     of_light = has_slice = shows_picture = everywhere = True
 

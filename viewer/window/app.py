@@ -27,17 +27,15 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.failures import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, glfw_pads, graphics, menus, palette, previewing, style, window_place
+from viewer.window import commands, comparing, graphics, menus, palette, style
+from viewer.window.full_screen import Rect
+from viewer.window.gl_window import PATIENCE, ContextLoss, closing_by_signals, open_window
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
 from viewer.window.layout_file import LayoutFile
-from viewer.window.losses import Losses
-from viewer.window.opening import PATIENCE, open_window
-from viewer.window.panels import dialogs, faults, loading, picture, status, strip, tour
-from viewer.window.signals import closing_by_signals
+from viewer.window.panels import dialogs, loading, log, picture, status, strip, tour
 from viewer.window.ui import CaptureKind, Ui
-from viewer.window.widgets import tell_keys
 
 TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
@@ -49,6 +47,7 @@ FASTEST = 60.0  # frames a second of the window's own
 # user's doings, up to so many a second, and while something moves not fewer than so many.
 FASTEST_BY_PROCESSOR, SLOWEST_BY_PROCESSOR = 30.0, 12.0
 IDLE = 8.0  # frames a second while nothing happens
+SETTLED = 4  # frames of a new window until it and its panels have taken their places
 ACTIVE = 0.25  # seconds after an event until nothing happens
 TOO_MANY_LOSSES = "the window is closed, as {cause}, again and again; settings are saved"
 DRAWN_BY_PROCESSOR = ("llvmpipe", "softpipe", "swrast", "software")
@@ -71,9 +70,8 @@ class App:
         preferences, problem = load_preferences()
         self.controller = Controller(preferences)
         self.ui = Ui(self.controller)
-        self.ui.guard = Guard(self.controller.notices, lambda name, fault: faults.instead(self.ui, name, fault))
+        self.ui.guard = Guard(self.controller.notices, lambda name, fault: log.instead_of_part(self.ui, name, fault))
         self.ui.take_commands(commands.build(self.ui))
-        tell_keys(self.ui.with_keys)
         self.ui.paste_from, self.ui.copy_to = imgui.get_clipboard_text, imgui.set_clipboard_text
         self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
         self.meshes = meshes
@@ -83,17 +81,16 @@ class App:
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
         self.ui.request_exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
-        self.ui.restart_graphics = lambda: self.losses.give_up("graphics were restarted")
+        self.ui.restart_graphics = lambda: setattr(self.context_loss, "cause", "graphics were restarted")
         if preferences.tour:
             preferences.tour = False  # on the first start only; the menu Help has it again
             self.ui.tour.start()
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
         self.drawn_by_processor = self.iconified = self.was_open = self._opened = self._ended = False
-        self.losses = Losses()
+        self.context_loss = ContextLoss()
         self._room = (0, 0)
-        self._place: window_place.Rect | None = None
-        self.read_pads = glfw_pads.Pads().read
+        self._place: Rect | None = None
         if problem:
             self.controller.notices.say(problem, error=True)
 
@@ -104,7 +101,7 @@ class App:
         try:
             with closing_by_signals(self._exit):
                 self._open(runner)
-                while self.losses.cause and not self._ended:
+                while self.context_loss.cause and not self._ended:
                     self._open_again(runner)
         finally:
             threading.excepthook = hook
@@ -114,7 +111,7 @@ class App:
 
     def _open(self, runner: Runner, patience: float = 0.0) -> None:
         """One window, until it is closed or what it is drawn with is lost."""
-        self.was_open, self.losses.cause = False, ""
+        self.was_open, self.context_loss.cause = False, ""
         add_ons = immapp.AddOnsParams(with_implot=True)
         try:
             open_window(lambda: runner(self.params, add_ons), lambda: self.was_open, patience)
@@ -123,14 +120,13 @@ class App:
 
     def _open_again(self, runner: Runner) -> None:
         """Another window in the place of the one whose graphics are lost, with all that the user did."""
-        cause = self.losses.cause
-        if self.losses.too_many:
+        cause = self.context_loss.cause
+        if self.context_loss.too_many:
             raise OSError(TOO_MANY_LOSSES.format(cause=cause))
         style.forget()
         self.params = self._params()
         before, self.layout = self.layout, Layout(self.ui, self.params)
         self.layout.go_on_from(before)
-        self.read_pads = glfw_pads.Pads().read
         self.controller.notices.say(f"{cause}: the window was made anew, and nothing is lost")
         self._open(runner, PATIENCE)
 
@@ -145,18 +141,18 @@ class App:
     def before_widgets(self) -> None:
         """Everything but the widgets: input of the last frame, threads, GL."""
         self._frame_began = time.perf_counter()
-        if self.losses.look():
+        if self.context_loss.is_lost():
             self.params.app_shall_exit = True  # another window is opened then
             return
         self._follow_style()
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
         step = self.ui.guard.step
-        step("Full screen", self.ui.full_screen.follow)
+        step("Full screen", self.ui.full_screen.apply)
         step("Opening dropped files", self._open_dropped)
         step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
         step("The script's function", self._tell)
         self._draws("Drawing the picture", lambda: graphics.draw(self.ui))
-        self._draws("Drawing the preview", lambda: previewing.draw(self.ui))
+        self._draws("Drawing the preview", lambda: graphics.draw_preview(self.ui))
         self._draws("Drawing recorded pictures", self._bring_shots)
         self._draws("Saving the picture", self._capture_picture)
         self._stay_awake()
@@ -170,25 +166,16 @@ class App:
         step("Reading the keys", lambda: menus.handle_keys(self.ui))
         step("Flying", lambda: picture.fly(self.ui))
         step("Comparing", lambda: comparing.follow_key(self.ui))
-        step("Game pads", self._follow_pads)
         overlay("The progress of loading", lambda: loading.show(self.ui))
         dialogs.show(self.ui)
         overlay("The tour", lambda: tour.show(self.ui), self.ui.tour.end)
-        overlay("The notice", lambda: faults.notice(self.ui), self.controller.notices.faults.dismiss)
+        overlay("The notice", lambda: log.show_fault(self.ui), self.controller.notices.dismiss_faults)
 
     def after_widgets(self) -> None:
         """The window is drawn but not yet shown."""
         self._draws("Saving the window", self._capture_window)
         self.controller.undo.held = imgui.is_any_item_active()
         self.controller.drawn_seconds = time.perf_counter() - self._frame_began
-
-    def _follow_pads(self) -> None:
-        if not self.ui.key_wanted and not imgui.get_io().want_text_input:
-            found = self.read_pads()
-            if found and not window_place.in_front(glfw_utils.glfw_window_hello_imgui()):
-                return  # sticks are those of the program in front
-            runs = {c.name: c.run for c in self.ui.commands if c.enabled()} if found else {}
-            self.controller.pads.follow(found, runs)
 
     # --- the steps -------------------------------------------------------------------------------
 
@@ -208,7 +195,7 @@ class App:
         size = imgui.get_io().display_size
         if self.iconified or min(size.x, size.y) < 1:
             return 0, 0
-        if imgui.get_frame_count() >= window_place.SETTLED:
+        if imgui.get_frame_count() >= SETTLED:
             self._room = self.ui.picture_area
         return self._room
 
@@ -219,7 +206,7 @@ class App:
             try:
                 work()
             except Exception:
-                if not self.losses.look():
+                if not self.context_loss.is_lost():
                     raise
 
         self.ui.guard.step(name, unless_lost)
@@ -298,7 +285,7 @@ class App:
     def _ready(self) -> None:
         """The window and its GL context exist."""
         self.was_open, self.iconified = True, False
-        self.losses.watch()
+        self.context_loss.watch()
         graphics.make(self.ui)
         self.drawn_by_processor = any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
@@ -310,7 +297,7 @@ class App:
         glfw.set_window_close_callback(window, self._close_wanted)
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
-        self.ui.full_screen.begin(window)
+        self.ui.full_screen.begin()
         if not self._opened:
             self._opened = True
             self._open_first()

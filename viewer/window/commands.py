@@ -14,14 +14,14 @@ from viewer.window import camera_commands, edit_commands, mesh_commands, space_c
 from viewer.window.closer_commands import comparing, looking
 from viewer.window.command import Command, Condition
 from viewer.window.finding import finding, fly_to_selected
-from viewer.window.taking import drawing, taking
+from viewer.window.taking import taking
 from viewer.window.ui import CaptureKind, Ui
 
 
 def build(ui: Ui) -> list[Command]:
     """All commands, in the order of the menus."""
     menus = (
-        _file, edit_commands.build, what_if_commands.build, drawing, _view, looking, comparing, _camera, _time,
+        _file, edit_commands.build, what_if_commands.build, _view, looking, comparing, _camera, _time,
         _culling, _run, _help,
     )  # fmt: skip
     return [command for menu in menus for command in menu(ui)]
@@ -77,7 +77,7 @@ def _view(ui: Ui) -> list[Command]:
             lambda: c.settings.set_view(view),
             view.key,
             checked=lambda: c.session.view is view,
-            also=view.also,
+            also=view.declared.also,
         )
 
     def toggle(name: str) -> Callable[[], None]:

@@ -17,8 +17,6 @@ def close_newest(ui: Ui) -> bool:
         _close_list()
     elif ui.tour.step is not None and ui.controller.frame is None:  # a window until there is a picture
         ui.tour.end()
-    elif ui.tool is not None:
-        ui.tool = ui.drawn = None
     elif ui.about_open:
         ui.about_open = False
     elif ui.presets_open:
@@ -29,8 +27,8 @@ def close_newest(ui: Ui) -> bool:
         ui.fold.drawer = ""
     elif ui.screening is not None:
         ui.screening = None
-    elif ui.controller.notices.faults.notice is not None:
-        ui.controller.notices.faults.dismiss()
+    elif ui.controller.notices.newest_fault is not None:
+        ui.controller.notices.dismiss_faults()
     else:
         return False
     return True

@@ -7,30 +7,26 @@ from __future__ import annotations
 
 from typing import Any
 
-from imgui_bundle import glfw_utils, hello_imgui
+from imgui_bundle import glfw_utils
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
-from viewer.window.window_place import Place, Rect, is_normal, place_of, shared
-
-_MAXIMISED = "maximised"  # Hello ImGui keeps words under names beside the layout
+Rect = tuple[int, int, int, int]
+"""Left, top, width, height."""
 
 
 class FullScreen:
-    """`wanted` is what the user asked for; `follow` does it between two frames.  `place` is where the window is
-    otherwise."""
+    """`wanted` is what the user asked for; `apply` does it between two frames."""
 
     def __init__(self) -> None:
         self.wanted = False
-        self.place = Place()
-        self._entered = False
-        self._maximised = False  # before it was full
+        self._place: Rect | None = None  # where the window was before it was full; None while it is not
         self._again = False  # whether another window is to be full in its place
 
     def toggle(self) -> None:
         self.wanted = not self.wanted
 
-    def follow(self) -> None:
+    def apply(self) -> None:
         """Make the window what is wanted; to be called where no frame is under way."""
         window = glfw_utils.glfw_window_hello_imgui()
         monitor = glfw.get_window_monitor(window)
@@ -38,75 +34,36 @@ class FullScreen:
             self._enter(window)
         elif monitor and not self.wanted:
             self._leave(window)
-        elif self.place.due():
-            if monitor:
-                _fill(window, monitor)
-            self.place.follow(window)
 
-    def begin(self, window: Any) -> None:
-        """A window has been made: as the last one was."""
-        self.place.new_window()
-        self.wanted, self._entered = self._again, False
-        self._maximised = hello_imgui.load_user_pref(_MAXIMISED) == "yes"
-        if self._maximised:
-            glfw.maximize_window(window)
+    def begin(self) -> None:
+        """A window has been made: full if the last one was."""
+        self.wanted, self._place = self._again, None
 
     def end(self) -> Rect | None:
-        """The window goes; where it is, or was before it was full or maximised."""
-        window = glfw_utils.glfw_window_hello_imgui()
-        if is_normal(window):
-            self.place.normal = place_of(window)
-        full = bool(glfw.get_window_monitor(window))
-        maximised = self._maximised if full else bool(glfw.get_window_attrib(window, glfw.MAXIMIZED))
-        hello_imgui.save_user_pref(_MAXIMISED, "yes" if maximised else "no")
+        """The window goes; returns where it was before it was full, None where it is not."""
         self._again, self.wanted = self.wanted, False
-        if full:
-            self._leave(window)
-        return self.place.normal
+        return self._place
 
     def _enter(self, window: Any) -> None:
-        if not self._entered:  # else its screen has gone, and GLFW has made it a window in a place that is not its own
-            self._maximised = bool(glfw.get_window_attrib(window, glfw.MAXIMIZED))
-            if is_normal(window):
-                self.place.normal = place_of(window)
-        monitor = _monitor_of(place_of(window))
-        if monitor is None:
-            self.wanted = False
-            return
-        self._entered = True
-        _fill(window, monitor)
+        place = (*glfw.get_window_pos(window), *glfw.get_window_size(window))
+        if self._place is None:  # else its screen has gone, and it is in no place of its own
+            self._place = place
+        monitor = _monitor_of(place)
+        mode = glfw.get_video_mode(monitor)
+        glfw.set_window_monitor(window, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
 
     def _leave(self, window: Any) -> None:
-        self._entered = False
-        x, y, width, height = self.place.normal or (100, 100, 1280, 800)
+        x, y, width, height = self._place or (100, 100, 1280, 800)
+        self._place = None
         glfw.set_window_monitor(window, None, x, y, width, height, glfw.DONT_CARE)  # type: ignore[arg-type]
-        if self._maximised:
-            glfw.maximize_window(window)
-        self.place.new_window()
-
-
-def _fill(window: Any, monitor: Any) -> None:
-    """Give a window all of a screen, whose size may have changed since it had."""
-    mode = _mode_of(monitor)
-    if mode is None:
-        return
-    there = glfw.get_window_monitor(window) and tuple(glfw.get_window_size(window)) == tuple(mode.size)
-    if not there:
-        glfw.set_window_monitor(window, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
 
 
 def _monitor_of(place: Rect) -> Any:
-    """The screen that shows most of a window, None where there is none."""
+    """The screen that holds the middle of a window, else the first."""
+    x, y = place[0] + place[2] // 2, place[1] + place[3] // 2
 
-    def shown(monitor: Any) -> int:
-        return shared(place, (*glfw.get_monitor_pos(monitor), *_mode_of(monitor).size))
+    def holds(monitor: Any) -> bool:
+        (left, top), size = glfw.get_monitor_pos(monitor), glfw.get_video_mode(monitor).size
+        return left <= x < left + size.width and top <= y < top + size.height
 
-    return max(filter(_mode_of, glfw.get_monitors()), key=shown, default=None)
-
-
-def _mode_of(monitor: Any) -> Any:
-    """Size and rate of a screen, None where it is just going."""
-    try:
-        return glfw.get_video_mode(monitor)
-    except ValueError:
-        return None
+    return next(filter(holds, glfw.get_monitors()), glfw.get_primary_monitor())

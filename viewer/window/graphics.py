@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
+
+import moderngl
 
 from viewer.services.controller import Controller
 from viewer.state.missing import missing
 from viewer.state.parts import parts_of
+from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.savings import comparison_in_words
-from viewer.window import comparing, previewing
-from viewer.window.compared import Compared
-from viewer.window.display import Display, Look
+from viewer.state.views import View
+from viewer.views.base import Highlight
+from viewer.window import comparing
+from viewer.window.display import Compared, Display, InWindow
 from viewer.window.magnifier import Magnifier
 from viewer.window.panels import legend, savings
+from viewer.window.preview import PreviewDisplay
 from viewer.window.shots import Shots
 from viewer.window.ui import CaptureKind, Ui
+
+PREVIEW_UPLOAD_SECONDS = 0.01
+"""That bringing the preview to the GPU takes of each of the window's frames, at most, unless one piece takes longer."""
 
 
 def make(ui: Ui) -> None:
     """Make all that a new context needs."""
     ui.display = Display()
     ui.shots = Shots(ui.display.context)
-    ui.compared = Compared(ui.display.passes)
-    ui.magnifier = Magnifier(ui.display.passes)
+    ui.compared = Compared(ui.display.context)
+    ui.magnifier = Magnifier(ui.display.context)
     ui.renderer_name = ui.display.context.info["GL_RENDERER"]
 
 
@@ -34,7 +43,7 @@ def release(ui: Ui) -> None:
     if ui.magnifier is not None:
         ui.magnifier.release()
         ui.magnifier = None
-    previewing.release(ui)
+    release_preview(ui)
     if ui.display is not None:
         ui.display.release()
         ui.display = None
@@ -48,38 +57,69 @@ def draw(ui: Ui) -> None:
     display, c = ui.display, ui.controller
     if display is None:
         return
-    display.show(c.frame)
     picked, part, now = c.selection.picked, c.selection.part, c.session.edited
     if part is not None and now is not None:
-        display.know_parts(ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives]))
-    look = look_of(ui, picked.primitive if picked is not None else -1)
-    look = replace(look if part is None else replace(look, selected_part=part), fate=ui.fate_shown)
-    display.draw(look)
-    comparing.draw(ui, look)
-    comparing.magnify(ui, look)
+        display.part_of = ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives])
+    options, window = comparing.draw_options(ui), in_window(ui)
+    if picked is not None:
+        window = replace(window, selected=picked.primitive, selected_part=-1 if part is None else part)
+    display.draw(c.frame, options, window)
+    comparing.draw(ui, options, window.smooth)
+    comparing.magnify(ui, options, window.smooth)
 
 
-def look_of(ui: Ui, selected: int = -1) -> Look:
-    """How the view is to be drawn, with an outline around a primitive unless it is -1."""
-    c, p = ui.controller, ui.controller.preferences
-    return Look(
-        view=c.tracing.drawn_view,
-        light=c.session.light,
-        shading=p.shading,
-        outlines=p.outlines,
-        selected=selected,
-        smooth=p.smooth_upscaling and c.session.zoom.fits,
-        marked=p.mark_wrong,
-        magnified=c.tracing.magnified,
-        wipe=c.session.wipe,
-        line=not c.tracing.becoming_finer,
-        shares=p.work_shares,
-        beneath=p.beneath,
-        tone=c.session.tone,
-        clipping=c.session.clipping,
-        span=c.comparing.span(c.tracing.drawn_view),
-        cut=c.session.cut,
-    )
+def draw_preview(ui: Ui) -> None:
+    """Draw what is seen while kernels compile from where the camera is; free what it took once there is none any more.
+    The window's framebuffer stays bound.
+
+    A geometry that failed to be drawn is not tried again in this window."""
+    geometry = ui.controller.preview.geometry
+    if ui.display is None or geometry is None:
+        release_preview(ui)
+    elif ui.not_previewed is not geometry:
+        try:
+            _draw_preview(ui, ui.display, geometry)
+        except Exception:
+            release_preview(ui)
+            ui.not_previewed = geometry
+            raise
+
+
+def release_preview(ui: Ui) -> None:
+    """Free what the preview took; whatever comes next is tried."""
+    if ui.preview is not None:
+        ui.preview.release()
+    ui.preview = ui.not_previewed = None
+
+
+def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
+    c = ui.controller
+    if ui.preview is None or ui.preview.geometry is not geometry:
+        release_preview(ui)
+        ui.preview = PreviewDisplay(display.context, geometry)
+    width, height = ui.picture_area
+    if min(width, height) < 1:
+        return
+    window = display.context.detect_framebuffer()
+    try:
+        until = time.perf_counter() + PREVIEW_UPLOAD_SECONDS
+        while ui.preview.bring() and time.perf_counter() < until:
+            pass
+        if ui.preview.whole:
+            ui.preview.draw(c.session.camera, (width, height), hurried=c.motion.under_way)
+        else:
+            c.wake()
+    finally:
+        window.use()
+        display.context.disable(moderngl.DEPTH_TEST)
+
+
+def in_window(ui: Ui) -> InWindow:
+    """Return what the window adds to the picture, but for what is selected."""
+    c = ui.controller
+    smooth, view = c.preferences.smooth_upscaling and c.session.zoom.fits, c.tracing.drawn_view
+    line = view is not View.WIPE or not c.tracing.becoming_finer  # of few pixels it would be thick
+    return InWindow(smooth=smooth, highlight=Highlight(ui.fate_shown if view is View.FATE else None, line))
 
 
 def capture(ui: Ui) -> None:
@@ -98,14 +138,14 @@ def capture(ui: Ui) -> None:
     ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
     if ui.display is not None and ready:
         ui.capture_wanted = ui.capture_view = None
-        look = look_of(ui, selected=-1)  # the mark is for the user, not for the picture
-        ui.display.draw(look)
-        pixels = ui.display.read() if ui.display.drawn(look) else None
+        options, window = comparing.draw_options(ui), in_window(ui)  # without what is selected
+        ui.display.draw(c.frame, options, window)
+        pixels = ui.display.read() if ui.display.shows(options, window) else None
         compared = pixels is not None and comparing.shown(ui) is not None
         if pixels is not None and compared:
-            pixels = comparing.composed(ui, pixels)
+            pixels = comparing.composed_picture(ui, pixels)
         described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
-        recipe = c.recipes.of(c.frame, look.view) if c.frame is not None and not compared else None
+        recipe = c.recipes.of(c.frame, options.view) if c.frame is not None and not compared else None
         if recipe is not None and c.frame is not None and recipe.tells_counters:
             said = comparison_in_words(c.frame, savings.standing(c))
             recipe = replace(recipe, style=replace(recipe.style, savings=said))

@@ -11,8 +11,7 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui, implot
 
-from viewer.state.log import Entry
-from viewer.state.notices import Notices
+from viewer.state.notices import Entry, Notices
 from viewer.util.failures import failure
 
 

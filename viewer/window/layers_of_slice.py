@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from viewer.state.readings import VOXELS, can_draw, tree_of, voxels_of
-from viewer.state.slices import AXES, Slice, middle_of
-from viewer.state.tree_slice import LAYERS, layer_of, place_of
+from viewer.state.draw_options import AXES, Slice
+from viewer.state.readings import VOXELS, can_draw
 from viewer.state.views import View
+from viewer.views.tree import tree_of
+from viewer.views.tree_slice import LAYERS, layer_of, place_of
+from viewer.views.voxel_slice import middle_of
+from viewer.views.voxels import voxels_of
 from viewer.window.ui import Ui
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tracer.zoom import Approach, Step
+from tracer.experiments.zoom import Approach, Step
 from viewer.output.film import Shot
 from viewer.services.runs import ZoomTest
 

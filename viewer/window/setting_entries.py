@@ -76,7 +76,6 @@ _SWITCHES = {
     "fixed_resolution": ("Fixed size", "Rendering"),
     "legend_in_pictures": ("Legend in saved pictures", "Saving"),
     "savings_in_pictures": ("What culling saves in saved pictures", "Saving"),
-    "pads": ("Game pads and space mice", "Camera"),
 }
 
 
@@ -153,8 +152,6 @@ def _of_window(ui: Ui) -> Iterator[Number]:
     yield Number("Picture height", "Rendering", lambda: p.fixed_height, put("fixed_height"), 1, LONGEST_SIDE)
     yield Number("Flying speed", "Camera", lambda: p.speed, put("speed"), 0.001, 1000, whole=False)
     yield Number("Playback rate", "Camera", lambda: p.playback_rate, put("playback_rate"), 0.01, 100, whole=False)
-    yield Number("Dead zone of sticks", "Camera", lambda: 100.0 * p.pad_dead_zone, put("pad_dead_zone", 100.0), 0, 90,
-                 whole=False, unit=" %")  # fmt: skip
     yield Number("Shading", "View", lambda: p.shading, put("shading"), 0, 1, whole=False)
     yield Number("Size of the interface", "View", lambda: 100.0 * p.ui_scale, put("ui_scale", 100.0), 75, 200,
                  whole=False, unit=" %")  # fmt: skip

@@ -5,7 +5,6 @@ Panels and commands share it; what they do to the scene goes through the control
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
@@ -13,22 +12,20 @@ from pathlib import Path
 from typing import Any
 
 from tracer.culling.fate import Fate
+from tracer.scene.lights import named_light
 from tracer.why_in_words import Link
 from viewer.output.capture import FIELDS
-from viewer.output.legend_parts import named_light
 from viewer.services.controller import Controller
 from viewer.services.file_browser import Browser
 from viewer.services.tour import Tour
-from viewer.state.annotations import Annotation, Kind
 from viewer.state.keymap import Keymap
 from viewer.state.pixels import Pixels, Point
 from viewer.state.placing import Rect
 from viewer.state.preferences import default_screenshot_folder
 from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.views import View
-from viewer.window.command import Command, is_key, key_label
-from viewer.window.compared import Compared
-from viewer.window.display import Display
+from viewer.window.command import Command, is_key
+from viewer.window.display import Compared, Display
 from viewer.window.finder import Finder
 from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
@@ -37,8 +34,6 @@ from viewer.window.magnifier import Magnifier
 from viewer.window.preview import PreviewDisplay
 from viewer.window.screening import Screening
 from viewer.window.shots import Shots
-
-_IN_BRACKETS = re.compile(r" \(([^()]+)\)")
 
 
 class CaptureKind(Enum):
@@ -66,8 +61,7 @@ class Fold:
 @dataclass
 class Ui:
     """See the module. `picture_area` is the size, in framebuffer pixels, that the picture may fill, `picture_size` the
-    one that it fills; `wiping` says that the pointer holds the line of the wipe, `tool` what it draws, `drawn` what is
-    being drawn, and `drawn_text` the words that are typed there, `pointed_light` and `pointed_link`
+    one that it fills; `wiping` says that the pointer holds the line of the wipe, `pointed_light` and `pointed_link`
     which light and which name it is on in the inspector, whose rays are to unfold for `rays_wanted` frames;
     `light_filters` is what is typed above each list of lights; `screening` is the recorded picture that is shown in the
     picture's place; `legend_shown` says whether the picture shows its legend, `legend_place` where that is on the
@@ -76,8 +70,7 @@ class Ui:
     `editing` is the list and the place in it of a name that is being edited, `edited` that name; `tour_height` is what
     the picture leaves free below it for the tour, `tour_place` where that is: left, top and width. `gesture` is what a
     drag does that moves no camera, from `gesture_at` on, a point of the picture; `menu_at` is the point that the menu
-    over the picture is about, and `plot_frame` the frame that the menu of a plot is about, `plot_named` its name;
-    `plot_pointed` is the one that the pointer was on last.
+    over the picture is about; `plot_pointed` is the frame of a plot that the pointer was on last.
     `what_if_drawn` is the frame of ImGui's in which the panel What if was drawn last, `what_if_below` how high all is
     below its list of lights, `held_light` the light that the pointer drags, and `changed_shown` says that changed
     pixels are to be seen. `find_focus` asks for the keyboard above the table of what is in the scene, of which
@@ -109,8 +102,6 @@ class Ui:
     copy_to: Callable[[str], None] = lambda text: None
     about_open: bool = False
     per_pixel: bool = True
-    plot_frame: int = 0
-    plot_named: str = ""
     plot_pointed: int | None = None
     picture_area: tuple[int, int] = (0, 0)
     picture_focused: bool = False
@@ -120,13 +111,9 @@ class Ui:
     modifiers: int = 0
     chorded: set[str] = field(default_factory=set)
     pressed: int = 0
-    pressed_with: str = ""
     pressed_at: tuple[float, float] = (0.0, 0.0)
     dragged: bool = False
     wiping: bool = False
-    tool: Kind | None = None
-    drawn: Annotation | None = None
-    drawn_text: str | None = None
     new_bookmark: str = ""
     dropped: list[Path] = field(default_factory=list)
     renderer_name: str = ""
@@ -204,7 +191,11 @@ class Ui:
 
     def key(self, name: str) -> str:
         """The key of a command as the user reads it on the keyboard, in brackets after a blank; "" without one."""
-        shown = self.key_label(name)
+        return self.keys(name)
+
+    def keys(self, *names: str) -> str:
+        """The keys of several, as in " (L and Shift+L)"; those that have one."""
+        shown = " and ".join(filter(None, map(self.key_label, names)))
         return f" ({shown})" if shown else ""
 
     def key_label(self, name: str) -> str:
@@ -216,19 +207,6 @@ class Ui:
         command is in the menus."""
         menus = (f"{c.menu} > {c.name}".replace("/", " > ") for c in self.commands if c.name == name)
         return self.key_label(name) or next(menus, name)
-
-    def with_keys(self, text: str) -> str:
-        """A text with the usual keys of commands, each in brackets, or two with an "and", as they are now."""
-        usual = {key_label(command.key): command.name for command in self.commands if command.key}
-
-        def now(found: re.Match[str]) -> str:
-            names = [usual.get(key) for key in found[1].split(" and ")]
-            if None in names:
-                return found[0]
-            keys = [self.key_label(name) for name in names if name]
-            return f" ({' and '.join(filter(None, keys))})" if any(keys) else ""
-
-        return _IN_BRACKETS.sub(now, text) if " (" in text else text
 
     @property
     def default_folder(self) -> Path:

@@ -138,18 +138,8 @@ def tooltip(text: str) -> None:
         tooltip_at(text)
 
 
-_with_keys: list[Callable[[str], str]] = []
-
-
-def tell_keys(actual: Callable[[str], str]) -> None:
-    """Let tooltips that end in a key in brackets name the one that is chosen for it now."""
-    _with_keys[:] = [actual]
-
-
 def tooltip_at(text: str) -> None:
     """Explain what is under the pointer."""
-    for actual in _with_keys:
-        text = actual(text)
     if imgui.begin_tooltip():
         imgui.push_text_wrap_pos(em(24.0))
         imgui.text_unformatted(text)

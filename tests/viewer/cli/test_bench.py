@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 from tests.terminal import Terminal
+from tracer.version import program_version
 from viewer.__main__ import main
 from viewer.cli.bench import frame_range
 from viewer.cli.console import Work
 from viewer.cli.parser import MISUSED
 from viewer.output import figures
-from viewer.util.version import program_version
 
 ROOT = Path(__file__).resolve().parents[3]
 SMALL = ["bench", "figure4", "--path-frames", "6", "--size", "48x32"]

@@ -9,8 +9,8 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
-from tracer.experiment import FIGURES, Results
-from tracer.lamp_experiment import LampResults
+from tracer.experiments.experiment import FIGURES, Results
+from tracer.experiments.lamp_experiment import LampResults
 from tracer.method import line_up
 from viewer.cli import console, lamp_bench
 from viewer.cli.bench_table import _COLUMNS, bench_table

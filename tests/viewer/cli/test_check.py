@@ -14,7 +14,7 @@ from tracer.culling.fate import Fate
 from viewer.cli.console import Work
 from viewer.cli.saved_pictures import defaults
 from viewer.output import capture, png
-from viewer.state.views import FATE_COLORS
+from viewer.state.palette import FATE_COLORS
 
 SIZE = ("--size", "64x48", "--threads", 1)
 
@@ -107,6 +107,10 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
         ("gone", {"state": data["state"] | {"scene": "/gone/gone.aff"}}),
         ("damaged", {"picture": data["picture"] | {"warmup": "many"}}),
         ("figure", {"figure": {}}),
+        (
+            "drawn",
+            {"picture": data["picture"] | {"style": data["picture"]["style"] | {"annotations": [{"kind": "box"}]}}},
+        ),
     ):
         png.write(Path(f"{name}.png"), pixels("a.png"), json.dumps(data | change))
     Image.new("RGB", (4, 4)).save("plain.png")
@@ -116,6 +120,7 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
         "unknown.png": "learnt elsewhere",
         "gone.png": "its scene is gone",
         "damaged.png": "its warmup is not understood",
+        "drawn.png": "drawn on it",
         "figure.png": "methods or crops are damaged",
         "plain.png": "not one captured",
         "other.pdf": "not a figure",

@@ -41,7 +41,7 @@ def test_finds_are_written_checked_and_explained(capfd: pytest.CaptureFixture[st
     assert code == 0 and "(wrong)" in out and f"light {find['light']}" in out
 
     again = run(capfd, "hunt", "marbles.aff", *SEARCH, "-o", "wrong")
-    assert "there are finds in it already" in complaint(again)
+    assert "has counterexamples already" in complaint(again)
 
 
 def test_frames_before_are_part_of_a_picture(capfd: pytest.CaptureFixture[str]) -> None:

@@ -21,15 +21,15 @@ from PIL import Image
 
 from tests.commands import ROOM, complaint, run
 from tests.viewer.marbles import write_marbles
-from tracer import experiment
+from tracer import fingerprint
+from tracer.experiments import experiment
+from tracer.experiments import sweep as sweeping
+from tracer.experiments.cluster import Cluster, local_cluster
 from tracer.frame import Frame
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
 from viewer.cli import processes
 from viewer.cli.console import Work
-from viewer.output import fingerprint
-from viewer.services import sweeping
-from viewer.services.cluster import Cluster, local_cluster
 
 METHODS = ("none", "paper", "cells", "certified", "certified+cache")
 STUDY = """\
@@ -204,7 +204,7 @@ def test_a_film_by_two_processes_is_that_of_one(shared: Cluster, capfd: pytest.C
 def test_another_version_does_not_take_part(
     shared: Cluster, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("viewer.services.jobs_elsewhere.program_version", lambda: "9.9")
+    monkeypatch.setattr("tracer.experiments.remote_jobs.program_version", lambda: "9.9")
     code, _, err = run(capfd, "sweep", "study.toml")
     assert code == 1 and "16 tasks failed, the first of them room.aff" in err and "not 9.9" in err
     assert not (Path("study-results") / "results.parquet").exists()
@@ -219,7 +219,7 @@ def test_without_dask_one_line_says_so(capfd: pytest.CaptureFixture[str], monkey
 def test_a_scheduler_that_is_not_there_is_one_line(
     capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("viewer.services.cluster.CONNECT", 0.3)
+    monkeypatch.setattr("tracer.experiments.cluster.CONNECT", 0.3)
     line = complaint(run(capfd, "sweep", "study.toml", "--scheduler", "tcp://127.0.0.1:9"))
     assert "--scheduler tcp://127.0.0.1:9: no Dask scheduler answers there" in line
 
@@ -228,7 +228,7 @@ def test_a_scheduler_that_is_not_there_is_one_line(
 def test_processes_end_with_the_one_that_started_them() -> None:
     code = (
         "import time\n"
-        "from viewer.services.cluster import local_cluster\n"
+        "from tracer.experiments.cluster import local_cluster\n"
         "if __name__ == '__main__':\n"
         "    with local_cluster(1) as cluster:\n"
         "        while not cluster.started(): time.sleep(0.05)\n"

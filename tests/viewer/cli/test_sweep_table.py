@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import pytest
 from rich.console import Console
 
+from tracer.experiments.sweep_summary import Line
 from viewer.cli import sweep_table
-from viewer.output.sweep_summary import COLUMNS, Line
 
 METHODS = ("none", "paper", "lightcuts-stochastic", "certified+lightbuffer")
 STUDY = SimpleNamespace(title="Two rooms")
@@ -43,7 +43,9 @@ def test_nothing_is_cut_off(width: int | None, count: int):
         assert word in text, word
     words = " ".join(text.split())
     left_out = [
-        heading for heading, _ in COLUMNS if " ".join(heading.split()) in words.partition("a wider terminal")[2]
+        heading
+        for heading, _ in sweep_table.COLUMNS
+        if " ".join(heading.split()) in words.partition("a wider terminal")[2]
     ]
     assert bool(left_out) == (width in (80, 100)), left_out
     assert ("18.4 × as many" in text) == ("tests\nsaved" not in left_out)

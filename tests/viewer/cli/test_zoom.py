@@ -16,8 +16,8 @@ from PIL import Image
 
 from tests.sweeps import cases
 from tests.terminal import Terminal
+from tracer.experiments.zoom import STILL_FRAMES, Approach, Change, Results, Step
 from tracer.scene.model import Camera
-from tracer.zoom import STILL_FRAMES, Approach, Change, Results, Step
 from viewer.__main__ import main
 from viewer.output import figures
 from viewer.output.reports import changes_in_words, happenings, modes_in_words

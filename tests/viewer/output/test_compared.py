@@ -7,12 +7,13 @@ import pytest
 
 from tests.viewer.fakes import make_frame
 from viewer.output.compared import GAP, composed, difference_legend, signed_picture
-from viewer.output.legend_parts import Tone
-from viewer.state.comparison import Way, apart
-from viewer.state.slices import MIDDLE
-from viewer.state.values import values_of
-from viewer.state.views import LESS, MORE, SAME, WIPE_LINE, View, signed_map
+from viewer.state.comparison import CompareMode, apart
+from viewer.state.draw_options import MIDDLE
+from viewer.state.palette import LESS, MORE, SAME, WIPE_LINE, signed_map
+from viewer.state.views import View
 from viewer.state.zooming import Zoom
+from viewer.views import values_of
+from viewer.views.legend import NoteKind
 
 A, B = (np.full((4, 10, 3), level, np.uint8) for level in (10, 200))
 
@@ -34,20 +35,20 @@ def test_zero_has_a_colour_of_its_own_and_both_sides_are_alike():
 
 
 def test_a_composed_picture_shows_what_the_window_does():
-    wiped = composed(A, B, Way.WIPE, 0.3, shows_a=False)
+    wiped = composed(A, B, CompareMode.WIPE, 0.3, shows_a=False)
     assert (wiped[:, :3] == 10).all() and (wiped[:, 4:] == 200).all() and (wiped[:, 3] == to_bytes(WIPE_LINE)).all()
-    side = composed(A, B, Way.SIDE, 0.3, shows_a=False)
+    side = composed(A, B, CompareMode.SIDE, 0.3, shows_a=False)
     assert side.shape == (4, 20 + GAP, 3) and (side[:, :10] == 10).all() and (side[:, -10:] == 200).all()
-    for way in (Way.FLIP, Way.BLINK, Way.WIPE):
+    for way in (CompareMode.FLIP, CompareMode.BLINK, CompareMode.WIPE):
         assert (composed(A, B, way, 0.3, shows_a=True) == 10).all()
-    assert (composed(A, B, Way.FLIP, 0.3, shows_a=False) == 200).all()
-    assert composed(A[:2, :5], B, Way.FLIP, 0.3, shows_a=True).shape == B.shape
+    assert (composed(A, B, CompareMode.FLIP, 0.3, shows_a=False) == 200).all()
+    assert composed(A[:2, :5], B, CompareMode.FLIP, 0.3, shows_a=True).shape == B.shape
 
 
 def test_the_legend_of_a_difference():
     values = values_of(make_frame(), View.COLOR, cut=MIDDLE)
     none = difference_legend(apart(np.zeros((8, 16), np.float32)), values, 1.0)
-    assert none.notes[0].tone is Tone.GOOD and "bit for bit" in none.notes[0].text
+    assert none.notes[0].tone is NoteKind.GOOD and "bit for bit" in none.notes[0].text
     difference = np.zeros((8, 16), np.float32)
     difference[0, :4] = 0.5, -0.25, 0.5, 0.125
     legend = difference_legend(apart(difference), values, 0.5)

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from tracer import experiment
+from tracer.experiments import experiment
 from viewer.output import figures
 from viewer.output.reports import frames_in_words
 

@@ -27,28 +27,20 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
-from tracer.scene.lights import Light
+from tracer.scene.lights import Light, light_in_words
 from tracer.statistics import CutErrors, SaidByModes
-from viewer.output.legend import legend_of
 from viewer.output.legend_counts import occlusion_legend, shadow_legend, work_legend
-from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, QUIET, TEXT, TONES, fitting, lay_out, wrapped
-from viewer.output.legend_parts import Chosen, Legend, Tone, light_in_words
+from viewer.output.legend_parts import Chosen
 from viewer.output.legend_picture import with_legend
-from viewer.output.pictures import picture
-from viewer.state.readings import voxels_of
-from viewer.state.slices import Slice
-from viewer.state.views import (
-    FATE_COLORS,
-    FATE_NAMES,
-    GREY,
-    OCCLUSION_COLORS,
-    WRONG,
-    Certificate,
-    View,
-    color_map,
-)
+from viewer.state.draw_options import Slice
+from viewer.state.palette import FATE_COLORS, FATE_NAMES, GREY, OCCLUSION_COLORS, WRONG, Certificate, color_map
+from viewer.state.views import View
 from viewer.util.numbers import percent
 from viewer.util.resources import embedded_scenes
+from viewer.views import colorize, legend_of
+from viewer.views.legend import Legend, NoteKind
+from viewer.views.legend_layout import BACKDROP, BACKDROP_OPACITY, NOTES, QUIET, TEXT, fitting, lay_out, wrapped
+from viewer.views.voxels import voxels_of
 
 SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)
 LINE = 10.0
@@ -152,7 +144,7 @@ def test_in_motion_legends_count_the_modes_that_are_drawn():
         assert frame.shaded is not None and not frame.shaded.all()
         hit = (frame.primitive >= 0).sum()
         for view, rows in ((View.OCCLUSION, occlusion_legend(frame)), (View.SHADOW, shadow_legend(frame, 2))):
-            drawn = picture(frame, view, 2, shading=0.0).reshape(-1, 3)
+            drawn = colorize(frame, view, 2, shading=0.0).reshape(-1, 3)
             for color in {row.color for row in rows} - {GREY}:  # which is that of stripes, too
                 solid = sum(row.pixels for row in rows if row.color == color and row.stripes is None)
                 striped = sum(row.pixels for row in rows if row.color == color and row.stripes is not None)
@@ -272,7 +264,7 @@ def test_a_light_is_called_by_its_number_and_by_a_name_that_says_more(frame: Fra
     assert light_in_words(2, "light 2") == light_in_words(2, "") == "light 2"
     assert of(frame, View.SHADOW, light=1, lights=LAMPS).title == "Shadow mode, light 1 (lamp)"
     uncovered = of(frame, View.SHADOW, light=20)
-    assert not uncovered.entries and uncovered.notes[0].tone is Tone.WARNING
+    assert not uncovered.entries and uncovered.notes[0].tone is NoteKind.WARNING
 
 
 def test_heat_maps_say_whether_they_count_or_share(frame: Frame):
@@ -335,11 +327,11 @@ def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame
     assert of(frame, View.DIFFERENCE).notes[0].text == "in the 12.0 % of the picture that is shaded"
     right = replace(frame, wrong=np.zeros_like(frame.wrong))
     known.cuts, known.wrong, known.part = None, replace(found, answers=0, pixels=0), 1.0
-    assert of(right, View.DIFFERENCE).notes[0].tone is Tone.PLAIN
+    assert of(right, View.DIFFERENCE).notes[0].tone is NoteKind.PLAIN
     assert of(right, View.DIFFERENCE).notes[0].text == "None wrong of 15,360 answers known without tracing (25.0 %)."
     known.wrong = replace(known.wrong, untraced=0)
     off = of(right, View.DIFFERENCE).notes[0]
-    assert off.tone is Tone.WARNING and off.text.startswith("Every shadow ray was traced")
+    assert off.tone is NoteKind.WARNING and off.text.startswith("Every shadow ray was traced")
 
 
 def test_a_wrong_answer_that_no_screen_shows_is_not_a_difference_of_none(frame: Frame):
@@ -383,7 +375,7 @@ def test_words_wrap_at_the_edge():
 def test_texts_can_be_read_over_any_picture(picture: float):
     """Contrast of 4.5 to 1 (WCAG 2), against the backdrop over black, grey and white."""
     backdrop = tuple(BACKDROP_OPACITY * channel + (1.0 - BACKDROP_OPACITY) * picture for channel in BACKDROP)
-    for color in (TEXT, QUIET, *TONES.values()):
+    for color in (TEXT, QUIET, *NOTES.values()):
         assert (luminance(color) + 0.05) / (luminance(backdrop) + 0.05) > 4.5
 
 

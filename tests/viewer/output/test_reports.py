@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tracer.experiment import Results, Row
+from tracer.experiments.experiment import Results, Row
 from viewer.output.reports import LINES, SPEED_UP, WRONG, caveats, leaders, lines
 
 

@@ -129,7 +129,7 @@ _PEN = "\uf304"
 def _log(d: Driver) -> None:
     d.ui.show_panel("Plots")
     d.frames(3)
-    d.c.notices.log.read()
+    d.c.notices.log.mark_read()
     d.c.notices.say("this could not be done", error=True)
     d.frames(2)
     assert len(d.c.notices.log.unread) == 1

@@ -10,11 +10,11 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
-from viewer.output.pictures import picture
 from viewer.services import scene_files
-from viewer.state.faults import QUIET_AFTER
+from viewer.state.notices import QUIET_AFTER
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
+from viewer.views import colorize
 from viewer.window import menus
 from viewer.window.panels import browser, plots, statistics, status
 
@@ -24,7 +24,7 @@ KEY = imgui.Key
 def failing(d: Driver) -> None:
     """Whatever fails, in drawing, a panel, a menu, a command or a thread, is a notice; the window lives on."""
     d.settle()
-    faults, log, guard, display = d.c.notices.faults, d.c.notices.log, d.ui.guard, d.ui.display
+    notices, log, guard, display = d.c.notices, d.c.notices.log, d.ui.guard, d.ui.display
     again = f"{icons.ICON_FA_ROTATE_RIGHT}  Try again"
 
     def fail(*_: object) -> None:
@@ -32,9 +32,9 @@ def failing(d: Driver) -> None:
 
     def noticed(about: str, times: int = 1) -> None:
         """There is a notice, of one failure only, with all that is known; it is copied, and goes."""
-        d.wait(lambda: faults.notice is not None, f"a notice about {about}", 20.0)
+        d.wait(lambda: notices.newest_fault is not None, f"a notice about {about}", 20.0)
         d.frames(8)  # a flood would be counted by now
-        notice = faults.notice
+        notice = notices.newest_fault
         assert about in notice.text and "made to fail" in notice.text and "Traceback" in notice.details, notice
         assert notice.count == times and len([e for e in log.entries() if e.text == notice.text]) == 1
         d.context.item_click(f"//##fault/{icons.ICON_FA_COPY}  Copy details")
@@ -42,7 +42,7 @@ def failing(d: Driver) -> None:
         assert imgui.get_clipboard_text() == notice.as_text
         d.context.item_click("//##fault/Dismiss")
         d.frames(3)
-        assert faults.notice is None and d.c.frame is not None
+        assert notices.newest_fault is None and d.c.frame is not None
 
     # Drawing: the picture stays what it was, is not tried again until it should be another, and is not saved as one.
     before, frame = d.shown(), d.c.frame
@@ -53,20 +53,20 @@ def failing(d: Driver) -> None:
     d.press(KEY.f12)
     d.frames(3)
     assert not (d.folder / "pictures").exists() and "no picture to save" in d.c.notices.message.text
-    faults.dismiss()
+    notices.dismiss_faults()
     display._draw_into = draw_into
     d.press(KEY._6)
-    expected = picture(frame, View.NORMAL, shading=d.c.preferences.shading)
+    expected = colorize(frame, View.NORMAL, shading=d.c.preferences.shading)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     most, display.context.info["GL_MAX_TEXTURE_SIZE"] = display.context.info["GL_MAX_TEXTURE_SIZE"], 16
     d.fix_resolution(120, 90)
     d.settle()
-    assert "120 x 90 is too large for this GPU" in faults.notice.text
+    assert "120 x 90 is too large for this GPU" in notices.newest_fault.text
     display.context.info["GL_MAX_TEXTURE_SIZE"] = most
     d.c.preferences.fixed_resolution = False
     d.settle()
     assert display.size == (d.c.frame.width, d.c.frame.height)
-    faults.dismiss()
+    notices.dismiss_faults()
 
     # Panels, with tables, children and plots open: one says what is wrong with it, and is shown again when told to.
     for label, module, name in (("Statistics", statistics, "_milliseconds"), ("Plots", plots, "_stack")):

@@ -8,9 +8,10 @@ from tests.viewer.driver import Driver
 from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from viewer.output.legend_counts import fate_legend, occlusion_legend
-from viewer.output.pictures import picture
-from viewer.state.views import OCCLUSION_COLORS, View
+from viewer.state.palette import OCCLUSION_COLORS
+from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
+from viewer.views import colorize
 from viewer.window.command import chord
 
 SOME = 12  # pictures in motion that are looked at
@@ -58,13 +59,13 @@ def fates(d: Driver) -> None:
 
 
 def _shows_what_is_drawn(d: Driver, view: View, light: int) -> None:
-    expected = picture(d.c.frame, view, light, shading=d.c.preferences.shading).astype(int)
+    expected = colorize(d.c.frame, view, light, shading=d.c.preferences.shading).astype(int)
     assert d.c.session.light == light and np.abs(d.shown() - expected).max() <= 2
 
 
 def _legend_counts_what_is_drawn(frame: Frame) -> None:
     """The legend's shares are those of the colours in the picture."""
-    drawn = picture(frame, View.OCCLUSION, shading=0.0).reshape(-1, 3)
+    drawn = colorize(frame, View.OCCLUSION, shading=0.0).reshape(-1, 3)
     colors = np.round(255.0 * np.array(list(OCCLUSION_COLORS.values())))
     for row, color in zip(occlusion_legend(frame), colors, strict=True):
         assert row.pixels == (drawn == color).all(axis=1).sum(), row.name

@@ -12,9 +12,9 @@ from PIL import Image
 
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.studios import standing
-from viewer.output.pictures import picture
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
+from viewer.views import colorize
 from viewer.window.command import chord
 from viewer.window.panels import browser
 
@@ -141,7 +141,7 @@ def reopening(d: Driver) -> None:
         d.c.renderer.take = take
         d.settle()
         assert d.c.tracing.drawn_view is view
-        expected = picture(d.c.frame, view, shading=d.c.preferences.shading)
+        expected = colorize(d.c.frame, view, shading=d.c.preferences.shading)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
 
 

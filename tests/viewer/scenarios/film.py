@@ -7,7 +7,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from PIL import Image
 
 from tests.viewer.driver import Driver
-from tracer import zoom
+from tracer.experiments import zoom
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 

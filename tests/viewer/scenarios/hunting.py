@@ -33,7 +33,7 @@ def _from_a_plot(d: Driver) -> None:
         d.press(KEY.right_arrow)
         d.settle()
     here, number = c.session.time, c.history.frames - 1
-    moments = [c.record.moments.get(n) for n in range(number + 1)]
+    moments = [c.history.records.get(n) for n in range(number + 1)]
     target = next(m.number for m in moments if m is not None and m.time == c.session.scene.frame_time(1))
     _point_at_sample(d, target)
     d.context.mouse_click(0)
@@ -42,14 +42,6 @@ def _from_a_plot(d: Driver) -> None:
     d.press(int(KEY.z) | CTRL)
     d.settle()
     assert c.session.time == here
-
-    _point_at_sample(d, target)
-    d.context.mouse_click(1)
-    d.frames(3)
-    d.context.item_click(f"//$FOCUSED/Go to picture {target} with its modes")
-    d.wait(lambda: c.travel.replay is not None and c.runs.current is None, "the frames before it", 60.0)
-    d.settle()
-    assert c.travel.replay.whole and c.frame.time == c.session.scene.frame_time(1)
 
 
 def _point_at_sample(d: Driver, number: int) -> None:
@@ -77,10 +69,10 @@ def _from_the_inspector(d: Driver) -> None:
     d.frames(3)
     picked = c.selection.picked
     assert picked is not None
-    taught = c.record.taught(picked)
+    taught = c.history.taught(picked)
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
     d.wait(lambda: c.teachers.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
-    moment = c.record.moments.get(lesson.lit)
+    moment = c.history.records.get(lesson.lit)
     d.scroll_down("Inspector")
     d.context.item_click(f"//Inspector/**/picture {lesson.lit}##taught {light} lit")
     d.settle()

@@ -17,7 +17,7 @@ from tests.viewer.previews import colors_of
 from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Progress
 from viewer.services import scene_files, scene_loader
-from viewer.window import previewing as previewing_window
+from viewer.window import graphics
 from viewer.window.panels.preview import words
 
 KEY = imgui.Key
@@ -87,7 +87,7 @@ def _tour_fits(d: Driver) -> None:
     """Until there is a preview, all steps of the tour are listed, above the status bar; with what to do in each only
     where there is room for that."""
     made = d.ui.preview
-    with mock.patch.object(previewing_window, "draw"):
+    with mock.patch.object(graphics, "draw_preview"):
         d.ui.tour.start()
         d.ui.preview = None
         heights = []

@@ -15,7 +15,6 @@ from tests.viewer.driver import Driver
 from tracer.frame import Frame
 from viewer.state.views import View
 from viewer.window import density
-from viewer.window.window_place import place_of
 
 KEY = imgui.Key
 SMALL = (1100, 700)
@@ -41,11 +40,11 @@ def reviving(d: Driver) -> Callable[[Driver], Any]:
     def lose() -> None:
         """In the middle of a frame, as something else than the picture is drawn: that is no fault."""
         d.app._bring_shots = bring  # type: ignore[method-assign]
-        d.app.losses.status = lambda: UNKNOWN_RESET
+        d.app.context_loss.status = lambda: UNKNOWN_RESET
         raise RuntimeError("made to fail")
 
     d.app._bring_shots = lose  # type: ignore[method-assign]
-    d.wait(lambda: bool(d.app.losses.cause), "the loss to be seen", 20.0)
+    d.wait(lambda: bool(d.app.context_loss.cause), "the loss to be seen", 20.0)
     return lambda d: _revived(d, *before)
 
 
@@ -59,9 +58,9 @@ def _revived(d: Driver, state: tuple[Any, ...], picture: np.ndarray, frame: Fram
     assert (d.c.frame.width, d.c.frame.height) == (frame.width, frame.height)
     assert np.array_equal(d.shown(), picture)
     assert d.c.notices.message.text.startswith("the graphics driver was reset: the window was made anew")
-    assert d.c.notices.faults.notice is None
+    assert d.c.notices.newest_fault is None
     _denser_screen(d)
-    _smaller_screen(d)
+    _full_screen(d)
 
 
 def _denser_screen(d: Driver) -> None:
@@ -82,14 +81,15 @@ def _lengths() -> tuple[float, ...]:
     return style.frame_padding.x, style.item_spacing.x, style.scrollbar_size, style.indent_spacing
 
 
-def _smaller_screen(d: Driver) -> None:
-    """A window of which most is on no screen any more comes to one, and has its place there again after it was full."""
-    window, place = glfw_utils.glfw_window_hello_imgui(), d.ui.full_screen.place
-    with mock.patch.object(place, "_areas", lambda: [(0, 0, 400, 300)]):
-        d.wait(lambda: place_of(window) == (0, 0, 400, 300), "the window to come back", 20.0)
-        d.ui.full_screen.toggle()
-        screen = glfw.get_video_mode(glfw.get_monitors()[0]).size
-        d.wait(lambda: place_of(window) == (0, 0, *screen), "a full window", 20.0)
-        d.ui.full_screen.toggle()
-        d.wait(lambda: place_of(window) == (0, 0, 400, 300), "the window as it was", 20.0)
-    d.resize(*SMALL)
+def _full_screen(d: Driver) -> None:
+    """The window has its place again after it was full."""
+
+    def place() -> tuple[int, ...]:
+        window = glfw_utils.glfw_window_hello_imgui()
+        return (*glfw.get_window_pos(window), *glfw.get_window_size(window))
+
+    before, screen = place(), glfw.get_video_mode(glfw.get_monitors()[0]).size
+    d.ui.full_screen.toggle()
+    d.wait(lambda: place() == (0, 0, *screen), "a full window", 20.0)
+    d.ui.full_screen.toggle()
+    d.wait(lambda: place() == before, "the window as it was", 20.0)

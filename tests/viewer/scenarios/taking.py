@@ -1,4 +1,4 @@
-"""Pictures that leave the window: as a command, larger, with drawings, to the clipboard and to tev."""
+"""Pictures that leave the window: as a command, larger, to the clipboard and to tev."""
 
 from __future__ import annotations
 
@@ -12,14 +12,11 @@ from PIL import Image
 
 from tests.viewer.driver import Driver
 from viewer.output import capture
-from viewer.output.annotations import annotated
 from viewer.output.compared import composed
-from viewer.output.pictures import picture
-from viewer.output.recipe import from_json
-from viewer.state.annotations import Kind
-from viewer.state.comparison import Way
+from viewer.state.comparison import CompareMode
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
+from viewer.views import colorize
 from viewer.window.panels import save_as
 from viewer.window.ui import CaptureKind
 
@@ -37,38 +34,11 @@ def taking(d: Driver) -> None:
     d._in_frame.append(lambda: copied.append(imgui.get_clipboard_text()))
     d.wait(lambda: bool(copied), "the clipboard")
     assert copied[0] == d.c.recipes.command() and copied[0].startswith("shadowcull render ")
-
-    camera = d.c.session.camera
-    left, top, right, bottom = d.picture_edges()
-    width, height = right - left, bottom - top
-    next(c for c in d.ui.commands if c.name == "Draw an arrow").run()
-    d.drag((left + 0.5 * width, top + 0.5 * height), (0.2 * width, 0.1 * height))
-    next(c for c in d.ui.commands if c.name == "Draw a box").run()
-    d.drag((left + 0.3 * width, top + 0.3 * height), (0.1 * width, 0.1 * height))
-    next(c for c in d.ui.commands if c.name == "Write on the picture").run()
-    d.context.mouse_move_to_pos((left + 0.2 * width, top + 0.7 * height))
-    d.context.mouse_click(0)
-    d.frames(3)
-    d.context.key_chars("Look here")
-    d.press(KEY.enter)
-    drawn = d.c.session.annotations
-    assert [a.kind for a in drawn] == [Kind.ARROW, Kind.BOX, Kind.TEXT] and drawn[2].text == "Look here"
-    assert abs(drawn[0].x1 - 0.7) < 0.02 and abs(drawn[0].y1 - 0.6) < 0.02
-    assert d.c.session.camera == camera, "the pointer draws, and does not look around"
-    next(c for c in d.ui.commands if c.name == "Undo drawing").run()
-    assert len(drawn) == 2
-    d.press(KEY.escape)
-    assert d.ui.tool is None
-
-    d.c.preferences.screenshot_template = "drawn.png"
+    d.c.preferences.screenshot_template = "taken.png"
     d.press(KEY.f12)
     d.wait(lambda: not d.c.captures.busy, "the picture")
-    saved = d.folder / "pictures" / "drawn.png"
-    with Image.open(saved) as image:
-        assert np.array_equal(np.asarray(image), annotated(d.shown(), drawn))
-    recipe = from_json(*capture.read_with_size(saved), capture.read_data(saved)["picture"])
-    assert recipe.style.annotations == tuple(drawn)
-
+    with Image.open(d.folder / "pictures" / "taken.png") as image:
+        assert np.array_equal(np.asarray(image), d.shown())
     _nothing_to_save(d)
     _save_as(d)
     _copy(d)
@@ -76,8 +46,6 @@ def taking(d: Driver) -> None:
     next(c for c in d.ui.commands if c.name == "Send to tev").run()
     d.wait(lambda: not d.c.pictures.jobs, "nobody to listen")
     assert d.c.notices.message.error and "is tev or HDRView open there?" in d.c.notices.message.text
-    next(c for c in d.ui.commands if c.name == "Clear drawings").run()
-    assert not drawn
     d.settle()
 
 
@@ -137,8 +105,7 @@ def _save_as(d: Driver) -> None:
     d.wait(lambda: d.c.runs.current is None, "the toned picture")
     (path,) = (d.folder / "pictures").glob("tiny-color-96x64*")
     with Image.open(path) as image:
-        expected = annotated(picture(d.c.frame, tone=d.c.session.tone), d.c.session.annotations)
-        assert np.array_equal(np.asarray(image), expected)
+        assert np.array_equal(np.asarray(image), colorize(d.c.frame, tone=d.c.session.tone))
     assert capture.read(path).tone == d.c.session.tone
 
 
@@ -160,9 +127,9 @@ def _copy(d: Driver) -> None:
         d.frames(2)
         assert "is on the clipboard" in d.c.notices.message.text
         with Image.open(folder / "got.png") as image:
-            assert np.array_equal(np.asarray(image), annotated(d.shown(), d.c.session.annotations))
+            assert np.array_equal(np.asarray(image), d.shown())
         d.c.comparing.keep()
-        d.c.comparing.start(Way.SIDE)
+        d.c.comparing.start(CompareMode.SIDE)
         d.settle()
         d.press(int(KEY.c) | CTRL)
         d.wait(lambda: not d.c.pictures.jobs and d.ui.capture_wanted is None, "the copy of both")
@@ -172,8 +139,8 @@ def _copy(d: Driver) -> None:
         if wayland is not None:
             os.environ["WAYLAND_DISPLAY"] = wayland
     with Image.open(folder / "got.png") as image:
-        a, b = d.shown(), annotated(d.shown(), d.c.session.annotations)
-        assert np.array_equal(np.asarray(image), composed(a, b, Way.SIDE, 0.5, False))
+        a = d.shown()
+        assert np.array_equal(np.asarray(image), composed(a, a, CompareMode.SIDE, 0.5, False))
     d.c.comparing.forget()
     d.c.session.tone = Tone()
     d.settle()

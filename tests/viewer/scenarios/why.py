@@ -96,7 +96,7 @@ def _taught(d: Driver) -> None:
     d.c.settings.set_light(one.light)
     d.wait(lambda: d.c.teachers.answered > 0, "the pixels that taught", 30.0)
     d.frames(3)
-    taught = d.c.record.taught(d.c.selection.picked)
+    taught = d.c.history.taught(d.c.selection.picked)
     number = max(taught.lights[one.light])
     assert d.context.item_exists(f"//Inspector/reason/picture {number}##0")
     d.press(KEY.x)

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-import tracer
 from tests.viewer.desk import Desk
 from tests.viewer.marbles import LAST, STEP, write_marbles
 from viewer.output import capture
@@ -50,7 +47,7 @@ def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
         assert c.session.follow == find.own_camera and c.session.light == find.light
         assert c.session.settings.method == "paper" and c.session.settings.verify
         if find.bounces == 0:
-            taught = c.record.taught(picked)
+            taught = c.history.taught(picked)
             assert taught is not None
             lesson = taught.lights[find.light]
             assert (lesson.lit if find.lit else lesson.blocked) >= 0, "nobody has taught what is wrong"
@@ -94,19 +91,11 @@ def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(study: Desk,
 
 
 def test_a_frame_of_an_experiment_can_be_gone_to(desk: Desk) -> None:
-    """As its method had it: at once with the modes of now, or after the frames before it, with those of then."""
     c = desk.c
-    seen: dict[int, np.ndarray] = {}
     desk.runs.start_experiment()
     run = desk.runs.experiment
     desk.run_to_its_end()
-    renderer = tracer.Renderer(c.session.scene, replace(run.settings, method="paper", accelerator="bvh8"))
-    for number, time in enumerate(run.times):
-        seen[number] = renderer.render(time).color
-    c.travel.go_to_experiment(run, 3)
+    c.navigator.go_to_experiment(run, 3)
     desk.rest()
     assert c.session.time == run.times[3] and c.session.settings.method == "paper"
-    c.travel.go_to_experiment(run, 3, modes=True)
-    desk.run_to_its_end()
-    assert (c.frame.width, c.frame.height) == (32, 24) and c.frame.time == run.times[3]
-    assert np.array_equal(c.frame.color, seen[3]) and c.session.settings.depth == 1
+    assert c.session.settings.depth == 1

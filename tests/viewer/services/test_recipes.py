@@ -135,10 +135,8 @@ def test_a_command_is_printed_for_a_saved_picture(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("room.aff").write_text(TINY_SCENE)
-    arrow, words = '{"kind": "arrow", "x0": 0.1, "x1": 0.6, "y1": 0.7}', '{"kind": "text", "x0": 0, "text": "é"}'
-    drawn = f"[{arrow}, {words}]"
     options = ("--frame", 4, "--warmup", 3, "--method", "paper", "--view", "shadow:1", "--size", "80x60", "--legend")
-    more = ("--legend-at", "1,0", "--caption", "{scene} {{{frame}}}", "--annotations", drawn, "--accelerator", "kdtree")
+    more = ("--legend-at", "1,0", "--caption", "{scene} {{{frame}}}", "--accelerator", "kdtree")
     assert run(capfd, "render", "room.aff", "-o", "first.png", *options, *more)[0] == 0
     code, printed, _ = run(capfd, "render", "first.png", "-o", "second.png", "--print-command")
     assert code == 0 and not Path("second.png").exists()
@@ -166,5 +164,5 @@ def test_a_tree_that_rays_have_had_built_cannot_be_brought_back(odd: Desk) -> No
     odd.c.films.start()
     assert odd.c.films.film.script.recipe.history == BUILT
     odd.run_to_its_end()
-    odd.c.travel.go(odd.c.history.frames - 1)
+    odd.c.navigator.go(odd.c.history.frames - 1)
     assert odd.said.endswith(f"again, though {BUILT}"), odd.said

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 
 from tests.viewer.fakes import make_frame, make_scene
-from tracer import zoom
+from tracer.experiments import zoom
 from tracer.frame import Settings
 from viewer.services.results_of import results_of
 from viewer.services.runs import Experiment, ZoomTest

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.viewer.desk import ELSEWHERE, SIZE, Desk, is_the_same_picture
-from tracer import experiment
+from tracer.experiments import experiment
 from viewer.services.runs import duration
 from viewer.state.views import View
 

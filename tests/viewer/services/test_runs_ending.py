@@ -14,7 +14,7 @@ import pytest
 
 from tests.viewer.desk import ELSEWHERE, SIZE, Desk, is_the_same_picture
 from tests.viewer.fakes import FakeRenderer, make_scene
-from tracer import experiment
+from tracer.experiments import experiment
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info
@@ -94,8 +94,8 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
     while controller.runs.current is not None or controller.frame is None:
         assert time.monotonic() < end
         controller.tick(SIZE)
-    assert controller.notices.faults.notice.text == "the experiment failed: AttributeError: no world"
-    assert "no world" in controller.notices.faults.notice.details
+    assert controller.notices.newest_fault.text == "the experiment failed: AttributeError: no world"
+    assert "no world" in controller.notices.newest_fault.details
     assert controller.close()
 
 

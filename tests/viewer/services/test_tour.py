@@ -6,8 +6,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from tests.viewer.fakes import make_frame
+from tracer.experiments.zoom import Approach, Change, Results, Step
 from tracer.frame import Settings
-from tracer.zoom import Approach, Change, Results, Step
 from viewer.services.tour import STEPS, Tour, zoom_test_in_words
 
 CULLING = next(step for step in STEPS if step.title == "Turn culling off and on")

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
-from tracer import experiment
+from tracer.experiments import experiment
 from tracer.scene.model import Camera
 from viewer.services.controller import Controller
 from viewer.services.render_request import RenderRequest, Traced
@@ -133,7 +133,7 @@ def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk:
     while desk.c.runs.current is not None:
         assert time.monotonic() < end
         desk.c.tick(SIZE)
-    assert desk.c.notices.faults.notice is not None, "the run fails at once"
+    assert desk.c.notices.newest_fault is not None, "the run fails at once"
     assert desk.renderer.cancelled, "the run came before the frame"
     desk.renderer.go.set()
     assert desk.rest() == [False], "the frame that was cut short has not come"

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tests.viewer.desk import ELSEWHERE, Desk, is_the_same_picture
-from tracer import zoom
+from tracer.experiments import zoom
 from viewer.util.resources import embedded_scenes
 
 

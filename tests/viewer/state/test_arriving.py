@@ -10,9 +10,9 @@ from tests.viewer.fakes import make_frame, make_scene, with_cuts
 from tracer.fit import overview
 from tracer.frame import Settings
 from tracer.statistics import CutCounts
-from viewer.output.legend import legend_of
 from viewer.state.arriving import fitting_view
 from viewer.state.views import View
+from viewer.views import legend_of
 
 FEW = "lightcuts is for 16 lights or more, and there are 6 here."
 FEW_SAMPLES = "lightcuts is for 16 light samples or more, and there are 6 here."

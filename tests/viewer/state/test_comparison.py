@@ -12,9 +12,9 @@ from tracer.frame import Settings
 from tracer.statistics import FrameStatistics, ShadowCounts, WrongCounts
 from viewer.state.columns import NO_TIME, rows
 from viewer.state.comparison import (
+    CompareMode,
     Comparison,
     Side,
-    Way,
     apart,
     difference_words,
     fitted,
@@ -22,10 +22,10 @@ from viewer.state.comparison import (
     signed_difference,
     sizes_in_words,
 )
+from viewer.state.draw_options import MIDDLE
 from viewer.state.in_turn import LEAST, InTurn
-from viewer.state.slices import MIDDLE
-from viewer.state.values import values_of
 from viewer.state.views import View
+from viewer.views import values_of
 
 
 def side(frame, view=View.COLOR, light=0, scene="study", number=3) -> Side:
@@ -91,9 +91,9 @@ def test_each_is_called_by_its_method_and_what_sets_it_apart():
 
 
 def test_it_is_in_turn_that_pictures_blink():
-    state = Comparison(on=True, way=Way.BLINK, rate=2.0)
+    state = Comparison(on=True, mode=CompareMode.BLINK, rate=2.0)
     assert [state.shows_a(seconds) for seconds in (0.0, 0.26, 0.51, 0.76)] == [False, True, False, True]
-    state.way = Way.FLIP
+    state.mode = CompareMode.FLIP
     assert not state.shows_a(0.26)
     state.held = True
     assert state.shows_a(0.0)

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from tests.viewer.fakes import make_scene
+from tracer.experiments import warmup_frames
 from tracer.scene.model import Camera
 from viewer.output import recipe
 from viewer.services import comparison
-from viewer.state import annotations, earlier
 from viewer.state.choices import Choices
 from viewer.state.preferences import Preferences, checked
 from viewer.state.session import Session, Snapshot
@@ -79,8 +79,7 @@ def test_a_state_with_a_number_beyond_all_bounds_is_one_line(wrong: dict[str, An
     [
         lambda: Choices.from_json({"wipe": LARGE}),
         lambda: Choices.from_json({"light": INFINITE}),
-        lambda: earlier.from_json([[LARGE, None]]),
-        lambda: annotations.from_json([{"kind": "arrow", "x0": LARGE}]),
+        lambda: warmup_frames.from_json([[LARGE, None]]),
         lambda: Camera.from_json({"position": (0, 0, 0), "direction": (0, 0, LARGE)}),
         lambda: recipe.from_json(Snapshot.from_json(state()), None, {"style": {"shading": LARGE}}),
         lambda: recipe.from_json(Snapshot.from_json(state()), None, {"style": {"magnified": INFINITE}}),

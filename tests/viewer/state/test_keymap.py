@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from viewer.state.keymap import HABITS, HELD, Keymap, is_place, tidy
+from viewer.state.keymap import Keymap, is_place, tidy
 from viewer.state.preferences import Preferences
 
 DEFAULTS = {"Focus": ("F",), "Reset camera": ("R",), "Step back": ("LeftArrow",), "Shadow culling": ("C",), "Loop": ()}
 
 
-def test_keys_are_those_of_commands_then_of_habits_then_of_the_user():
+def test_keys_are_those_of_commands_then_of_the_user():
     p = Preferences()
     keymap = Keymap(p, DEFAULTS)
     assert keymap.of("Focus") == ("F",) and keymap.of("Fly forward") == ("W",) and keymap.shown("Loop") == ""
-    keymap.use("pbrt")
-    assert keymap.of("Step back") == ("Ctrl+LeftArrow",) and keymap.of("Turn left") == ("LeftArrow",)
     keymap.choose("Step back", ["Shift+Ctrl+B"])
     assert keymap.of("Step back") == ("Ctrl+Shift+B",) and keymap.changed("Step back")
-    keymap.use("Shadowcull")
-    assert keymap.of("Step back") == ("Ctrl+Shift+B",), "what the user has chosen stays"
     keymap.choose("Step back", ["LeftArrow"])
     assert not keymap.changed("Step back") and p.keys == {}, "the usual key is none that was chosen"
 
@@ -35,20 +31,6 @@ def test_conflicts_are_seen_from_both_sides_and_end():
     assert keymap.of("Loop") == () and not keymap.conflicts()
 
 
-def test_drags_are_those_of_the_habits():
-    p = Preferences()
-    keymap = Keymap(p, DEFAULTS)
-    assert (keymap.drag("left", ""), keymap.drag("left", "Shift"), keymap.drag("middle", "")) == (
-        "by mode", "by mode", "pan",
-    )  # fmt: skip
-    p.habits = "Blender"
-    assert [keymap.drag("middle", with_) for with_ in ("", "Shift", "Ctrl")] == ["orbit", "pan", "dolly"]
-    assert keymap.drag("left", "") == "none" and keymap.habits.wheel == "dolly"
-    p.habits = "Maya"
-    assert keymap.habits.name == "Shadowcull", "habits of another version"
-
-
 def test_places_and_letters_are_told_apart():
     assert is_place("W") and is_place("Shift+H") and not is_place("Ctrl+Z") and not is_place("Ctrl+Shift+Z")
     assert tidy("Shift+Alt+Ctrl+X") == "Ctrl+Alt+Shift+X"
-    assert set(HELD) >= {name for name in HABITS["pbrt"].keys if name.startswith("Turn ")}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tracer.experiment import with_reference
-from tracer.method import DEFAULT_METHOD, Method, additions, bases
+from tracer.experiments.experiment import with_reference
+from tracer.method import DEFAULT_METHOD, Method, additions, bases, in_order
 from tracer.settings import Settings
 from viewer.state.methods import (
     ADAPTIVE,
@@ -13,7 +13,6 @@ from viewer.state.methods import (
     SHOWN_BY,
     default_for,
     groups,
-    in_order,
     is_method,
     toggled,
     with_base,

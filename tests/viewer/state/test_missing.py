@@ -19,8 +19,9 @@ from tests.viewer.fakes import (
 from tracer.frame import Settings
 from tracer.method import bases
 from viewer.state.missing import missing
-from viewer.state.readings import MOST_RECORDED, arrivals, can_draw, lights_due
+from viewer.state.readings import MOST_RECORDED, can_draw, lights_due
 from viewer.state.views import View
+from viewer.views.penumbra import arrivals
 
 
 @pytest.mark.parametrize("method", [*(kind.name for kind in bases()), "certified+cache", "paper+rest", "none+cache"])

@@ -86,7 +86,7 @@ def test_steps_are_those_of_frames_that_save_as_much():
 
 def test_proving_that_has_ended_early_is_said():
     frame = frame_by("certified", culled=340)
-    assert "not all is proved yet, keep tracing (K)" in said(frame, unproved=True)
+    assert "not all is proved yet, keep tracing" in said(frame, unproved=True)
     assert "proved" not in said(frame, unproved=True, moving=True) and "proved" not in said(frame)
     assert "proved" not in said(frame_by("paper", culled=340), unproved=True)
 
@@ -127,7 +127,7 @@ def test_without_culling_the_bar_is_what_would_be_culled():
     frame.statistics.by_modes = [SaidByModes(600, 200, 50), SaidByModes(400, 0, 46)]
     told = "none: every shadow ray is traced; the paper's modes would save 29.6 %"
     assert said(frame) == told
-    assert said(frame, back="certified") == f"{told}, turn certified on again (C)", "what would save is not that"
+    assert said(frame, back="certified") == f"{told}, turn certified on again", "what would save is not that"
     bar = bar_of(frame)
     assert bar.would and [(p.fate, p.rays) for p in bar.parts] == [
         (Fate.CULLED, 200), (Fate.DYNAMIC_ONLY, 96), (Fate.TRACED, 704),

@@ -11,7 +11,6 @@ from tests.viewer.fakes import make_scene
 from tracer.frame import Settings
 from tracer.scene.model import Camera
 from viewer.state.session import Session, Snapshot
-from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 
 
@@ -139,20 +138,3 @@ def test_without_a_scene_there_is_a_camera_but_no_snapshot():
     assert session.camera.angle > 0
     with pytest.raises(ValueError, match="no scene"):
         session.snapshot()
-
-
-def test_tone_and_range_are_restored_and_damaged_ones_refused():
-    session = session_somewhere()
-    session.view, session.tone = View.COST, Tone(-2.0, 3.0, Curve.REINHARD)
-    session.spans = {View.COST: (1.0, 9.5), View.DEPTH: (2.0, 3.0)}
-    data = json.loads(json.dumps(session.snapshot().to_json()))
-    other = session_somewhere()
-    other.spans = {View.COST: (0.0, 1.0), View.DEPTH: (5.0, 6.0)}
-    other.restore(Snapshot.from_json(data))
-    assert other.tone == session.tone and other.spans == {View.COST: (1.0, 9.5), View.DEPTH: (5.0, 6.0)}
-    for name, damaged in (("tone", 7), ("tone", {"curve": "sepia"}), ("span", 3), ("span", [2, 1]), ("span", ["a", 1])):
-        with pytest.raises(ValueError, match="^its (tone|range) "):
-            Snapshot.from_json(data | {name: damaged})
-    del data["tone"], data["span"]
-    older = Snapshot.from_json(data)
-    assert older.tone.neutral and older.span is None, "as saved by an older version"

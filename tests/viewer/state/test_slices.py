@@ -13,11 +13,12 @@ from tests.viewer.fakes import make_frame, with_voxels
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import pinhole
 from viewer.cli.argument_types import slice_
-from viewer.state.readings import voxels_of
+from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.session import Snapshot
-from viewer.state.slices import LINE, MIDDLE, NOTHING, Slice, middle_of, slice_codes, slice_seen, voxel_seen
-from viewer.state.values import words_at
 from viewer.state.views import View
+from viewer.views import words_at
+from viewer.views.voxel_slice import LINE, NOTHING, middle_of, slice_codes, slice_seen, voxel_seen
+from viewer.views.voxels import voxels_of
 
 CUTS = [Slice(0, 0.0), Slice(0, 0.2), Slice(1, 0.3), Slice(1, 0.9), Slice(2, 0.5), Slice(2, 1.0)]
 

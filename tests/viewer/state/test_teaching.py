@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from tracer.culling.modes import FULLY_RENDERED
+from tracer.experiments import warmup_frames
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Settings
+from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.scene.model import Camera
-from viewer.state import earlier
-from viewer.state.earlier import Earlier
-from viewer.state.moments import Moment, Moments
-from viewer.state.teaching import NEVER, Ledger
+from viewer.state.history import FrameRecord, FrameRecords
 from viewer.state.views import View
 
 UNITS = 600
@@ -20,7 +20,7 @@ UNITS = 600
 @pytest.mark.parametrize(("lights", "word"), [(3, np.uint32), (20, np.uint64)])
 def test_the_first_frame_of_each_answer_is_known(lights: int, word: type) -> None:
     """Words drawn by lot, which gain and lose modes; and lights that move, so that what they had was forgotten."""
-    lots, ledger = np.random.default_rng(3), Ledger(lights)
+    lots, ledger = np.random.default_rng(3), ModeOrigins(lights)
     first: dict[tuple[int, int], int] = {}  # by unit and bit
     whole: dict[int, int] = {}
     words = np.zeros(UNITS, word)
@@ -53,7 +53,7 @@ def test_the_first_frame_of_each_answer_is_known(lights: int, word: type) -> Non
 
 
 def test_memory_is_bounded() -> None:
-    ledger = Ledger(3, most_bytes=100 * 4 * 7)
+    ledger = ModeOrigins(3, most_bytes=100 * 4 * 7)
     ledger.add(0, np.full(UNITS, 4, np.uint32))
     assert ledger.full and ledger.of(99) is not None and ledger.of(100) is None
     ledger.add(1, np.full(UNITS, 4 | 8, np.uint32))
@@ -61,35 +61,35 @@ def test_memory_is_bounded() -> None:
 
 
 def test_what_was_known_before_the_record_began_has_no_teacher() -> None:
-    ledger = Ledger(1, blank=False)
+    ledger = ModeOrigins(1, blank=False)
     ledger.add(5, np.array([4, 0], np.uint32))
     ledger.add(6, np.array([4, 4], np.uint32))
     assert ledger.of(0) is None and ledger.of(1).lights == ((6, NEVER),)
 
 
 def test_frames_are_kept_by_their_numbers() -> None:
-    moments, camera = Moments(5), Camera((0, 0, 0), (0, 0, 1))
+    records, camera = FrameRecords(5), Camera((0, 0, 0), (0, 0, 1))
 
     def put(number: int, time: float = 0.0) -> None:
-        moments.put(Moment(number, time, camera, True, Settings(), {}, View.COLOR, 0, 0.5, (8, 8), True))
+        records.put(FrameRecord(number, time, camera, True, Settings(), {}, View.COLOR, 0, 0.5, (8, 8), True))
 
     for number in range(8):
         put(number)
-    assert moments.get(2) is None and moments.get(8) is None
-    assert [moments.get(number).number for number in range(3, 8)] == [3, 4, 5, 6, 7]
+    assert records.get(2) is None and records.get(8) is None
+    assert [records.get(number).number for number in range(3, 8)] == [3, 4, 5, 6, 7]
     put(7, 1.5)
-    assert moments.get(7).time == 1.5 and moments.get(3).number == 3
+    assert records.get(7).time == 1.5 and records.get(3).number == 3
     put(9)
-    assert moments.get(9).number == 9 and moments.get(8) is None and moments.get(7).number == 7
+    assert records.get(9).number == 9 and records.get(8) is None and records.get(7).number == 7
     put(0)
-    assert moments.get(0).number == 0 and moments.get(7) is None
+    assert records.get(0).number == 0 and records.get(7) is None
 
 
 def test_frames_before_a_picture_are_json() -> None:
-    frames = (Earlier(0.1), Earlier(1 / 3, Camera((1, 2, 3), (0, 0, -1), angle=33.0)))
-    data = earlier.to_json(frames)
-    assert earlier.from_json(data) == frames == earlier.from_json({"before": data})
+    frames = (WarmupFrame(0.1), WarmupFrame(1 / 3, Camera((1, 2, 3), (0, 0, -1), angle=33.0)))
+    data = warmup_frames.to_json(frames)
+    assert warmup_frames.from_json(data) == frames == warmup_frames.from_json({"before": data})
     for wrong in ("x", {}, [[1]], [["a", None]], [[float("nan"), None]], [[0.0, {"position": 1}]]):
         with pytest.raises(ValueError) as raised:
-            earlier.from_json(wrong)
+            warmup_frames.from_json(wrong)
         assert "\n" not in str(raised.value)

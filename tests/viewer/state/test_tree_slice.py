@@ -11,10 +11,13 @@ import pytest
 from tests.viewer.fakes import CubesBuilt, make_frame, with_tree
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import pinhole
+from viewer.state.draw_options import Slice
 from viewer.state.missing import missing
-from viewer.state.readings import can_draw, tree_of
-from viewer.state.slices import Slice
-from viewer.state.tree_slice import (
+from viewer.state.readings import can_draw
+from viewer.state.views import View
+from viewer.views import values_of, words_at
+from viewer.views.tree import tree_of
+from viewer.views.tree_slice import (
     BORDER,
     HIDDEN,
     LEVEL,
@@ -28,8 +31,6 @@ from viewer.state.tree_slice import (
     tree_codes,
     tree_seen,
 )
-from viewer.state.values import values_of, words_at
-from viewer.state.views import View
 
 CUTS = [Slice(0, 0.3), Slice(1, 0.1), Slice(1, 0.9), Slice(2, 0.45)]
 

@@ -18,11 +18,11 @@ from tests.viewer.fakes import (
     with_voxels,
 )
 from tracer.frame import Settings
+from viewer.state.draw_options import MIDDLE
 from viewer.state.pixels import ALL, MOST_WATCHED, Pixels, Region, histogram, region_between
 from viewer.state.readings import can_draw
-from viewer.state.slices import MIDDLE
-from viewer.state.values import values_of, words_at
 from viewer.state.views import View
+from viewer.views import values_of, words_at
 
 FRAME = with_cuts(
     with_lamps(with_certificates(make_frame(Settings(width=16, height=8, verify=True, record_work=True))))

@@ -11,10 +11,9 @@ import pytest
 from tests.platforms import posix_only
 
 pytest.importorskip("imgui_bundle")
-from viewer.window import app, opening
+from viewer.window import app, gl_window
+from viewer.window.gl_window import LOSS_SECONDS, MOST_LOSSES, ContextLoss, closing_by_signals
 from viewer.window.layout_file import END, LayoutFile
-from viewer.window.losses import LATELY, OFTEN, Losses
-from viewer.window.signals import closing_by_signals
 
 
 @posix_only
@@ -79,52 +78,52 @@ def test_a_window_that_was_full_begins_at_its_own_place(tmp_path: Path) -> None:
 
 def test_a_driver_that_is_reset_again_and_again_ends_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
     window, opened = app.App(None), []
-    monkeypatch.setattr(opening, "_gives_window", lambda robust: True)
+    monkeypatch.setattr(gl_window, "_gives_window", lambda robust: True)
 
     def lose(*_: object) -> None:
         window.was_open = True
         opened.append(True)
-        window.losses.status = lambda: 0x8253
-        assert window.losses.look()
+        window.context_loss.status = lambda: 0x8253
+        assert window.context_loss.is_lost()
 
     with pytest.raises(OSError, match="took too long, again and again"):
         window.run(lose)
-    assert len(opened) == OFTEN
+    assert len(opened) == MOST_LOSSES
 
 
 def test_what_fails_as_the_context_is_lost_is_no_fault() -> None:
     window = app.App(None)
-    faults = window.controller.notices.faults
+    notices = window.controller.notices
 
     def fail() -> None:
         raise RuntimeError("the driver said no")
 
     window._draws("Drawing", fail)
-    assert faults.notice is not None and "the driver said no" in faults.notice.text
-    faults.dismiss()
-    window.losses.status = lambda: 0x8253
+    assert notices.newest_fault is not None and "the driver said no" in notices.newest_fault.text
+    notices.dismiss_faults()
+    window.context_loss.status = lambda: 0x8253
     window._draws("Drawing", fail)
-    assert faults.notice is None and window.losses.cause
+    assert notices.newest_fault is None and window.context_loss.cause
 
 
 def test_losses_long_ago_do_not_count() -> None:
     now = [0.0]
-    losses = Losses(lambda: now[0])
+    losses = ContextLoss(lambda: now[0])
     losses.status = lambda: 0x8254
-    for _ in range(3 * OFTEN):
-        now[0] += LATELY / 2
-        assert losses.look() and losses.look() and "another program" in losses.cause and not losses.too_many
+    for _ in range(3 * MOST_LOSSES):
+        now[0] += LOSS_SECONDS / 2
+        assert losses.is_lost() and losses.is_lost() and "another program" in losses.cause and not losses.too_many
         losses.cause = ""
 
 
 def test_a_driver_without_contexts_that_tell_of_their_loss_gives_another(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[bool] = []
-    monkeypatch.setattr(opening, "_ask_for", lambda robust: asked.append(robust) or True)
-    monkeypatch.setattr(opening, "_gives_window", lambda robust: not robust)
+    monkeypatch.setattr(gl_window, "_set_context_hints", lambda robust: asked.append(robust) or True)
+    monkeypatch.setattr(gl_window, "_gives_window", lambda robust: not robust)
 
     def run() -> None:
         if asked[-1]:
             raise RuntimeError("this driver cannot")
 
-    opening.open_window(run, lambda: False)
+    gl_window.open_window(run, lambda: False)
     assert asked == [True, False]

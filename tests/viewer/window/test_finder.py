@@ -39,7 +39,7 @@ def test_every_item_has_a_name_of_its_own(ui):
         ("embree", "Copy camera for Embree"), ("occulsion", "Occlusion mode"),
         ("why traced", "Fate of shadow rays"), ("culled view", "Fate of shadow rays"),
         ("dynamic darkened", "Moving shadows"),
-        ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"), ("dead zone", "setting Dead zone of sticks"),
+        ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"),
     ],
 )  # fmt: skip
 def test_what_is_meant_is_found_first(ui, typed: str, meant: str | None):

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import glfw
 import pytest
 from imgui_bundle import imgui
 
 from viewer.services.controller import Controller
-from viewer.state.keymap import HABITS, Keymap
 from viewer.state.preferences import Preferences
-from viewer.window import commands
+from viewer.window import commands, widgets
 from viewer.window.keyboard import PLACES, Keyboard
 from viewer.window.ui import Ui
 
@@ -87,15 +88,12 @@ def ui():
 
 
 @pytest.mark.parametrize("printed", [US, FRENCH, DVORAK], ids=["us", "french", "dvorak"])
-@pytest.mark.parametrize("habits", HABITS)
-def test_no_key_does_two_things(ui, habits: str, printed: dict[int, str]):
-    ui.keymap.use(habits)
+def test_no_key_does_two_things(ui, printed: dict[int, str]):
     assert not ui.keymap.conflicts()
     made = keyboard(printed)
     keys = [key for name in ui.keymap.names for key in ui.keymap.of(name)]
     unclear = [key for key in keys if key in PLACES and made.chord(key) in made._shared]
     assert len({made.chord(key) for key in keys if key not in unclear}) == len(keys) - len(unclear)
-    assert set(HABITS[habits].keys) <= set(ui.keymap.names), "habits give keys to what there is"
 
 
 def test_keys_that_a_file_cannot_mean_are_dropped():
@@ -106,18 +104,21 @@ def test_keys_that_a_file_cannot_mean_are_dropped():
     ui.controller.close()
 
 
-def test_tooltips_name_the_key_that_is_chosen(ui):
-    assert ui.with_keys("go near it (F)") == "go near it (F)"
+def test_hints_name_the_key_that_is_chosen(ui):
+    assert ui.key("Focus") == " (F)" and ui.keys("Next light", "Previous light") == " (L and Shift+L)"
     ui.keymap.choose("Focus", ["Ctrl+J"])
-    assert ui.with_keys("go near it (F)") == "go near it (Ctrl+J)"
-    assert ui.with_keys("near (F), or not (x); on") == "near (Ctrl+J), or not (x); on"
-    assert ui.with_keys("lights (L and Shift+L)") == "lights (L and Shift+L)"
-    ui.keymap.choose("Next light", ["F8"])
-    assert ui.with_keys("lights (L and Shift+L)") == "lights (F8 and Shift+L)"
-    assert ui.key_or_menu("Next light") == "F8" and ui.key_or_menu("Fly forward") == "W"
     ui.keymap.choose("Next light", [])
-    assert ui.with_keys("lights (L and Shift+L)") == "lights (Shift+L)"
-    assert ui.key_or_menu("Next light") == "View > Next light"
-    ui.keymap.choose("Focus", [])
-    assert ui.with_keys("go near it (F)") == "go near it" and ui.with_keys("a (b) c") == "a (b) c"
-    assert isinstance(ui.keymap, Keymap)
+    assert ui.key("Focus") == " (Ctrl+J)" and ui.keys("Next light", "Previous light") == " (Shift+L)"
+    assert ui.key("Next light") == "" and ui.key_or_menu("Next light") == "View > Next light"
+    assert ui.key_or_menu("Fly forward") == "W"
+
+
+def test_a_name_in_a_tooltip_is_never_taken_for_a_key(ui, monkeypatch: pytest.MonkeyPatch):
+    said: list[str] = []
+    functions = ("begin_tooltip", "push_text_wrap_pos", "pop_text_wrap_pos", "end_tooltip")
+    silent = SimpleNamespace(text_unformatted=said.append, **dict.fromkeys(functions, lambda *_: True))
+    monkeypatch.setattr(widgets, "imgui", silent)
+    monkeypatch.setattr(widgets, "em", lambda size: size)
+    ui.keymap.choose("Shadow culling", ["F9"])  # which has the key C otherwise
+    widgets.tooltip_at("chair (C)")
+    assert said == ["chair (C)"]

@@ -70,7 +70,7 @@ def test_the_preview_has_the_surfaces_of_the_traced_picture():
 @pytest.mark.parametrize("fails", ["vertex_array", "texture"])
 def test_a_preview_that_cannot_be_made_frees_what_it_took_and_is_not_tried_again(fails: str):
     moderngl = pytest.importorskip("moderngl")
-    from viewer.window import previewing
+    from viewer.window import graphics
 
     geometry, made = _geometry(make_scene()), []
 
@@ -93,14 +93,14 @@ def test_a_preview_that_cannot_be_made_frees_what_it_took_and_is_not_tried_again
     )
     with context:
         with pytest.raises(moderngl.Error, match="out of memory"):
-            previewing.draw(ui)
+            graphics.draw_preview(ui)
         count = len(made)
         assert count > 1 and all(isinstance(one.mglo, moderngl.mgl.InvalidObject) for one in made)
-        previewing.draw(ui)
+        graphics.draw_preview(ui)
         assert len(made) == count and ui.preview is None, "said once"
-        previewing.release(ui)  # another window
+        graphics.release_preview(ui)  # another window
         with pytest.raises(moderngl.Error):
-            previewing.draw(ui)
+            graphics.draw_preview(ui)
     context.release()
 
 

@@ -33,7 +33,6 @@ def show(ui: Ui) -> None:
     bookmarks.show(ui)
     _moving(ui)
     _path(ui)
-    _pads(ui)
 
 
 def _place(ui: Ui) -> None:
@@ -56,10 +55,12 @@ def _place(ui: Ui) -> None:
             changed, angle = imgui.slider_float("##angle", camera.angle, 5.0, 120.0, "%.1f degrees")
             if changed:
                 c.motion.move(navigation.zoom(camera, angle))
-    if wide_button(f"{icons.ICON_FA_CROSSHAIRS}  Focus", "on what is selected, or under the pointer (F)", 2):
+    if wide_button(
+        f"{icons.ICON_FA_CROSSHAIRS}  Focus", f"on what is selected, or under the pointer{ui.key('Focus')}", 2
+    ):
         focus(ui)
     imgui.same_line()
-    if wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Reset", "back to the scene's own camera (R)"):
+    if wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Reset", f"back to the scene's own camera{ui.key('Reset camera')}"):
         c.motion.reset_camera()
 
 
@@ -71,11 +72,11 @@ def _moving(ui: Ui) -> None:
             row("Mode")
             if imgui.radio_button("Fly", p.navigation == "fly"):
                 p.navigation = "fly"
-            tooltip("drag to look around, W A S D Q E to move (G)")
+            tooltip(f"drag to look around, W A S D Q E to move{ui.key('Fly')}")
             same_line_for("Orbit")
             if imgui.radio_button("Orbit", p.navigation == "orbit"):
                 p.navigation = "orbit"
-            tooltip("drag to turn around the point that was clicked (O)")
+            tooltip(f"drag to turn around the point that was clicked{ui.key('Orbit')}")
             row("Speed", "1 crosses the scene in about eight seconds")
             flags = int(imgui.SliderFlags_.logarithmic)
             _, p.speed = imgui.slider_float("##speed", p.speed, 0.01, 20.0, "%.2f", flags)
@@ -88,7 +89,12 @@ def _path(ui: Ui) -> None:
     if not c.session.animated:
         paragraph("Nothing moves in this scene.", QUIET)
         return
-    checkbox("Follow the scene's path", c.session.follow, c.motion.follow_path, "until the camera is moved by hand (P)")
+    checkbox(
+        "Follow the scene's path",
+        c.session.follow,
+        c.motion.follow_path,
+        "until the camera is moved by hand" + ui.key("Follow the scene's path"),
+    )
     checkbox("Loop", p.loop, lambda on: setattr(p, "loop", on))
     same_line_for("Every frame")
     tip = "play every frame of the animation, each traced in full, however long it takes; otherwise play in real time"
@@ -99,17 +105,3 @@ def _path(ui: Ui) -> None:
                 row("Rate", "1 is the scene's own time")
                 flags = int(imgui.SliderFlags_.logarithmic)
                 _, p.playback_rate = imgui.slider_float("##rate", p.playback_rate, 0.1, 10.0, "%.2f x", flags)
-
-
-def _pads(ui: Ui) -> None:
-    """What game pads and space mice there are."""
-    p, pads = ui.controller.preferences, ui.controller.pads
-    heading("Game pads and space mice")
-    checkbox("Fly by them", p.pads, lambda on: setattr(p, "pads", on), "by any that are plugged in, now or later")
-    if p.pads:
-        paragraph(", ".join(pads.names) or "None is plugged in.", QUIET)
-        with properties("pads", 5.0) as shown:
-            if shown:
-                row("Dead zone", "of a stick or a cap: how far it may stand from its middle and count as at rest")
-                changed, share = imgui.slider_float("##dead zone", 100.0 * p.pad_dead_zone, 0.0, 60.0, "%.0f %%")
-                p.pad_dead_zone = min(max(share / 100.0, 0.0), 0.9) if changed else p.pad_dead_zone

@@ -7,10 +7,10 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.frame import Frame
 from viewer.state.columns import Row, rows
-from viewer.state.comparison import RATES, Side, Source, Way
+from viewer.state.comparison import RATES, CompareMode, Side, Source
 from viewer.state.in_turn import InTurn
+from viewer.state.palette import LESS, MORE
 from viewer.state.told_apart import told_apart
-from viewer.state.views import LESS, MORE
 from viewer.window.panels.method_choice import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -54,7 +54,9 @@ def _controls(ui: Ui) -> None:
     """What A is, and how the two are shown."""
     c = ui.controller
     comparing, state = c.comparing, c.comparing.state
-    if wide_button(f"{icons.ICON_FA_THUMBTACK}  Keep as A", "keep what is shown now, to compare with it (Ctrl+A)", 2):
+    if wide_button(
+        f"{icons.ICON_FA_THUMBTACK}  Keep as A", f"keep what is shown now, to compare with it{ui.key('Keep as A')}", 2
+    ):
         comparing.keep()
     imgui.same_line()
     imgui.begin_disabled(not state.on)
@@ -75,27 +77,27 @@ def _controls(ui: Ui) -> None:
             held = ui.key_label("Show A")
             row("Show", f"how A and B are seen{f'; {held} shows A while it is held' if held else ''}")
             _way(ui)
-            if state.way is Way.BLINK:
+            if state.mode is CompareMode.BLINK:
                 row("Rate", "times a second that both are seen")
                 changed, rate = imgui.slider_float("##rate", state.rate, *RATES, "%.2f Hz")
                 state.rate = min(max(rate, RATES[0]), RATES[1]) if changed else state.rate
-            if state.way is Way.DIFFERENCE and state.on:
+            if state.mode is CompareMode.DIFFERENCE and state.on:
                 _limit(ui)
                 _rings(ui)
     if state.source is Source.KEPT:
         _kept(ui)
     if comparing.remark:
-        paragraph(ui.with_keys(comparing.remark), WARNING)
+        paragraph(comparing.remark, WARNING)
 
 
 def _way(ui: Ui) -> None:
     comparing, state = ui.controller.comparing, ui.controller.comparing.state
-    if not imgui.begin_combo("##way", state.way.label if state.on else "B alone"):
+    if not imgui.begin_combo("##way", state.mode.label if state.on else "B alone"):
         return
     if imgui.selectable("B alone", not state.on)[0]:
         comparing.end()
-    for way in Way:
-        if imgui.selectable(way.label, state.on and state.way is way)[0]:
+    for way in CompareMode:
+        if imgui.selectable(way.label, state.on and state.mode is way)[0]:
             comparing.start(way)
         tooltip(way.meaning)
     imgui.end_combo()

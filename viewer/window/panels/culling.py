@@ -38,11 +38,12 @@ def show(ui: Ui) -> None:
     paragraph(trust(c), QUIET)
     clusters = Method.parse(s.method).clusters
     if not clusters:  # which keep no modes
-        tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive (Y)"
+        tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive"
+        tip += ui.key("Symmetric occlusion test")
         with _of_modes(s.method) as besides:
             checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.settings.change(symmetric=on), tip + besides)
         same_line_for("Verify")
-    tip = "trace every culled shadow ray as well, and count wrong answers (V)"
+    tip = f"trace every culled shadow ray as well, and count wrong answers{ui.key('Verify')}"
     checkbox("Verify", s.verify, lambda on: c.settings.change(verify=on), tip)
     with properties("culling", 8.2 if Method.parse(s.method).has_certificates else 6.5) as shown:
         if shown and not clusters:
@@ -76,12 +77,14 @@ def show(ui: Ui) -> None:
             changed, share = imgui.slider_float("##share", share, 1.0, 100.0 * MOST_CERTIFYING, "%.0f %%")
             if changed:
                 p.certificate_share = min(max(share / 100.0, 0.0), MOST_CERTIFYING)
-    if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", "forget all modes and certificates (Backspace)", 2):
+    if wide_button(
+        f"{icons.ICON_FA_ERASER}  Reset modes", f"forget all modes and certificates{ui.key('Reset modes')}", 2
+    ):
         c.tracing.reset_modes()
     imgui.same_line()
     if wide_button(
         f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again",
-        "trace the same frame once more, with what is known after the last one (T)",
+        f"trace the same frame once more, with what is known after the last one{ui.key('Trace again')}",
     ):
         c.tracing.trace_again()
 
@@ -93,7 +96,7 @@ def show(ui: Ui) -> None:
         "Keep tracing when idle",
         p.keep_tracing,
         keep,
-        "trace frame after frame, to watch how modes are set and certificates made (K)",
+        f"trace frame after frame, to watch how modes are set and certificates made{ui.key('Keep tracing when idle')}",
     )
     said = wrong_answers(c)
     if said is not None:  # at the end, where it moves nothing

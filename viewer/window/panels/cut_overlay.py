@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state.views import color_map
+from viewer.state.palette import color_map
 from viewer.window.panels import marks, slicing, words
 from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from tracer.frame import Frame
-from viewer.output.legend_parts import light_in_words
+from tracer.scene.lights import light_in_words
 from viewer.state import edit_effects
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.views import View

@@ -7,16 +7,16 @@ from itertools import combinations
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
-from tracer.experiment import REFERENCE, Results
+from tracer.experiments.experiment import REFERENCE, Results
 from tracer.geometry.accelerators import ACCELERATORS
-from tracer.method import Kind, additions
+from tracer.method import Kind, additions, in_order
 from viewer.services.runs import LONGEST_SIDE, Experiment
-from viewer.state.methods import groups, in_order
+from viewer.state.methods import groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
-from viewer.window.panels import experiment_table, going_back
+from viewer.window.panels import experiment_table
 from viewer.window.panels.method_choice import lights_to_fit, pale, said_of
-from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, wrong_axis
+from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, go_to_experiment_frame, pointed_frame, wrong_axis
 from viewer.window.panels.runs import export_buttons, in_tabs, side_by_side, start_or_progress, whose
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -191,12 +191,12 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
         if len(frames) == 1:  # is no line
             spec.marker = int(implot.Marker_.circle)
         implot.plot_line(name, frames, values, spec)
-    place = going_back.pointed(0, len(results.frames) - 1, results.frames)
+    place = pointed_frame(0, len(results.frames) - 1, results.frames)
     implot.end_plot()
     said = []
     if place is not None:
         said = [f"{name}: {in_window_style(saved_in_words(values[place] / 100.0))}" for name, values in savings]
-    going_back.of_experiment(ui, run, results, place, said)
+    go_to_experiment_frame(ui, run, results, place, said)
 
 
 def _looks(curves: int) -> list[implot.Spec]:

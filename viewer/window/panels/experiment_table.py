@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from imgui_bundle import ImVec4, imgui
 
-from tracer import experiment
-from tracer.experiment import Results, Row
+from tracer.experiments import experiment
+from tracer.experiments.experiment import Results, Row
 from viewer.output.reports import LINES, WRONG, caveats, lines
 from viewer.services.runs import Experiment
 from viewer.window.ui import Ui

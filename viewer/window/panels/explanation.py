@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
 from viewer.services.shadow_inspector import Answer, Part
+from viewer.state.palette import SHADOW_COLORS
 from viewer.state.projection import place
-from viewer.state.views import SHADOW_COLORS, ShadowMode
 from viewer.window.panels import marks
 from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui

@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.zoom import Approach, Step
+from tracer.experiments.zoom import Approach, Step
 from viewer.output.film import Shot
 from viewer.output.reports import changes_in_words
 from viewer.services.runs import ZoomTest

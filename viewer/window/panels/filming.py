@@ -109,8 +109,8 @@ def _tell(ui: Ui, films: FilmController) -> None:
         method, view = c.session.settings.method, c.session.view.label
         paragraph(f"{films.count} frames, {duration(seconds)}; method {method}, view {view}", QUIET)
     elif films.plan.through_bookmarks:
-        text = "A flight needs two bookmarks at least: add one where the camera is (Ctrl+B)."
-        paragraph(ui.with_keys(text), WARNING)
+        text = f"A flight needs two bookmarks at least: add one where the camera is{ui.key('Add bookmark')}."
+        paragraph(text, WARNING)
     if film is not None:
         paragraph(_outcome(film), QUIET)
 

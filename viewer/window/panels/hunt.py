@@ -5,9 +5,9 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tracer.experiments import counterexample, hunt
+from tracer.experiments.counterexample import Counterexample
 from tracer.scene.model import Scene
-from viewer.output import finds
-from viewer.output.finds import Find, Findings
 from viewer.services.hunt_controller import HuntController
 from viewer.services.runs import LONGEST_SIDE
 from viewer.window.panels.method_choice import method_list
@@ -106,7 +106,7 @@ def _finds(ui: Ui, hunts: HuntController, size: ImVec2) -> None:
     imgui.end_child()
 
 
-def _table(ui: Ui, hunts: HuntController, found: Findings, scene: Scene) -> None:
+def _table(ui: Ui, hunts: HuntController, found: hunt.Results, scene: Scene) -> None:
     """As wide as its columns need, and scrolled where that is wider than the room."""
     rows = [_cells(number, find, scene) for number, find in enumerate(found.finds)]
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_x | imgui.TableFlags_.scroll_y
@@ -130,7 +130,7 @@ def _table(ui: Ui, hunts: HuntController, found: Findings, scene: Scene) -> None
         if imgui.selectable(f"##find {number + 1}", hunts.chosen == number, int(spans))[0]:
             hunts.go(number)
             ui.show_panel("Inspector")
-        tooltip_above(f"Fly there. {finds.in_its_frame(find)}")
+        tooltip_above(f"Fly there. {counterexample.in_its_frame(find)}")
         imgui.set_cursor_pos(start)
         for place, (text, (_, right, _), width) in enumerate(zip(row_, _COLUMNS, widths, strict=True)):
             if place:
@@ -139,15 +139,15 @@ def _table(ui: Ui, hunts: HuntController, found: Findings, scene: Scene) -> None
     imgui.end_table()
 
 
-def _cells(number: int, find: Find, scene: Scene) -> tuple[str, ...]:
+def _cells(number: int, find: Counterexample, scene: Scene) -> tuple[str, ...]:
     more = f" (+{find.more_lights})" if find.more_lights else ""
     return (
         f"{number + 1}",
         f"{find.difference:.3f}",
         f"{find.x}, {find.y}",
-        finds.frame_of(find, scene),
+        counterexample.frame_of(find, scene),
         f"{find.light}{more}",
-        finds.primitive_of(find, scene),
+        counterexample.primitive_of(find, scene),
     )
 
 
@@ -158,7 +158,7 @@ def _cell(text: str, width: float, right: bool) -> None:
     imgui.text_unformatted(text)
 
 
-def _chosen(ui: Ui, hunts: HuntController) -> tuple[int, Find, Scene] | None:
+def _chosen(ui: Ui, hunts: HuntController) -> tuple[int, Counterexample, Scene] | None:
     """The find that was clicked, by its place and itself, with its scene."""
     found, scene = hunts.found, ui.controller.session.scene
     if found is None or hunts.hunt is None or scene is None or not hunts.hunt.is_of(scene):
@@ -168,7 +168,7 @@ def _chosen(ui: Ui, hunts: HuntController) -> tuple[int, Find, Scene] | None:
     return hunts.chosen, found.finds[hunts.chosen], scene
 
 
-def _details(ui: Ui, hunts: HuntController, number: int, find: Find, scene: Scene) -> None:
+def _details(ui: Ui, hunts: HuntController, number: int, find: Counterexample, scene: Scene) -> None:
     """What can be done with a find, and what is wrong there, in colours and words."""
     imgui.begin_disabled(ui.controller.runs.current is not None)
     if imgui.button(f"{icons.ICON_FA_PAPER_PLANE}  Fly there"):
@@ -182,15 +182,15 @@ def _details(ui: Ui, hunts: HuntController, number: int, find: Find, scene: Scen
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_CODE_BRANCH}  Rays"):
         ui.show_rays()
-    tooltip_above("what became of each ray of the pixel (X)")
+    tooltip_above(f"what became of each ray of the pixel{ui.key('Rays of the clicked pixel')}")
     _colors(find)
-    for sentence in (*finds.in_words(find, scene), finds.in_its_frame(find)):
+    for sentence in (*counterexample.in_words(find, scene), counterexample.in_its_frame(find)):
         paragraph(in_window_style(sentence))
-    if ui.controller.tracing.holds_one_sample:
+    if ui.controller.tracing.is_frozen:
         paragraph("The picture stays at 1 sample a pixel, as it was found, until you move.", QUIET)
 
 
-def _colors(find: Find) -> None:
+def _colors(find: Counterexample) -> None:
     """The colour that the method shows, beside the right one."""
     side, at = imgui.get_text_line_height(), imgui.get_cursor_screen_pos()
     draw = imgui.get_window_draw_list()

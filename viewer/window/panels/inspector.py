@@ -12,9 +12,11 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
 from tracer.why_in_words import Words
+from viewer.state.palette import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
 from viewer.state.picking import Pick, pixel_of
-from viewer.state.readings import can_draw, cell_lights
-from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING, View
+from viewer.state.readings import can_draw
+from viewer.state.views import View
+from viewer.views import cell_lights
 from viewer.window.panels import rays, teaching, why
 from viewer.window.panels.links import sentence
 from viewer.window.ui import Ui
@@ -43,7 +45,7 @@ def show(ui: Ui) -> None:
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
             c.selection.picked = None
             return
-        tooltip("let it go, and follow the pointer again (Escape)")
+        tooltip(f"let it go, and follow the pointer again{ui.key('Stop, or clear the selection')}")
         _details(ui, c.selection.picked)
         return
     found = c.selection.at(c.selection.hovered)
@@ -113,7 +115,7 @@ def _cell_asks(frame: Frame | None, pick: Pick) -> str:
     at = pixel_of(pick, frame) if frame is not None and can_draw(frame, View.CELL_LIGHTS) else None
     if frame is None or at is None:
         return ""
-    asked = int(cell_lights(frame)[at[1], at[0]])
+    asked = int(cell_lights.VIEW.found(frame)[at[1], at[0]])
     return f"asks {count(asked)} of {count(frame.lights)} lights" if asked >= 0 else ""
 
 

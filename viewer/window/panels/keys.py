@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state.fuzzy import match
-from viewer.state.keymap import HABITS, HELD
+from viewer.state.keymap import HELD
 from viewer.window.command import MENUS
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
@@ -65,18 +65,6 @@ def show(ui: Ui) -> None:
 
 def _head(ui: Ui, at_odds: int) -> None:
     keymap = ui.keymap
-    imgui.align_text_to_frame_padding()
-    imgui.text_unformatted("Steer as in")
-    imgui.same_line()
-    imgui.set_next_item_width(em(8.0))
-    if imgui.begin_combo("##habits", keymap.habits.name):
-        for name, habits in HABITS.items():
-            if imgui.selectable(name, name == keymap.habits.name)[0]:
-                keymap.use(name)
-            tooltip(habits.tip)
-        imgui.end_combo()
-    tooltip(keymap.habits.tip)
-    imgui.same_line(0.0, em(1.0))
     imgui.set_next_item_width(em(11.0))
     _, ui.key_filter = imgui.input_text_with_hint("##filter", "find a command or a key", ui.key_filter)
     imgui.same_line(0.0, em(1.0))
@@ -84,10 +72,10 @@ def _head(ui: Ui, at_odds: int) -> None:
     if imgui.button("Reset all keys"):
         keymap.reset()
     imgui.end_disabled()
-    tooltip("back to the usual keys of these habits")
+    tooltip("give every command its usual key again")
     if at_odds:
         imgui.same_line(0.0, em(1.0))
-        imgui.text_colored(ERROR, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {at_odds} share keys")
+        imgui.text_colored(ERROR, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {at_odds} conflicts")
     paragraph(
         f"Press a key for {ui.key_wanted}, or Escape to leave it." if ui.key_wanted else
         "Click a key to choose another; the right button offers more. Keys without Ctrl or Alt are places on the "
@@ -185,14 +173,11 @@ def _more(ui: Ui, name: str, conflicts: list[str]) -> None:
 def _pointer(ui: Ui) -> None:
     """What the pointer does on the picture."""
     imgui.separator_text("On the picture")
-    habits = ui.keymap.habits
     lines = [
-        (f"{with_ + ' + ' if with_ else ''}{button} drag", _DRAGS[what])
-        for (button, with_), what in habits.drags.items()
-        if what in _DRAGS
-    ]
-    lines += [
-        ("wheel", _WHEELS[habits.wheel]),
+        ("left drag", "look around (fly); orbit around what was clicked (orbit)"),
+        ("right drag", "look around (fly); pan (orbit)"),
+        ("middle drag", "pan"),
+        ("wheel", "flying speed (fly); come nearer (orbit)"),
         ("Shift", "while flying: faster"),
         ("Ctrl + wheel, Ctrl + left drag", "zoom into the picture itself around the pointer; move it"),
         ("Shift + left drag", "choose a region, whose values the panel Pixels counts"),

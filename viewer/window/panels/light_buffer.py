@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from tracer.culling.lightbuffer.tell import LightCube, listed
 from tracer.frame import Frame
 from tracer.method import Method
-from viewer.output.legend_layout import Layout, fitting
-from viewer.output.legend_parts import Legend
+from tracer.why_in_words import primitive_in_words
 from viewer.output.light_cube import CubeSeen, cell_at, cross_of, depths_legend, lists_legend, seen
 from viewer.state.methods import with_additions
-from viewer.state.picking import primitive_in_words
 from viewer.state.readings import LIGHT_CUBES
+from viewer.views.legend import Legend
+from viewer.views.legend_layout import Layout, fitting
 from viewer.window.panels import legend, lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, em, paragraph, properties, row, swatch, wide_button
@@ -74,7 +74,7 @@ def _choose(ui: Ui) -> None:
     """Which light, and what of its cube."""
     with properties("light buffer", 4.0) as shown:
         if shown:
-            row("Light", "whose cube is shown (L and Shift+L)")
+            row("Light", f"whose cube is shown{ui.keys('Next light', 'Previous light')}")
             lights.combo(ui)
             row("Shown", "what is known of each cell, or how far from the light all is in shadow")
             for number, name in enumerate(("lists", "full shadow")):

@@ -14,7 +14,6 @@ from tracer.why_in_words import Link, Sentence
 from viewer.state.pixels import Point
 from viewer.window import closer
 from viewer.window.finding import fly_to_selected
-from viewer.window.panels import going_back
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, fitted, tooltip
 
@@ -93,7 +92,7 @@ def follow(ui: Ui, link: Link) -> None:
     """Go to the frame, or select the pixel or the primitive, that a link stands for."""
     c = ui.controller
     if link.frame is not None:
-        c.travel.go(link.frame, point=_point(ui, link))
+        c.navigator.go(link.frame, point=_point(ui, link))
     elif link.pixel is not None:
         point = _point(ui, link)
         if point is not None:
@@ -104,8 +103,8 @@ def follow(ui: Ui, link: Link) -> None:
 
 def _about(ui: Ui, link: Link) -> str:
     if link.frame is not None:
-        kept = ui.controller.record.moments.get(link.frame) is not None
-        return f"Go to {going_back.in_words(ui, link.frame)}" if kept else "This picture is no longer kept."
+        kept = ui.controller.history.records.get(link.frame) is not None
+        return f"Go to {ui.controller.navigator.name_of(link.frame)}" if kept else "This picture is no longer kept."
     if link.pixel is not None:
         return "Select this pixel" if _point(ui, link) is not None else "A pixel of another picture than this one"
     return "Select it; resting here outlines it in the picture"
@@ -113,12 +112,9 @@ def _about(ui: Ui, link: Link) -> str:
 
 def _menu(ui: Ui, link: Link) -> None:
     """What can be done with what a link stands for."""
-    c = ui.controller
     if link.frame is not None:
         if imgui.menu_item(f"{icons.ICON_FA_CLOCK}  Go there", "", False)[0]:
             follow(ui, link)
-        if imgui.menu_item(f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Go there with its modes", "", False)[0]:
-            c.travel.go(link.frame, modes=True, point=_point(ui, link))
     elif link.pixel is not None:
         if imgui.menu_item(f"{icons.ICON_FA_ARROW_POINTER}  Select", "", False)[0]:
             follow(ui, link)
@@ -138,7 +134,7 @@ def _point(ui: Ui, link: Link) -> Point | None:
     c = ui.controller
     of: Frame | Settings | None = None
     if link.frame is not None:
-        moment = c.record.moments.get(link.frame)
+        moment = c.history.records.get(link.frame)
         of = moment.settings if moment is not None else None
     elif c.frame is not None and c.inspector.names_pixels_of(c.frame):
         of = c.frame

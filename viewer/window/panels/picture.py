@@ -13,15 +13,13 @@ from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state import navigation, pads, verified
-from viewer.state.comparison import Way
+from viewer.state import navigation, verified
+from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
 from viewer.util.numbers import whole_percent
 from viewer.window import comparing
-from viewer.window.camera_commands import pivot_of
 from viewer.window.palette import ON_PICTURE_ERROR
 from viewer.window.panels import (
-    annotating,
     closeup,
     coming,
     cut_overlay,
@@ -48,15 +46,16 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, em, paragraph
 
 CLICK_SLACK = 4.0
-BUTTONS = tuple(int(b) for b in (imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle))
+BUTTONS = LEFT, RIGHT, MIDDLE = tuple(
+    int(b) for b in (imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle)
+)
 _ALL_BUTTONS = int(
     imgui.ButtonFlags_.mouse_button_left
     | imgui.ButtonFlags_.mouse_button_right
     | imgui.ButtonFlags_.mouse_button_middle
 )
-_NAMES = dict(zip(BUTTONS, ("left", "right", "middle"), strict=True))
-FASTER = 4.0
-NOTCHES_PER_HEIGHT = 20.0
+FASTER = 4.0  # with Shift
+TURN = 1.6  # radians per second while a key turns
 
 
 def show(ui: Ui) -> None:
@@ -102,7 +101,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     width, height = c.traced.full_size if c.traced is not None else (1, 1)
     ui.picture_shape = width, height
     seen, gap = comparing.shown(ui), em(sides.GAP)
-    beside = seen is not None and seen[2] is Way.SIDE
+    beside = seen is not None and seen[2] is CompareMode.SIDE
     factor = min(((room.x - gap) / 2.0 if beside else room.x) / width, room.y / height)
     size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
     at = imgui.get_cursor_pos()
@@ -110,8 +109,8 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     top = at.y + (room.y - size.y) / 2.0
     if beside and seen is not None and ui.compared is not None:
         area = _area(ui, "picture of A", left, top, size)
-        layers.draw(ui, comparing.OF_A, ui.compared.a_texture or 0, area)
-        _pointer(ui, area, takes_drawings=False)
+        layers.draw(ui, comparing.OF_A, ui.compared.a.texture_id or 0, area)
+        _pointer(ui, area, takes_edits=False)
         closeup.show(ui, area, seen[0])
         left += size.x + gap
     area = _area(ui, "picture", left, top, size)
@@ -135,7 +134,6 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     lower = _overlay(ui, area.corner, area.end)
     with _inside(area):
         edited_picture.show_lights(ui, area.whole, area.whole_end)
-        annotating.show(ui, area.whole, area.whole_end)
     if seen is not None:
         sides.show_names(ui, area, seen, lower)
     legend.show(ui, area.corner, area.end)
@@ -183,15 +181,15 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
         return  # the progress window speaks
     text = coming.first_picture(c)
     if c.session.scene is None:
-        text = ui.with_keys("Open a scene (Ctrl+O), or drop one on this window")
+        text = f"Open a scene{ui.key('Open...')}, or drop one on this window"
     width = imgui.calc_text_size(text).x
     at = imgui.get_cursor_pos()
     imgui.set_cursor_pos(ImVec2(at.x + max(0.0, (room.x - width) / 2.0), at.y + room.y / 2.0))
     paragraph(text, QUIET)
 
 
-def _pointer(ui: Ui, area: Area, takes_drawings: bool = True) -> None:
-    """Hovering, clicking and dragging on the picture, which is ImGui's last item, and drawing if it takes any."""
+def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
+    """Hovering, clicking and dragging on the picture, which is ImGui's last item; of lights too if it `takes_edits`."""
     c, io = ui.controller, imgui.get_io()
     if ui.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.pivot, ui.pivot_scene = None, c.session.scene
@@ -200,17 +198,14 @@ def _pointer(ui: Ui, area: Area, takes_drawings: bool = True) -> None:
         c.selection.hovered = (u, v)
         if not closeup.wheel(ui, area):
             _wheel(ui, io.mouse_wheel)
-    if takes_drawings and annotating.handle(ui, area.whole, area.whole_size):
-        return
-    if takes_drawings and edited_picture.handle(ui, area.whole, area.whole_size):
+    if takes_edits and edited_picture.handle(ui, area.whole, area.whole_size):
         return
     if wipe.handle(ui, area) or closeup.drag(ui, area):
         return
     if imgui.is_item_activated():
         ui.dragged = False
         ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
-        ui.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), BUTTONS[0])
-        ui.pressed_with = "Ctrl" if io.key_ctrl else "Alt" if io.key_alt else "Shift" if io.key_shift else ""
+        ui.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), LEFT)
         point = point_at(c.frame, u, v) if c.frame is not None else None
         if point is not None:
             ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
@@ -219,7 +214,7 @@ def _pointer(ui: Ui, area: Area, takes_drawings: bool = True) -> None:
         ui.dragged |= math.dist(ui.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > CLICK_SLACK
         if ui.dragged:
             _drag(ui, ui.pressed, io.mouse_delta.x / area.size.y, io.mouse_delta.y / area.size.y)
-    if released and not ui.dragged and ui.pressed == BUTTONS[1]:
+    if released and not ui.dragged and ui.pressed == RIGHT:
         closeup.open_menu(ui, (u, v))
     elif released and not ui.dragged:
         c.selection.select((u, v))
@@ -232,20 +227,14 @@ def _drag(ui: Ui, button: int, dx: float, dy: float) -> None:
     c = ui.controller
     camera, world = c.session.camera, c.motion.world_up
     pivot = ui.pivot
-    what = ui.keymap.drag(_NAMES[button], ui.pressed_with)
-    if what.endswith("by mode"):
-        orbiting = c.preferences.navigation == "orbit" and pivot is not None
-        what = "look" if not orbiting else "pan" if what == "pan by mode" else "orbit"
-    if what == "pan":
+    orbiting = c.preferences.navigation == "orbit" and pivot is not None
+    turn = navigation.RADIANS_PER_HEIGHT
+    if button == MIDDLE or (button == RIGHT and orbiting):
         distance = math.dist(pivot, camera.position) if pivot is not None else 4.0 * c.motion.pace
         c.motion.move(navigation.pan(camera, dx, -dy, distance))
-    elif what == "orbit":
-        turn = 2.0 * navigation.RADIANS_PER_HEIGHT
-        c.motion.move(navigation.orbit(camera, pivot or pivot_of(ui), dx * turn, -dy * turn, world))
-    elif what == "dolly":
-        c.motion.move(navigation.dolly(camera, pivot or pivot_of(ui), -NOTCHES_PER_HEIGHT * dy))
-    elif what == "look":
-        turn = navigation.RADIANS_PER_HEIGHT
+    elif orbiting and pivot is not None:
+        c.motion.move(navigation.orbit(camera, pivot, 2.0 * dx * turn, -2.0 * dy * turn, world))
+    else:
         c.motion.move(navigation.look(camera, dx * turn, -dy * turn, world))
 
 
@@ -253,8 +242,7 @@ def _wheel(ui: Ui, notches: float) -> None:
     if notches == 0.0:
         return
     c = ui.controller
-    wheel = ui.keymap.habits.wheel
-    if wheel == "dolly" or (wheel == "by mode" and c.preferences.navigation == "orbit"):
+    if c.preferences.navigation == "orbit":
         at = c.selection.hovered
         point = point_at(c.frame, *at) if c.frame is not None and at is not None else None
         if point is not None:
@@ -280,15 +268,17 @@ def fly(ui: Ui) -> None:
     def axis(plus: str, minus: str) -> float:
         return down(plus) - down(minus)
 
-    wanted = pads.Push(
-        axis("Fly right", "Fly left"), axis("Fly up", "Fly down"), axis("Fly forward", "Fly back"),
-        axis("Turn right", "Turn left"), axis("Turn up", "Turn down"),
-    )  # fmt: skip
-    if not wanted:
-        return
+    move = axis("Fly right", "Fly left"), axis("Fly up", "Fly down"), axis("Fly forward", "Fly back")
+    turn = axis("Turn right", "Turn left"), axis("Turn up", "Turn down")
     seconds = min(io.delta_time, 0.1)
-    way = c.motion.pace * c.preferences.speed * seconds * (FASTER if io.key_shift else 1.0)
-    c.motion.move(pads.moved(c.session.camera, wanted, way, seconds, c.motion.world_up))
+    camera, up = c.session.camera, c.motion.world_up
+    if any(move):
+        way = c.motion.pace * c.preferences.speed * seconds * (FASTER if io.key_shift else 1.0)
+        camera = navigation.fly(camera, way * move[0], way * move[1], way * move[2], up)
+    if any(turn):
+        camera = navigation.look(camera, TURN * seconds * turn[0], TURN * seconds * turn[1], up)
+    if any(move) or any(turn):
+        c.motion.move(camera)
 
 
 def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:

@@ -4,14 +4,17 @@ was recorded, what lights send to what the camera sees."""
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from numpy.typing import NDArray
 
+from tracer.experiments.experiment import REFERENCE, Results
+from viewer.services.runs import Experiment
 from viewer.state import terms
+from viewer.util.numbers import whole_percent
 from viewer.window.palette import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
-from viewer.window.panels import going_back
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, short
 
@@ -136,13 +139,13 @@ def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size:
     else:
         for label, values, color in curves:
             implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))
-    number = going_back.pointed(history.first, history.first + len(history) - 1)
+    number = pointed_frame(history.first, history.first + len(history) - 1)
     implot.end_plot()
     at = 0 if number is None else number - history.first
     said = [
         f"{label}: {values[at]:.3g}" if per_pixel else f"{label}: {short(values[at])}" for label, values, _ in curves
     ]
-    going_back.handle(ui, title, number, said)
+    _go_to_frame(ui, number, said)
 
 
 def _mark_partly_shaded(first: float, shaded: NDArray[np.float64], heights: tuple[float, float]) -> None:
@@ -181,3 +184,55 @@ def _values(ui: Ui, name: str, per_pixel: bool) -> NDArray[np.float64]:
     """A series as ImPlot wants it, contiguous float64."""
     history = ui.controller.history
     return history.per_pixel(name) if per_pixel else history.values(name)
+
+
+def pointed_frame(first: int, last: int, frames: Sequence[int] | None = None) -> int | None:
+    """Draw a line at the frame that the pointer is on, of those of the plot that is being drawn; returns its number, or
+    its place among `frames`."""
+    if last < first or not implot.is_plot_hovered():
+        return None
+    x = implot.get_plot_mouse_pos().x
+    if frames is None:
+        found = at = min(max(round(x), first), last)
+    else:
+        found = int(np.argmin(np.abs(np.asarray(frames) - x)))
+        at = frames[found]
+    implot.plot_inf_lines("##pointed", np.array([float(at)]), implot.Spec(line_color=GREY, line_weight=1.0))
+    return found
+
+
+def _go_to_frame(ui: Ui, number: int | None, values: list[str]) -> None:
+    """After a plot: say which frame the pointer is on, and go there where that is clicked."""
+    c = ui.controller
+    record = c.history.records.get(number) if number is not None else None
+    if number is None or record is None:
+        return
+    ui.plot_pointed = number
+    width, height, part = record.settings.width, record.settings.height, c.history.shaded_of(number)
+    shaded = f", {whole_percent(part)} shaded" if part < 1.0 else ""
+    said = f"{record.time:.3f} s, {record.settings.method}, {width} x {height}{shaded}"
+    if _clicked([c.navigator.name_of(number), said, *values]):
+        c.navigator.go(number)
+
+
+def go_to_experiment_frame(ui: Ui, run: Experiment, results: Results, place: int | None, values: list[str]) -> None:
+    """The same for the frames of an experiment, by the method that it shows."""
+    c = ui.controller
+    if place is None:
+        return
+    number = results.frames[place]
+    if run.settings.verify:
+        wrong = {m: figures["wrong"][place] for m, figures in results.methods.items() if m != REFERENCE}
+        values = [*values, *(f"{method}: {many} wrong answers" for method, many in wrong.items())]
+    if _clicked([c.navigator.name_in_experiment(run, number), *values]):
+        c.navigator.go_to_experiment(run, number)
+
+
+def _clicked(lines: list[str]) -> bool:
+    """Show what the pointer is told of a frame; returns whether it was clicked."""
+    if imgui.is_mouse_clicked(imgui.MouseButton_.left):
+        return True
+    if imgui.begin_tooltip():
+        imgui.text_unformatted("\n".join([*lines, "Click to go there."]))
+        imgui.end_tooltip()
+    return False

@@ -48,7 +48,6 @@ def _pointer(ui: Ui, height: float, drag: Callable[[Ui, int, float, float], None
     if imgui.is_item_activated():
         ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
         ui.pressed = next((b for b in _BUTTONS if imgui.is_mouse_clicked(b)), _BUTTONS[0])
-        ui.pressed_with = "Ctrl" if io.key_ctrl else "Alt" if io.key_alt else "Shift" if io.key_shift else ""
     if imgui.is_item_active() and math.dist(ui.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > 0.0:
         drag(ui, ui.pressed, io.mouse_delta.x / height, io.mouse_delta.y / height)
 

@@ -9,9 +9,9 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from tracer.frame import Frame
 from viewer.output.ray_rows import Row
 from viewer.services.ray_inspector import RayInspector
+from viewer.state.palette import Color
 from viewer.state.projection import Stroke, place
 from viewer.state.ray_lines import Part, RayLine, box_strokes, shadow_lines, way_strokes
-from viewer.state.views import Color
 from viewer.window.panels import marks
 from viewer.window.panels.marks import SHADE, with_alpha
 from viewer.window.ui import Ui

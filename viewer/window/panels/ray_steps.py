@@ -47,7 +47,7 @@ def show(ui: Ui) -> None:
         return
     if imgui.get_content_region_avail().x < em(_PLAYER):
         imgui.new_line()
-    _player(rays)
+    _player(ui, rays)
     text, why = ray_way.summary(tree, row, rays.visits, rays.structure)
     clipped(text, QUIET)
     if why:
@@ -82,19 +82,19 @@ def _structures(rays: RayInspector) -> None:
         imgui.same_line()
 
 
-def _player(rays: RayInspector) -> None:
+def _player(ui: Ui, rays: RayInspector) -> None:
     """Buttons, and a slider over all steps."""
     if imgui.button(f"{icons.ICON_FA_BACKWARD_STEP}##previous"):
         rays.go(-1)
-    tooltip("previous step (,)")
+    tooltip(f"previous step{ui.key('Previous step of the ray')}")
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_PAUSE if rays.playing else icons.ICON_FA_PLAY}##play"):
         rays.play()
-    tooltip("play the steps (Shift+.)")
+    tooltip(f"play the steps{ui.key('Play the steps of the ray')}")
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_FORWARD_STEP}##next"):
         rays.go(1)
-    tooltip("next step (.)")
+    tooltip(f"next step{ui.key('Next step of the ray')}")
     imgui.same_line()
     imgui.set_next_item_width(-1.0)
     last = len(rays.visits)

@@ -16,7 +16,7 @@ _SIDE_BY_SIDE = 38.0  # ems of width that leave room for both
 _TREE_SHARE = 0.48
 _ROWS, _ROWS_ABOVE = 14, 6  # lines of the tree, and of the steps; and of the tree above these
 _DRAWN = (
-    "in the picture, the shadow rays of the clicked point (I): yellow as far as light comes, then blue; outlined in "
+    "in the picture, the shadow rays of the clicked point: yellow as far as light comes, then blue; outlined in "
     "red is what blocks it, in orange what a certificate names; dashes are hidden. In the colour of partially "
     "occluded, what hides its primitive; three squares are the pixel and the two that it is compared with (Figure 3)"
 )
@@ -38,7 +38,7 @@ def section(ui: Ui) -> None:
     if wanted:
         imgui.set_next_item_open(True)
     opened = imgui.collapsing_header("Rays")
-    tooltip("what became of each ray of the clicked pixel (X)")
+    tooltip(f"what became of each ray of the clicked pixel{ui.key('Rays of the clicked pixel')}")
     if wanted:
         imgui.set_scroll_here_y(0.0)
     if opened:

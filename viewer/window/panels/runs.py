@@ -134,7 +134,11 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
     clipped(f"now {run.label}" if run.traced else "starting ...", QUIET)
     if run.stopping:
         imgui.text_colored(QUIET, "stopping ...")
-    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", "keeps what is done (Escape)", explain=tooltip_above):
+    elif wide_button(
+        f"{icons.ICON_FA_STOP}  Stop",
+        f"keeps what is done{ui.key('Stop, or clear the selection')}",
+        explain=tooltip_above,
+    ):
         runner.stop()
 
 

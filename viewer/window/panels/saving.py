@@ -6,7 +6,6 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.window import taking as commands_of
-from viewer.window.panels import annotating
 from viewer.window.ui import CaptureKind, Ui
 from viewer.window.widgets import QUIET, checkbox, paragraph, properties, row, tooltip, wide_button
 
@@ -14,17 +13,20 @@ from viewer.window.widgets import QUIET, checkbox, paragraph, properties, row, t
 def show(ui: Ui) -> None:
     """The panel."""
     p = ui.controller.preferences
-    if wide_button(f"{icons.ICON_FA_CAMERA}  Save", "the picture alone (F12)", 2):
+    if wide_button(f"{icons.ICON_FA_CAMERA}  Save", f"the picture alone{ui.key('Save picture')}", 2):
         ui.capture_wanted = CaptureKind.PICTURE
     imgui.same_line()
-    if wide_button(f"{icons.ICON_FA_DISPLAY}  With panels", "the whole window (Shift+F12)"):
+    if wide_button(f"{icons.ICON_FA_DISPLAY}  With panels", f"the whole window{ui.key('Save picture with panels')}"):
         ui.capture_wanted = CaptureKind.WINDOW
-    if wide_button(f"{icons.ICON_FA_FLOPPY_DISK}  Save as", "larger, with a caption, or as EXR (Ctrl+S)", 2):
+    if wide_button(
+        f"{icons.ICON_FA_FLOPPY_DISK}  Save as", f"larger, with a caption, or as EXR{ui.key('Save picture as...')}", 2
+    ):
         ui.save_as_open = True
     imgui.same_line()
-    if wide_button(f"{icons.ICON_FA_TERMINAL}  Copy command", "the command that makes this picture (Ctrl+Alt+C)"):
+    if wide_button(
+        f"{icons.ICON_FA_TERMINAL}  Copy command", f"the command that makes this picture{ui.key('Copy as command')}"
+    ):
         commands_of.copy_command(ui)
-    annotating.tools(ui)
     with properties("pictures", 5.0) as shown:
         if shown:
             row("Folder", "where pictures are saved")

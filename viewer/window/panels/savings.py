@@ -7,11 +7,12 @@ from dataclasses import replace
 from imgui_bundle import ImVec2, imgui
 
 from tracer.culling.fate import Fate
-from viewer.output.legend_layout import BACKDROP, TEXT
 from viewer.services.controller import Controller
+from viewer.state.palette import FATE_COLORS, Color, label_color
 from viewer.state.savings import LONGEST, PALE, Bar, Clause, Part, Standing, Tone, bar_of, fitting, sentence
-from viewer.state.views import FATE_COLORS, Color, View, label_color
+from viewer.state.views import View
 from viewer.util.numbers import count
+from viewer.views.legend_layout import BACKDROP, TEXT
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, packed, tooltip
 
@@ -68,15 +69,16 @@ def show(ui: Ui, width: float) -> None:
         ui.fate_shown = None
     start, lines = imgui.get_cursor_pos(), _lines(ui, width)
     told = sentence(frame, standing(c))
-    _write(tuple(_with_keys(ui, clause) for clause in told), start, width, lines)
+    _write(tuple(_with_key(ui, clause) if clause.command else clause for clause in told), start, width, lines)
     imgui.set_cursor_pos(ImVec2(start.x, start.y + lines * imgui.get_text_line_height() + em(_GAP)))
     bar = ui.cached("savings", frame, 0, lambda: bar_of(frame))
     _draw(ui, bar, width)
 
 
-def _with_keys(ui: Ui, clause: Clause) -> Clause:
-    short = clause.short and ui.with_keys(clause.short)
-    return replace(clause, text=ui.with_keys(clause.text), short=short)
+def _with_key(ui: Ui, clause: Clause) -> Clause:
+    """The clause with the key of the command that it names."""
+    key = ui.key(clause.command)
+    return replace(clause, text=clause.text + key, short=clause.short and clause.short + key)
 
 
 def _places(clauses: tuple[Clause, ...], width: float, lines: int) -> list[tuple[float, int, str]]:
@@ -134,7 +136,8 @@ def _draw(ui: Ui, bar: Bar, width: float) -> None:
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         if hovered or ui.fate_shown is part.fate:
             draw.add_rect(at, end, imgui.get_color_u32(imgui.Col_.text), 0.0, thickness=2.0)
-        tooltip(f"{part.in_words()}\nClick: the pixels whose rays to the chosen light these are. Next light (L)")
+        next_light = f"Next light{ui.key('Next light')}"
+        tooltip(f"{part.in_words()}\nClick: the pixels whose rays to the chosen light these are. {next_light}")
         _label(draw, part, at, end, bar.would)
 
 

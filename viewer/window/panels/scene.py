@@ -28,7 +28,7 @@ from viewer.window.widgets import (
 def show(ui: Ui) -> None:
     """The panel."""
     c = ui.controller
-    if wide_button(f"{icons.ICON_FA_FOLDER_OPEN}  Open...", "or drop a file on the window (Ctrl+O)", 2):
+    if wide_button(f"{icons.ICON_FA_FOLDER_OPEN}  Open...", f"or drop a file on the window{ui.key('Open...')}", 2):
         ui.browser.open = True
     imgui.same_line()
     if wide_button(f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Recent"):

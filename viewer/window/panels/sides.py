@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state.comparison import Source, Way
-from viewer.state.views import LESS, MORE, Color
+from viewer.state.comparison import CompareMode, Source
+from viewer.state.palette import LESS, MORE, Color
 from viewer.window import comparing
 from viewer.window.panels import layers
 from viewer.window.panels.area import Area
@@ -23,7 +23,7 @@ def area_of_b(ui: Ui, room: tuple[int, int]) -> tuple[int, int]:
     """The pixels that B is to have in a room for one picture: beside a picture that was kept as many as that has, so
     that both show the same; else as many as there is room for."""
     comparing, state = ui.controller.comparing, ui.controller.comparing.state
-    if not state.on or state.way is not Way.SIDE or min(room) < 1:
+    if not state.on or state.mode is not CompareMode.SIDE or min(room) < 1:
         return room
     if state.source is Source.KEPT:
         kept = state.kept
@@ -34,9 +34,14 @@ def area_of_b(ui: Ui, room: tuple[int, int]) -> tuple[int, int]:
 
 def draw_a(ui: Ui, area: Area, seen: Seen) -> None:
     """A, left of the line of a wipe."""
-    if seen[2] is not Way.WIPE or comparing.shows_a(ui) or ui.compared is None or ui.compared.a_texture is None:
+    if (
+        seen[2] is not CompareMode.WIPE
+        or comparing.shows_a(ui)
+        or ui.compared is None
+        or ui.compared.a.texture_id is None
+    ):
         return
-    layers.draw(ui, comparing.OF_A, ui.compared.a_texture, area, ui.controller.session.wipe)
+    layers.draw(ui, comparing.OF_A, ui.compared.a.texture_id, area, ui.controller.session.wipe)
 
 
 def show_names(ui: Ui, area: Area, seen: Seen, top: float) -> None:
@@ -44,14 +49,14 @@ def show_names(ui: Ui, area: Area, seen: Seen, top: float) -> None:
     a, b, way = seen
     names = ui.controller.comparing.names(a, b)
     y, room = top + em(0.2), area.size.x - em(0.6)
-    if way is Way.SIDE:
+    if way is CompareMode.SIDE:
         _label(ImVec2(area.corner.x - em(GAP) - area.size.x, area.corner.y), names[0], LESS, room)
         _label(ImVec2(area.corner.x, y), names[1], MORE, room)
     elif comparing.shows_a(ui):
         _label(ImVec2(area.corner.x, y), names[0], LESS, room)
-    elif way is Way.DIFFERENCE:
+    elif way is CompareMode.DIFFERENCE:
         _label(ImVec2(area.corner.x, y), f"{names[1]}   minus   {names[0]}", None, room)
-    elif way is not Way.WIPE:
+    elif way is not CompareMode.WIPE:
         _label(ImVec2(area.corner.x, y), names[1], MORE, room)
 
 

@@ -9,12 +9,15 @@ from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
 from viewer.services.controller import Controller
 from viewer.services.cut_inspector import MOST_DRAWN
+from viewer.state.draw_options import AXES
 from viewer.state.picking import pixel_at
-from viewer.state.readings import cell_lights, tree_of, voxels_of
-from viewer.state.slices import AXES, slice_seen, voxel_seen
-from viewer.state.tree_slice import part_seen, part_words
 from viewer.state.views import View
 from viewer.util.numbers import several
+from viewer.views import cell_lights
+from viewer.views.tree import tree_of
+from viewer.views.tree_slice import part_seen, part_words
+from viewer.views.voxel_slice import slice_seen, voxel_seen
+from viewer.views.voxels import voxels_of
 from viewer.window.layers_of_slice import go_to, layer_now
 from viewer.window.panels import words
 from viewer.window.panels.area import Area
@@ -68,7 +71,7 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     if view is View.CUTS and c.selection.picked is None and c.cuts.waits_for == (x, y):
         return awaited(c)
     if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:
-        asked = int(cell_lights(frame)[y, x])
+        asked = int(cell_lights.VIEW.found(frame)[y, x])
         return ["not known yet"] if asked < 0 else [f"its cell asks {count(asked)} of {count(frame.lights)} lights"]
     return []
 

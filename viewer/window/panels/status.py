@@ -7,8 +7,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
 from viewer.state import terms, verified
-from viewer.state.log import Level
-from viewer.state.rate import in_words as rate_in_words
+from viewer.state.history import rate_in_words
+from viewer.state.notices import Level
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, tooltip
 
@@ -114,7 +114,7 @@ def _summary(ui: Ui) -> str:
     if frame is not None:
         parts += filter(None, (verified.in_short(frame.statistics),))
         parts += [f"{frame.width} x {frame.height}", f"{1e3 * frame.statistics.seconds:.0f} ms"]
-    rate = c.record.pictures_a_second
+    rate = c.history.frames_per_second
     if rate is not None and c.active:
         parts.append(rate_in_words(rate))
     return "   ".join(filter(None, parts))

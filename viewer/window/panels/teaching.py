@@ -5,27 +5,25 @@ A picture's number is that in the plots, which count all that the window has tra
 from __future__ import annotations
 
 from imgui_bundle import imgui
-from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.mode_origins import NEVER, Origin
 from viewer.services.teachers import Teacher
 from viewer.state.picking import Pick
-from viewer.state.teaching import NEVER, Lesson
-from viewer.window.panels import going_back
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, paragraph, tooltip
 
 
 def of_occlusion(ui: Ui, pick: Pick) -> None:
     """Since which frame the primitive is fully rendered."""
-    taught = ui.controller.record.taught(pick)
+    taught = ui.controller.history.taught(pick)
     if taught is not None and taught.whole != NEVER and pick.occlusion is OcclusionMode.FULLY_RENDERED:
         _frame(ui, "since", taught.whole, None, "whole", f"FULLY_RENDERED: seen as a whole in picture {taught.whole}")
 
 
 def of_light(ui: Ui, pick: Pick, light: int, mode: ShadowMode) -> None:
     """Which frames have set the shadow mode of a light, one for each answer that was met."""
-    taught = ui.controller.record.taught(pick)
+    taught = ui.controller.history.taught(pick)
     if taught is None or mode is ShadowMode.INIT or light >= len(taught.lights):
         return
     lesson = taught.lights[light]
@@ -38,7 +36,7 @@ def of_light(ui: Ui, pick: Pick, light: int, mode: ShadowMode) -> None:
         paragraph("never seen lit" if mode is ShadowMode.FULL_SHADOW else "never seen blocked", QUIET)
 
 
-def sentence(mode: ShadowMode, light: str, lesson: Lesson, found: Teacher | None) -> str:
+def sentence(mode: ShadowMode, light: str, lesson: Origin, found: Teacher | None) -> str:
     """A mode and who taught it, as one reads it in the tooltip."""
     by = "" if found is None else f" ({pixels_in_words(found)})"
     if mode is ShadowMode.PARTIAL_SHADOW:
@@ -61,18 +59,13 @@ def _frame(ui: Ui, word: str, number: int, found: Teacher | None, key: str, tip:
     c = ui.controller
     imgui.text_colored(QUIET, word)
     _beside(f"picture {number}", imgui.get_style().item_spacing.x)
-    kept = c.record.moments.get(number) is not None
+    kept = c.history.records.get(number) is not None
     imgui.begin_disabled(not kept)
     if imgui.small_button(f"picture {number}##taught {key}"):
-        c.travel.go(number, point=_point(ui, number, found))
+        c.navigator.go(number, point=_point(ui, number, found))
     imgui.end_disabled()
-    where = going_back.in_words(ui, number)
+    where = c.navigator.name_of(number)
     tooltip(f"{tip}\n\nGo to {where}" if kept else f"{tip}\n\nThis picture is no longer kept.")
-    if kept:
-        _beside(icons.ICON_FA_CLOCK_ROTATE_LEFT, 0.2 * imgui.get_font_size())
-        if imgui.small_button(f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}##taught {key}"):
-            c.travel.go(number, modes=True, point=_point(ui, number, found))
-        tooltip(f"Go to picture {number} with its modes: those before it are forgotten, and learnt again")
     if found is not None:
         paragraph(pixels_in_words(found), QUIET)
 
@@ -87,7 +80,7 @@ def _beside(label: str, gap: float) -> None:
 
 def _point(ui: Ui, number: int, found: Teacher | None) -> tuple[float, float] | None:
     """The pixel that taught, as a point of the picture of its frame."""
-    moment = ui.controller.record.moments.get(number)
+    moment = ui.controller.history.records.get(number)
     if found is None or found.pixel is None or moment is None:
         return None
     x, y = found.pixel

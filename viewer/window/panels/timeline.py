@@ -25,16 +25,20 @@ def show(ui: Ui) -> None:
     imgui.dummy(ImVec2(0.0, em(0.05)))
     run, last = c.runs.current, session.scene.frames - 1
     imgui.begin_disabled(run is not None)
-    if _button(icons.ICON_FA_BACKWARD_STEP + "##back", "one frame back (Left)"):
+    if _button(icons.ICON_FA_BACKWARD_STEP + "##back", f"one frame back{ui.key('Step back')}"):
         c.motion.step(-1)
-    if _button((icons.ICON_FA_PAUSE if session.playing else icons.ICON_FA_PLAY) + "##play", "play or pause (Space)"):
+    if _button(
+        (icons.ICON_FA_PAUSE if session.playing else icons.ICON_FA_PLAY) + "##play", f"play or pause{ui.key('Play')}"
+    ):
         c.motion.toggle_play()
-    if _button(icons.ICON_FA_FORWARD_STEP + "##forward", "one frame on (Right)"):
+    if _button(icons.ICON_FA_FORWARD_STEP + "##forward", f"one frame on{ui.key('Step forward')}"):
         c.motion.step(1)
     following = session.follow
     if following:
         imgui.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(imgui.Col_.button_active))
-    if _button(icons.ICON_FA_ROUTE + "##follow", "the camera follows the scene's own path (P)"):
+    if _button(
+        icons.ICON_FA_ROUTE + "##follow", "the camera follows the scene's own path" + ui.key("Follow the scene's path")
+    ):
         c.motion.follow_path(not following)
     if following:
         imgui.pop_style_color()

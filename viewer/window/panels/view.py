@@ -9,11 +9,6 @@ from viewer.window.panels import legend, lights, slicing, tone
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, right, row
 
-_FLAT = (
-    *(View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE, View.PENUMBRA, View.TREE),
-    *(View.FATE, View.MOVING_SHADOW),
-)
-
 
 def show(ui: Ui) -> None:
     """The panel."""
@@ -24,7 +19,7 @@ def show(ui: Ui) -> None:
             row("View", "what is shown of the frame; the key of each view stands beside it in the list")
             _views(ui)
             if c.session.view.of_light and c.session.scene is not None and c.session.scene.lights:
-                row("Light", "the light that the view is about (L and Shift+L)")
+                row("Light", f"the light that the view is about{ui.keys('Next light', 'Previous light')}")
                 lights.combo(ui)
             if c.session.view is View.WIPE:
                 row("Line", "where it is; or drag it in the picture")
@@ -36,19 +31,27 @@ def show(ui: Ui) -> None:
                 row("Beneath", "how bright the picture is beneath the wrong pixels, or behind the slice")
                 changed, percents = imgui.slider_float("##beneath", 100.0 * p.beneath, 0.0, 60.0, "%.0f %%")
                 p.beneath = min(max(percents / 100.0, 0.0), 0.6) if changed else p.beneath
-            if c.session.view in _FLAT:
+            if c.session.view.is_flat:
                 row("Shading", "how much of the picture's light and shade shows under the colours")
                 changed, shading = imgui.slider_float("##shading", p.shading, 0.0, 1.0, "%.2f")
                 p.shading = min(max(shading, 0.0), 1.0) if changed else p.shading
             tone.rows(ui)
-    checkbox("Legend", p.legend, lambda on: setattr(p, "legend", on), "in the picture (N); drag it where you like")
+    checkbox(
+        "Legend",
+        p.legend,
+        lambda on: setattr(p, "legend", on),
+        f"in the picture{ui.key('Legend')}; drag it where you like",
+    )
     imgui.same_line(0.0, em(1.0))
-    checkbox("Outlines", p.outlines, lambda on: setattr(p, "outlines", on), "borders between primitives (B)")
+    checkbox(
+        "Outlines", p.outlines, lambda on: setattr(p, "outlines", on), f"borders between primitives{ui.key('Outlines')}"
+    )
     if c.session.view.needs_work:
-        tip = "the share of the shadow rays due, or of the rays traced without culling, instead of counts (U)"
+        tip = "the share of the shadow rays due, or of the rays traced without culling, instead of counts"
+        tip += ui.key("Shares of rays")
         checkbox("Shares", p.work_shares, lambda on: setattr(p, "work_shares", on), tip)
     if c.session.view.needs_verify:
-        tip = "rings around pixels with wrong shadow answers, so that a lone one is found (M)"
+        tip = f"rings around pixels with wrong shadow answers, so that a lone one is found{ui.key('Mark wrong pixels')}"
         checkbox("Mark wrong pixels", p.mark_wrong, lambda on: setattr(p, "mark_wrong", on), tip)
     tone.ticks(ui)
     legend.in_panel(ui)
@@ -75,7 +78,7 @@ def _views(ui: Ui) -> None:
 def _explanation(ui: Ui) -> None:
     """What the view shows, and what it costs."""
     c = ui.controller
-    view, run, text = c.session.view, c.runs.current, c.session.view.explanation
+    view, run, text = c.session.view, c.runs.current, c.session.view.help
     lacks = run.lacks(view) if run is not None else ""
     if lacks:
         paragraph(f"This run {lacks}.", WARNING)

@@ -8,14 +8,14 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.scene.edits import Edited
+from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
 from tracer.scene.things import Thing
-from viewer.output.legend_parts import light_in_words
+from tracer.why_in_words import primitive_in_words
 from viewer.services.before_edits import Lack
 from viewer.state import terms
 from viewer.state.edit_effects import Effects, Transitions
 from viewer.state.edits import one_by_one
-from viewer.state.picking import primitive_in_words
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import (

@@ -11,7 +11,7 @@ from tracer.reasons import Reason, Rule, Why
 from tracer.why_in_words import Words, plain
 from viewer.services.shadow_inspector import MOST_LIGHTS, nearest_first
 from viewer.services.teachers import with_teachers
-from viewer.state.views import FATE_COLORS, FATE_NAMES
+from viewer.state.palette import FATE_COLORS, FATE_NAMES
 from viewer.window.panels import lights
 from viewer.window.panels.coming import after
 from viewer.window.panels.links import sentence
@@ -73,7 +73,7 @@ def summary(known: Sequence[Explanation]) -> str:
 def _with_teachers(ui: Ui, found: Why) -> Why:
     """The same with the pictures and pixels that gave the modes of what was clicked."""
     c = ui.controller
-    taught = None if c.selection.picked is None else c.record.taught(c.selection.picked)
+    taught = None if c.selection.picked is None else c.history.taught(c.selection.picked)
     if taught is None:
         return found
     known: Why = ui.cached(

@@ -9,8 +9,8 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from tracer.reasons import Why
+from viewer.state.palette import FATE_COLORS
 from viewer.state.projection import Stroke, strokes
-from viewer.state.views import FATE_COLORS
 from viewer.state.whereabouts import lines_of
 from viewer.window.panels import marks
 from viewer.window.panels.area import Area

@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.method import Method
-from viewer.state.comparison import Way
+from viewer.state.comparison import CompareMode
 from viewer.state.views import View
 from viewer.window import comparing
 from viewer.window.panels.area import Area
@@ -42,7 +42,7 @@ def _there(ui: Ui) -> bool:
     """Whether a line is seen: between the culled picture and the right one, or between A and B."""
     seen = comparing.shown(ui)
     if seen is not None:
-        return seen[2] is Way.WIPE and not comparing.shows_a(ui)
+        return seen[2] is CompareMode.WIPE and not comparing.shows_a(ui)
     return ui.controller.tracing.drawn_view is View.WIPE
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.zoom import Approach, Results, Step
+from tracer.experiments.zoom import Approach, Results, Step
 from viewer.output.reports import changes_in_words, happenings, modes_in_words
 from viewer.services.runs import LONGEST_SIDE, ZoomTest
 from viewer.window.palette import MARK

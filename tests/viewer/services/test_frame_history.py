@@ -1,0 +1,210 @@
+"""Back to a frame that was traced; and which frames set a mode."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import tracer
+from tests.viewer.desk import ELSEWHERE, Desk
+from tracer.culling import modes
+from tracer.frame import Frame
+from tracer.mode_origins import NEVER, ModeOrigins
+from tracer.scene.edits import NO_EDITS, Edits
+from viewer.services.frame_history import JumpTarget
+from viewer.state.views import View
+
+
+def flown(desk: Desk, method: str) -> dict[int, Frame]:
+    """Frames by their numbers: of the path, from elsewhere, and in another view, traced with a method."""
+    c = desk.c
+    c.settings.change(method=method, depth=3)
+    desk.rest()
+    c.tracing.reset_modes()
+    desk.rest()
+    seen = {c.history.frames - 1: c.frame}
+
+    def here() -> None:
+        desk.rest()
+        seen[c.history.frames - 1] = c.frame
+
+    for number in (2, 5, 11):
+        c.session.go_to_frame(number)
+        here()
+    c.motion.move(ELSEWHERE)
+    here()
+    c.settings.change(depth=1)
+    c.settings.set_view(View.DEPTH)
+    here()
+    c.session.go_to_frame(15)
+    c.motion.follow_path(True)
+    here()
+    return {number: frame for number, frame in seen.items() if frame is not None}
+
+
+@pytest.mark.parametrize("method", ["none", "certified"])
+def test_an_exact_picture_comes_back_bit_for_bit(desk: Desk, method: str) -> None:
+    seen, c = flown(desk, method), desk.c
+    for number, frame in seen.items():
+        moment = c.history.records.get(number)
+        assert moment is not None and (moment.time, moment.camera) == (frame.time, frame.camera)
+        c.navigator.go(number)
+        of_path = c.session.frame_at(frame.time)
+        assert desk.said == f"picture {number}, frame {of_path} of the path, again: the same picture, bit for bit"
+        desk.rest()
+        assert (c.session.time, c.session.camera) == (frame.time, frame.camera)
+        assert (c.session.settings.method, c.session.settings.depth) == (method, frame.settings.depth)
+        assert np.array_equal(c.frame.color.view(np.uint32), frame.color.view(np.uint32))
+    assert {c.history.records.get(number).view for number in seen} == {View.COLOR, View.DEPTH}
+
+
+def test_frames_of_an_experiment_are_told_from_those_of_the_path(desk: Desk) -> None:
+    c, scene = desk.c, desk.c.session.scene
+    every = [scene.frame_time(number) for number in range(scene.frames)]
+    runs = [SimpleNamespace(times=times, shown="paper", is_of=lambda scene: True) for times in (every, every[::5])]
+    assert c.navigator.name_in_experiment(runs[0], 2) == "frame 2 of the path, by paper"
+    assert c.navigator.name_in_experiment(runs[1], 2) == "frame 2 of the experiment, by paper, frame 10 of the path"
+
+
+def test_going_back_can_be_undone_with_its_time(desk: Desk) -> None:
+    seen, c = flown(desk, "paper"), desk.c
+    here = c.session.snapshot()
+    number = list(seen)[1]
+    c.navigator.go(number)
+    desk.rest()
+    assert c.session.time == seen[number].time != here.time and c.session.view is View.COLOR
+    assert c.undo.undoes == f"going to picture {number}"
+    c.undo.undo()
+    desk.rest()
+    assert c.session.snapshot() == here
+    c.undo.redo()
+    desk.rest()
+    assert c.session.time == seen[number].time and c.session.settings.depth == 3
+
+
+def test_the_modes_of_a_frame_that_depends_on_them_are_learnt_anew(desk: Desk) -> None:
+    """Nothing that later frames have taught is in its picture."""
+    seen, c = flown(desk, "paper"), desk.c
+    number = list(seen)[1]
+    c.navigator.go(number, point=(0.5, 0.6))
+    assert desk.said.endswith("modes are learnt anew")
+    desk.rest()
+    assert c.selection.picked is not None and (c.selection.picked.x, c.selection.picked.y) == (32, 28)
+    learnt = {n for row in next(iter(c.history._origins.values()))._table[:, 1:].tolist() for n in row if n != NEVER}
+    assert learnt and min(learnt) > max(seen)
+    c.navigator.go(99_999)
+    assert "no longer kept" in desk.said
+
+
+def test_a_frozen_picture_knows_what_its_warmup_frames_teach_and_no_more(desk: Desk) -> None:
+    """As a find of a hunt is looked at: with the modes of these frames, bit for bit, until something moves."""
+    c = desk.c
+    c.settings.change(method="paper", samples=4)
+    desk.rest()
+    scene, settings = c.session.scene, c.session.settings
+    warmup = tuple((scene.frame_time(n), scene.camera_at(scene.frame_time(n))) for n in range(3))
+    snapshot = replace(c.session.snapshot(), time=scene.frame_time(3))
+    c.navigator.go_to(JumpTarget(snapshot, "a find", (32, 24), warmup=warmup))
+    desk.rest()
+    own = tracer.Renderer(scene, replace(c.frame.settings, samples=1))
+    for then, camera in (*warmup, (c.session.time, c.session.camera)):
+        alone = own.render(then, camera)
+    assert np.array_equal(c.frame.color.view(np.uint32), alone.color.view(np.uint32))
+    assert np.array_equal(c.frame.modes, alone.modes) and settings.samples == 4 and c.frame.settings.samples == 1
+    c.motion.move(ELSEWHERE)
+    desk.rest()
+    assert c.frame.settings.samples == 4, "having moved, it gets its samples"
+
+
+def test_who_set_which_mode_is_noted_beside_the_window(monkeypatch: pytest.MonkeyPatch, desk: Desk) -> None:
+    """As it looks at all units of a frame, for which the window would wait."""
+    threads: set[threading.Thread] = set()
+    add = ModeOrigins.add
+    monkeypatch.setattr(ModeOrigins, "add", lambda *args: (threads.add(threading.current_thread()), add(*args))[1])
+    flown(desk, "paper")
+    assert threads and threading.main_thread() not in threads
+
+
+def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> None:
+    """Against the modes as each frame left them, and what its pixels met without culling."""
+    c, words = desk.c, {}
+    c.settings.change(method="paper", depth=2)
+    desk.rest()
+    before = c.history.frames
+    c.tracing.reset_modes()
+    desk.rest()
+    for number in (0, 4, 9):
+        c.session.go_to_frame(number)
+        desk.until(lambda number=number: c.frame is not None and c.frame.time == c.session.time)
+        desk.rest()
+    c.motion.move(ELSEWHERE)
+    desk.rest()
+    learnt = range(before, c.history.frames)
+    assert len(learnt) >= 5
+    words = {n: c.history.records.get(n) for n in learnt}
+    assert all(words.values())
+    c.selection.select((0.5, 0.75))
+    picked = c.selection.picked
+    assert picked is not None and picked.primitive >= 0
+    taught = c.history.taught(picked)
+    assert taught is not None
+    desk.until(lambda: all(c.teachers._known.get(n) is not None for one in taught.lights for n in one if n != NEVER))
+    met = 0
+    world = tracer.World(c.session.scene)
+    again = tracer.Renderer(c.session.scene, replace(words[learnt[0]].settings, verify=False), world=world)
+    first: dict[tuple[int, bool], int] = {}
+    for n in learnt:
+        moment = words[n]
+        again.settings = moment.settings
+        word = again.render(moment.time, moment.camera).modes[picked.unit]
+        for light in range(2):
+            for lit, bit in ((False, modes.FULL_SHADOW), (True, modes.NON_SHADOW)):
+                if int(modes.shadow_mode(word, light)) & bit:
+                    first.setdefault((light, lit), n)
+    for light, lesson in enumerate(taught.lights):
+        for lit, n in ((False, lesson.blocked), (True, lesson.lit)):
+            assert first.get((light, lit), NEVER) == n
+            if n == NEVER:
+                continue
+            found, moment = c.teachers.of(n, light, lit), words[n]
+            assert found is not None
+            exact = replace(moment.settings, method="none", record_lights=True, verify=False)
+            frame = tracer.Renderer(c.session.scene, exact, world=world).render(moment.time, moment.camera)
+            here = (frame.primitive == picked.primitive) & (frame.asked[..., light] > 0)
+            here &= (frame.reached[..., light] > 0) == lit
+            if found.pixel is not None:
+                x, y = found.pixel
+                assert here[y, x] and found.count == np.count_nonzero(here)
+                met += 1
+    assert met >= 2, "no pixel was named: this shows nothing"
+
+
+def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
+    """The picture, what is selected in it, and that nobody says who taught modes which an edit has left."""
+    c = desk.c
+    c.settings.change(method="none", depth=1)
+    desk.rest()
+    without_ball = NO_EDITS.with_primitive(c.selection.at((0.5, 0.45)).primitive, False)
+
+    def edit(edits: Edits) -> None:
+        c.editing.change(edits)
+        desk.until(lambda: not c.editing.under_way)
+        desk.rest()
+
+    whole, number = c.frame.color.copy(), c.history.frames - 1
+    edit(without_ball)
+    hidden, other = c.frame.color.copy(), c.history.frames - 1
+    assert not np.array_equal(whole, hidden)
+    for to, picture, edits in ((number, whole, NO_EDITS), (other, hidden, without_ball)):
+        c.navigator.go(to, point=(0.5, 0.45))
+        desk.until(lambda: not c.editing.under_way)
+        desk.rest()
+        assert np.array_equal(c.frame.color, picture) and c.session.edits == edits
+        here = c.selection.at((0.5, 0.45))
+        picked = c.selection.picked
+        assert (picked is None) == (here.primitive < 0) == bool(edits)
+        assert picked is None or (picked.primitive == here.primitive and picked.seen)

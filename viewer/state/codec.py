@@ -1,0 +1,140 @@
+"""Values as JSON and back: the only place of the viewer that knows how.
+
+msgspec reads the types of dataclasses, tuples, enums and sets, and says in one line what does not fit.  What a stored
+value lacks keeps what it has in the value that it is read onto, and what it has too much is ignored, so that other
+versions' files can be read.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any, TypeVar
+
+import msgspec
+import numpy as np
+
+from tracer.setting import NEVER, PICTURES, settings_of
+from viewer.state.view_state import ViewState
+
+T = TypeVar("T")
+FORMAT = 2
+"""Of saved states: version 0.2 wrote format 1."""
+
+
+def to_json(value: Any) -> Any:
+    """Return a value as dictionaries, lists, numbers and words."""
+    return msgspec.to_builtins(value, enc_hook=_plain, order="deterministic")
+
+
+def from_json(data: Any, kind: type[T], what: str = "it") -> T:
+    """Return the inverse of `to_json`; raises ValueError, in one line, on anything else."""
+    try:
+        return msgspec.convert(data, kind)
+    except (msgspec.ValidationError, OverflowError, RecursionError) as error:
+        said, _, place = str(error).partition(" - at ")
+        where = place.strip("`").removeprefix("$").lstrip(".")
+        raise ValueError(f"{what} is damaged: {f'{where}: ' if where else ''}{said[:1].lower()}{said[1:]}") from None
+
+
+def text(value: Any, indent: int | None = None) -> str:
+    """Return a value as the text of JSON; infinities are written as Python does."""
+    return json.dumps(to_json(value), indent=indent)
+
+
+def patched(value: T, data: Any, what: str = "it") -> T:
+    """Return a value with what stored data says of it; raises ValueError, in one line."""
+    if not isinstance(data, Mapping):
+        raise ValueError(f"{what} is damaged")
+    return from_json(_onto(to_json(value), data), type(value), what)
+
+
+def _onto(base: dict[str, Any], data: Mapping[str, Any]) -> dict[str, Any]:
+    """Dictionaries go into dictionaries; all else takes the place of what was there."""
+    inner = {
+        name: _onto(base[name], value)
+        for name, value in data.items()
+        if isinstance(value, Mapping) and isinstance(base.get(name), dict)
+    }
+    return {**base, **data, **inner}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return str(value)
+
+
+# --- states ----------------------------------------------------------------------------------------
+
+
+def state_to_json(state: ViewState, of_picture: bool = False) -> dict[str, Any]:
+    """Return what is stored of a state; `of_picture`: with what it takes to make the same picture on any machine."""
+    data = _without(to_json(state), (NEVER,) if of_picture else (NEVER, PICTURES))
+    if of_picture:
+        del data["pace"]  # which is how a window got there
+    return {"format": FORMAT, **data}
+
+
+def state_from_json(data: Any, onto: ViewState | None = None) -> ViewState:
+    """Return a stored state; what it lacks is as in `onto`.  Raises ValueError, in one line."""
+    if not isinstance(data, Mapping):
+        raise ValueError("no saved state in it")
+    today = _of_today(data) if "draw" not in data and "view" in data else data
+    return patched(onto or ViewState(), _without(dict(today), (NEVER,)), "its saved state").validated()
+
+
+def picture_from_json(data: Mapping[str, Any]) -> ViewState:
+    """Return the state that a saved picture carries, of any version; raises ValueError, in one line."""
+    state, picture, size = data.get("state"), data.get("picture"), data.get("size")
+    if isinstance(state, Mapping) and isinstance(picture, Mapping):
+        state = _of_today(state, picture)
+    found = state_from_json(state)
+    if not isinstance(size, list):
+        return found
+    width, height = from_json(size, tuple[int, int], "its size")
+    return found.with_settings(width=width, height=height).validated()
+
+
+def _without(data: dict[str, Any], stored: tuple[str, ...]) -> dict[str, Any]:
+    """A state without the settings that are stored like this."""
+    for one in settings_of(ViewState):
+        inner: Any = data
+        for name in one.within:
+            inner = inner.get(name) if isinstance(inner, dict) else None
+        if one.stored in stored and isinstance(inner, dict):
+            inner.pop(one.name, None)
+    return data
+
+
+def _of_today(data: Mapping[str, Any], picture: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """What version 0.2 wrote of a state, and of how its picture was drawn and what came before it, as it is today."""
+    try:
+        picture = dict(picture or {})
+        style = dict(picture.get("style", {}))
+        draw = {name: data[name] for name in ("view", "light", "wipe", "tone", "slice") if name in data}
+        draw |= {name: style[name] for name in _STYLE if name in style}
+        draw |= {"mark_wrong": style.get("marked", True)}
+        if data.get("span") is not None:
+            draw["spans"] = [[data.get("view", "color"), data["span"]]]
+        if style.get("legend") is not None:
+            draw |= {"legend": True, "legend_at": style["legend"]}
+        of_machine = {name: picture[name] for name in ("accelerator", "threads") if name in picture}
+        warmup = {new: picture[old] for old, new in _WARMUP.items() if old in picture}
+        return {
+            **{name: data[name] for name in ("scene", "time", "meshes", "edits") if name in data},
+            "camera": None if data.get("follow") else data["camera"],
+            "settings": {**dict(data.get("settings", {})), **of_machine},
+            "draw": draw,
+            "warmup": warmup,
+        }
+    except KeyError as error:
+        raise ValueError(f"its saved state lacks {error}") from None
+    except (TypeError, ValueError):
+        raise ValueError("its saved state is damaged") from None
+
+
+_STYLE = ("shares", "magnified", "shading", "beneath", "outlines", "caption", "clipping", "savings")
+_WARMUP = {"before": "frames", "warmup": "of_path", "repeats": "repeats", "modes": "modes", "history": "unknown"}

@@ -1,0 +1,163 @@
+"""How a frame is drawn: all that changes the picture without tracing it again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+from tracer.setting import setting
+from viewer.state.palette import BENEATH
+from viewer.state.tone import NEUTRAL, Tone
+from viewer.state.views import View
+from viewer.state.zooming import FIT, Zoom
+
+AXES = ("x", "y", "z")
+SHADING = 0.35
+"""How much of the light shows under flat colours."""
+Span = tuple[float, float]
+
+
+class Slice(NamedTuple):
+    """A plane through space: across which axis, 0 to 2, and where along it, 0 to 1."""
+
+    axis: int = 1
+    at: float = 0.25
+
+    def layer(self, shape: tuple[int, int, int]) -> int:
+        """Return the number of the layer of voxels along the axis."""
+        return min(int(self.at * shape[self.axis]), shape[self.axis] - 1)
+
+    def in_words(self) -> str:
+        """Return it as the option `--slice` takes it."""
+        return f"{AXES[self.axis]}:{self.at!r}"
+
+    @staticmethod
+    def parse(text: str) -> Slice:
+        """Return the inverse of `in_words`; raises ValueError, in one line."""
+        axis, _, at = text.partition(":")
+        try:
+            found = Slice(AXES.index(axis.strip().lower()), float(at or Slice().at))
+            found.check()
+        except ValueError:
+            raise ValueError(f"{text!r} is not a slice; give an axis and a part from 0 to 1, like y:0.25") from None
+        return found
+
+    def check(self) -> None:
+        """Raise ValueError, in one line, for one that lies nowhere."""
+        if not (0 <= self.axis < len(AXES) and 0.0 <= self.at <= 1.0):
+            raise ValueError("the slice lies nowhere")
+
+
+MIDDLE = Slice()
+
+
+def in_views(shows: Callable[[View], bool]) -> Callable[[Any], bool]:
+    """Return whether a setting applies to a state: in views that show something."""
+    return lambda state: shows(state.draw.view)
+
+
+def _check_spans(spans: tuple[tuple[View, Span], ...]) -> None:
+    if not all(low < high for _, (low, high) in spans):
+        raise ValueError("the range of a view is empty")
+
+
+def _check_place(place: tuple[float, float]) -> None:
+    if not all(0.0 <= part <= 1.0 for part in place):
+        raise ValueError("the legend lies outside the picture")
+
+
+def _has_span(draw: DrawOptions) -> bool:
+    return draw.view.has_range and not (draw.view.needs_work and draw.shares)
+
+
+@dataclass(frozen=True)
+class DrawOptions:
+    """How a frame is drawn.
+
+    `light` counts the lights that are on.  `spans` are the ranges that were chosen for views of numbers: a range that
+    is not chosen is that of the frame.  Rings around wrong pixels are drawn for a picture that is shown `magnified`
+    times as large.  `zoom` is the part of the picture that the window shows."""
+
+    view: View = setting(View.COLOR, "View", "What is shown of the frame.", option="--view")
+    light: int = setting(0, "Light", "The light that the view is about.", low=0, remembered=False)
+    wipe: float = setting(
+        0.5, "Line", "Where the line between the two pictures is; or drag it in the picture.", low=0.0, high=1.0,
+        percent=True, panel="View", applies=in_views(lambda view: view is View.WIPE), remembered=False,
+    )  # fmt: skip
+    slice: Slice = setting(
+        MIDDLE, "Slice", "The plane through space that is shown: across which axis, and where along it.",
+        option="--slice", check=Slice.check, applies=in_views(lambda view: view.has_slice), remembered=False,
+    )  # fmt: skip
+    beneath: float = setting(
+        BENEATH, "Beneath", "How bright the picture is beneath the wrong pixels, or behind the slice.",
+        low=0.0, high=1.0, slider=(0.0, 0.6), percent=True, option="--beneath", panel="View",
+        applies=in_views(lambda view: view is View.DIFFERENCE or view.has_slice),
+    )  # fmt: skip
+    shading: float = setting(
+        SHADING, "Shading", "How much of the picture's light and shade shows under the colours.", low=0.0, high=1.0,
+        option="--shading", panel="View", applies=in_views(lambda view: view.is_flat),
+    )  # fmt: skip
+    tone: Tone = NEUTRAL
+    spans: tuple[tuple[View, Span], ...] = setting(
+        (), "Range", "What has the first and the last colour of the map.", option="--range", remembered=False,
+        applies=lambda state: _has_span(state.draw), check=_check_spans,
+    )  # fmt: skip
+    legend: bool = setting(
+        False, "Legend", "What the colours mean, in the picture; drag it where you like.", option="--legend",
+        panel="View", in_window=True,
+    )  # fmt: skip
+    legend_at: tuple[float, float] = setting(
+        (0.0, 1.0), "Place of the legend", "Where the legend is in the picture: 0,0 is the upper left.",
+        check=_check_place,
+    )  # fmt: skip
+    outlines: bool = setting(
+        False, "Outlines", "Draw the borders between primitives.", option="--outlines", panel="View"
+    )
+    shares: bool = setting(
+        False, "Shares",
+        "Show the share of the shadow rays due, or of the rays traced without culling, instead of counts.",
+        panel="View", applies=in_views(lambda view: view.needs_work),
+    )  # fmt: skip
+    mark_wrong: bool = setting(
+        True, "Mark wrong pixels", "Draw rings around pixels with wrong shadow answers, so that a lone one is found.",
+        option="--no-marks", panel="View", applies=in_views(lambda view: view.needs_verify),
+    )  # fmt: skip
+    clipping: bool = setting(
+        False, "Mark clipped pixels",
+        "Draw stripes over pixels that are too bright for the screen, in red, and over black ones, in blue.",
+        option="--mark-clipped", panel="View", applies=in_views(lambda view: view.shows_clipped), remembered=False,
+    )  # fmt: skip
+    rays: bool = setting(True, "Shadow rays of the pixel", "Draw the shadow rays of the selected pixel.")
+    smooth: bool = setting(True, "Smooth upscaling", "Blend the pixels of a picture that is smaller than the window.")
+    savings: str | None = setting(
+        None, "Savings", "Say above the picture what culling saves, with this text for steps and time, and a bar.",
+        option="--savings", remembered=False,
+    )  # fmt: skip
+    caption: str = setting("", "Caption", "A line of text below the picture.", option="--caption", remembered=False)
+    magnified: int = setting(
+        1, "Magnified", "Draw rings for a picture that is shown so many times as large.", low=1, high=100,
+        option="--magnified", remembered=False,
+    )  # fmt: skip
+    zoom: Zoom = setting(FIT, "Zoom", "How closely the picture is looked at.", remembered=False)
+
+    @property
+    def span(self) -> Span | None:
+        """The range that was chosen for the view; None: as the frame has it."""
+        return dict(self.spans).get(self.view) if _has_span(self) else None
+
+    def with_span(self, span: Span | None, view: View | None = None) -> DrawOptions:
+        """Return these with another range for a view, the one that is shown where none is named."""
+        spans = {**dict(self.spans), (view or self.view): span}
+        return replace(self, spans=tuple((name, found) for name, found in spans.items() if found is not None))
+
+    def as_needed(self) -> DrawOptions:
+        """Return these without what the view has no use for: its tone, stripes, ranges and slice."""
+        view, span = self.view, self.span
+        return replace(
+            self,
+            tone=self.tone if view.shows_picture else NEUTRAL,
+            clipping=self.clipping and view.shows_clipped,
+            spans=() if span is None else ((view, span),),
+            slice=self.slice if view.has_slice else MIDDLE,
+        )

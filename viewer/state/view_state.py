@@ -1,0 +1,145 @@
+"""All that a picture depends on, as one frozen value: what undo, bookmarks, captures, presets and commands hold."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+from tracer.geometry.accelerators import ACCELERATORS
+from tracer.method import Method
+from tracer.scene.camera import Camera
+from tracer.scene.edits import NO_EDITS, Edits
+from tracer.scene.limits import LARGEST
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
+from tracer.setting import AS_DEFAULT, Setting, check_all, setting, settings_of
+from tracer.settings import Settings
+from viewer.state.draw_options import DrawOptions
+
+LONGEST_SIDE = 8192
+"""Pixels of a picture of fixed size."""
+MOST_CERTIFYING = 0.9
+"""Part of a frame's time that may go into certificates."""
+MOST_FRAMES = 100_000
+"""Frames that are traced before one picture."""
+
+
+def _fixed_size(state: ViewState) -> bool:
+    return state.pace.fixed_size
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How the window traces: in what size, how fast in motion, and what it does while nothing moves."""
+
+    fixed_size: bool = setting(
+        False, "Fixed size", "Trace pictures of a size of their own, not of the window's.", panel="Rendering"
+    )
+    width: int = setting(512, "Picture width", "Of pictures of fixed size.", low=1, high=LONGEST_SIDE,
+                         applies=_fixed_size, unit=" px")  # fmt: skip
+    height: int = setting(512, "Picture height", "Of pictures of fixed size.", low=1, high=LONGEST_SIDE,
+                          applies=_fixed_size, unit=" px")  # fmt: skip
+    progressive: bool = setting(
+        True, "Progressive refinement",
+        "Show pictures before all of their pixels are shaded, so that frames come fast.", panel="Rendering",
+    )  # fmt: skip
+    target_fps: float = setting(
+        15.0, "In motion", "Frames per second to aim at.", low=1.0, high=240.0, slider=(2.0, 60.0), unit=" fps",
+        panel="Rendering", applies=lambda state: state.pace.progressive,
+    )  # fmt: skip
+    keep_tracing: bool = setting(
+        False, "Keep tracing when idle",
+        "Trace frame after frame, to watch how modes are set and certificates made.", panel="Culling",
+    )  # fmt: skip
+    every_frame: bool = setting(
+        False, "Every frame", "Trace every frame of the animation while it plays, however long each takes."
+    )
+    certificate_share: float = setting(
+        0.15, "Certificate budget",
+        "The share of each frame's time for certificates while anything moves; when idle they get more.",
+        low=0.0, high=MOST_CERTIFYING, percent=True, panel="Culling",
+        applies=lambda state: Method.parse(state.settings.method).has_certificates,
+    )  # fmt: skip
+
+
+class WarmupFrame(NamedTuple):
+    """A frame that was traced before a picture: its time in seconds and its camera, None for the scene's own."""
+
+    time: float
+    camera: Camera | None = None
+
+
+@dataclass(frozen=True)
+class Warmup:
+    """The frames from which a picture's modes, certificates and caches were learnt, in the order they were traced.
+
+    First those in `frames`, then `of_path` frames of the scene's path that lead up to it, then the picture's own frame
+    `repeats` times.  `modes` stand for all of them where they are known themselves (`viewer.output.kept_modes`);
+    `unknown` says, in words, why no frames bring them back."""
+
+    frames: tuple[WarmupFrame, ...] = ()
+    of_path: int = 0
+    repeats: int = 0
+    modes: str = ""
+    unknown: str = ""
+
+
+@dataclass(frozen=True)
+class ViewState:
+    """All that a picture depends on.
+
+    `scene` is the path of its file, `meshes` says how it is read, `edits` what is otherwise in it; `camera` None is the
+    scene's own, which goes along its path."""
+
+    scene: str = ""
+    meshes: MeshOptions = AS_IN_FILE
+    edits: Edits = NO_EDITS
+    time: float = 0.0
+    camera: Camera | None = None
+    settings: Settings = field(default_factory=Settings)
+    draw: DrawOptions = field(default_factory=DrawOptions)
+    pace: Pace = field(default_factory=Pace)
+    warmup: Warmup = field(default_factory=Warmup)
+
+    @staticmethod
+    def in_window() -> ViewState:
+        """Return what the window starts with."""
+        state = ViewState()
+        for one in settings_of(ViewState):
+            state = one.put(state, one.in_window) if one.in_window != AS_DEFAULT else state
+        return state
+
+    def applies(self, one: Setting) -> bool:
+        """Return whether one of its settings does anything as it is."""
+        return one.applies(self.settings if one.within == ("settings",) else self)
+
+    def with_draw(self, **options: Any) -> ViewState:
+        """Return it with other options of drawing."""
+        return replace(self, draw=replace(self.draw, **options))
+
+    def with_settings(self, **settings: Any) -> ViewState:
+        """Return it with other settings of tracing."""
+        return replace(self, settings=replace(self.settings, **settings))
+
+    def validated(self) -> ViewState:
+        """Return it, checked; raises ValueError, in one line, where a value is out of range."""
+        check_all(self)
+        if not math.isfinite(self.time):
+            raise ValueError("the time is not a finite number")
+        for camera in (self.camera, *(frame.camera for frame in self.warmup.frames)):
+            if camera is not None:
+                Camera.from_json(camera.to_json())
+        places = [part for _, place in self.edits.moved_lights for part in place]
+        times = [time for _, time in self.edits.static] + [frame.time for frame in self.warmup.frames]
+        numbers = [*self.edits.lights_off, *self.edits.hidden_primitives, *(n for n, _ in self.edits.moved_lights)]
+        if (
+            not all(abs(part) <= LARGEST for part in places)
+            or not all(map(math.isfinite, times))
+            or min([0, *numbers]) < 0
+        ):
+            raise ValueError("the edits of the scene are out of range")
+        if not 0 <= max(self.warmup.of_path, self.warmup.repeats, len(self.warmup.frames)) <= MOST_FRAMES:
+            raise ValueError(f"a picture has 0 to {MOST_FRAMES:,} frames before it")
+        if self.settings.accelerator not in ACCELERATORS:
+            raise ValueError(f"the tree {self.settings.accelerator} is not known")
+        return self
