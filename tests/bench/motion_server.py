@@ -23,13 +23,13 @@ from numpy.typing import NDArray
 from PIL import Image
 from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
+from tests.viewer.drawn import picture
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.shading.blocks import TURNS
 from tracer.statistics import FrameStatistics
 from viewer.services.governor import AT_ONCE, LARGEST_DIVISOR, SPARE, Governor, Plan, divided
 from viewer.state import navigation
-from viewer.views import colorize
 from viewer.window.app import App
 
 BURST = 2.0  # seconds of motion
@@ -186,8 +186,8 @@ def compared(burst: Burst, size: tuple[int, int], renderer: Renderer) -> list[di
     found, exactly = [], {"width": size[0], "height": size[1], "method": "none", "modes": False}
     for frame in kept:
         renderer.settings = replace(frame.settings, **exactly)
-        exact = colorize(renderer.render(frame.time, frame.camera))
-        shown = on_screen(colorize(frame), size)
+        exact = picture(renderer.render(frame.time, frame.camera))
+        shown = on_screen(picture(frame), size)
         found.append(
             {
                 "ssim": float(structural_similarity(exact, shown, channel_axis=2)),

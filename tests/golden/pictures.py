@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from tests.viewer.drawn import picture
 from tracer.frame import Frame, Settings
 from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import World
@@ -34,7 +35,6 @@ from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.readings import LIGHT_CUBES
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.views import colorize
 
 FOLDER = Path(__file__).resolve().parent
 SETTINGS = Settings(width=160, height=120)
@@ -64,12 +64,12 @@ class Golden:
 
     def views(self, frame: Frame) -> Iterator[tuple[str, NDArray[np.uint8]]]:
         """Name of the file, without its ending, and picture (height, width, 3) of each view."""
-        yield f"{self.name}-color", colorize(frame, View.COLOR)
-        yield f"{self.name}-occlusion", colorize(frame, View.OCCLUSION)
+        yield f"{self.name}-color", picture(frame, View.COLOR)
+        yield f"{self.name}-occlusion", picture(frame, View.OCCLUSION)
         for light in self.lights:
-            yield f"{self.name}-shadow-{light}", colorize(frame, View.SHADOW, light)
+            yield f"{self.name}-shadow-{light}", picture(frame, View.SHADOW, light)
         for view in self.fates:
-            yield f"{self.name}-{view.value}", colorize(frame, view, self.lights[0])
+            yield f"{self.name}-{view.value}", picture(frame, view, self.lights[0])
 
 
 GOLDEN = (
@@ -109,16 +109,16 @@ class OfMethod:
         renderer = Renderer(scene, settings, world=world)
         return renderer.render(scene.frame_time(0))
 
-    def colorize(self, frame: Frame) -> NDArray[np.uint8]:
+    def picture(self, frame: Frame) -> NDArray[np.uint8]:
         """(height, width, 3)."""
-        return colorize(frame, self.view, cut=self.cut)
+        return picture(frame, self.view, slice=self.cut)
 
 
 EXACT = "figure3-exact"
 OF_METHODS = (
-    OfMethod("default-voxels", "default", "voxels", View.VOXELS, stray=60, cut=Slice(1, 0.2)),
+    OfMethod("default-voxels", "default", "voxels", View.VOXELS, stray=60, slice=Slice(1, 0.2)),
     OfMethod("default-cell-lights", "default", "lie-exact", View.CELL_LIGHTS, stray=60),
-    OfMethod("default-tree", "default", "none", View.TREE, stray=60, cut=Slice(1, 0.2), accelerator=LAZY),
+    OfMethod("default-tree", "default", "none", View.TREE, stray=60, slice=Slice(1, 0.2), accelerator=LAZY),
     *(OfMethod(EXACT, "figure3", method, View.COLOR, stray=4) for method in ("voxels", "lie-exact", "lightbuffer")),
 )
 

@@ -18,6 +18,7 @@ from tests.tracing.nasty_worlds import nasty_walk, with_lamps
 from tests.tracing.same import assert_same
 from tests.tracing.shades import floor
 from tests.tracing.worlds import quad, scene
+from tests.viewer.drawn import picture
 from tracer.experiments.experiment import figures_of
 from tracer.geometry.world import ACCELERATORS
 from tracer.methods.lightcuts import errors_of
@@ -28,7 +29,6 @@ from tracer.scene.model import Camera
 from tracer.shading.lightcuts.block import DARK
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.views import colorize
 
 METHODS = ("lightcuts", "lightcuts-stochastic", "lightcuts-certified")
 SETTINGS = tracer.Settings(width=64, height=48, depth=2, method="lightcuts", threads=2)
@@ -225,6 +225,6 @@ def test_the_office_by_cuts_looks_as_it_did() -> None:
     """Cuts may come out otherwise on another processor: a few levels, where none of the lights would move by one."""
     made = load_scene(embedded_scenes()["office"])
     frame = tracer.Renderer(made, tracer.Settings(160, 120, 2, "lightcuts")).render(0.0)
-    shown, path = colorize(frame, View.COLOR), Path(FOLDER) / "lightcuts" / "office.png"
+    shown, path = picture(frame, View.COLOR), Path(FOLDER) / "lightcuts" / "office.png"
     found = Difference.between(np.asarray(Image.open(path).convert("RGB")), shown)
     assert found.most <= 8 and found.mean <= 0.5, str(found)

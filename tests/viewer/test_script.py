@@ -16,8 +16,8 @@ import pytest
 from PIL import Image
 
 import viewer
+from tests.viewer.drawn import picture
 from tests.viewer.fakes import make_frame
-from viewer.views import colorize
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def test_a_frame_shows_itself() -> None:
     frame = make_frame()
     frame = replace(frame, color=np.linspace(-0.2, 1.3, frame.color.size, dtype=np.float32).reshape(frame.color.shape))
-    assert np.array_equal(frame.pixels, colorize(frame))
+    assert np.array_equal(frame.pixels, picture(frame))
     with Image.open(BytesIO(frame._repr_png_())) as image:
         assert np.array_equal(np.asarray(image), frame.pixels)
     html = frame._repr_html_()

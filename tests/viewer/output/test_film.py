@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.viewer.drawn import picture
 from tests.viewer.fakes import make_frame
 from tracer.experiments.zoom import Approach, Change, Results, Step
 from tracer.frame import Frame, Settings
@@ -14,7 +15,6 @@ from tracer.scene.model import Camera
 from viewer.output.film import Film
 from viewer.output.film_figure import COLUMNS, chosen_steps, film_figure
 from viewer.state.palette import WRONG
-from viewer.views import colorize
 from viewer.views.difference import Mark, ringed, wrong_marks
 
 
@@ -36,7 +36,7 @@ def test_a_shot_is_the_picture_with_rings_around_what_is_wrong(frame: Frame):
     film.record(4.0, 0, frame)
     pixels, ring = film.of(4.0)[0].pixels(), wrong_marks(frame) == Mark.RING
     assert (pixels[ring] == np.round(255.0 * np.asarray(WRONG))).all() and ring.any()
-    np.testing.assert_array_equal(pixels[~ring], colorize(frame)[~ring])
+    np.testing.assert_array_equal(pixels[~ring], picture(frame)[~ring])
     assert film.of(4.0)[0].thumbnail(24).shape == (24, 32, 3)
     with pytest.raises(ValueError, match="not verified"):
         ringed(replace(frame, wrong=None))

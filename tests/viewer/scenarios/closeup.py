@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from imgui_bundle import imgui
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from viewer.state.views import View
-from viewer.views import colorize
 
 KEY = imgui.Key
 CTRL, SHIFT = int(KEY.mod_ctrl), int(KEY.mod_shift)
@@ -22,7 +22,7 @@ def closeup(d: Driver) -> None:
     p.pixel_values = p.legend = False
     d.settle()
     camera, traced, speed = d.c.session.camera, d.c.history.frames, d.c.preferences.speed
-    shown = colorize(d.c.frame)
+    shown = picture(d.c.frame)
     for number, (u, v) in enumerate(((0.3, 0.4), (0.003, 0.5), (0.71, 0.998))):
         x, y = _point_at(d, u, v)
         _wheel(d, 12 if number % 2 == 0 else 7)
@@ -177,7 +177,7 @@ def _region(d: Driver) -> None:
     d.context.item_click("//Pixels/**/Use as the range of colours")
     d.frames(3)
     assert np.allclose(d.c.session.spans[View.DEPTH], (depth.min(), depth.max()))
-    expected = colorize(d.c.frame, View.DEPTH, span=d.c.session.spans[View.DEPTH])
+    expected = picture(d.c.frame, View.DEPTH, span=d.c.session.spans[View.DEPTH])
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.c.session.spans.clear()
     d.c.settings.set_view(View.COLOR)
@@ -191,14 +191,14 @@ def _exposed(d: Driver) -> None:
     d.press(KEY.right_bracket, 2)
     d.press(int(KEY.m) | SHIFT)
     assert d.c.session.tone.exposure == 1.0 and d.c.session.clipping
-    expected = colorize(d.c.frame, tone=d.c.session.tone, clipping=True)
+    expected = picture(d.c.frame, tone=d.c.session.tone, clipping=True)
     assert np.abs(d.shown().astype(int) - expected).max() <= 1
     d.press(KEY.left_bracket)
     d.press(int(KEY.m) | SHIFT)
     assert d.c.session.tone.exposure == 0.5
     d.context.menu_click("//##MainMenuBar/Picture/Colours as traced")
     d.frames(2)
-    assert d.c.session.tone.neutral and np.array_equal(d.shown(), colorize(d.c.frame)), "bit for bit as it was"
+    assert d.c.session.tone.neutral and np.array_equal(d.shown(), picture(d.c.frame)), "bit for bit as it was"
     d.press(int(KEY.z) | CTRL)
     assert d.c.session.tone.exposure == 0.5, "colours as traced can be undone"
     d.press(int(KEY.z) | CTRL | SHIFT)

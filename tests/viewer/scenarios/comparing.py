@@ -6,6 +6,7 @@ import numpy as np
 from imgui_bundle import imgui
 from PIL import Image
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
 from viewer.output.compared import GAP, composed, signed_picture
@@ -14,7 +15,6 @@ from viewer.state.comparison import CompareMode, Source
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 from viewer.state.worst import with_rings
-from viewer.views import colorize
 from viewer.views.wipe import wipe_column
 from viewer.window import comparing as seen
 
@@ -40,7 +40,7 @@ def comparing(d: Driver) -> None:
     d.hold(KEY.d, 0.2)
     d.settle()
     assert d.c.frame is not kept and d.c.session.camera != kept.camera, "Ctrl+A has flown, or D has not"
-    a, b = colorize(kept), colorize(d.c.frame)
+    a, b = picture(kept), picture(d.c.frame)
     for way in (CompareMode.WIPE, CompareMode.SIDE, CompareMode.DIFFERENCE, CompareMode.BLINK, CompareMode.FLIP):
         d.press(int(KEY.z) | SHIFT) if way is not CompareMode.WIPE else d.c.comparing.start(way)
         d.settle()
@@ -49,10 +49,10 @@ def comparing(d: Driver) -> None:
         saved = _saved(d, f"{way.value}.png")
         if way is CompareMode.DIFFERENCE:
             found = d.c.comparing.difference(*d.c.comparing.sides)
-            assert found.apart.pixels > 100 and np.array_equal(
+            assert found.stats.pixels > 100 and np.array_equal(
                 found.pixels != 0.0, (kept.color != d.c.frame.color).any(-1)
             )
-            shown = with_rings(signed_picture(found.pixels, found.apart.limit), found.worst)
+            shown = with_rings(signed_picture(found.pixels, found.stats.limit), found.worst)
             assert np.abs(saved.astype(int) - shown).max() <= 1 and found.worst, "with its rings"
             assert seen.legend(d.ui).entries[0].values == (str(len(found.worst)),)
             p.mark_wrong = False
@@ -80,7 +80,7 @@ def comparing(d: Driver) -> None:
     d.c.session.tone = Tone(-1.0, 1.0, Curve.SRGB)
     d.frames(2)
     expected = composed(
-        *(colorize(f, tone=d.c.session.tone) for f in (kept, d.c.frame)), CompareMode.WIPE, d.c.session.wipe, False
+        *(picture(f, tone=d.c.session.tone) for f in (kept, d.c.frame)), CompareMode.WIPE, d.c.session.wipe, False
     )
     assert np.abs(_saved(d, "toned.png").astype(int) - expected).max() <= 1, "both have the tone"
     d.press(KEY._9)

@@ -8,13 +8,12 @@ from dataclasses import replace
 import numpy as np
 from imgui_bundle import imgui
 
+from tests.viewer.drawn import classes_in, picture
 from tests.viewer.driver import Driver
 from tracer.method import additions, bases
 from tracer.renderer import Renderer
-from viewer.output.legend_counts import occlusion_legend
 from viewer.services.shadow_inspector import Part
 from viewer.state.views import View
-from viewer.views import colorize
 from viewer.views.tree_slice import layer_of
 from viewer.views.voxel_slice import slice_seen
 from viewer.window.command import chord
@@ -60,8 +59,8 @@ def certifying(d: Driver) -> None:
         for key, view in ((KEY._2, View.OCCLUSION), (KEY._3, View.SHADOW), (KEY._7, View.PIXEL_COUNT)):
             d.press(key)
             assert d.c.tracing.drawn_view is view and d.c.history.frames == traced
-            assert np.abs(d.shown().astype(int) - colorize(d.c.frame, view, d.c.session.light)).max() <= 2
-        seen = [row.name for row in occlusion_legend(d.c.frame) if row.pixels]
+            assert np.abs(d.shown().astype(int) - picture(d.c.frame, view, d.c.session.light)).max() <= 2
+        seen = [row.name for row in classes_in(d.c.frame, View.OCCLUSION) if row.pixels]
         assert "FULLY_RENDERED" in seen, seen
         said = d.c.frame.statistics.by_modes_in_all
         assert said.full_shadow + said.non_shadow > 0
@@ -86,7 +85,7 @@ def certifying(d: Driver) -> None:
     d.settle()
     assert d.c.frame.settings.method == "certified+cache" == d.c.preferences.method
     assert d.c.frame.certificates is not None
-    expected = colorize(d.c.frame, View.CERTIFICATE, shading=d.c.preferences.shading)
+    expected = picture(d.c.frame, View.CERTIFICATE, shading=d.c.preferences.shading)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.press(KEY.c)
     d.settle()
@@ -111,7 +110,7 @@ def _clusters(d: Driver) -> None:
     d.settle()
     assert d.c.frame.settings.method.startswith("lightcuts") and d.c.tracing.drawn_view is View.CUTS
     assert d.c.frame.statistics.cuts.most > 3
-    expected = colorize(d.c.frame, View.CUTS)
+    expected = picture(d.c.frame, View.CUTS)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.context.item_input_value("//Culling/**/##cuts", 20.0)
     d.settle()  # the words above the sliders are of another length then, and the sliders elsewhere
@@ -132,7 +131,7 @@ def _space(d: Driver) -> None:
         d.context.item_click(f"//Picture/**/Use {name}##instead")
         d.settle()
         assert d.c.frame.settings.method.startswith(name) and d.c.tracing.drawn_view is view
-        expected = colorize(d.c.frame, view, beneath=d.c.preferences.beneath, cut=d.c.session.cut)
+        expected = picture(d.c.frame, view, beneath=d.c.preferences.beneath, slice=d.c.session.cut)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
         if view is View.VOXELS:
             _slice(d)
@@ -160,7 +159,7 @@ def _tree(d: Driver) -> None:
     d.settle()
     at = d.c.session.cut
     assert "all that has been seen" in d.c.recipes.now().history
-    expected = colorize(d.c.frame, View.TREE, shading=d.c.preferences.shading, beneath=d.c.preferences.beneath, cut=at)
+    expected = picture(d.c.frame, View.TREE, shading=d.c.preferences.shading, beneath=d.c.preferences.beneath, slice=at)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.press(chord("Shift+RightBracket"))
     assert layer_of(d.c.session.cut) == layer_of(at) + 1

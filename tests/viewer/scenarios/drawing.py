@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 from imgui_bundle import imgui
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.steps import figure4
 from viewer.state.palette import WRONG
 from viewer.state.views import View
-from viewer.views import colorize
 from viewer.views.wipe import wipe_column
 from viewer.window.command import chord
 
@@ -38,7 +38,7 @@ def views(d: Driver) -> None:
         assert view.needs_more or d.c.history.frames == before, "changing the view has traced"
         d.settle()
         shown = d.shown().astype(int)
-        expected = colorize(d.c.frame, view, d.c.session.light).astype(int)
+        expected = picture(d.c.frame, view, d.c.session.light).astype(int)
         difference = np.abs(shown - expected)
         assert difference.max() <= 2, f"{view}: off by {difference.max()} at {np.argwhere(difference > 2)[:3]}"
     d.press(KEY._3)
@@ -52,9 +52,9 @@ def views(d: Driver) -> None:
     for view in (View.SAVED, View.COST):
         d.c.settings.set_view(view)
         d.frames(2)
-        expected = colorize(d.c.frame, view, shares=True).astype(int)
+        expected = picture(d.c.frame, view, shares=True).astype(int)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
-        assert np.abs(expected - colorize(d.c.frame, view)).max() > 20
+        assert np.abs(expected - picture(d.c.frame, view)).max() > 20
     d.settle()
     assert d.c.history.frames == traced + 5, "only what a view needs more is traced for"
     assert not d.c.session.settings.verify and not d.c.preferences.verify
@@ -66,7 +66,7 @@ def difference(d: Driver) -> None:
     of_wrong = np.round(np.multiply(255.0, WRONG))
 
     def dimmed() -> np.ndarray:
-        return d.c.preferences.beneath * colorize(d.c.frame).astype(float)
+        return d.c.preferences.beneath * picture(d.c.frame).astype(float)
 
     d.settle()
     d.press(KEY._8)
@@ -123,17 +123,17 @@ def wiping(d: Driver) -> None:
         assert d.c.session.camera == camera and d.ui.pivot is pivot and d.c.selection.picked is None
 
     drag_line(0.5, 0.3, middle)
-    assert np.abs(d.shown().astype(int) - colorize(frame, View.WIPE, marked=False, wipe=d.c.session.wipe)).max() <= 1
+    assert np.abs(d.shown().astype(int) - picture(frame, View.WIPE, mark_wrong=False, wipe=d.c.session.wipe)).max() <= 1
     drag_line(0.3, 0.9, top + 0.2 * (bottom - top))
     pixels, column = d.shown(), wipe_column(128, d.c.session.wipe)
-    assert np.array_equal(pixels[:, :column], colorize(frame)[:, :column]), "left of the line is the traced picture"
+    assert np.array_equal(pixels[:, :column], picture(frame)[:, :column]), "left of the line is the traced picture"
     x = left + d.c.session.wipe * (right - left)
     d.drag((x, middle), (2.0 * (right - left), 0.0))
     assert d.c.session.wipe == 1.0, "past the edge it stays on it"
     d.drag((right - 1.0, middle), (-(right - left) - 30.0, 0.0))
     assert d.c.session.wipe == 0.0
     pixels = d.shown()
-    right_one = colorize(replace(frame, color=frame.reference))
+    right_one = picture(replace(frame, color=frame.reference))
     assert np.array_equal(pixels[:, 1:], right_one[:, 1:]), "right of the line is the reference"
     assert d.c.frame is frame and d.c.session.camera == camera, "dragging the line has traced"
     traced = d.c.history.frames

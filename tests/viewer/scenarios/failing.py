@@ -9,12 +9,12 @@ import numpy as np
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from viewer.services import scene_files
 from viewer.state.notices import QUIET_AFTER
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.views import colorize
 from viewer.window import menus
 from viewer.window.panels import browser, plots, statistics, status
 
@@ -56,7 +56,7 @@ def failing(d: Driver) -> None:
     notices.dismiss_faults()
     display._draw_into = draw_into
     d.press(KEY._6)
-    expected = colorize(frame, View.NORMAL, shading=d.c.preferences.shading)
+    expected = picture(frame, View.NORMAL, shading=d.c.preferences.shading)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     most, display.context.info["GL_MAX_TEXTURE_SIZE"] = display.context.info["GL_MAX_TEXTURE_SIZE"], 16
     d.fix_resolution(120, 90)

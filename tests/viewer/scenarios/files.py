@@ -10,11 +10,11 @@ import numpy as np
 from imgui_bundle import glfw_utils, imgui
 from PIL import Image
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.studios import standing
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.views import colorize
 from viewer.window.command import chord
 from viewer.window.panels import browser
 
@@ -141,7 +141,7 @@ def reopening(d: Driver) -> None:
         d.c.renderer.take = take
         d.settle()
         assert d.c.tracing.drawn_view is view
-        expected = colorize(d.c.frame, view, shading=d.c.preferences.shading)
+        expected = picture(d.c.frame, view, shading=d.c.preferences.shading)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
 
 

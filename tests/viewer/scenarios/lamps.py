@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 from imgui_bundle import imgui
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tracer.renderer import Renderer
 from viewer.state import readings
 from viewer.state.views import View
-from viewer.views import colorize
 from viewer.views.penumbra import arrivals
 from viewer.window.panels.status import doing
 
@@ -58,11 +58,11 @@ def lamps(d: Driver) -> None:
     assert d.c.history.values("penumbra")[-1] > between.sum() / 2, "it is plotted"
     assert d.c.history.values("samples_due")[-1] > d.c.history.values("samples_reached")[-1] > 0
     shown = d.shown().astype(int)
-    assert np.abs(shown - colorize(frame, View.PENUMBRA, d.c.session.light).astype(int)).max() <= 2
+    assert np.abs(shown - picture(frame, View.PENUMBRA, d.c.session.light).astype(int)).max() <= 2
     shift = int(KEY.mod_shift)
     d.press(int(KEY.j) | shift)
     assert d.c.tracing.drawn_view is View.LIGHTS and d.c.frame is frame, "nothing is traced for it"
-    assert np.abs(d.shown().astype(int) - colorize(frame, View.LIGHTS).astype(int)).max() <= 2
+    assert np.abs(d.shown().astype(int) - picture(frame, View.LIGHTS).astype(int)).max() <= 2
     d.press(KEY.j)
     d.press(KEY.l)
     assert np.abs(d.shown().astype(int) - shown).max() > 50, "another light"
@@ -112,7 +112,7 @@ def _one_of_too_many(d: Driver) -> None:
             d.wait(lambda: d.c.tracing.drawn_view is View.PENUMBRA, "one light", 20.0)
             assert d.c.frame.only_light == light and d.c.history.frames == traced
             assert np.array_equal(arrivals(d.c.frame, light), arrivals(expected, light))
-            drawn = colorize(d.c.frame, View.PENUMBRA, light).astype(int)
+            drawn = picture(d.c.frame, View.PENUMBRA, light).astype(int)
             assert np.abs(d.shown().astype(int) - drawn).max() <= 2
         d.press(int(KEY.j) | int(KEY.mod_shift))
         d.settle()

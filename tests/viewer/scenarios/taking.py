@@ -10,13 +10,13 @@ import numpy as np
 from imgui_bundle import imgui
 from PIL import Image
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from viewer.output import capture
 from viewer.output.compared import composed
 from viewer.state.comparison import CompareMode
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
-from viewer.views import colorize
 from viewer.window.panels import save_as
 from viewer.window.ui import CaptureKind
 
@@ -105,7 +105,7 @@ def _save_as(d: Driver) -> None:
     d.wait(lambda: d.c.runs.current is None, "the toned picture")
     (path,) = (d.folder / "pictures").glob("tiny-color-96x64*")
     with Image.open(path) as image:
-        assert np.array_equal(np.asarray(image), colorize(d.c.frame, tone=d.c.session.tone))
+        assert np.array_equal(np.asarray(image), picture(d.c.frame, tone=d.c.session.tone))
     assert capture.read(path).tone == d.c.session.tone
 
 

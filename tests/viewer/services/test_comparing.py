@@ -7,13 +7,13 @@ import gc
 import numpy as np
 
 from tests.viewer.desk import ELSEWHERE, Desk
+from tests.viewer.drawn import values_in
 from tests.viewer.fakes import make_frame, with_tree
 from tracer.frame import Settings
 from tracer.geometry.accelerators import BVH8, LAZY
 from viewer.state.comparison import CompareMode, Side, Source
 from viewer.state.draw_options import Slice
 from viewer.state.views import View
-from viewer.views import values_of
 
 
 def keep(desk: Desk, method: str = "none") -> None:
@@ -38,7 +38,7 @@ def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
     assert comparing.names(a, b) == ("A  none", "B  paper")
     found = comparing.difference(a, b)
     assert comparing.difference(a, b) is found, "found out once"
-    assert np.array_equal(found.pixels != 0.0, (b.frame.color != color).any(axis=-1)) and found.apart.pixels
+    assert np.array_equal(found.pixels != 0.0, (b.frame.color != color).any(axis=-1)) and found.stats.pixels
     comparing.state.limit = 0.25
     assert comparing.limit(found) == 0.25
     comparing.forget()
@@ -171,6 +171,6 @@ def test_a_difference_is_that_of_the_chosen_slice(desk: Desk) -> None:
         desk.c.session.cut = cut
         found = comparing.difference(a, b)
         assert found is not None and comparing.difference(a, b) is found
-        expected = values_of(b.frame, View.TREE, cut=cut)
+        expected = values_in(b.frame, View.TREE, slice=cut)
         assert np.array_equal(found.values.numbers, expected.numbers)
-    assert not np.array_equal(expected.numbers, values_of(b.frame, View.TREE, cut=Slice(1, 0.25)).numbers)
+    assert not np.array_equal(expected.numbers, values_in(b.frame, View.TREE, slice=Slice(1, 0.25)).numbers)

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.viewer.drawn import words_in
 from tests.viewer.fakes import make_frame, with_voxels
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import pinhole
@@ -16,7 +17,6 @@ from viewer.cli.argument_types import slice_
 from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.session import Snapshot
 from viewer.state.views import View
-from viewer.views import words_at
 from viewer.views.voxel_slice import LINE, NOTHING, middle_of, slice_codes, slice_seen, voxel_seen
 from viewer.views.voxels import voxels_of
 
@@ -69,7 +69,7 @@ def test_codes_are_states_with_lines_where_voxels_end(frame: Frame) -> None:
     for y, x in np.argwhere(numbers[:-1, :-1] >= 0):
         found = voxel_seen(states, 1, int(numbers[y, x]))
         assert codes[y, x] & 3 == found.state == int(states.words[numbers[y, x]] >> 4) & 3
-        assert words_at(frame, View.VOXELS, 1, int(x), int(y), cut=cut)[0] == "{}, {}, {}".format(*found.place)
+        assert words_in(frame, View.VOXELS, 1, int(x), int(y), slice=cut)[0] == "{}, {}, {}".format(*found.place)
         if not codes[y, x] & LINE:
             continue
         assert numbers[y, x] != numbers[y, x + 1] or numbers[y, x] != numbers[y + 1, x]
@@ -78,7 +78,7 @@ def test_codes_are_states_with_lines_where_voxels_end(frame: Frame) -> None:
 
 def test_a_light_that_has_no_states_is_unknown_everywhere(frame: Frame) -> None:
     codes = slice_codes(frame, voxels_of(frame), 2, Slice(2, 0.5))
-    assert (codes[codes != NOTHING] & 3 == 0).all() and words_at(frame, View.VOXELS, 0, 0, 0, cut=Slice(0, 0.0)) == (
+    assert (codes[codes != NOTHING] & 3 == 0).all() and words_in(frame, View.VOXELS, 0, 0, 0, slice=Slice(0, 0.0)) == (
         "-",
     )
 
@@ -100,14 +100,10 @@ def test_the_largest_block_of_one_state_is_found(frame: Frame) -> None:
 def test_slices_as_words_and_as_json() -> None:
     for cut in (*CUTS, MIDDLE, Slice(1, 1 / 3)):
         assert slice_(cut.in_words()).layer((104, 48, 96)) == cut.layer((104, 48, 96))
-        assert Slice.from_json(list(cut)) == cut
     assert slice_("z") == Slice(2, MIDDLE.at)
     for wrong in ("w:0.5", "x:2", "x:1.5", "x:-0.1", "x:", ":0.5"):
         with pytest.raises(argparse.ArgumentTypeError, match="is no slice"):
             slice_(wrong)
-    for damaged in ([3, 0.5], [0], "x", [0, 2.0], [0, float("nan")], None):
-        with pytest.raises(ValueError, match="slice"):
-            Slice.from_json(damaged)
 
 
 def test_a_snapshot_keeps_the_slice_and_older_ones_have_the_usual_one() -> None:

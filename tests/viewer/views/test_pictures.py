@@ -1,12 +1,14 @@
-"""Views without a GPU: the colours mean what the legends say, and the shaders draw the same."""
+"""The colours of views mean what their legends say, and the window shows the same."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.viewer.drawn import options, picture, values_in
 from tests.viewer.fakes import (
     in_cells,
     in_part,
@@ -22,7 +24,8 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from viewer.state.draw_options import MIDDLE, SHADING, Slice
+from viewer import views
+from viewer.state.draw_options import SHADING, Slice
 from viewer.state.palette import (
     BACKGROUND,
     BENEATH,
@@ -36,12 +39,11 @@ from viewer.state.palette import (
     Certificate,
     color_map,
 )
-from viewer.state.readings import work_top
 from viewer.state.tone import Curve, Tone
 from viewer.state.verified import largest_difference
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.views import colorize, values_of
+from viewer.views import colorize
 from viewer.views.difference import RING_DIMMING
 from viewer.views.moving_shadow import MOVING_SHADOWS, MovingShadow
 from viewer.views.paint import CELL_LINE, FAINT_LINE
@@ -120,20 +122,20 @@ def to_bytes(color: tuple[float, ...]) -> np.ndarray:
 
 def test_colours_are_clamped_and_otherwise_untouched(frame: Frame) -> None:
     expected = np.round(np.clip(frame.color, 0, 1) * 255).astype(np.uint8)
-    np.testing.assert_array_equal(colorize(frame), expected)
+    np.testing.assert_array_equal(picture(frame), expected)
 
 
 @pytest.mark.parametrize("view", [v for v in View if v is not View.COLOR and not v.needs_verify])
 def test_what_is_missed_has_the_background(certified_frame: Frame, view: View) -> None:
     missed = certified_frame.primitive < 0
     if view.has_slice:  # it is seen before the background, too
-        missed &= ~values_of(certified_frame, view, cut=MIDDLE).known
+        missed &= ~values_in(certified_frame, view).known
     assert missed.any()
-    assert (colorize(certified_frame, view)[missed] == to_bytes(BACKGROUND)).all()
+    assert (picture(certified_frame, view)[missed] == to_bytes(BACKGROUND)).all()
 
 
 def test_occlusion_modes_have_their_colours(frame: Frame) -> None:
-    drawn = colorize(frame, View.OCCLUSION, shading=0.0)
+    drawn = picture(frame, View.OCCLUSION, shading=0.0)
     seen = set()
     for mode in OcclusionMode:
         there = frame.occlusion_mode == mode
@@ -151,7 +153,7 @@ def test_shadow_modes_have_their_colours(frame: Frame, light: int) -> None:
 
 
 def assert_shadow_modes_drawn(frame: Frame, light: int, untrusted: bool) -> None:
-    drawn = colorize(frame, View.SHADOW, light, shading=0.0)
+    drawn = picture(frame, View.SHADOW, light, shading=0.0)
     moving = frame.occlusion_mode == OcclusionMode.DYNAMIC
     assert (drawn[moving] == to_bytes(OCCLUSION_COLORS[OcclusionMode.DYNAMIC])).all()
     culls, doubted = (ShadowMode.FULL_SHADOW, ShadowMode.NON_SHADOW), 0
@@ -168,16 +170,16 @@ def assert_shadow_modes_drawn(frame: Frame, light: int, untrusted: bool) -> None
 
 def test_modes_of_cells_are_those_that_are_drawn(frame: Frame) -> None:
     cells = in_cells(frame)
-    drawn = colorize(cells, View.SHADOW, 0, shading=0.0)
+    drawn = picture(cells, View.SHADOW, 0, shading=0.0)
     still = (cells.primitive >= 0) & (frame.occlusion_mode == OcclusionMode.FULLY_RENDERED)
     mode = (cells.modes[cells.cells] >> 2) & 3
     for one in ShadowMode:
         assert (drawn[still & (mode == one)] == to_bytes(SHADOW_COLORS[one])).all()
-    assert (drawn[:, ::2] != colorize(frame, View.SHADOW, 0, shading=0.0)[:, 1::2]).any()
+    assert (drawn[:, ::2] != picture(frame, View.SHADOW, 0, shading=0.0)[:, 1::2]).any()
 
 
 def test_every_primitive_has_a_colour_of_its_own(frame: Frame) -> None:
-    drawn = colorize(frame, View.PRIMITIVE, shading=0.0)
+    drawn = picture(frame, View.PRIMITIVE, shading=0.0)
     hit = frame.primitive >= 0
     colors = {tuple(c) for c in drawn[hit]}
     assert len(colors) == len(np.unique(frame.primitive[hit]))
@@ -185,7 +187,7 @@ def test_every_primitive_has_a_colour_of_its_own(frame: Frame) -> None:
 
 def test_a_light_past_the_culled_ones_is_drawn_as_unknown(frame: Frame) -> None:
     many = replace(frame, lights=40)
-    drawn = colorize(many, View.SHADOW, 35, shading=0.0)
+    drawn = picture(many, View.SHADOW, 35, shading=0.0)
     still = (frame.primitive >= 0) & (frame.occlusion_mode != OcclusionMode.DYNAMIC)
     assert (drawn[still] == to_bytes(GREY)).all()
 
@@ -193,7 +195,7 @@ def test_a_light_past_the_culled_ones_is_drawn_as_unknown(frame: Frame) -> None:
 @pytest.mark.parametrize("light", [0, 1])
 def test_certificates_have_their_colours_and_cells_their_lines(certified_frame: Frame, light: int) -> None:
     f = certified_frame
-    drawn = colorize(f, View.CERTIFICATE, light, shading=0.0)
+    drawn = picture(f, View.CERTIFICATE, light, shading=0.0)
     moving = f.occlusion_mode == OcclusionMode.DYNAMIC
     line = np.zeros_like(moving)
     for y, x in np.argwhere(f.primitive >= 0):
@@ -209,7 +211,7 @@ def test_certificates_have_their_colours_and_cells_their_lines(certified_frame: 
 
 
 def test_a_frame_without_certificates_is_grey(frame: Frame) -> None:
-    drawn = colorize(frame, View.CERTIFICATE, 0, shading=0.0)
+    drawn = picture(frame, View.CERTIFICATE, 0, shading=0.0)
     still = (frame.primitive >= 0) & (frame.occlusion_mode != OcclusionMode.DYNAMIC)
     greys = np.stack([to_bytes(GREY), to_bytes(np.float32(CELL_LINE) * np.asarray(GREY, np.float32))])
     assert (drawn[still][:, None] == greys).all(axis=-1).any(axis=-1).all()
@@ -218,7 +220,7 @@ def test_a_frame_without_certificates_is_grey(frame: Frame) -> None:
 @pytest.mark.parametrize("view", [View.SAVED, View.COST])
 def test_work_is_mapped_up_to_nearly_the_most(certified_frame: Frame, view: View) -> None:
     work = certified_frame.saved if view is View.SAVED else certified_frame.cost
-    drawn, top = colorize(certified_frame, view), work_top(certified_frame, view)
+    drawn, top = picture(certified_frame, view), view.declared.span(certified_frame)[1]
     hit = certified_frame.primitive >= 0
     assert np.mean(work[hit] > top) <= 0.01 and (work[hit] >= 0.9 * top).any()
     colors = np.round(color_map() * 255).astype(int)
@@ -233,7 +235,7 @@ def test_work_is_mapped_up_to_nearly_the_most(certified_frame: Frame, view: View
 def test_shares_of_work_are_mapped_from_none_to_all(certified_frame: Frame, view: View) -> None:
     f = certified_frame
     work, whole = (f.saved, f.due_rays) if view is View.SAVED else (f.cost, f.saved + f.cost)
-    drawn, hit = colorize(f, view, shares=True), f.primitive >= 0
+    drawn, hit = picture(f, view, shares=True), f.primitive >= 0
     none, all_of_it = hit & (whole == 0), hit & (whole > 0) & (work == whole)
     colors = np.round(color_map() * 255).astype(int)
     assert (drawn[none] == to_bytes(GREY)).all() and all_of_it.any() and none.any() == (view is View.SAVED)
@@ -247,33 +249,33 @@ def test_shares_of_work_are_mapped_from_none_to_all(certified_frame: Frame, view
 @pytest.mark.parametrize("view", [View.SAVED, View.COST])
 def test_a_frame_that_recorded_no_work_is_refused(frame: Frame, view: View, shares: bool) -> None:
     with pytest.raises(ValueError, match="did not record the work"):
-        colorize(frame, view, shares=shares)
+        picture(frame, view, shares=shares)
 
 
 @pytest.mark.parametrize("light", [0, 1])
 def test_penumbrae_are_a_ramp_between_dark_and_lit(certified_frame: Frame, light: int) -> None:
     f = certified_frame
-    drawn, hit = colorize(f, View.PENUMBRA, light, shading=0.0), f.primitive >= 0
+    drawn, hit = picture(f, View.PENUMBRA, light, shading=0.0), f.primitive >= 0
     asked, reached = f.asked[..., light].astype(int), f.reached[..., light].astype(int)
     for one, there in (
         (Arrival.AWAY, asked == 0),
         (Arrival.DARK, (asked > 0) & (reached == 0)),
         (Arrival.LIT, (asked > 0) & (reached == asked)),
     ):
-        assert there.any() and (drawn[hit & there] == to_bytes(ARRIVALS[one])).all()
+        assert there.any() and (drawn[hit & there] == to_bytes(ARRIVALS[one][1])).all()
     between = hit & (reached > 0) & (reached < asked)
     assert between.any() == (light == 0), "a point has no penumbra"
-    few, most = (np.asarray(ARRIVALS[one]) for one in (Arrival.FEW, Arrival.MOST))
+    few, most = (np.asarray(ARRIVALS[one][1]) for one in (Arrival.FEW, Arrival.MOST))
     share = (reached[between] / asked[between])[:, None]
     assert np.abs(drawn[between] - 255.0 * (few + share * (most - few))).max(initial=0) <= 1
     for bare in (replace(f, asked=None), replace(f, reached=None)):
         with pytest.raises(ValueError, match="did not record which samples"):
-            colorize(bare, View.PENUMBRA, light)
+            picture(bare, View.PENUMBRA, light)
 
 
 def test_fates_have_their_colours(frame: Frame) -> None:
     told, light = recorded(frame), 0
-    drawn, fates = colorize(told, View.FATE, light, shading=0.0), told.fate(light)
+    drawn, fates = picture(told, View.FATE, light, shading=0.0), told.fate(light)
     seen = set()
     for fate in Fate:
         there = (fates == fate) & (told.primitive >= 0)
@@ -282,27 +284,27 @@ def test_fates_have_their_colours(frame: Frame) -> None:
     assert seen >= {Fate.DYNAMIC_ONLY, Fate.PARTLY_OCCLUDED, Fate.DYNAMIC}
     for view in (View.FATE, View.MOVING_SHADOW):
         with pytest.raises(ValueError, match="did not record what became of"):
-            colorize(frame, view, light)
+            picture(frame, view, light)
 
 
 def test_shadows_of_moving_objects_stand_out_of_the_paled_picture(frame: Frame) -> None:
     told, light = recorded(frame), 0
-    drawn = colorize(told, View.MOVING_SHADOW, light, shading=0.0).astype(int)
+    drawn = picture(told, View.MOVING_SHADOW, light, shading=0.0).astype(int)
     dark, asked = told.moving_shadow(light), told.fate(light) == Fate.DYNAMIC_ONLY
     assert (dark & asked).any()
     for there, code in ((dark & asked, MovingShadow.DARK), (dark & ~asked, MovingShadow.TRACED)):
-        assert (drawn[there] == to_bytes(MOVING_SHADOWS[code])).all()
+        assert (drawn[there] == to_bytes(MOVING_SHADOWS[code][1])).all()
     rest = (told.primitive >= 0) & ~dark & ~asked & (told.occlusion_mode != OcclusionMode.DYNAMIC)
     assert rest.any()
-    grey = colorize(told)[rest] @ np.array([0.2126, 0.7152, 0.0722])
+    grey = picture(told)[rest] @ np.array([0.2126, 0.7152, 0.0722])
     assert np.abs(drawn[rest] - (127.5 + grey / 2.0)[:, None]).max() <= 1.5
 
 
 def test_what_is_not_known_yet_looks_like_nothing_that_is(certified_frame: Frame) -> None:
     f = certified_frame
     part, hit = in_part(f), f.primitive >= 0
-    for view, unknown in ((View.PENUMBRA, ARRIVALS[Arrival.UNKNOWN]), (View.LIGHTS, GREY)):
-        drawn, whole = (colorize(one, view, 0, shading=0.0) for one in (part, f))
+    for view, unknown in ((View.PENUMBRA, ARRIVALS[Arrival.UNKNOWN][1]), (View.LIGHTS, GREY)):
+        drawn, whole = (picture(one, view, 0, shading=0.0) for one in (part, f))
         assert (drawn[hit & ~part.shaded] == to_bytes(unknown)).all()
         assert not (whole[hit] == to_bytes(unknown)).all(axis=-1).any()
         assert np.array_equal(drawn[part.shaded], whole[part.shaded])
@@ -310,7 +312,7 @@ def test_what_is_not_known_yet_looks_like_nothing_that_is(certified_frame: Frame
 
 def test_lights_are_counted_at_each_pixel(certified_frame: Frame) -> None:
     f = certified_frame
-    drawn, hit = colorize(f, View.LIGHTS), f.primitive >= 0
+    drawn, hit = picture(f, View.LIGHTS), f.primitive >= 0
     due = (f.asked > 0).sum(axis=-1)
     colors = np.round(color_map() * 255).astype(int)
     assert due[hit].max() == f.lights == 2, "the top of the map"
@@ -325,17 +327,17 @@ def test_a_slice_has_the_colours_of_its_voxels_over_the_dimmed_picture(
     certified_frame: Frame, cut: Slice, light: int
 ) -> None:
     f, states = certified_frame, voxels_of(certified_frame)
-    drawn, numbers = colorize(f, View.VOXELS, light, cut=cut), slice_seen(f, states.grid, cut).numbers
+    drawn, numbers = picture(f, View.VOXELS, light, slice=cut), slice_seen(f, states.grid, cut).numbers
     assert 0.005 < (numbers >= 0).mean() < 0.98
     seen = set()
     for y, x in np.argwhere(numbers >= 0):
         state = int(states.words[numbers[y, x]] >> np.uint32(2 + 2 * light)) & 3
-        color = np.asarray(STATES[state], np.float32)
+        color = np.asarray(STATES[state][0], np.float32)
         assert (drawn[y, x] == to_bytes(color)).all() or (drawn[y, x] == to_bytes(np.float32(CELL_LINE) * color)).all()
         seen.add(state)
     assert seen == {0, 1, 2}
     behind = (numbers < 0) & (f.primitive >= 0)
-    assert np.abs(drawn[behind] - BENEATH * colorize(f)[behind].astype(float)).max() <= 1
+    assert np.abs(drawn[behind] - BENEATH * picture(f)[behind].astype(float)).max() <= 1
 
 
 @pytest.mark.parametrize("cut", [Slice(0, 0.45), Slice(1, 0.5), Slice(2, 0.7)])
@@ -343,7 +345,7 @@ def test_parts_of_a_tree_have_the_colours_of_their_levels_and_what_waits_has_str
     certified_frame: Frame, cut: Slice
 ) -> None:
     f, tree = certified_frame, tree_of(certified_frame)
-    drawn, seen = colorize(f, View.TREE, cut=cut), tree_seen(f, tree, cut)
+    drawn, seen = picture(f, View.TREE, slice=cut), tree_seen(f, tree, cut)
     there, colors = seen.parts.numbers >= 0, color_map()
     assert 0.005 < there.mean() < 0.98
     for y, x in np.argwhere(there):
@@ -355,12 +357,12 @@ def test_parts_of_a_tree_have_the_colours_of_their_levels_and_what_waits_has_str
         expected = [255.0 * np.clip(shade * line * color, 0.0, 1.0) for line in (1.0, FAINT_LINE)] + [np.full(3, 255.0)]
         assert min(np.abs(drawn[y, x] - one).max() for one in expected) <= 3.0, (x, y)
     behind = ~there & (f.primitive >= 0)
-    assert np.abs(drawn[behind] - BENEATH * colorize(f)[behind].astype(float)).max() <= 1
+    assert np.abs(drawn[behind] - BENEATH * picture(f)[behind].astype(float)).max() <= 1
 
 
 def test_cells_have_the_colour_of_how_many_lights_they_ask(certified_frame: Frame) -> None:
     f = certified_frame
-    asked, drawn = f.layers["cell lights"], colorize(f, View.CELL_LIGHTS)
+    asked, drawn = f.layers["cell lights"], picture(f, View.CELL_LIGHTS)
     line = np.zeros(asked.shape, np.bool_)
     line[:, :-1] |= f.cells[:, 1:] != f.cells[:, :-1]
     line[:-1] |= f.cells[1:] != f.cells[:-1]
@@ -374,24 +376,24 @@ def test_cells_have_the_colour_of_how_many_lights_they_ask(certified_frame: Fram
 def test_a_light_that_is_not_there(frame: Frame) -> None:
     for view in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA):
         with pytest.raises(ValueError, match="no light 2: the scene's lights are 0 to 1"):
-            colorize(frame, view, 2)
+            picture(frame, view, 2)
 
 
 @pytest.mark.parametrize("beneath", [0.0, BENEATH, 0.6])
 def test_what_is_wrong_has_the_one_colour_over_the_dimmed_picture(wrong_frame: Frame, beneath: float) -> None:
-    drawn = colorize(wrong_frame, View.DIFFERENCE, marked=False, beneath=beneath)
+    drawn = picture(wrong_frame, View.DIFFERENCE, mark_wrong=False, beneath=beneath)
     wrong = wrong_frame.wrong > 0
     assert (drawn[wrong] == to_bytes(WRONG)).all()
-    expected = beneath * colorize(wrong_frame)[~wrong].astype(float)
+    expected = beneath * picture(wrong_frame)[~wrong].astype(float)
     assert np.abs(drawn[~wrong] - expected).max() <= 1 and drawn[~wrong].any() == (beneath > 0.0)
 
 
 def test_a_lone_wrong_pixel_is_ringed(wrong_frame: Frame) -> None:
-    drawn = colorize(wrong_frame, View.DIFFERENCE)
+    drawn = picture(wrong_frame, View.DIFFERENCE)
     ring = (drawn == to_bytes(tuple(RING_DIMMING * channel for channel in WRONG))).all(axis=-1)
     wrong = (drawn == to_bytes(WRONG)).all(axis=-1)
     np.testing.assert_array_equal(wrong, wrong_frame.wrong > 0)
-    unmarked = colorize(wrong_frame, View.DIFFERENCE, marked=False)
+    unmarked = picture(wrong_frame, View.DIFFERENCE, mark_wrong=False)
     np.testing.assert_array_equal(drawn[~ring], unmarked[~ring])
     for across in (ring[20, :30], ring[20, 31:50], ring[:20, 30], ring[21:40, 30]):
         assert across.sum() == 1, "one ring on every side"
@@ -400,20 +402,20 @@ def test_a_lone_wrong_pixel_is_ringed(wrong_frame: Frame) -> None:
 
 def test_where_all_is_right_nothing_is_marked(frame: Frame) -> None:
     right = replace(frame, wrong=np.zeros_like(frame.primitive), reference=frame.color)
-    assert np.abs(colorize(right, View.DIFFERENCE) - BENEATH * colorize(frame)).max() <= 1
-    pixels = colorize(right, View.WIPE)
+    assert np.abs(picture(right, View.DIFFERENCE) - BENEATH * picture(frame)).max() <= 1
+    pixels = picture(right, View.WIPE)
     column = frame.width // 2
     assert (pixels[:, column] == to_bytes(WIPE_LINE)).all()
-    np.testing.assert_array_equal(np.delete(pixels, column, 1), np.delete(colorize(frame), column, 1))
+    np.testing.assert_array_equal(np.delete(pixels, column, 1), np.delete(picture(frame), column, 1))
 
 
 @pytest.mark.parametrize(("wipe", "column"), [(0.0, 0), (0.3, 28), (1.0, 96)])
 def test_a_wipe_shows_both_pictures(wrong_frame: Frame, wipe: float, column: int) -> None:
-    pixels = colorize(wrong_frame, View.WIPE, marked=False, wipe=wipe)
-    right = colorize(replace(wrong_frame, color=wrong_frame.reference))
-    np.testing.assert_array_equal(pixels[:, :column], colorize(wrong_frame)[:, :column])
+    pixels = picture(wrong_frame, View.WIPE, mark_wrong=False, wipe=wipe)
+    right = picture(replace(wrong_frame, color=wrong_frame.reference))
+    np.testing.assert_array_equal(pixels[:, :column], picture(wrong_frame)[:, :column])
     np.testing.assert_array_equal(pixels[:, column + 1 :], right[:, column + 1 :])
-    marked = colorize(wrong_frame, View.WIPE, wipe=wipe)
+    marked = picture(wrong_frame, View.WIPE, wipe=wipe)
     ring = (marked == to_bytes(WRONG)).all(axis=-1)
     assert ring.any() and not (ring & (wrong_frame.wrong > 0)).any()
     np.testing.assert_array_equal(marked[~ring], pixels[~ring])
@@ -422,12 +424,12 @@ def test_a_wipe_shows_both_pictures(wrong_frame: Frame, wipe: float, column: int
 @pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
 def test_a_frame_that_was_not_verified_is_refused(frame: Frame, view: View) -> None:
     with pytest.raises(ValueError, match="not verified"):
-        colorize(frame, view)
+        picture(frame, view)
 
 
 def test_a_shadow_that_culling_misses_is_drawn(figure4: list[Frame]) -> None:
     """Figure 4: right, then a missing shadow in frame 20, right again once the triangle has been examined again."""
-    drawn = [(colorize(frame, View.DIFFERENCE, marked=False) == to_bytes(WRONG)).all(axis=-1) for frame in figure4]
+    drawn = [(picture(frame, View.DIFFERENCE, mark_wrong=False) == to_bytes(WRONG)).all(axis=-1) for frame in figure4]
     assert [bool(pixels.any()) for pixels in drawn] == [False, False, True, False]
     wrong = figure4[2]
     np.testing.assert_array_equal(drawn[2], (wrong.color != wrong.reference).any(axis=-1))
@@ -439,52 +441,53 @@ def test_a_shadow_that_culling_misses_is_drawn(figure4: list[Frame]) -> None:
 
 @pytest.mark.gui
 @pytest.mark.parametrize("view", list(View))
-@pytest.mark.parametrize(("marked", "cells"), [(True, False), (False, False), (True, True)])
-def test_shaders_draw_the_same(certified_frame: Frame, view: View, marked: bool, cells: bool) -> None:
-    """The frame in cells is one of which a part has been shaded."""
+def test_the_window_shows_the_same_and_what_is_selected(certified_frame: Frame, view: View) -> None:
+    """Bit for bit, but for a bright border on both sides of the edge of what is selected."""
     moderngl = pytest.importorskip("moderngl")
-    from viewer.window.display import Display, Look
+    from viewer.window.display import Display, InWindow
 
-    shown = in_cells(in_part(replace(certified_frame, certificates=None))) if cells else certified_frame
+    how = options(view, 1, mark_wrong=False, wipe=0.4, outlines=True, magnified=2)
     context = moderngl.create_context(standalone=True, require=330)
     with context:
-        display = Display()
-        display.show(shown)
-        display.draw(Look(view=view, light=1, shading=SHADING, marked=marked, wipe=0.4, shares=marked, beneath=0.4,
-                          outlines=cells, magnified=2))  # fmt: skip
-        on_gpu = display.read()[..., :3].astype(int)
+        display = Display(context)
+        display.draw(certified_frame, how)
+        here, version = colorize(certified_frame, how), display.version
+        read = np.frombuffer(display.picture.read(alignment=1), np.uint8).reshape(here.shape)
+        assert np.array_equal(read, here) and np.array_equal(display.read(), here)
+        display.draw(certified_frame, replace(how, legend=True))
+        assert display.version == version and display.shows(how), "nothing of the pixels has changed"
+        chosen = int(certified_frame.primitive[40, 50])
+        display.draw(certified_frame, how, InWindow(selected=chosen))
+        inside = np.pad(certified_frame.primitive == chosen, 1, mode="edge")
+        around = [inside[y : y + here.shape[0], x : x + here.shape[1]] for y in range(3) for x in range(3)]
+        border = np.any(around, axis=0) & ~np.all(around, axis=0)
+        assert border.any() and (display.read()[border] == 255).all()
+        assert np.array_equal(display.read()[~border], here[~border])
+        display.part_of = np.zeros(certified_frame.primitive.max() + 1, np.int32)
+        display.draw(certified_frame, how, InWindow(selected=chosen, selected_part=0))
+        assert (display.read()[border] == 255).mean() < 1.0, "it is the part that has the border"
         display.release()
     context.release()
-    here = colorize(
-        shown, view, 1, marked=marked, wipe=0.4, shares=marked, beneath=0.4, outlines=cells, magnified=2
-    ).astype(int)
-    assert np.abs(on_gpu - here).max() <= 1
 
 
-@pytest.mark.gui
-def test_shaders_have_the_same_tone_and_range(certified_frame: Frame) -> None:
+def test_pictures_have_a_tone_and_numbers_a_range(certified_frame: Frame) -> None:
     """Of pictures with each curve, with what is clipped marked and without; and of numbers in a range."""
-    moderngl = pytest.importorskip("moderngl")
-    from viewer.window.display import Display, Look
-
     color = certified_frame.color * np.linspace(0.0, 6.0, certified_frame.width, dtype=np.float32)[None, :, None]
     shown = replace(certified_frame, color=color)
-    pictures = [
+    toned = [
         {"view": view, "tone": Tone(0.7, 1.5, curve), "clipping": clipping}
         for view in (View.COLOR, View.WIPE, View.DIFFERENCE)
         for curve in Curve
         for clipping in (True, False)
     ]
-    ranges = [{"view": view, "span": (1.5, 4.0)} for view in View if view.has_range]
-    context = moderngl.create_context(standalone=True, require=330)
-    with context:
-        display = Display()
-        display.show(shown)
-        for look in [*pictures, *ranges]:
-            display.draw(Look(light=1, shading=SHADING, **look))
-            on_gpu, here = display.read().astype(int), colorize(shown, light=1, **look).astype(int)
-            assert np.abs(on_gpu - here).max() <= 1, look
-            plain = colorize(shown, look["view"], 1).astype(int)
-            assert np.abs(here - plain).max() > 5, "nothing has changed"
-        display.release()
-    context.release()
+    for more in [*toned, *({"view": view, "span": (1.5, 4.0)} for view in View if view.has_range)]:
+        here, plain = (picture(shown, light=1, **how).astype(int) for how in (more, {"view": more["view"]}))
+        assert np.abs(here - plain).max() > 5, "nothing has changed"
+
+
+def test_each_view_declares_what_a_person_needs_to_find_it() -> None:
+    assert len({view.key for view in View}) == len({view.label for view in View}) == len(View)
+    for view in View:
+        assert view.help.endswith(".") and view.label[0].isupper(), view
+    files = {path.stem for path in Path(views.__file__).parent.glob("*.py")}
+    assert {view.value.replace("-", "_") for view in View} <= files

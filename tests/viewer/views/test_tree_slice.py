@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.viewer.drawn import values_in, words_in
 from tests.viewer.fakes import CubesBuilt, make_frame, with_tree
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import pinhole
@@ -15,7 +16,6 @@ from viewer.state.draw_options import Slice
 from viewer.state.missing import missing
 from viewer.state.readings import can_draw
 from viewer.state.views import View
-from viewer.views import values_of, words_at
 from viewer.views.tree import tree_of
 from viewer.views.tree_slice import (
     BORDER,
@@ -66,18 +66,18 @@ def test_each_pixel_sees_the_part_that_its_ray_meets_whatever_lies_before(frame:
                 continue
             i, k = np.floor(4.0 * point[[0, 2]]) if point[0] == point[0] else (0, 0)
             if not ((point >= tree.extent[:3]) & (point < tree.extent[3:])).all():
-                assert codes[y, x] == NOTHING and words_at(frame, View.TREE, 0, x, y, cut=cut) == ("-",)
+                assert codes[y, x] == NOTHING and words_in(frame, View.TREE, 0, x, y, slice=cut) == ("-",)
                 continue
             expected = (6 if k >= 0 else 3) | (0 if i % 2 == 0 else WAITS) | HIDDEN * (distance > frame.depth[y, x])
             assert int(codes[y, x]) & ~(LINE | BORDER) == expected, (x, y)
             owned = ("object 3",) if i >= 4 else ()
             what = "leaf of 2 primitives" if i % 2 == 0 else "not built yet"
-            assert words_at(frame, View.TREE, 0, x, y, cut=cut) == (what, f"level {expected & LEVEL}", *owned)
+            assert words_in(frame, View.TREE, 0, x, y, slice=cut) == (what, f"level {expected & LEVEL}", *owned)
             wide = 0.25 / (distance * float(pinhole(frame.camera, frame.width, frame.height).spread))
             assert seen.wide[y, x] == pytest.approx(wide, rel=1e-3)
             kinds.add(int(codes[y, x]) & (WAITS | HIDDEN))
     assert kinds >= {0, WAITS} if cut.axis else len(kinds) >= 1
-    values = values_of(frame, View.TREE, cut=cut)
+    values = values_in(frame, View.TREE, slice=cut)
     assert np.array_equal(values.known, codes != NOTHING)
 
 
@@ -108,8 +108,8 @@ def test_a_tree_that_is_gone_shows_nothing(frame: Frame) -> None:
     assert (tree_codes(frame, gone, CUTS[0]) == NOTHING).all() and share_built(gone, CUTS[0]) is None
     assert not can_draw(make_frame(), View.TREE) and can_draw(frame, View.TREE)
     left = replace(frame, structures={"tree": gone})
-    assert not can_draw(left, View.TREE) and "let go of" in missing(View.TREE, left).text
-    with pytest.raises(ValueError, match="let go of"):
+    assert not can_draw(left, View.TREE) and "freed with its world" in missing(View.TREE, left).text
+    with pytest.raises(ValueError, match="freed with its world"):
         tree_of(left)
     with pytest.raises(ValueError, match="built before"):
         tree_of(make_frame())

@@ -11,6 +11,7 @@ import pytest
 from tests.scenes import loaded
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.viewer.colors import luminance
+from tests.viewer.drawn import classes_in, legend_in, picture
 from tests.viewer.fakes import (
     in_cells,
     in_part,
@@ -29,15 +30,12 @@ from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.lights import Light, light_in_words
 from tracer.statistics import CutErrors, SaidByModes
-from viewer.output.legend_counts import occlusion_legend, shadow_legend, work_legend
-from viewer.output.legend_parts import Chosen
 from viewer.output.legend_picture import with_legend
 from viewer.state.draw_options import Slice
 from viewer.state.palette import FATE_COLORS, FATE_NAMES, GREY, OCCLUSION_COLORS, WRONG, Certificate, color_map
 from viewer.state.views import View
-from viewer.util.numbers import percent
+from viewer.util.numbers import count, percent
 from viewer.util.resources import embedded_scenes
-from viewer.views import colorize, legend_of
 from viewer.views.legend import Legend, NoteKind
 from viewer.views.legend_layout import BACKDROP, BACKDROP_OPACITY, NOTES, QUIET, TEXT, fitting, lay_out, wrapped
 from viewer.views.voxels import voxels_of
@@ -59,24 +57,24 @@ def frame() -> Frame:
 
 
 def of(frame: Frame, view: View, **chosen) -> Legend:
-    legend = legend_of(frame, view, Chosen(**chosen))
+    legend = legend_in(frame, view, **chosen)
     assert legend is not None
     return legend
 
 
 def test_every_view_but_the_picture_has_a_legend(frame: Frame):
-    assert legend_of(frame, View.COLOR) is None
+    assert legend_in(frame, View.COLOR) is None
     for view in View:
         if view is not View.COLOR:
             legend = of(frame, view)
             assert legend.title and (legend.entries or legend.scale or legend.facts or legend.notes), view
-    assert legend_of(make_frame(), View.DIFFERENCE) is legend_of(make_frame(), View.SAVED) is None
+    assert legend_in(make_frame(), View.DIFFERENCE) is legend_in(make_frame(), View.SAVED) is None
 
 
 def test_voxels_are_counted_in_the_slice_and_in_all(frame: Frame):
     states, cut = voxels_of(frame), Slice(0, 0.3)
     modes = (states.words[:-1] >> np.uint32(4) & 3).reshape(states.shape)
-    legend = of(frame, View.VOXELS, light=1, lights=LAMPS, cut=cut)
+    legend = of(frame, View.VOXELS, light=1, lights=LAMPS, slice=cut)
     assert legend.title == "Voxels, light 1 (lamp)" and legend.columns == ("slice", "all")
     for entry, state in zip(legend.entries, (1, 2, 0), strict=True):
         shares = percent(int((modes[4] == state).sum()), 64), percent(int((modes == state).sum()), 1024)
@@ -84,16 +82,16 @@ def test_voxels_are_counted_in_the_slice_and_in_all(frame: Frame):
     assert [fact.values for fact in legend.facts] == [("-0.875",), ("4 of 16",), ("16 x 8 x 8",)]
     lamp = of(frame, View.VOXELS, light=2)
     assert not lamp.entries and "Nothing is known of this light" in lamp.notes[0].text
-    assert legend_of(make_frame(), View.VOXELS) is None
+    assert legend_in(make_frame(), View.VOXELS) is None
 
 
 def test_what_rays_have_built_is_counted(frame: Frame):
-    legend = of(frame, View.TREE, cut=Slice(0, 0.01))
+    legend = of(frame, View.TREE, slice=Slice(0, 0.01))
     said = {fact.name: fact.values for fact in legend.facts}
     assert said["slice at x"] == ("-1.94",) and said["built of the slice"] == ("100.0 %",)
     assert said["nodes built"] == ("123",) and said["primitives in them"] == ("25.0 % of 160",)
     assert (legend.scale.low, legend.scale.high) == ("level 0", "8") and "kdtree-lazy" in legend.title
-    assert of(frame, View.TREE, span=(1.0, 2.5)).scale.high == "2.5" and legend_of(make_frame(), View.TREE) is None
+    assert of(frame, View.TREE, span=(1.0, 2.5)).scale.high == "2.5" and legend_in(make_frame(), View.TREE) is None
 
 
 def test_the_lights_that_cells_ask_are_counted(frame: Frame):
@@ -104,7 +102,7 @@ def test_the_lights_that_cells_ask_are_counted(frame: Frame):
     assert (legend.scale.low, legend.scale.high) == ("0", "3")
     assert [entry.name for entry in legend.entries] == ["not known yet"]
     assert of(frame, View.CELL_LIGHTS, span=(1.0, 2.5)).scale.high == "2.5"
-    assert legend_of(make_frame(), View.CELL_LIGHTS) is None
+    assert legend_in(make_frame(), View.CELL_LIGHTS) is None
 
 
 def test_modes_come_with_shares_and_counts(frame: Frame):
@@ -143,11 +141,12 @@ def test_in_motion_legends_count_the_modes_that_are_drawn():
             frame = next(refining)
         assert frame.shaded is not None and not frame.shaded.all()
         hit = (frame.primitive >= 0).sum()
-        for view, rows in ((View.OCCLUSION, occlusion_legend(frame)), (View.SHADOW, shadow_legend(frame, 2))):
-            drawn = colorize(frame, view, 2, shading=0.0).reshape(-1, 3)
+        for view in (View.OCCLUSION, View.SHADOW):
+            rows = classes_in(frame, view, 2)
+            drawn = picture(frame, view, 2, shading=0.0).reshape(-1, 3)
             for color in {row.color for row in rows} - {GREY}:  # which is that of stripes, too
-                solid = sum(row.pixels for row in rows if row.color == color and row.stripes is None)
-                striped = sum(row.pixels for row in rows if row.color == color and row.stripes is not None)
+                solid = sum(row.pixels for row in rows if row.color == color and not row.striped)
+                striped = sum(row.pixels for row in rows if row.color == color and row.striped)
                 found = (drawn == np.round(255.0 * np.array(color))).all(axis=1).sum()
                 assert solid <= found <= solid + striped and (found > solid or striped < 40), (view, color)
             assert sum(row.pixels for row in rows) == hit
@@ -174,7 +173,7 @@ def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
     between = (reached > 0) & (reached < asked)
     share = [percent(reached[between].sum(), asked[between].sum())] if between.any() else []
     assert [fact.values[0] for fact in legend.facts[1:]] == share and bool(share) == (light != 1)
-    assert legend_of(make_frame(), View.PENUMBRA, Chosen(light)) is None
+    assert legend_in(make_frame(), View.PENUMBRA, light) is None
 
 
 @pytest.mark.parametrize("light", [0, 1, 2])
@@ -196,7 +195,7 @@ def test_fates_come_with_shares_of_pixels_and_of_the_rays_that_are_due(frame: Fr
     said = {fact.name: fact.values[1] for fact in legend.facts}
     assert said == {"saved": percent(saved, due), "traced": percent((fates >= Fate.PARTLY_OCCLUDED).sum(), due)}
     assert not legend.notes and "nearest" in of(in_part(frame), View.FATE, light=light).notes[0].text
-    assert legend_of(make_frame(), View.FATE, Chosen(light)) is None
+    assert legend_in(make_frame(), View.FATE, light) is None
 
 
 def test_shadows_of_moving_objects_are_counted(frame: Frame):
@@ -236,7 +235,7 @@ def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):
     assert [entry.name for entry in of(part, View.LIGHTS).entries] == ["not known yet"]
     unknown = {entry.name: entry.values for entry in of(part, View.PENUMBRA).entries}["not known yet"]
     assert unknown == (percent((hit & ~part.shaded).sum(), hit.sum()),)
-    assert legend_of(make_frame(), View.LIGHTS) is None
+    assert legend_in(make_frame(), View.LIGHTS) is None
 
 
 def test_clusters_of_lights_per_pixel_with_the_bound_of_their_error(frame: Frame):
@@ -250,7 +249,7 @@ def test_clusters_of_lights_per_pixel_with_the_bound_of_their_error(frame: Frame
     assert legend.scale is not None and (legend.scale.low, legend.scale.middle, legend.scale.high) == ("0", "20", "40")
     assert [entry.name for entry in legend.entries] == ["not known yet"]
     assert of(frame, View.CUTS, span=(2.0, 9.0)).scale.high == "9"
-    assert legend_of(make_frame(), View.CUTS) is None
+    assert legend_in(make_frame(), View.CUTS) is None
 
 
 def test_pictures_by_clusters_of_lights_tell_their_errors(frame: Frame):
@@ -264,7 +263,7 @@ def test_a_light_is_called_by_its_number_and_by_a_name_that_says_more(frame: Fra
     assert light_in_words(2, "light 2") == light_in_words(2, "") == "light 2"
     assert of(frame, View.SHADOW, light=1, lights=LAMPS).title == "Shadow mode, light 1 (lamp)"
     uncovered = of(frame, View.SHADOW, light=20)
-    assert not uncovered.entries and uncovered.notes[0].tone is NoteKind.WARNING
+    assert not uncovered.entries and uncovered.notes[0].kind is NoteKind.WARNING
 
 
 def test_heat_maps_say_whether_they_count_or_share(frame: Frame):
@@ -294,11 +293,12 @@ def test_work_of_a_picture_in_part_is_counted_where_it_was_done():
     partly, whole = renderer.refine(scene.frame_time(21), parts=(2, 16))
     for one in (partly, whole):
         rays, shadow = one.statistics.secondary.rays, one.statistics.shadow
-        saved, cost = (work_legend(one, view) for view in (View.SAVED, View.COST))
-        assert (saved.total, saved.whole) == (shadow.saved, shadow.due)
-        assert cost.total == round(one.statistics.part * 96 * 64) + rays + shadow.traced
-        assert cost.per_pixel == cost.total / round(one.statistics.part * 96 * 64)
-    assert partly.cost.sum() > 5 * work_legend(partly, View.COST).total
+        saved, cost = (of(one, view).facts for view in (View.SAVED, View.COST))
+        assert saved[0].values == (f"{count(shadow.saved)} ({percent(shadow.saved, shadow.due)} of those due)",)
+        shaded = round(one.statistics.part * 96 * 64)
+        traced = shaded + rays + shadow.traced
+        assert cost[0].values[0].startswith(f"{count(traced)} (")
+        assert cost[1].values[0].startswith(f"{traced / shaded:.2f}, ")
     legend = of(partly, View.COST)
     part = percent(partly.statistics.part, 1.0)
     assert legend.facts[0].name == f"in the {part} that is shaded" and "nearest" in legend.notes[0].text
@@ -318,7 +318,7 @@ def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame
     assert wrong.entries[0].color == WRONG and wrong.entries[0].values == ("2 (0.013 %)",)
     assert wrong.facts[2].values[0].startswith("3 (")
     assert (wrong.entries[0].name, wrong.facts[2].name) == ("wrong pixels", "wrong answers")
-    assert of(frame, View.WIPE, marked=False).entries[0].color is None
+    assert of(frame, View.WIPE, mark_wrong=False).entries[0].color is None
     assert [fact.values for fact in wrong.facts[:2]] == [("2",), ("26 of 255",)]
     found, known = frame.statistics.wrong, frame.statistics
     known.wrong = replace(found, samples=4)
@@ -327,11 +327,11 @@ def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame
     assert of(frame, View.DIFFERENCE).notes[0].text == "in the 12.0 % of the picture that is shaded"
     right = replace(frame, wrong=np.zeros_like(frame.wrong))
     known.cuts, known.wrong, known.part = None, replace(found, answers=0, pixels=0), 1.0
-    assert of(right, View.DIFFERENCE).notes[0].tone is NoteKind.PLAIN
+    assert of(right, View.DIFFERENCE).notes[0].kind is NoteKind.PLAIN
     assert of(right, View.DIFFERENCE).notes[0].text == "None wrong of 15,360 answers known without tracing (25.0 %)."
     known.wrong = replace(known.wrong, untraced=0)
     off = of(right, View.DIFFERENCE).notes[0]
-    assert off.tone is NoteKind.WARNING and off.text.startswith("Every shadow ray was traced")
+    assert off.kind is NoteKind.WARNING and off.text.startswith("Every shadow ray was traced")
 
 
 def test_a_wrong_answer_that_no_screen_shows_is_not_a_difference_of_none(frame: Frame):
