@@ -44,6 +44,7 @@ from viewer.util.messages import say
 from viewer.util.screen import has_display, no_display_reason
 from viewer.window import app as viewer_app
 from viewer.window.app import FASTEST, FASTEST_BY_PROCESSOR, App
+from viewer.window.finding import FindState
 from viewer.window.panels import find_rows
 
 CAMERA = Camera((0.6, 0.9, 2.6), (-0.2, -0.3, -0.93), angle=40.0)
@@ -160,7 +161,11 @@ class User:
     def _shown(self) -> bool:
         """Whether the rows are there that are asked for, and on the screen."""
         listing = self.table.listing
-        return listing is not None and listing.order == self.table.order and self.app.ui.find_order == listing.order
+        return (
+            listing is not None
+            and listing.order == self.table.order
+            and self.app.ui.state(FindState).order == listing.order
+        )
 
     def _wait(self) -> None:
         self.d.wait(lambda: not self.watch.waits, "an answer on the screen", 60.0)

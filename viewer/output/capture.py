@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import string
-import struct
 from collections.abc import Mapping
 from contextlib import ExitStack
 from datetime import datetime
@@ -111,21 +110,6 @@ def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
         except (OSError, ValueError) as error:
             raise CaptureError(f"no picture saved: {error}") from None
     return path
-
-
-def carries_state(path: Path) -> bool:
-    """Whether a file is a PNG with a text chunk of ours; its pixels are passed over.  Raises OSError."""
-    key = CHUNK.encode() + b"\0"
-    with path.open("rb") as file:
-        if file.read(8) != b"\x89PNG\r\n\x1a\n":
-            return False
-        while len(head := file.read(8)) == 8:
-            length, kind = struct.unpack(">I4s", head)
-            after = file.tell() + length + 4  # a checksum follows
-            if kind in (b"tEXt", b"zTXt", b"iTXt") and file.read(min(length, len(key))) == key:
-                return True
-            file.seek(after)
-    return False
 
 
 def read(path: Path) -> Snapshot:

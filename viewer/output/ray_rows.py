@@ -1,4 +1,4 @@
-"""A tree of rays as rows of text, as the window lists it and the command line prints it.
+"""A tree of rays in words: as rows, as the window lists it and the command line prints it, and the steps of one ray.
 
 A row has rows below it: a ray that was sent on, the shadow rays of a point, by light, and where there are many, those
 that have the same fate together.  Rows below are made when somebody asks for them.
@@ -6,22 +6,23 @@ that have the same fate together.  Rows below are made when somebody asks for th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
+from tracer.geometry.visits import Visit
 from tracer.reasons import MEANING, WHY_TRACED
 from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
-from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
+from tracer.told_rays import AWAY, TRACED, VERDICTS, PathRay, RayKind, RayTree, ShadowRays
 from tracer.why_in_words import primitive_in_words
 from viewer.state.palette import Color
 from viewer.state.verdicts import SAID, Filter, color_of, color_of_all
-from viewer.util.numbers import count
+from viewer.util.numbers import count, several
 
 MOST_LIGHTS = 12
 """Lights of a point that have a row each; of more, those with the same fate have one together."""
@@ -29,6 +30,7 @@ MOST_NAMED = 3  # primitives that are named in a row
 PATH_COLOR: Color = (0.86, 0.88, 0.92)
 
 Key = tuple[int | str, ...]
+Places = NDArray[np.int64]
 Fate = tuple[int, int, str, int, str]  # verdict, lit, what blocks it, wrong, what was known
 
 
@@ -42,7 +44,7 @@ class Row:
     tip: str
     color: Color
     ray: int
-    places: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    places: Places = field(default_factory=lambda: np.empty(0, np.int64))
     below: Callable[[], list[Row]] | None = None
 
     @cached_property
@@ -100,48 +102,41 @@ class RayRows:
 
     # --- shadow rays -----------------------------------------------------------------------------
 
-    def _lights(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
+    def _lights(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
         """A row for each light: of a lamp with its samples below."""
         cuts = np.flatnonzero(np.diff(s.light[places])) + 1
         return [self._light(ray, s, own, above) for own in np.split(places, cuts) if len(own)]
 
-    def _light(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> Row:
+    def _light(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> Row:
         light = int(s.light[places[0]])
-        key, whole = (*above, "light", light), s.of_light(light)
+        key, name, whole = (*above, "light", light), self._name_of_light(light), s.of_light(light)
         if whole.stop - whole.start == 1:
-            return self._single(ray, s, int(places[0]), key, self._name_of_light(light))
-        name, fates = self._name_of_light(light), self._by_fate(s, places, True)
-        if len(fates) == 1:
-            (by,) = (fate[2] for fate in fates)
-            text = f"{name}: {count(len(places))} samples {self._shared_fate(s, places, by)}"
-            below = None if s.verdict[places[0]] == AWAY else lambda: self._samples(ray, s, places, key)
-            tip = MEANING[VERDICTS[s.verdict[places[0]]]]
-            return Row(key, text, tip, color_of(s, int(places[0])), ray.number, places, below)
-        text = f"{name}: {self.summary(s, places)}"
-        return Row(key, text, "", color_of_all(s, places), ray.number, places,
-                   lambda: self._fates(ray, s, places, key))  # fmt: skip
+            return self._single(ray, s, int(places[0]), key, name)
+        fates = self._by_fate(s, places, True)
+        if len(fates) > 1:
+            text, color = f"{name}: {self.summary(s, places)}", color_of_all(s, places)
+            return Row(key, text, "", color, ray.number, places, lambda: self._fates(ray, s, places, key))
+        ((_, _, by, _, _),) = fates
+        text, first = f"{name}: {count(len(places))} samples {self.fate(s, places, by)}", int(places[0])
+        below = None if s.verdict[first] == AWAY else lambda: self._samples(ray, s, places, key)
+        return Row(key, text, MEANING[VERDICTS[s.verdict[first]]], color_of(s, first), ray.number, places, below)
 
-    def _fates(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
+    def _fates(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
         """A row for those with each fate: the verdict, whether the light arrives, and of one light also the object that
         blocks it."""
-        one = len(np.unique(s.light[places])) == 1
-        fates, rows = self._by_fate(s, places, one), []
-        for fate in sorted(fates):
-            same = np.array(fates[fate])
-            key = (*above, "fate", *fate)
+        one, rows = len(np.unique(s.light[places])) == 1, []
+        for fate, numbers in sorted(self._by_fate(s, places, one).items()):
+            same, key, first = np.array(numbers), (*above, "fate", *fate), numbers[0]
             if len(same) == 1:
-                name = self._name_of_light(int(s.light[same[0]]))
-                rows.append(self._single(ray, s, int(same[0]), key, self._name_of_sample(s, int(same[0]), one, name)))
+                name = self._name_of_light(int(s.light[first]))
+                rows.append(self._single(ray, s, first, key, self._name_of_sample(s, first, one, name)))
                 continue
-            text = f"{count(len(same))} {'samples' if one else 'rays'} {self._shared_fate(s, same, fate[2])}"
-            below = self._samples if one else self._lights
-            rows.append(
-                Row(key, text, MEANING[VERDICTS[fate[0]]], color_of(s, int(same[0])), ray.number, same,
-                    lambda same=same, key=key, below=below: below(ray, s, same, key))  # type: ignore[misc]
-            )  # fmt: skip
+            text = f"{count(len(same))} {'samples' if one else 'rays'} {self.fate(s, same, fate[2])}"
+            below = partial(self._samples if one else self._lights, ray, s, same, key)
+            rows.append(Row(key, text, MEANING[VERDICTS[fate[0]]], color_of(s, first), ray.number, same, below))
         return rows
 
-    def _by_fate(self, s: ShadowRays, places: NDArray[np.int64], one: bool) -> dict[Fate, list[int]]:
+    def _by_fate(self, s: ShadowRays, places: Places, one: bool) -> dict[Fate, list[int]]:
         """The places with each fate; what blocks them counts where they are of one light."""
         fates: dict[Fate, list[int]] = {}
         for place in places.tolist():
@@ -150,41 +145,26 @@ class RayRows:
             fates.setdefault(fate, []).append(place)
         return fates
 
-    def _samples(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
-        return [
-            self._single(ray, s, place, (*above, place), self._name_of_sample(s, place, True, ""))
-            for place in places.tolist()
-        ]
+    def _samples(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
+        names = ((place, self._name_of_sample(s, place, True, "")) for place in places.tolist())
+        return [self._single(ray, s, place, (*above, place), name) for place, name in names]
 
     def _single(self, ray: PathRay, s: ShadowRays, place: int, key: Key, name: str) -> Row:
-        text = f"{name}: {self.fate(s, place)}"
-        return Row(key, text, self._tip(s, place), color_of(s, place), ray.number, np.array([place]))
+        places = np.array([place])
+        return Row(key, f"{name}: {self.fate(s, places)}", self._tip(s, place), color_of(s, place), ray.number, places)
 
-    def fate(self, s: ShadowRays, place: int) -> str:
-        """What became of a shadow ray, in words."""
+    def fate(self, s: ShadowRays, places: Places, by: str = "") -> str:
+        """What became of a shadow ray in words, or of several with the same fate, `by` the object that blocks them."""
+        place, alike = int(places[0]), len(places) > 1
         verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
         if not verdict.due:
             return text
+        shared = f"blocked by {by}" if by else "in shadow"
         text += f" ({s.known[place]})" if place in s.known else ""
-        text += ", lit" if s.lit[place] else f", {self._blocked(s, place)}"
-        if s.wrong[place]:
-            text += " (wrong)"
+        text += ", lit" if s.lit[place] else f", {shared if alike else self._blocked(s, place)}"
+        text += " (wrong)" if s.wrong[place] else ""
         if verdict is Verdict.TRACED:
-            text += f"; {s.steps[place]} steps, {s.tests[place]} tests"
-        return text
-
-    def _shared_fate(self, s: ShadowRays, places: NDArray[np.int64], by: str) -> str:
-        """What became of several that have the same fate, blocked by an object of this name if that is known."""
-        place = int(places[0])
-        verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
-        if not verdict.due:
-            return text
-        text += f" ({s.known[place]})" if place in s.known else ""
-        text += ", lit" if s.lit[place] else f", blocked by {by}" if by else ", in shadow"
-        if s.wrong[place]:
-            text += " (wrong)"
-        if verdict is Verdict.TRACED:
-            text += f"; {count(s.steps[places].sum())} steps, {count(s.tests[places].sum())} tests"
+            text += f"; {several(s.steps[places].sum(), 'step')}, {several(s.tests[places].sum(), 'test')}"
         return text
 
     def _object(self, s: ShadowRays, place: int) -> str:
@@ -211,7 +191,7 @@ class RayRows:
             parts.append(f"This answer is wrong: {truth}.")
         return "\n".join(parts)
 
-    def summary(self, s: ShadowRays, places: NDArray[np.int64]) -> str:
+    def summary(self, s: ShadowRays, places: Places) -> str:
         """How many of some shadow rays have each verdict, and how many of these are lit."""
         parts = []
         for number in np.unique(s.verdict[places]):
@@ -247,3 +227,42 @@ def totals(tree: RayTree) -> str:
     paths = f"{count(len(tree.rays))} {'ray' if len(tree.rays) == 1 else 'rays'}"
     said = ", ".join(f"{count(number)} {SAID[verdict]}" for verdict, number in tree.counts.items() if verdict.due)
     return f"{paths} and {count(tree.due)} shadow rays that are due" + (f": {said}" if said else "")
+
+
+# --- the steps of one ray ---------------------------------------------------------------------------
+
+_PACKETS = (
+    "The row says what tracing the ray takes, as a packet of its own: packets may enter other nodes than the ray "
+    "itself, and a block of triangles is one test. This list has the nodes that the ray enters, and every primitive "
+    "that it is tested against."
+)
+
+
+def steps_summary(tree: RayTree, row: Row, visits: Sequence[Visit]) -> tuple[str, str]:
+    """What a list of nodes holds, and how the ray's row counts the same where that differs; and why, "" where it is
+    the same."""
+    tests, leaves = sum(len(visit.tested) for visit in visits), sum(visit.leaf for visit in visits)
+    text = f"{several(len(visits), 'node')} ({several(leaves, 'leaf', 'leaves')}), {several(tests, 'test')}"
+    costs = costs_of(tree, row)
+    if costs is None or costs == (len(visits), tests):
+        return text, ""
+    return f"{text}; as a packet {several(costs[0], 'step')}, {several(costs[1], 'test')}", _PACKETS
+
+
+def costs_of(tree: RayTree, row: Row) -> tuple[int, int] | None:
+    """Steps and tests as the row of a single ray has them, None if it was not traced."""
+    ray = tree.rays[row.ray]
+    if not len(row.places) or ray.shadows is None:
+        return ray.steps, ray.tests
+    s, place = ray.shadows, int(row.places[0])
+    asked = s.verdict[place] == TRACED or s.asked_moving[place]
+    return (int(s.steps[place]), int(s.tests[place])) if asked else None
+
+
+def origin_of(tree: RayTree, row: Row) -> tuple[str, float]:
+    """From where the ray goes, in words, and how long it is from t = 0 to t = 1, in the scene's units."""
+    ray = tree.rays[row.ray]
+    if len(row.places):
+        return "the light", float(np.linalg.norm((ray.end - tree.samples[int(row.places[0])]).astype(np.float64)))
+    name = "the camera" if ray.kind is RayKind.PRIMARY else "the surface that sent it"
+    return name, float(np.linalg.norm(ray.direction.astype(np.float64)))

@@ -21,14 +21,15 @@ from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
-from viewer.services.cut_inspector import CutInspector
 from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
 from viewer.services.frame_history import FrameHistory, FrameNavigator
 from viewer.services.hunt_controller import HuntController
 from viewer.services.light_recorder import LightRecorder
 from viewer.services.motion import Motion
+from viewer.services.origin_pixels import OriginFinder
 from viewer.services.picture_controller import PictureController
+from viewer.services.pixel_inspector import PixelInspector
 from viewer.services.presets import Presets
 from viewer.services.preview import Preview
 from viewer.services.questions import Questions
@@ -42,8 +43,6 @@ from viewer.services.scene_table import SceneTable
 from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
-from viewer.services.shadow_inspector import ShadowInspector
-from viewer.services.teachers import Teachers
 from viewer.services.tracing import Conditions, Tracing
 from viewer.services.undo import Undo
 from viewer.state.arriving import fitting_view
@@ -88,15 +87,14 @@ class Controller:
         self.presets = Presets(
             session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
         )
-        self.inspector = ShadowInspector(self.selection, renderer)
-        self.rays = RayInspector(session, self.selection, renderer)
-        self.cuts = CutInspector(self.selection, renderer)
-        self.teachers = Teachers(session, self.selection, self.history, renderer)
+        self.inspector = PixelInspector(self.selection, renderer.query)
+        self.rays = RayInspector(session, self.selection, self.inspector, renderer.query)
+        self.origins = OriginFinder(self.selection, self.history, renderer.query)
         self.navigator = FrameNavigator(
             session, preferences, self.history, self.tracing, self.runs, self.undo, self.selection, notices,
             self.restore,
         )  # fmt: skip
-        self.recorder = LightRecorder(session, renderer, self.tracing)
+        self.recorder = LightRecorder(session, renderer.query, self.tracing)
         refuses, overlook = self.runs.refuses, self.undo.overlook
         self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook, self.tracing.again)
         self.table = SceneTable(session, self.selection, preferences, notices, self.captures, self.editing, awaken)
@@ -154,9 +152,9 @@ class Controller:
         self.editing.follow(run is not None, self.tracing.shows_edits or not self.renderer.busy)
         traced = self.traced if run is None else None  # edits may have left the newest frame behind
         # Before the next frame is asked for:
-        self.inspector.follow(self.frame if run is None else None, not motion.lively)
-        known = self.inspector.answer.why if self.inspector.answer is not None else None
-        self.rays.follow(traced, None if known is None else known.tree)
+        cuts = traced is not None and traced.whole and self.tracing.drawn_view is View.CUTS
+        self.inspector.update(self.frame if run is None else None, not motion.lively, cuts)
+        self.rays.update(self.frame if run is None else None)
         self.table.follow(traced, motion.lively)
         edits, focus = self.editing.at_work, self.selection.hovered
         scene, settings = self.session.scene, self.session.settings
@@ -164,17 +162,14 @@ class Controller:
             self.loader.prepare(settings.method, len(scene.lights), settings.accelerator)
         self.tracing.ask(Conditions(size, motion.under_way, run, edits, self.loader.ready, focus))
         if run is None:
-            self.recorder.follow()
+            self.recorder.update()
             self._follow_before_edits()
             if self.traced is not None and self.traced.whole:
                 self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
-        whole = run is None and self.traced is not None and self.traced.whole
-        wanted = whole and self.tracing.drawn_view is View.CUTS
-        self.cuts.follow(self.frame if wanted else None, not motion.lively)
         self.navigator.select_when_shown(self.traced)
         if not motion.lively:
             self._keep_preferences()
-        self.teachers.follow(self.traced if run is None and not motion.lively else None)
+        self.origins.update(scene, self.traced if run is None and not motion.lively else None)
         self._follow_baseline()
         return frame
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.method import Method
-from tracer.mode_origins import ModeOrigins, Taught
+from tracer.mode_origins import ModeOrigins, Origins
 from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Camera
 from viewer.output.recipe import BUILT
@@ -126,7 +126,7 @@ class FrameHistory(History):
         self._lights[key] = lights
         self._worker.submit(origins.add, number, frame.modes, moved)
 
-    def taught(self, pick: Pick) -> Taught | None:
+    def origins_of(self, pick: Pick) -> Origins | None:
         """Return which frames set what is known of the unit that was picked; None where that is not known."""
         origins = self._origins.get(self._shown) if self._shown is not None else None
         if origins is None or self._shown is None or self._shown[2] != pick.in_cells:

@@ -99,15 +99,6 @@ class Spare(Protocol):
     def step(self, renderer: Traces, cancelled: Callable[[], bool]) -> bool: ...
 
 
-class Question(Protocol):
-    """A moment's work with the renderer as the frame of this time left it."""
-
-    @property
-    def time(self) -> float: ...
-
-    def answer(self, renderer: Traces) -> None: ...
-
-
 class Pictures(Protocol):
     """The part of `RenderThread` that decides what is seen."""
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from viewer.state.picking import Pick, pick, pixel_of, refreshed
+from viewer.state.selection_lookup import pick_part, pick_primitive
 from viewer.state.session import Session
-from viewer.state.whereabouts import pick_part, pick_primitive
 
 Point = tuple[float, float]
 """Of the picture, 0 to 1 from left and top."""

@@ -34,7 +34,7 @@ from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
 from viewer.window.layout_file import LayoutFile
-from viewer.window.panels import dialogs, loading, log, picture, status, strip, tour
+from viewer.window.panels import dialogs, loading, log, picture, presets, status, strip, tour
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -196,7 +196,7 @@ class App:
         if self.iconified or min(size.x, size.y) < 1:
             return 0, 0
         if imgui.get_frame_count() >= SETTLED:
-            self._room = self.ui.picture_area
+            self._room = self.ui.picture.area
         return self._room
 
     def _draws(self, name: str, work: Callable[[], None]) -> None:
@@ -280,7 +280,7 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(self.ui, {menus.PANELS_MENU: self.layout.menu})
+        menus.show(self.ui, {menus.PANELS_MENU: self.layout.menu}, {"Edit/Presets": lambda: presets.menu(self.ui)})
 
     def _ready(self) -> None:
         """The window and its GL context exist."""

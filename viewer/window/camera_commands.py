@@ -33,8 +33,8 @@ def build(ui: Ui) -> list[Command]:
 def pivot_of(ui: Ui) -> tuple[float, float, float]:
     """What the camera turns around: what was clicked or focused on, else the middle of the scene."""
     c = ui.controller
-    if ui.pivot is not None and ui.pivot_scene is c.session.scene:
-        return ui.pivot
+    if ui.picture.pivot is not None and ui.picture.pivot_scene is c.session.scene:
+        return ui.picture.pivot
     low, high = c.info.get("bounds") or ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     middle = [0.5 * (a + b) for a, b in zip(low, high, strict=True)]
     return middle[0], middle[1], middle[2]

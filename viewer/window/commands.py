@@ -15,7 +15,7 @@ from viewer.window.closer_commands import comparing, looking
 from viewer.window.command import Command, Condition
 from viewer.window.finding import finding, fly_to_selected
 from viewer.window.taking import taking
-from viewer.window.ui import CaptureKind, Ui
+from viewer.window.ui import CaptureKind, Dialog, Ui
 
 
 def build(ui: Ui) -> list[Command]:
@@ -31,9 +31,6 @@ def _file(ui: Ui) -> list[Command]:
     c = ui.controller
     p = c.preferences
 
-    def browse() -> None:
-        ui.browser.open = True
-
     def want(kind: CaptureKind) -> Callable[[], None]:
         def ask() -> None:
             ui.capture_wanted = kind
@@ -41,7 +38,7 @@ def _file(ui: Ui) -> list[Command]:
         return ask
 
     return [
-        Command("Open...", "File", browse, "Ctrl+O"),
+        Command("Open...", "File", lambda: ui.open(Dialog.OPEN_FILE), "Ctrl+O"),
         Command("Reload", "File", c.loader.reload, "F5", enabled=_open_scene(ui)),
         Command(
             "Reload when files change",
@@ -132,13 +129,11 @@ def _view(ui: Ui) -> list[Command]:
 def _rays(ui: Ui) -> list[Command]:
     """The tree of the clicked pixel's rays, and the steps of one of them."""
     rays = ui.controller.rays
-    walked = Condition(lambda: bool(rays.visits), "no ray is followed: click a row of Rays in the Inspector")
+    walked = Condition(lambda: bool(rays.visits), "no ray is selected: click a row of Rays in the Inspector")
     return [
         Command("Rays of the clicked pixel", "View", ui.show_rays, "X", separated=True),
         Command("Next step of the ray", "View", lambda: rays.go(1), "Period", enabled=walked, repeats=True),
         Command("Previous step of the ray", "View", lambda: rays.go(-1), "Comma", enabled=walked, repeats=True),
-        Command("Play the steps of the ray", "View", rays.play, "Shift+Period", checked=lambda: rays.playing,
-                enabled=walked),
     ]  # fmt: skip
 
 
@@ -293,19 +288,25 @@ def _run(ui: Ui) -> list[Command]:
 
 
 def _help(ui: Ui) -> list[Command]:
-    def shortcuts() -> None:
-        ui.shortcuts_open = not ui.shortcuts_open
-
-    def about() -> None:
-        ui.about_open = not ui.about_open
-
     def tour() -> None:
         (ui.tour.start if ui.tour.step is None else ui.tour.end)()
 
     return [
         Command("Tour", "Help", tour, checked=lambda: ui.tour.step is not None),
-        Command("Keyboard and mouse", "Help", shortcuts, "F1", checked=lambda: ui.shortcuts_open),
-        Command("About Shadowcull", "Help", about, checked=lambda: ui.about_open),
+        Command(
+            "Keyboard and mouse",
+            "Help",
+            lambda: ui.toggle(Dialog.KEYS),
+            "F1",
+            checked=lambda: Dialog.KEYS in ui.dialogs,
+            also="keys shortcuts",
+        ),
+        Command(
+            "About Shadowcull",
+            "Help",
+            lambda: ui.toggle(Dialog.ABOUT),
+            checked=lambda: Dialog.ABOUT in ui.dialogs,
+        ),
         Command(
             "Restart graphics",
             "Help",
@@ -337,5 +338,5 @@ def focus(ui: Ui) -> None:
     if point is None or extent is None:
         c.notices.say("there is nothing to focus on")
         return
-    ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
-    c.motion.glide(navigation.focus(c.session.camera, ui.pivot, extent, c.motion.world_up))
+    ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
+    c.motion.glide(navigation.focus(c.session.camera, ui.picture.pivot, extent, c.motion.world_up))

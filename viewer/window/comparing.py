@@ -112,7 +112,7 @@ def filling(ui: Ui) -> PictureTexture | None:
 
 def magnify(ui: Ui, options: DrawOptions, smooth: bool) -> None:
     """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
-    magnifier, size, zoom = ui.magnifier, ui.picture_size, ui.controller.session.zoom
+    magnifier, size, zoom = ui.magnifier, ui.picture.size, ui.controller.session.zoom
     if magnifier is None or min(size) < 1:
         return
     seen, compared = shown(ui), ui.compared

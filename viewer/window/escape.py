@@ -17,12 +17,8 @@ def close_newest(ui: Ui) -> bool:
         _close_list()
     elif ui.tour.step is not None and ui.controller.frame is None:  # a window until there is a picture
         ui.tour.end()
-    elif ui.about_open:
-        ui.about_open = False
-    elif ui.presets_open:
-        ui.presets_open = False
-    elif ui.shortcuts_open:
-        ui.shortcuts_open = False
+    elif ui.dialogs:
+        ui.dialogs.pop()
     elif ui.fold.drawer:
         ui.fold.drawer = ""
     elif ui.screening is not None:

@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from viewer.state.scene_rows import Level
-from viewer.state.whereabouts import looking_at, place_of, place_of_part
+from viewer.state.selection_lookup import looking_at, place_of, place_of_part
 from viewer.window.command import Command, Condition
 from viewer.window.ui import Ui
 
 PANEL = "Find"
+
+
+@dataclass
+class FindState:
+    """`focus` asks for the keyboard above the table, of which `drawn` rows were drawn last, each `height` pixels high,
+    in the order `order`."""
+
+    focus: bool = False
+    drawn: int = 0
+    height: float = 0.0
+    order: object = None
 
 
 def finding(ui: Ui) -> list[Command]:
@@ -17,7 +30,7 @@ def finding(ui: Ui) -> list[Command]:
 
     def find() -> None:
         ui.show_panel(PANEL)
-        ui.find_focus = True
+        ui.state(FindState).focus = True
 
     def show(level: Level) -> None:
         table.level = level
@@ -47,6 +60,6 @@ def fly_to_selected(ui: Ui) -> None:
         c.notices.say("what is selected is nowhere in the world at this moment")
         return
     x, y, z = place.middle.tolist()
-    ui.pivot = x, y, z
+    ui.picture.pivot = x, y, z
     seen = c.selection.pixel is not None
     c.motion.fly_to(looking_at(c.session.camera, place, c.motion.world_up, seen))

@@ -97,7 +97,7 @@ def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
     if ui.preview is None or ui.preview.geometry is not geometry:
         release_preview(ui)
         ui.preview = PreviewDisplay(display.context, geometry)
-    width, height = ui.picture_area
+    width, height = ui.picture.area
     if min(width, height) < 1:
         return
     window = display.context.detect_framebuffer()

@@ -48,10 +48,13 @@ def run(ui: Ui, command: Command) -> None:
     ui.guard.step(f"The command {command.name}", command.run)
 
 
-def show(ui: Ui, others: Mapping[str, Callable[[], None]]) -> None:
-    """All menus of the menu bar, and `others` after them; within a single one where there is no room for their
-    names."""
-    contents: dict[str, Callable[[], None]] = {name: partial(_menu, ui, name) for name in MENUS}
+Contents = Mapping[str, Callable[[], None]]
+
+
+def show(ui: Ui, others: Contents, more: Contents) -> None:
+    """All menus of the menu bar, and `others` after them; within a single one where there is no room for their names.
+    Some menus, by their paths, have `more` after their commands."""
+    contents: dict[str, Callable[[], None]] = {name: partial(_menu, ui, name, more) for name in MENUS}
     contents |= others
     gap = imgui.get_style().item_spacing.x
     needed = sum(imgui.calc_text_size(name).x + 2.0 * gap for name in contents)
@@ -62,14 +65,14 @@ def show(ui: Ui, others: Mapping[str, Callable[[], None]]) -> None:
         imgui.end_menu()
 
 
-def _menus(contents: Mapping[str, Callable[[], None]]) -> None:
+def _menus(contents: Contents) -> None:
     for name, show_content in contents.items():
         if imgui.begin_menu(name):
             show_content()
             imgui.end_menu()
 
 
-def _menu(ui: Ui, path: str) -> None:
+def _menu(ui: Ui, path: str, more: Contents) -> None:
     """The commands of a menu, and the menus within it where the first of their commands stands."""
     inner: list[str] = []
     first = True
@@ -84,10 +87,9 @@ def _menu(ui: Ui, path: str) -> None:
                 imgui.separator()
             first = False
             if imgui.begin_menu(command.menu.removeprefix(f"{path}/")):
-                _menu(ui, command.menu)
-                more: Callable[[], None] | None = ui.more_in_menus.get(command.menu)
-                if more is not None:
-                    more()
+                _menu(ui, command.menu, more)
+                if command.menu in more:
+                    more[command.menu]()
                 imgui.end_menu()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from viewer.window.command import Command, Condition
-from viewer.window.ui import CaptureKind, Ui
+from viewer.window.ui import CaptureKind, Dialog, Ui
 
 
 def copy_command(ui: Ui) -> None:
@@ -23,11 +23,8 @@ def taking(ui: Ui) -> list[Command]:
     def copy_picture() -> None:
         ui.capture_wanted = CaptureKind.CLIPBOARD
 
-    def save_as() -> None:
-        ui.save_as_open = True
-
     return [
-        Command("Save picture as...", "File", save_as, "Ctrl+S", enabled=there),
+        Command("Save picture as...", "File", lambda: ui.open(Dialog.SAVE_AS), "Ctrl+S", enabled=there),
         Command("Copy picture", "File", copy_picture, "Ctrl+C", enabled=there, separated=True),
         Command("Copy as command", "File", lambda: copy_command(ui), "Ctrl+Alt+C", enabled=there,
                 tip="the command that makes this picture, to the clipboard"),

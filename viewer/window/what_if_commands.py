@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from viewer.window.command import Command, Condition
 from viewer.window.ui import Ui
 
 
+@dataclass
+class WhatIfState:
+    """The frame of ImGui's in which the panel was drawn last, how high all is below its list of lights, the light that
+    the pointer drags, and whether changed pixels are marked."""
+
+    drawn: int = -9
+    below: float = 0.0
+    held_light: int | None = None
+    changed_shown: bool = False
+
+
 def build(ui: Ui) -> list[Command]:
     """All of them, in the order of the menu."""
+    state = ui.state(WhatIfState)
     c = ui.controller
     hides = Condition(lambda: thing_pointed_at(ui) is not None, "click an object first, or point at one")
     hidden = Condition(
@@ -20,8 +34,9 @@ def build(ui: Ui) -> list[Command]:
         Command("Hide the object", "Edit/What if", lambda: hide(ui), enabled=hides,
                 tip="that was clicked, or is under the pointer"),
         Command("Show everything", "Edit/What if", c.editing.show_everything, enabled=hidden),
-        Command("Changed pixels", "Edit/What if", lambda: setattr(ui, "changed_shown", not ui.changed_shown),
-                checked=lambda: ui.changed_shown, enabled=edited, tip="by the edits: in magenta on the dimmed picture"),
+        Command("Changed pixels", "Edit/What if", lambda: setattr(state, "changed_shown", not state.changed_shown),
+                checked=lambda: state.changed_shown, enabled=edited,
+                tip="by the edits: in magenta on the dimmed picture"),
         Command("Take all edits back", "Edit/What if", c.editing.clear, enabled=edited,
                 tip="the scene as its file says"),
     ]  # fmt: skip

@@ -11,6 +11,8 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.state.views import View
 from viewer.window.escape import ANY_POPUP
+from viewer.window.finder import Finder
+from viewer.window.panels.names import NameField
 
 KEY = imgui.Key
 SMALL = (1000, 640)  # still with docked panels, and soon drawn
@@ -44,15 +46,15 @@ def _palette(d: Driver) -> None:
         assert imgui.is_popup_open("", ANY_POPUP) == (typed == "500")
     find(d, "redo")
     d.press(KEY.enter)
-    assert imgui.is_popup_open("", ANY_POPUP) and "nothing to redo" in d.ui.finder.problem
+    assert imgui.is_popup_open("", ANY_POPUP) and "nothing to redo" in d.ui.state(Finder).problem
     d.press(KEY.escape)
     assert not imgui.is_popup_open("", ANY_POPUP)
     d.press(CTRL | SHIFT | int(KEY.p))
-    assert [found.item.name for found in d.ui.finder.found[:2]] == ["setting Bounces", "Occlusion mode"]
+    assert [item.name for item in d.ui.state(Finder).found[:2]] == ["setting Bounces", "Occlusion mode"]
     d.press(KEY.down_arrow)
     d.press(KEY.up_arrow)
     d.press(KEY.down_arrow)
-    assert d.ui.finder.aimed.name == "Occlusion mode"
+    assert d.ui.state(Finder).aimed.name == "Occlusion mode"
     d.press(KEY.escape)
 
 
@@ -115,9 +117,9 @@ def _presets(d: Driver) -> None:
     d.frames(2)
     d.context.key_chars("ours")
     d.press(KEY.enter)
-    assert d.c.presets.own[0]["name"] == "ours" and d.ui.editing is None
+    assert d.c.presets.own[0]["name"] == "ours" and d.ui.state(NameField).place is None
     d.press(KEY.escape)
-    assert not d.ui.presets_open
+    assert not d.ui.dialogs
     d.context.menu_click("//##MainMenuBar/Edit/Presets/ours##preset 5")
     d.settle()
     assert d.c.session.settings == kept and d.c.undo.undoes == "preset ours"

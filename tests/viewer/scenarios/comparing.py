@@ -32,7 +32,7 @@ def comparing(d: Driver) -> None:
     d.settle()
     state = d.c.comparing.state
     d.press(int(KEY.z) | SHIFT)
-    assert "Ctrl+A" in d.c.notices.message.text and seen.shown(d.ui) is None, "nothing is kept yet"
+    assert "choose Keep as A" in d.c.notices.message.text and seen.shown(d.ui) is None, "nothing is kept yet"
     d.press(int(KEY.a) | CTRL | SHIFT)
     d.press(int(KEY.a) | CTRL)
     kept = d.c.frame

@@ -12,12 +12,14 @@ from tests.viewer.drawn import classes_in, picture
 from tests.viewer.driver import Driver
 from tracer.method import additions, bases
 from tracer.renderer import Renderer
-from viewer.services.shadow_inspector import Part
 from viewer.state.views import View
 from viewer.views.tree_slice import layer_of
 from viewer.views.voxel_slice import slice_seen
 from viewer.window.command import chord
 from viewer.window.panels import slicing
+from viewer.window.panels.light_buffer import CubeState
+from viewer.window.panels.links import Pointed
+from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
 
 KEY = imgui.Key
 
@@ -145,7 +147,7 @@ def _space(d: Driver) -> None:
     panel, cube = imgui.internal.find_window_by_name("Light buffer"), d.c.frame.structures["light cubes"][0].cube
     assert cube is not None and panel.draw_list.vtx_buffer.size() > 0
     d.context.item_click("//Light buffer/**/full shadow##cube")
-    assert d.ui.cube_shows == 1
+    assert d.ui.state(CubeState).shows == 1
 
 
 def _tree(d: Driver) -> None:
@@ -216,12 +218,12 @@ def explaining(d: Driver) -> None:
     d.press(KEY.i)
     assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
     d.press(KEY.i)
-    lines = explaining.lines(d.c.frame)
-    assert {line.part for line in lines} >= {Part.BLOCKER, Part.REACHING, Part.STOPPED}
+    colors = {color for color, *_ in shadow_lines(explaining.answer, d.c.frame)}
+    assert colors >= {BLOCKER, LIT, STOPPED}
     d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
     d.wait(lambda: all(one.lit for one in explaining.answer.lights if one.due), "an answer about another pixel", 20.0)
-    parts = {line.part for line in explaining.lines(d.c.frame)}
-    assert Part.REACHING in parts and not parts & {Part.STOPPED, Part.BLOCKER}  # candidates there may be
+    colors = {color for color, *_ in shadow_lines(explaining.answer, d.c.frame)}
+    assert LIT in colors and not colors & {STOPPED, BLOCKER}  # candidates there may be
     d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
     d.context.mouse_click(0)
     d.frames(3)
@@ -236,7 +238,7 @@ def explaining(d: Driver) -> None:
     assert explaining.answer is not None and math.dist(explaining.answer.lights[0].point, point) < 0.2
     d.context.mouse_move(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
     d.frames(3)
-    assert d.ui.pointed_light == 0
+    assert d.ui.state(Pointed).light == 0
     d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
     d.frames(3)
     drawn = _lines_drawn(d)

@@ -13,6 +13,7 @@ from tracer.renderer import Renderer
 from viewer.state import readings
 from viewer.state.views import View
 from viewer.views.penumbra import arrivals
+from viewer.window.panels.lights import LightFilters
 from viewer.window.panels.status import doing
 
 KEY = imgui.Key
@@ -91,9 +92,9 @@ def lamps(d: Driver) -> None:
     _one_of_too_many(d)
     d.ui.show_panel("Scene")
     d.frames(4)
-    d.ui.light_filters["table"] = "light 3"
+    d.ui.state(LightFilters).texts["table"] = "light 3"
     d.frames(4)
-    d.ui.light_filters["table"] = ""
+    d.ui.state(LightFilters).texts["table"] = ""
     d.frames(4)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from imgui_bundle import glfw_utils, imgui
 
 from tests.viewer.driver import Driver
+from viewer.window.panels.bookmarks import BookmarksState
 
 KEY = imgui.Key
 
@@ -50,7 +51,7 @@ def flying(d: Driver) -> None:
     d.context.item_click("//Camera/##bookmark")
     d.context.key_chars("wasd")
     d.frames(3)
-    assert d.ui.new_bookmark == "wasd"
+    assert d.ui.state(BookmarksState).new == "wasd"
     assert d.c.session.camera == before, "typing moved the camera"
     d.context.key_press(KEY.enter)
     d.frames(2)
@@ -75,7 +76,7 @@ def orbiting(d: Driver) -> None:
     d.press(KEY.o)
     assert d.c.preferences.navigation == "orbit"
     d.drag(d.picture_centre(), (90.0, 40.0))
-    pivot, camera = d.ui.pivot, d.c.session.camera
+    pivot, camera = d.ui.picture.pivot, d.c.session.camera
     assert pivot is not None and not d.c.session.follow
     d.settle()
     d.drag(d.picture_centre(), (0.0, 0.0))
@@ -84,12 +85,12 @@ def orbiting(d: Driver) -> None:
     d.frames(2)
     d.context.mouse_wheel_y(3.0)
     d.frames(3)
-    assert math.dist(d.c.session.camera.position, d.ui.pivot) < distance
+    assert math.dist(d.c.session.camera.position, d.ui.picture.pivot) < distance
     d.settle()
     d.press(KEY.f)
     d.wait(lambda: not d.c.motion.under_way, "the glide of the focus")
     view = d.c.session.camera.basis()[2]
-    to_pivot = np.subtract(d.ui.pivot, d.c.session.camera.position)
+    to_pivot = np.subtract(d.ui.picture.pivot, d.c.session.camera.position)
     assert view @ to_pivot / np.linalg.norm(to_pivot) > 0.9999
     d.settle()
 

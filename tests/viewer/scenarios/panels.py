@@ -9,6 +9,7 @@ from tests.sweeps import cases
 from tests.viewer.driver import Driver
 from viewer.state.views import View
 from viewer.window.panels.catalogue import PANELS, PICTURE
+from viewer.window.ui import Dialog
 
 KEY = imgui.Key
 SIDES = [label for label in PANELS if label != PICTURE]
@@ -22,24 +23,23 @@ def panels(d: Driver) -> None:
         d.app.params.docking_params.focus_dockable_window(label)
         d.frames(3)
     d.press(KEY.f1)
-    assert d.ui.shortcuts_open
+    assert Dialog.KEYS in d.ui.dialogs
     d.frames(3)
     d.press(KEY.f1)
     d.context.menu_click("//##MainMenuBar/Help/About Shadowcull")
     d.frames(3)
-    assert d.ui.about_open
-    d.ui.about_open = False
+    assert Dialog.ABOUT in d.ui.dialogs
+    d.ui.close(Dialog.ABOUT)
     d.press(int(KEY.o) | int(KEY.mod_ctrl))
     d.frames(4)
-    assert d.ui.browser.open
-    d.ui.browser.folder = d.folder
+    assert d.ui.dialogs == [Dialog.OPEN_FILE]
     d.frames(2)
     before = d.c.session.view
     d.context.key_press(KEY._5)
     d.frames(2)
     assert d.c.session.view is before, "a key reached the window behind a dialog"
     d.press(KEY.escape)
-    assert not d.ui.browser.open
+    assert not d.ui.dialogs
     d.context.menu_click("//##MainMenuBar/View/Depth")
     d.frames(2)
     assert d.c.session.view is View.DEPTH

@@ -34,7 +34,6 @@ def rays(d: Driver) -> None:
     assert c.history.frames == traced, "asking has traced a frame"
     tree = c.rays.tree
     assert (tree.x, tree.y) == c.selection.pixel and tree.due > 0
-    assert len(c.rays.lines(c.frame)) >= tree.due
     d.frames(3)
     drawn = _lines_drawn(d)
 
@@ -54,9 +53,9 @@ def rays(d: Driver) -> None:
     assert c.rays.pointed is not None and c.rays.pointed.key == row.key
     places = _tops(d, "//Inspector/wrong", f"//Inspector/**/{row.key}/##row")
     d.context.item_click(f"//Inspector/**/{row.key}/##row")
-    d.wait(lambda: c.rays.walked, "the nodes that the ray enters", 20.0)
+    d.wait(lambda: c.rays.visits is not None, "the nodes that the ray enters", 20.0)
     assert _tops(d, "//Inspector/wrong", f"//Inspector/**/{row.key}/##row") == places, "rows move when the steps come"
-    assert c.rays.selected.key == row.key and c.rays.structure == "bvh8"
+    assert c.rays.selected.key == row.key
     shadows = tree.rays[row.ray].shadows
     place = int(row.places[0])
     assert any(visit.hits for visit in c.rays.visits) != shadows.lit[place]
@@ -66,11 +65,6 @@ def rays(d: Driver) -> None:
     assert c.rays.step == min(1, steps - 1)
     d.press(KEY.comma)
     assert c.rays.step == 0
-    d.context.item_click("//Inspector/**/kdtree")
-    d.wait(lambda: c.rays.walked and c.rays.structure == "kdtree", "the same in the other structure", 30.0)
-    assert any(visit.hits for visit in c.rays.visits) != shadows.lit[place]
-    d.press(int(KEY.period) | int(KEY.mod_shift))
-    d.wait(lambda: c.rays.step + 1 == len(c.rays.visits) and not c.rays.playing, "the end of the steps", 30.0)
 
     # The path ray folds; the tree goes with the selection.
     top_row = c.rays.seen[0][1]

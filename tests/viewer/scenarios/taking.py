@@ -18,7 +18,7 @@ from viewer.state.comparison import CompareMode
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 from viewer.window.panels import save_as
-from viewer.window.ui import CaptureKind
+from viewer.window.ui import CaptureKind, Dialog
 
 KEY = imgui.Key
 CTRL, ALT = int(KEY.mod_ctrl), int(KEY.mod_alt)
@@ -92,7 +92,7 @@ def _save_as(d: Driver) -> None:
     d.context.item_click(f"//{save_as.TITLE}/Save")
     d.wait(lambda: d.c.runs.current is None, "the picture")
     d.settle()
-    assert not d.ui.save_as_open
+    assert Dialog.SAVE_AS not in d.ui.dialogs
     (path,) = (d.folder / "pictures").glob("tiny-occlusion-288x192*")
     assert str(path) in d.c.notices.message.text
     with Image.open(path) as image:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from threading import Event
 
 import numpy as np
 import pytest
@@ -277,15 +276,10 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
         until(lambda number=number: work.begun == number + 1)
         assert not thread.busy and len(renderer.turns) == number, "put back after a step"
 
-    class Asked:
-        time, answered = 2.0, Event()
+    def column(renderer, frame, cancelled) -> float:
+        return frame.time
 
-        def answer(self, renderer) -> None:
-            self.answered.set()
-
-    asked = Asked()
-    thread.ask(asked)
-    assert asked.answered.wait(5.0)
+    assert thread.query(column, came[-1].frame).result(5.0) == 2.0
     until(lambda: work.begun == 3)
     thread.in_spare_time(None)
     until(lambda: work.ended == 3 and len(renderer.turns) == 3)

@@ -150,9 +150,9 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
     c.selection.select((0.5, 0.75))
     picked = c.selection.picked
     assert picked is not None and picked.primitive >= 0
-    taught = c.history.taught(picked)
+    taught = c.history.origins_of(picked)
     assert taught is not None
-    desk.until(lambda: all(c.teachers._known.get(n) is not None for one in taught.lights for n in one if n != NEVER))
+    desk.until(lambda: all(c.origins.of(n, 0, True) is not None for one in taught.lights for n in one if n != NEVER))
     met = 0
     world = tracer.World(c.session.scene)
     again = tracer.Renderer(c.session.scene, replace(words[learnt[0]].settings, verify=False), world=world)
@@ -170,7 +170,7 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
             assert first.get((light, lit), NEVER) == n
             if n == NEVER:
                 continue
-            found, moment = c.teachers.of(n, light, lit), words[n]
+            found, moment = c.origins.of(n, light, lit), words[n]
             assert found is not None
             exact = replace(moment.settings, method="none", record_lights=True, verify=False)
             frame = tracer.Renderer(c.session.scene, exact, world=world).render(moment.time, moment.camera)

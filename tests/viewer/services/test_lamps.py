@@ -13,7 +13,8 @@ from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
 from viewer.services.governor import Governor
 from viewer.services.lamps import LampSamples, after, first
-from viewer.services.light_recorder import LightQuestion, LightRecorder
+from viewer.services.light_recorder import LightRecorder
+from viewer.services.queries import Queries
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
@@ -197,46 +198,40 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
         assert window.tracing.title == title
 
 
-class Questions:
-    """Takes down what the recorder asks the render thread."""
-
-    def __init__(self) -> None:
-        self.asked: list[LightQuestion] = []
-
-    def ask(self, question: LightQuestion) -> None:
-        self.asked.append(question)
-
-
 def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
-    window = Window(make_scene(lights=MOST_TOGETHER + 1))
-    questions = Questions()
-    recorder = LightRecorder(window.session, questions, window.tracing)
+    window, queries = Window(make_scene(lights=MOST_TOGETHER + 1)), Queries()
+    recorder = LightRecorder(window.session, lambda of, frame, *more: queries.ask(of, frame, more), window.tracing)
     window.rest()
-    recorder.follow()
-    assert not questions.asked, "the picture needs none"
+    recorder.update()
+    assert not queries, "the picture needs none"
     window.session.view = View.PENUMBRA
     for _ in range(3):
-        recorder.follow()
-    (question,) = questions.asked
-    assert (question.frame, question.light) == (window.tracing.frame, 0)
+        recorder.update()
+    query = queries.take()
+    assert query is not None and not queries, "asked once"
+    assert (query.frame, query.arguments) == (window.tracing.frame, (0,))
     window.session.light = 1
-    recorder.follow()
-    (_, question) = questions.asked
-    first = with_lamps(question.frame)
-    question.found = replace(first, asked=first.asked[..., 1:2], reached=first.reached[..., 1:2], only_light=1)
-    recorder.follow()
-    assert window.tracing.frame is question.found and window.tracing.drawn_view is View.PENUMBRA
-    recorder.follow()
-    assert len(questions.asked) == 2
+    recorder.update()
+    assert query.future.cancelled()
+    query = queries.take()
+    frame, first = query.frame, with_lamps(query.frame)
+    query.future.set_result(replace(first, asked=first.asked[..., 1:2], reached=first.reached[..., 1:2], only_light=1))
+    recorder.update()
+    assert window.tracing.drawn_view is View.PENUMBRA and window.tracing.frame.only_light == 1
+    assert window.tracing.frame.color is frame.color
+    recorder.update()
     window.session.light = 2
-    recorder.follow()
-    assert window.tracing.drawn_view is View.COLOR and len(questions.asked) == 3, "another light"
+    recorder.update()
+    assert window.tracing.drawn_view is View.COLOR
+    query = queries.take()
+    assert query is not None and query.arguments == (2,)
     window.move()
     window.rest()
     newest = window.tracing.frame
-    questions.asked[-1].found = first
-    recorder.follow()
-    assert window.tracing.frame is newest and questions.asked[-1].frame is newest, "it is about an older frame"
+    query.future.set_result(first)
+    recorder.update()
+    assert window.tracing.frame is newest, "it is about an older frame"
+    assert queries.take().frame is newest
 
 
 def test_between_steps_it_is_known_that_more_is_to_come():

@@ -101,7 +101,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
     ):
         desk.c.notices.message = None
         disturb()
-        assert desk.said == "the experiment is still under way; stop it first (Escape)"
+        assert desk.said == "the experiment is still under way; stop it first"
         desk.tick()
         assert (session.camera, session.time, session.settings, session.playing, session.follow) == before
     desk.runs.start_experiment()

@@ -69,7 +69,7 @@ def _idle(**changes: object) -> SimpleNamespace:
         frame=None, runs=SimpleNamespace(current=None), tracing=tracing, renderer=SimpleNamespace(busy=False),
         motion=SimpleNamespace(under_way=False, lively=False),
         session=SimpleNamespace(scene=object(), playing=False, settings=SimpleNamespace(method="lie", samples=1)),
-        selection=SimpleNamespace(picked=None, pixel=None),
+        selection=SimpleNamespace(picked=None, pixel=None), inspector=SimpleNamespace(problem=""),
     )  # fmt: skip
     for name, value in changes.items():
         setattr(tracing if hasattr(tracing, name) else c, name, value)

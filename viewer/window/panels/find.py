@@ -8,7 +8,9 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.services.scene_table import Listing, SceneTable
 from viewer.state.row_filter import HELP, HINTS
 from viewer.state.scene_rows import Level
+from viewer.window.finding import FindState
 from viewer.window.panels import find_rows, lights
+from viewer.window.panels.lights import LightFilters
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, count, em, fitted, paragraph, same_line_for, tooltip
 
@@ -68,9 +70,10 @@ def _tools(ui: Ui, table: SceneTable) -> None:
 
 
 def _filter(ui: Ui, table: SceneTable) -> None:
-    if ui.find_focus:
+    state = ui.state(FindState)
+    if state.focus:
         imgui.set_keyboard_focus_here()
-        ui.find_focus = False
+        state.focus = False
     hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  {HINTS[table.level]}"
     shown = fitted(hint, imgui.calc_item_width() - 2.0 * imgui.get_style().frame_padding.x)
     changed, text = imgui.input_text_with_hint(f"##filter{table.level.value}", shown, table.order.text)
@@ -91,7 +94,7 @@ def _light(ui: Ui, table: SceneTable) -> None:
     label = "all lights" if table.all_lights else ui.light_name(c.session.light)
     if imgui.begin_combo("##light", label):
         if imgui.is_window_appearing():
-            ui.light_filters["find"] = ""
+            ui.state(LightFilters).texts["find"] = ""
         if imgui.selectable("all lights", table.all_lights)[0]:
             table.all_lights = True
         for number in list(lights.found(ui, "find"))[:64]:

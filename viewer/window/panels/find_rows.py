@@ -10,7 +10,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from viewer.services.scene_table import Listing, SceneTable
 from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.state.scene_rows import COLUMNS, Column, Level
-from viewer.window.finding import fly_to_selected
+from viewer.window.finding import FindState, fly_to_selected
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, right, swatch, tooltip
 
@@ -28,12 +28,13 @@ _COLORS = {
 
 def show(ui: Ui, table: SceneTable, listing: Listing) -> None:
     """The table itself, which scrolls both ways."""
+    state = ui.state(FindState)
     columns = COLUMNS[listing.table.level]
     kinds = imgui.TableFlags_
     flags = kinds.scroll_x | kinds.scroll_y | kinds.row_bg | kinds.resizable | kinds.reorderable | kinds.hideable
     flags |= kinds.sortable | kinds.borders_inner_v
     width = _inner_width(columns)
-    ui.find_drawn = 0
+    state.drawn = 0
     name = f"table{listing.table.level.value}"
     if not imgui.begin_table(name, len(columns), int(flags), ImVec2(0.0, 0.0), width):
         return
@@ -47,16 +48,16 @@ def show(ui: Ui, table: SceneTable, listing: Listing) -> None:
     selected = table.selected
     clipper = imgui.ListClipper()
     # What it measures itself is a pixel too high for the first row, which shifts row 1000 out of sight.
-    clipper.begin(len(listing.rows), ui.find_height or -1.0)
+    clipper.begin(len(listing.rows), state.height or -1.0)
     while clipper.step():
         above = 0.0
         for row in listing.rows[clipper.display_start : clipper.display_end].tolist():
             imgui.table_next_row()
             imgui.table_set_column_index(0)
             below = imgui.get_cursor_screen_pos().y
-            ui.find_height, above = (below - above if above else ui.find_height), below
+            state.height, above = (below - above if above else state.height), below
             _row(ui, table, listing, columns, row, row == selected)
-            ui.find_drawn += 1
+            state.drawn += 1
     clipper.end()
     imgui.end_table()
 
@@ -111,10 +112,11 @@ def _sort(table: SceneTable, columns: tuple[Column, ...]) -> None:
 def _scroll(ui: Ui, table: SceneTable, listing: Listing) -> None:
     """Bring the row of what was selected elsewhere to where it is seen, once it is there; in another order, too, whose
     first rows are seen where nothing is selected."""
-    serial, height = table.selection_serial, ui.find_height
+    state = ui.state(FindState)
+    serial, height = table.selection_serial, state.height
     if listing.order != table.order or height <= 0.0:
         return
-    another, ui.find_order = ui.find_order != listing.order, listing.order
+    another, state.order = state.order != listing.order, listing.order
     if serial == table.chosen and not another:
         return
     table.chosen = serial

@@ -9,15 +9,16 @@ from contextlib import contextmanager
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.culling.modes import OcclusionMode
+from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
-from tracer.why_in_words import Words
+from tracer.mode_origins import NEVER
+from tracer.why_in_words import Link, Words
 from viewer.state.palette import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
 from viewer.state.picking import Pick, pixel_of
 from viewer.state.readings import can_draw
 from viewer.state.views import View
 from viewer.views import cell_lights
-from viewer.window.panels import rays, teaching, why
+from viewer.window.panels import rays, why
 from viewer.window.panels.links import sentence
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -127,15 +128,41 @@ def _modes(ui: Ui, pick: Pick) -> None:
         if pick.occlusion is not None:
             mode = pick.occlusion
             _mode("occlusion", mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode])
-            teaching.of_occlusion(ui, pick)
+            _whole_since(ui, pick)
         moves = pick.occlusion is OcclusionMode.DYNAMIC
         for light, shadow in enumerate(() if moves else pick.shadows):
             if shadow is not None:
                 _mode(ui.light_name(light), shadow.name, SHADOW_COLORS[shadow], SHADOW_MEANING[shadow])
-                teaching.of_light(ui, pick, light, shadow)
+                _origin(ui, pick, light, shadow)
     uncovered = sum(mode is None for mode in pick.shadows)
     if uncovered:
         paragraph(f"{uncovered} more {'light is' if uncovered == 1 else 'lights are'} not culled", QUIET)
+
+
+def _whole_since(ui: Ui, pick: Pick) -> None:
+    """The picture since which the primitive is fully rendered.  Pictures are numbered as in the plots."""
+    origins = ui.controller.history.origins_of(pick)
+    if origins is not None and origins.whole != NEVER and pick.occlusion is OcclusionMode.FULLY_RENDERED:
+        sentence(ui, ("since ", Link(f"picture {origins.whole}", frame=origins.whole)), "whole", QUIET)
+
+
+def _origin(ui: Ui, pick: Pick, light: int, mode: ShadowMode) -> None:
+    """The pictures in which the point was first seen lit by a light, and first blocked from it, with the pixels."""
+    origins = ui.controller.history.origins_of(pick)
+    if origins is None or mode is ShadowMode.INIT or light >= len(origins.lights):
+        return
+    met = origins.lights[light].met()
+    for lit, number in met:
+        found, word = ui.controller.origins.of(number, light, lit), "lit" if lit else "blocked"
+        pixel, by = None if found is None else found.pixel, ""
+        if found is not None:
+            more = f" and {found.count - 1} more" if found.count > 1 else ""
+            by = f", pixel {pixel[0]}, {pixel[1]}{more}" if pixel is not None else ", by reflected or refracted rays"
+        sentence(
+            ui, (f"{word} in ", Link(f"picture {number}", frame=number, pixel=pixel), by), f"{light} {word}", QUIET
+        )
+    if met and mode is not ShadowMode.PARTIAL_SHADOW:
+        paragraph("never seen lit" if mode is ShadowMode.FULL_SHADOW else "never seen blocked", QUIET)
 
 
 @contextmanager

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.state.fuzzy import match
 from viewer.state.keymap import HELD
 from viewer.window.command import MENUS
-from viewer.window.ui import Ui
+from viewer.window.finder import match
+from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
 
 TITLE = "Keyboard and mouse"
@@ -32,9 +33,16 @@ _WHEELS = {
 }
 
 
+@dataclass
+class KeysState:
+    """What is looked for."""
+
+    filter: str = ""
+
+
 def show(ui: Ui) -> None:
     """The dialog, while it is open."""
-    if not ui.shortcuts_open:
+    if Dialog.KEYS not in ui.dialogs:
         ui.key_wanted = ""
         return
     viewport = imgui.get_main_viewport()
@@ -43,7 +51,8 @@ def show(ui: Ui) -> None:
     imgui.set_next_window_size(size, int(imgui.Cond_.appearing))
     flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_collapse
     shown, open_ = imgui.begin(TITLE, True, int(flags))
-    ui.shortcuts_open = bool(open_)
+    if not open_:
+        ui.close(Dialog.KEYS)
     if shown:
         _capture(ui)
         conflicts = ui.keymap.conflicts()
@@ -64,9 +73,10 @@ def show(ui: Ui) -> None:
 
 
 def _head(ui: Ui, at_odds: int) -> None:
+    state = ui.state(KeysState)
     keymap = ui.keymap
     imgui.set_next_item_width(em(11.0))
-    _, ui.key_filter = imgui.input_text_with_hint("##filter", "find a command or a key", ui.key_filter)
+    _, state.filter = imgui.input_text_with_hint("##filter", "find a command or a key", state.filter)
     imgui.same_line(0.0, em(1.0))
     imgui.begin_disabled(not ui.controller.preferences.keys)
     if imgui.button("Reset all keys"):
@@ -106,7 +116,7 @@ def _capture(ui: Ui) -> None:
 
 def _groups(ui: Ui) -> Iterator[tuple[str, list[str]]]:
     """Titles, and the names below them; only what is looked for."""
-    typed = ui.key_filter.strip()
+    typed = ui.state(KeysState).filter.strip()
 
     def wanted(name: str, menu: str) -> bool:
         keys = " ".join(ui.keyboard.label(key) for key in ui.keymap.of(name))

@@ -29,6 +29,13 @@ _LEGEND = 15.0  # ems of width beside the cross
 _CHOICES = 11.0  # ems beside the legend that choices need
 
 
+@dataclass
+class CubeState:
+    """What the light's cube shows, by its number."""
+
+    shows: int = 0
+
+
 @dataclass(eq=False)
 class _Picture:
     """A cross as a texture that stays as it is (`viewer.window.shots`)."""
@@ -44,6 +51,7 @@ class _Picture:
 
 def show(ui: Ui) -> None:
     """The panel."""
+    state = ui.state(CubeState)
     c = ui.controller
     frame = c.frame
     if frame is None or c.session.scene is None:
@@ -63,15 +71,16 @@ def show(ui: Ui) -> None:
         return
     cube = found.cube
     drawn: CubeSeen = ui.cached("cube", cube, None, lambda: seen(cube))
-    colors, told = (drawn.list_colors, lists_legend) if ui.cube_shows == LISTS else (drawn.depth_colors, depths_legend)
+    colors, told = (drawn.list_colors, lists_legend) if state.shows == LISTS else (drawn.depth_colors, depths_legend)
     name = ui.light_name(light)
-    picture: _Picture = ui.cached("cube picture", cube, ui.cube_shows, lambda: _Picture(cross_of(colors)))
-    described: Legend = ui.cached("cube legend", cube, (ui.cube_shows, name), lambda: told(drawn, name))
+    picture: _Picture = ui.cached("cube picture", cube, state.shows, lambda: _Picture(cross_of(colors)))
+    described: Legend = ui.cached("cube legend", cube, (state.shows, name), lambda: told(drawn, name))
     _show(ui, found, drawn, picture, described)
 
 
 def _choose(ui: Ui) -> None:
     """Which light, and what of its cube."""
+    state = ui.state(CubeState)
     with properties("light buffer", 4.0) as shown:
         if shown:
             row("Light", f"whose cube is shown{ui.keys('Next light', 'Previous light')}")
@@ -80,8 +89,8 @@ def _choose(ui: Ui) -> None:
             for number, name in enumerate(("lists", "full shadow")):
                 if number and imgui.get_content_region_avail().x > em(10.0):
                     imgui.same_line(0.0, em(0.6))
-                if imgui.radio_button(f"{name}##cube", ui.cube_shows == number):
-                    ui.cube_shows = number
+                if imgui.radio_button(f"{name}##cube", state.shows == number):
+                    state.shows = number
 
 
 def _offer(ui: Ui, frame: Frame) -> None:
@@ -175,7 +184,7 @@ def said(found: LightCube, drawn: CubeSeen, cell: tuple[int, int, int]) -> tuple
 def _tell(ui: Ui, found: LightCube, drawn: CubeSeen, cell: tuple[int, int, int]) -> None:
     scene = ui.controller.session.scene
     text, names = said(found, drawn, cell)
-    red, green, blue = (drawn.list_colors if ui.cube_shows == LISTS else drawn.depth_colors)[cell].tolist()
+    red, green, blue = (drawn.list_colors if ui.state(CubeState).shows == LISTS else drawn.depth_colors)[cell].tolist()
     swatch((red, green, blue))
     paragraph(text)
     for number in names[:_MOST_NAMED]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
@@ -19,6 +20,14 @@ from viewer.window.widgets import QUIET, fitted, tooltip
 
 _Word = tuple[str, Link | None]
 _TRAILING = re.compile(r"\S+\s*|\s+")
+
+
+@dataclass
+class Pointed:
+    """The name and the light of the Inspector that the pointer is on."""
+
+    link: Link | None = None
+    light: int | None = None
 
 
 def sentence(ui: Ui, said: Sentence, key: str, color: ImVec4 | None = None) -> None:
@@ -81,7 +90,7 @@ def _link(ui: Ui, link: Link, text: str, number: int) -> None:
     if imgui.text_link(f"{text}##{number}"):
         follow(ui, link)
     if imgui.is_item_hovered():
-        ui.pointed_link = link
+        ui.state(Pointed).link = link
     tooltip(f"{_about(ui, link)}\n\nThe right button offers more.")
     if imgui.begin_popup_context_item(f"more {number}"):
         _menu(ui, link)

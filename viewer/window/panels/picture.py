@@ -22,26 +22,22 @@ from viewer.window.palette import ON_PICTURE_ERROR
 from viewer.window.panels import (
     closeup,
     coming,
-    cut_overlay,
     edited_picture,
-    explanation,
     film,
     layers,
     legend,
     missing,
+    overlays,
     preview,
-    ray_overlay,
     savings,
     sides,
     slicing,
     timeline,
     tour,
-    unseen,
-    why_overlay,
     wipe,
-    worst_pixels,
 )
 from viewer.window.panels.area import Area
+from viewer.window.panels.legend import LegendState
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, em, paragraph
 
@@ -73,8 +69,7 @@ def show(ui: Ui) -> None:
     strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
     room = ImVec2(room.x, room.y - strip)
     scale = imgui.get_io().display_framebuffer_scale
-    ui.picture_area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
-    ui.picture_focused = imgui.is_window_focused()
+    ui.picture.area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
     top = imgui.get_cursor_pos()
     if room.x >= 1.0 and room.y >= 1.0 and not film.screen(ui, room):
         _picture(ui, room)
@@ -99,7 +94,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         return
     ui.pixels.follow(c.session.scene.path)
     width, height = c.traced.full_size if c.traced is not None else (1, 1)
-    ui.picture_shape = width, height
+    ui.picture.shape = width, height
     seen, gap = comparing.shown(ui), em(sides.GAP)
     beside = seen is not None and seen[2] is CompareMode.SIDE
     factor = min(((room.x - gap) / 2.0 if beside else room.x) / width, room.y / height)
@@ -119,17 +114,11 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         sides.draw_a(ui, area, seen)
     with _inside(area):
         edited_picture.show_changed(ui, area.whole, area.whole_end)
-        if c.rays.visible:  # it shows the same rays, and more
-            ray_overlay.show(ui, area.whole, area.whole_end)
-        else:
-            explanation.show(ui, area.whole, area.whole_end)
-        why_overlay.show(ui, area)
-        unseen.show(ui, area.whole, area.whole_end)
-        cut_overlay.show(ui, area.whole, area.whole_end)
+        overlays.show(ui, area)
     _pointer(ui, area)
     closeup.show(ui, area)
     if seen is not None:
-        worst_pixels.show(ui, area, seen)
+        overlays.show_worst_pixels(ui, area, seen[1].frame)
     wipe.show(ui, area)
     lower = _overlay(ui, area.corner, area.end)
     with _inside(area):
@@ -149,7 +138,7 @@ def _area(ui: Ui, name: str, left: float, top: float, size: ImVec2) -> Area:
     imgui.set_next_item_allow_overlap()  # what lies over the picture takes the pointer there
     imgui.invisible_button(name, size, _ALL_BUTTONS)
     scale = imgui.get_io().display_framebuffer_scale
-    ui.picture_size = max(1, round(size.x * scale.x)), max(1, round(size.y * scale.y))
+    ui.picture.size = max(1, round(size.x * scale.x)), max(1, round(size.y * scale.y))
     return Area(corner, size, ui.controller.session.zoom)
 
 
@@ -166,7 +155,7 @@ def _inside(area: Area) -> Iterator[None]:
 
 def _last_picture(ui: Ui, room: ImVec2, texture: int) -> None:
     """What was shown before the scene was read again, until it is traced: else each change would flash."""
-    width, height = ui.picture_shape
+    width, height = ui.picture.shape
     factor = min(room.x / width, room.y / height)
     size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
     at = imgui.get_cursor_pos()
@@ -191,8 +180,8 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
 def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
     """Hovering, clicking and dragging on the picture, which is ImGui's last item; of lights too if it `takes_edits`."""
     c, io = ui.controller, imgui.get_io()
-    if ui.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
-        ui.pivot, ui.pivot_scene = None, c.session.scene
+    if ui.picture.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
+        ui.picture.pivot, ui.picture.pivot_scene = None, c.session.scene
     u, v = area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.selection.hovered = (u, v)
@@ -203,20 +192,20 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
     if wipe.handle(ui, area) or closeup.drag(ui, area):
         return
     if imgui.is_item_activated():
-        ui.dragged = False
-        ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
-        ui.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), LEFT)
+        ui.picture.dragged = False
+        ui.picture.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
+        ui.picture.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), LEFT)
         point = point_at(c.frame, u, v) if c.frame is not None else None
         if point is not None:
-            ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
+            ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
     released = imgui.is_item_deactivated()
     if imgui.is_item_active() or released:  # a quick hand drags and lets go within one of our frames
-        ui.dragged |= math.dist(ui.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > CLICK_SLACK
-        if ui.dragged:
-            _drag(ui, ui.pressed, io.mouse_delta.x / area.size.y, io.mouse_delta.y / area.size.y)
-    if released and not ui.dragged and ui.pressed == RIGHT:
+        ui.picture.dragged |= math.dist(ui.picture.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > CLICK_SLACK
+        if ui.picture.dragged:
+            _drag(ui, ui.picture.pressed, io.mouse_delta.x / area.size.y, io.mouse_delta.y / area.size.y)
+    if released and not ui.picture.dragged and ui.picture.pressed == RIGHT:
         closeup.open_menu(ui, (u, v))
-    elif released and not ui.dragged:
+    elif released and not ui.picture.dragged:
         c.selection.select((u, v))
 
 
@@ -226,7 +215,7 @@ def _drag(ui: Ui, button: int, dx: float, dy: float) -> None:
         return
     c = ui.controller
     camera, world = c.session.camera, c.motion.world_up
-    pivot = ui.pivot
+    pivot = ui.picture.pivot
     orbiting = c.preferences.navigation == "orbit" and pivot is not None
     turn = navigation.RADIANS_PER_HEIGHT
     if button == MIDDLE or (button == RIGHT and orbiting):
@@ -246,9 +235,9 @@ def _wheel(ui: Ui, notches: float) -> None:
         at = c.selection.hovered
         point = point_at(c.frame, *at) if c.frame is not None and at is not None else None
         if point is not None:
-            ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
-        if ui.pivot is not None:
-            c.motion.move(navigation.dolly(c.session.camera, ui.pivot, notches))
+            ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
+        if ui.picture.pivot is not None:
+            c.motion.move(navigation.dolly(c.session.camera, ui.picture.pivot, notches))
     else:
         c.preferences.speed = min(max(c.preferences.speed * 1.2**notches, 0.001), 1000.0)
         c.notices.say(f"flying speed {c.preferences.speed:.3g}")
@@ -299,7 +288,7 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
     tone = c.session.tone.in_words()
     text += f"   {tone}" if tone and c.tracing.drawn_view.shows_picture else ""
     counter = ""
-    if c.tracing.drawn_view.needs_verify and not ui.legend_shown:
+    if c.tracing.drawn_view.needs_verify and not ui.state(LegendState).shown:
         counter = f"   {verified.in_short(frame.statistics)}"
     size = imgui.calc_text_size(text + counter)
     if end.x - corner.x < size.x + em(2.0):

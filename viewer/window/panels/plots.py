@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
@@ -46,6 +47,14 @@ LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | impl
 COLORS = (BLUE, ORANGE, GREEN, SKY, PINK, YELLOW)
 
 
+@dataclass
+class PlotsState:
+    """`per_pixel` says that counters are divided by pixels, `pointed` is the frame that the pointer was on last."""
+
+    per_pixel: bool = True
+    pointed: int | None = None
+
+
 def whole_numbers(first: float, last: float, width: float) -> None:
     """Ticks along the x axis of a plot of `first` to `last`, so many pixels wide: at whole numbers, and none so near to
     an edge that its label would be cut off."""
@@ -76,8 +85,8 @@ def show(ui: Ui) -> None:
         return
     checkbox(
         "per pixel",
-        ui.per_pixel,
-        lambda on: setattr(ui, "per_pixel", on),
+        ui.state(PlotsState).per_pixel,
+        lambda on: setattr(ui.state(PlotsState), "per_pixel", on),
         "of frames of all sizes, and of those in motion, of which only some pixels are shaded: primary rays and proofs "
         "are divided by all pixels, all else by those that are shaded",
     )
@@ -109,7 +118,7 @@ def show(ui: Ui) -> None:
 
 def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
     history = ui.controller.history
-    per_pixel = ui.per_pixel and title not in (_LOGARITHMIC, _BUILT)
+    per_pixel = ui.state(PlotsState).per_pixel and title not in (_LOGARITHMIC, _BUILT)
     implot.push_style_var(implot.StyleVar_.legend_inner_padding, ImVec2(em(0.15), em(0.3)))
     implot.push_style_var(implot.StyleVar_.legend_spacing, ImVec2(em(0.2), 0.0))
     shown = implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, FLAGS)
@@ -207,7 +216,7 @@ def _go_to_frame(ui: Ui, number: int | None, values: list[str]) -> None:
     record = c.history.records.get(number) if number is not None else None
     if number is None or record is None:
         return
-    ui.plot_pointed = number
+    ui.state(PlotsState).pointed = number
     width, height, part = record.settings.width, record.settings.height, c.history.shaded_of(number)
     shaded = f", {whole_percent(part)} shaded" if part < 1.0 else ""
     said = f"{record.time:.3f} s, {record.settings.method}, {width} x {height}{shaded}"

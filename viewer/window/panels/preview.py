@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from viewer.window.panels.tour import TourState
 from viewer.window.ui import Ui
 from viewer.window.widgets import count, em
 
@@ -38,7 +39,7 @@ def make_room(ui: Ui, height: float) -> None:
     """Put the next window, so high, along the lower edge of the picture."""
     viewport = imgui.get_main_viewport()
     whole = viewport.work_pos.x, viewport.work_pos.y + viewport.work_size.y, viewport.work_size.x
-    left, lower, across = ui.tour_place or whole
+    left, lower, across = ui.state(TourState).place or whole
     imgui.set_next_window_pos(ImVec2(left, lower - height))
     imgui.set_next_window_size(ImVec2(across, height))
 
@@ -46,10 +47,10 @@ def make_room(ui: Ui, height: float) -> None:
 def _pointer(ui: Ui, height: float, drag: Callable[[Ui, int, float, float], None]) -> None:
     io = imgui.get_io()
     if imgui.is_item_activated():
-        ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
-        ui.pressed = next((b for b in _BUTTONS if imgui.is_mouse_clicked(b)), _BUTTONS[0])
-    if imgui.is_item_active() and math.dist(ui.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > 0.0:
-        drag(ui, ui.pressed, io.mouse_delta.x / height, io.mouse_delta.y / height)
+        ui.picture.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
+        ui.picture.pressed = next((b for b in _BUTTONS if imgui.is_mouse_clicked(b)), _BUTTONS[0])
+    if imgui.is_item_active() and math.dist(ui.picture.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > 0.0:
+        drag(ui, ui.picture.pressed, io.mouse_delta.x / height, io.mouse_delta.y / height)
 
 
 def words(ui: Ui) -> list[str]:

@@ -6,7 +6,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.window import taking as commands_of
-from viewer.window.ui import CaptureKind, Ui
+from viewer.window.ui import CaptureKind, Dialog, Ui
 from viewer.window.widgets import QUIET, checkbox, paragraph, properties, row, tooltip, wide_button
 
 
@@ -21,7 +21,7 @@ def show(ui: Ui) -> None:
     if wide_button(
         f"{icons.ICON_FA_FLOPPY_DISK}  Save as", f"larger, with a caption, or as EXR{ui.key('Save picture as...')}", 2
     ):
-        ui.save_as_open = True
+        ui.open(Dialog.SAVE_AS)
     imgui.same_line()
     if wide_button(
         f"{icons.ICON_FA_TERMINAL}  Copy command", f"the command that makes this picture{ui.key('Copy as command')}"
