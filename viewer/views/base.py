@@ -85,6 +85,12 @@ def once(frame: Frame, what: Hashable, find: Callable[[], T]) -> T:
     return found
 
 
+def forget(frame: Frame) -> None:
+    """Forget what was found of a frame."""
+    with _lock:
+        _found.pop(frame, None)
+
+
 def single(numbers: NDArray, name: str, known: NDArray[np.bool_], classes: bool = False) -> Values:
     """Return values of one number a pixel (h, w)."""
     return Values(np.asarray(numbers, np.float32)[..., None], (name,), known, classes)
