@@ -218,7 +218,7 @@ class User:
 
             def seen(primitive: int = primitive) -> bool:
                 drawn = self.app.ui.display._drawn
-                return drawn is not None and drawn[1].selected == primitive and primitive in self.watch.rows
+                return drawn is not None and drawn[1][1].selected == primitive and primitive in self.watch.rows
 
             self.watch.doing = "clicking"
             self.watch.wait_for("a click is seen", seen)

@@ -130,7 +130,7 @@ class Display(PictureTexture):
 
     def release(self) -> None:
         super().release()
-        self._drawn = None
+        self.frame = self._drawn = None
 
 
 class Compared:

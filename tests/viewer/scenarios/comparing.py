@@ -9,12 +9,12 @@ from PIL import Image
 from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
-from viewer.output.compared import GAP, composed, signed_picture
 from viewer.state.columns import rows
 from viewer.state.comparison import CompareMode, Source
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 from viewer.state.worst import with_rings
+from viewer.views.compare import GAP, composed, signed_picture
 from viewer.views.wipe import wipe_column
 from viewer.window import comparing as seen
 
@@ -85,7 +85,7 @@ def comparing(d: Driver) -> None:
     assert np.abs(_saved(d, "toned.png").astype(int) - expected).max() <= 1, "both have the tone"
     d.press(KEY._9)
     d.settle()
-    assert not state.on and d.ui.compared.a is None, "one line at a time"
+    assert not state.on and d.ui.compared.a.texture_id is None, "one line at a time"
     d.press(KEY._1)
     d.c.session.tone = Tone()
     p.fixed_width, p.fixed_height = 80, 60
@@ -190,4 +190,4 @@ def _two_methods(d: Driver) -> None:
     d.settle()
     d.press(int(KEY.c) | SHIFT)
     d.settle()
-    assert not state.on and d.c.traced.second is None and d.ui.compared.a is None, "what is not seen takes no memory"
+    assert not state.on and d.c.traced.second is None and d.ui.compared.a.texture_id is None, "what is not seen takes no memory"

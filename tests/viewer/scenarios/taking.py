@@ -13,10 +13,10 @@ from PIL import Image
 from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from viewer.output import capture
-from viewer.output.compared import composed
 from viewer.state.comparison import CompareMode
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
+from viewer.views.compare import composed
 from viewer.window.panels import save_as
 from viewer.window.ui import CaptureKind, Dialog
 
