@@ -44,8 +44,8 @@ from viewer.util.messages import say
 from viewer.util.screen import has_display, no_display_reason
 from viewer.window import app as viewer_app
 from viewer.window.app import FASTEST, FASTEST_BY_PROCESSOR, App
-from viewer.window.finding import FindState
-from viewer.window.panels import find_rows
+from viewer.window.panels import find
+from viewer.window.view_commands import FindState
 
 CAMERA = Camera((0.6, 0.9, 2.6), (-0.2, -0.3, -0.93), angle=40.0)
 LIGHTS = [(1.6, 1.2, 0.4), (-2.0, 2.0, 1.5)]
@@ -75,7 +75,7 @@ class Watch:
         self.most_rows = 0
         self._awaited: tuple[str, Callable[[], bool], Callable[[], bool]] | None = None
         self._since: float | None = None
-        self._before, self._began, row = app.before_widgets, 0.0, find_rows._row
+        self._before, self._began, row = app.before_widgets, 0.0, find._row
         app.params.callbacks.pre_new_frame = self.before
         app.params.callbacks.after_swap = self.after
 
@@ -83,7 +83,7 @@ class Watch:
             self.rows.add(number)
             row(ui, table, listing, columns, number, selected)
 
-        find_rows._row = noted
+        find._row = noted
 
     def before(self) -> None:
         self._began = time.perf_counter()
@@ -217,8 +217,7 @@ class User:
             d.context.mouse_down(0)
 
             def seen(primitive: int = primitive) -> bool:
-                drawn = self.app.ui.display._drawn
-                return drawn is not None and drawn[1][1].selected == primitive and primitive in self.watch.rows
+                return self.app.ui.display.selected == primitive and primitive in self.watch.rows
 
             self.watch.doing = "clicking"
             self.watch.wait_for("a click is seen", seen)

@@ -91,7 +91,7 @@ class Watch:
                 state, self.app.params.app_shall_exit = "closing", True
         elif state not in ("tracing", "moving", "closing"):
             state, c.preferences.keep_tracing = "tracing", True
-            c.tracing.trace_again()
+            c.scheduler.trace_again()
         if state != self.state:
             mark = self._now()
             passed, worked, own = (b - a for a, b in zip(self._mark, mark))

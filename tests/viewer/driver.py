@@ -33,7 +33,7 @@ class Driver:
         self.context, self.folder = context, folder
         self._in_frame: list[Callable[[], None]] = []
         self._of_window: list[Callable[[], None]] = []  # done when the window is drawn, pixels and all
-        stay_awake = app._stay_awake
+        stay_awake = app._set_frame_rate
 
         def with_errands() -> None:
             while self._in_frame:
@@ -42,7 +42,7 @@ class Driver:
             if not dozes:
                 app.params.fps_idling.enable_idling = False
 
-        app._stay_awake = with_errands  # type: ignore[method-assign]
+        app._set_frame_rate = with_errands  # type: ignore[method-assign]
         if not dozes:
             app.params.fps_idling.fps_max = FASTEST
         self._fill_only_what_is_seen()

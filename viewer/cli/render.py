@@ -29,7 +29,7 @@ from viewer.output import exr, figure1_svg, png, recipe, tev
 from viewer.output.buffers import buffers
 from viewer.output.recipe import Recipe
 from viewer.services import stills
-from viewer.services.lamps import LampSamples
+from viewer.services.refinement import LampSamples
 from viewer.state import terms, verified
 from viewer.state.readings import MOST_RECORDED
 from viewer.util.files import check_writable, write_whole

@@ -1,4 +1,4 @@
-"""A tree of rays in words: as rows, as the window lists it and the command line prints it, and the steps of one ray.
+"""A tree of rays in words: as rows, as the window lists it and the command line prints it.
 
 A row has rows below it: a ray that was sent on, the shadow rays of a point, by light, and where there are many, those
 that have the same fate together.  Rows below are made when somebody asks for them.
@@ -6,7 +6,7 @@ that have the same fate together.  Rows below are made when somebody asks for th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 
@@ -14,11 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
-from tracer.geometry.visits import Visit
 from tracer.reasons import MEANING, WHY_TRACED
 from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
-from tracer.told_rays import AWAY, TRACED, VERDICTS, PathRay, RayKind, RayTree, ShadowRays
+from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.why_in_words import primitive_in_words
 from viewer.state.palette import Color
 from viewer.state.verdicts import SAID, Filter, color_of, color_of_all
@@ -51,11 +50,6 @@ class Row:
     def rows(self) -> list[Row]:
         """What is below it."""
         return [] if self.below is None else self.below()
-
-    @property
-    def single(self) -> bool:
-        """Whether it stands for a single ray."""
-        return len(self.places) < 2
 
 
 class RayRows:
@@ -227,42 +221,3 @@ def totals(tree: RayTree) -> str:
     paths = f"{count(len(tree.rays))} {'ray' if len(tree.rays) == 1 else 'rays'}"
     said = ", ".join(f"{count(number)} {SAID[verdict]}" for verdict, number in tree.counts.items() if verdict.due)
     return f"{paths} and {count(tree.due)} shadow rays that are due" + (f": {said}" if said else "")
-
-
-# --- the steps of one ray ---------------------------------------------------------------------------
-
-_PACKETS = (
-    "The row says what tracing the ray takes, as a packet of its own: packets may enter other nodes than the ray "
-    "itself, and a block of triangles is one test. This list has the nodes that the ray enters, and every primitive "
-    "that it is tested against."
-)
-
-
-def steps_summary(tree: RayTree, row: Row, visits: Sequence[Visit]) -> tuple[str, str]:
-    """What a list of nodes holds, and how the ray's row counts the same where that differs; and why, "" where it is
-    the same."""
-    tests, leaves = sum(len(visit.tested) for visit in visits), sum(visit.leaf for visit in visits)
-    text = f"{several(len(visits), 'node')} ({several(leaves, 'leaf', 'leaves')}), {several(tests, 'test')}"
-    costs = costs_of(tree, row)
-    if costs is None or costs == (len(visits), tests):
-        return text, ""
-    return f"{text}; as a packet {several(costs[0], 'step')}, {several(costs[1], 'test')}", _PACKETS
-
-
-def costs_of(tree: RayTree, row: Row) -> tuple[int, int] | None:
-    """Steps and tests as the row of a single ray has them, None if it was not traced."""
-    ray = tree.rays[row.ray]
-    if not len(row.places) or ray.shadows is None:
-        return ray.steps, ray.tests
-    s, place = ray.shadows, int(row.places[0])
-    asked = s.verdict[place] == TRACED or s.asked_moving[place]
-    return (int(s.steps[place]), int(s.tests[place])) if asked else None
-
-
-def origin_of(tree: RayTree, row: Row) -> tuple[str, float]:
-    """From where the ray goes, in words, and how long it is from t = 0 to t = 1, in the scene's units."""
-    ray = tree.rays[row.ray]
-    if len(row.places):
-        return "the light", float(np.linalg.norm((ray.end - tree.samples[int(row.places[0])]).astype(np.float64)))
-    name = "the camera" if ray.kind is RayKind.PRIMARY else "the surface that sent it"
-    return name, float(np.linalg.norm(ray.direction.astype(np.float64)))

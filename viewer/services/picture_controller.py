@@ -200,7 +200,7 @@ class PictureController:
     def _begin(self, title: str, work: Callable[[], str]) -> None:
         self.jobs.append((Job(title, lambda _: work(), self._wake), title))
 
-    def follow(self) -> None:
+    def report_done(self) -> None:
         """Report what has been done, or could not be."""
         for entry in [entry for entry in self.jobs if entry[0].done]:
             self.jobs.remove(entry)

@@ -109,7 +109,7 @@ class Questions:
             ticked,
         )
 
-    def follow(self) -> None:
+    def leave_when_saved(self) -> None:
         """Quit when the results have been written that were to be saved; stay if they could not be."""
         run = self._run
         if self._leave is None or run is None or not run.done:

@@ -1,38 +1,24 @@
-"""What became of the rays of the pixel that was clicked, and the nodes that one of them enters.
+"""What became of the rays of the pixel that was clicked.
 
 The rays come with the reasons that the pixel's inspector has.  They are listed only while somebody looks."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from tracer.frame import Frame
-from tracer.geometry.visits import Visit
-from tracer.ray_tree import visits_of
-from tracer.renderer import Renderer
 from tracer.told_rays import RayTree
 from viewer.output.ray_rows import Key, RayRows, Row, unfolded
 from viewer.services.pixel_inspector import PixelInspector
-from viewer.services.queries import Ask
 from viewer.services.selection import Selection
 from viewer.state.session import Session
 from viewer.state.verdicts import Filter
 
 
-def find_steps(
-    renderer: Renderer, frame: Frame, tree: RayTree, ray: int, place: int | None, cancelled: Callable[[], bool]
-) -> list[Visit]:
-    """Find the nodes that a ray of a tree enters, or one of its shadow rays, in the order in which it enters them."""
-    return visits_of(renderer.world, tree, ray, place)
-
-
 class RayInspector:
     """`tree` is what is known of the clicked pixel's rays, and `rows` lists it, None while nothing is.  `shown` says
-    which shadow rays are to be seen, `pointed` is the row that the pointer is on.  `visits` are the nodes that the
-    selected ray enters, None while they are not known, of which `step` is looked at."""
+    which shadow rays are to be seen, `pointed` is the row that the pointer is on."""
 
-    def __init__(self, session: Session, selection: Selection, inspector: PixelInspector, query: Ask) -> None:
-        self._session, self._selection, self._inspector, self._query = session, selection, inspector, query
+    def __init__(self, session: Session, selection: Selection, inspector: PixelInspector) -> None:
+        self._session, self._selection, self._inspector = session, selection, inspector
         self._watched = self.visible = False
         self.shown = Filter()
         self.pointed: Row | None = None
@@ -44,8 +30,6 @@ class RayInspector:
         self._toggled: set[Key] = set()
         self._selected: Key | None = None
         self._listed: list[tuple[int, Row]] | None = None
-        self.visits: list[Visit] | None = None
-        self.step = 0
 
     def watch(self) -> None:
         """Somebody looks at the rays in this frame of the window."""
@@ -65,7 +49,6 @@ class RayInspector:
             then = self.tree.frame if self.tree is not None else frame
             if then.time != frame.time or then.settings.method != frame.settings.method:
                 self.tree = self.rows = self._listed = None
-            self._find_steps()
 
     def refilter(self, shown: Filter) -> None:
         """Show these shadow rays."""
@@ -96,21 +79,4 @@ class RayInspector:
 
     def select(self, row: Row | None) -> None:
         """Select a row, or none."""
-        key = None if row is None else row.key
-        if key != self._selected:
-            self._selected, self.visits, self.step = key, None, 0
-
-    def go(self, steps: int) -> None:
-        """Go so many steps forward or back."""
-        self.step = min(max(self.step + steps, 0), max(len(self.visits or ()) - 1, 0))
-
-    def _find_steps(self) -> None:
-        row, tree, self.visits = self.selected, self.tree, None
-        if row is None or not row.single or tree is None:
-            self.step = 0
-            return
-        place = int(row.places[0]) if len(row.places) else None
-        future = self._query(find_steps, tree.frame, tree, row.ray, place)
-        if future.done() and not future.cancelled() and future.exception() is None:
-            self.visits = future.result()
-            self.go(0)
+        self._selected = None if row is None else row.key

@@ -1,18 +1,26 @@
-"""Frames that follow a whole picture at idle, because each of them knows more about shadows than the one before.
+"""What follows a whole picture at rest: more samples of lamps, and further frames that know more about shadows.
 
-The first whole picture of a view sets modes; more follow until one changes none, so that what is shown is what culling
-saves from then on: what is examined anew takes one more picture.  Certificates are made within a
-budget: where the user has chosen them, as the method or as the view, more frames follow, until none are left to make.
-Elsewhere the time goes into samples.
+The first whole frame of a view sets modes; more follow until one changes none, so that what is shown is what culling
+saves from then on: what is examined anew takes one more frame.  Certificates are made within a budget: where the user
+has chosen them, as the method or as the view, more frames follow, until none are left to make.  Elsewhere the time goes
+into samples.
+
+Shadow modes are those of a lamp as it is sampled, and are dropped when the number of its samples changes.  So all
+frames of a motion have the same number, with which the frame that follows at rest begins as well; and each step takes
+four times as many samples as the one before, so that there are few of them.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 
+from tracer.frame import Settings
 from tracer.method import Method
+from tracer.scene.lights import Light, as_lamps
 from tracer.statistics import FrameStatistics
+from viewer.services.frame_budget import FrameBudget
 from viewer.services.render_request import RenderRequest, Traced
+from viewer.state.session import Session
 from viewer.state.views import View
 
 MOST_LEARNING = 4
@@ -21,6 +29,13 @@ MOST_FRAMES = 40
 """Frames at idle, at most, in which certificates are made."""
 SECONDS = 0.4
 """That each of these may spend on certificates: the picture is there already, and a movement ends them at once."""
+FEWEST_LAMP_SAMPLES = 4
+"""Samples of a lamp in the first frame at rest, and in motion where there is time for them."""
+LAMP_SAMPLES_GROWTH = 4
+MOST_RADII = 4
+"""Radii of lamps whose samples are known, the last."""
+OFFERED = (1, 4, 16, 64, 256)
+"""Samples of lamps to choose from; the scene may say any other number."""
 
 
 class Refinement:
@@ -95,3 +110,87 @@ def _is_about_certificates(request: RenderRequest, view: View) -> bool:
     """Whether the user has chosen certificates, as the method or as the view."""
     method = Method.parse(request.settings.method)
     return method.has_certificates and (not method.adaptive or view is View.CERTIFICATE)
+
+
+class LampSamples:
+    """What lamps a scene has by some settings, and how many samples they have."""
+
+    def __init__(self) -> None:
+        self._lights: tuple[Light, ...] | None = None
+        self._said: dict[float | None, int] = {}
+
+    def any(self, lights: tuple[Light, ...], settings: Settings) -> bool:
+        """Whether any light is no point."""
+        return self._by_scene(lights, settings.lamp_radius) > 0
+
+    def most(self, lights: tuple[Light, ...], settings: Settings) -> int:
+        """Samples of the lamp that has the most; 1 where all lights are points, or there are none."""
+        said = self._by_scene(lights, settings.lamp_radius)
+        return max(said, 1) if settings.lamp_samples is None or said == 0 else settings.lamp_samples
+
+    def _by_scene(self, lights: tuple[Light, ...], radius: float | None) -> int:
+        """Most samples of a lamp that the scene says, 0 without lamps; lights are gone through once."""
+        if lights is not self._lights:
+            self._lights, self._said = lights, {}
+        if radius not in self._said:
+            lamps = (light for light in as_lamps(lights, radius, None) if light.kind != "point")
+            self._said = {
+                **dict(list(self._said.items())[1 - MOST_RADII :]),
+                radius: max((x.samples for x in lamps), default=0),
+            }
+        return self._said[radius]
+
+
+def first(most: int) -> int:
+    """Samples of the first picture at idle, of so many in the end."""
+    return most if most < 2 * FEWEST_LAMP_SAMPLES else FEWEST_LAMP_SAMPLES
+
+
+def after(samples: int, most: int) -> int:
+    """Samples of the picture after one with so many: the last step is skipped where it adds little."""
+    more = FEWEST_LAMP_SAMPLES
+    while more <= samples:
+        more *= LAMP_SAMPLES_GROWTH
+    return most if 2 * more > most else more
+
+
+class LampSteps:
+    """How many samples the lamps of the session's scene have in the next picture, and in the last at idle."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._table = LampSamples()
+        self._moving: int | None = None  # samples while anything moves
+
+    def most(self, settings: Settings) -> int:
+        """Samples by some settings, of the lamp that has the most."""
+        scene = self._session.scene
+        return self._table.most(scene.lights, settings) if scene is not None else 1
+
+    @property
+    def wanted(self) -> int:
+        """How many there should be at idle."""
+        return self.most(self._session.settings)
+
+    @property
+    def any(self) -> bool:
+        """Whether any light is no point, by the settings."""
+        scene = self._session.scene
+        return scene is not None and self._table.any(scene.lights, self._session.settings)
+
+    def in_motion(self, budget: FrameBudget, size: tuple[int, int], seconds: float) -> int:
+        """Samples of the next picture of this size, which there are so many seconds for; the same until `at_rest`, so
+        that modes are of use."""
+        if self._moving is None:
+            self._moving = budget.moving_samples(*size, seconds)
+        return min(self._moving, self.wanted)
+
+    def at_rest(self, last: Settings | None, come: bool) -> int:
+        """Samples of the next picture; `last` are the settings of the picture of the same view that was asked for last,
+        and `come` says whether it is there, whole."""
+        self._moving = None
+        most = self.wanted
+        if last is None:
+            return first(most)
+        has = self.most(last)
+        return min(max(first(most), after(has, most) if come else has), most)

@@ -27,7 +27,7 @@ from typing import Any
 from tracer.renderer import Frame
 from tracer.scene.model import Cancelled
 from viewer.services.jobs import TRACER, step_back
-from viewer.services.pair import Asked, Pair
+from viewer.services.pair import Pair
 from viewer.services.queries import Function, Queries, Query
 from viewer.services.render_request import RenderRequest, Spare, Task, Traced, Traces
 from viewer.util.failures import Failure, failure
@@ -335,14 +335,13 @@ class RenderThread:
 
     def _refining(self, renderer: Traces, request: RenderRequest) -> Generator[tuple[Frame, Frame | None], None, None]:
         """The pictures that a request asks for, each with that by the second method where there is one."""
-        asked = Asked(request.time, request.camera, lambda: self._cancel, request.parts, request.samples, request.focus)
         if not request.second:
             self._pair = None  # nor is what it has learnt kept in memory
-            yield from ((frame, None) for frame in asked.of(renderer))
+            yield from ((frame, None) for frame in request.refine(renderer, lambda: self._cancel))
             return
         if self._pair is None or not self._pair.is_of(renderer):
             self._pair = Pair(renderer)
-        yield from self._pair.refine(asked, request.second)
+        yield from self._pair.refine(request, lambda: self._cancel)
 
     def _first_to_learn(self, traced: Traced) -> Traced:
         """The frame, which has set modes, and whether it is the first since these were forgotten."""

@@ -148,7 +148,7 @@ class RunController:
         if self.current is not None:
             self.current.stop()
 
-    def follow(self) -> Progress:
+    def take_progress(self) -> Progress:
         """Report a run that has ended; returns what has become of it since the last time."""
         run = self.current
         if run is None:

@@ -131,7 +131,7 @@ class SceneLoader:
             compile_it = partial(make_ready, method, lights, accelerator)
             self.method_job = Job(f"compiling the kernels of {method}", compile_it, self._wake)
 
-    def follow(self) -> Arrival | None:
+    def take_finished(self) -> Arrival | None:
         """Take up what the jobs have finished; returns what has been opened, once."""
         if self.warm_up_job is not None and self.warm_up_job.done:
             job, self.warm_up_job = self.warm_up_job, None
@@ -196,7 +196,7 @@ class SceneLoader:
             path = Path(session.scene.path)
             self._ask_first(f"{path.name} again", lambda: self._load(path, None, again=True))
 
-    def follow_change(self, changed: str) -> None:
+    def reload_changed(self, changed: str) -> None:
         """The same for a scene that has changed on the disk, where nothing is to be asked first."""
         if self._session.scene is not None:
             self._from_shell = False

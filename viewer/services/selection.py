@@ -79,7 +79,7 @@ class Selection:
     def clear(self) -> None:
         self.picked = None
 
-    def follow_edits(self, before: Edited | None, now: Edited) -> None:
+    def update_for_edits(self, before: Edited | None, now: Edited) -> None:
         """The same primitive has another number now; one that is hidden is selected no more."""
         kept = self.picked
         if kept is not None and before is not None:

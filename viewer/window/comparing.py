@@ -27,7 +27,7 @@ PICTURE, OF_A = "picture", "A"
 Seen = tuple[Side, Side, CompareMode]
 
 
-def follow_key(ui: Ui) -> None:
+def read_key(ui: Ui) -> None:
     """While the key is held, A is seen."""
     io, state = imgui.get_io(), ui.controller.comparing.state
     free = not (io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or io.key_shift)
@@ -37,10 +37,10 @@ def follow_key(ui: Ui) -> None:
 def draw_options(ui: Ui) -> DrawOptions:
     """Return how the newest frame is drawn: in the view that it can be drawn in, with a range for both pictures."""
     c, p, s = ui.controller, ui.controller.preferences, ui.controller.session
-    view = c.tracing.drawn_view
+    view = c.scheduler.drawn_view
     options = DrawOptions(
         view=view, light=s.light, shading=p.shading, outlines=p.outlines, mark_wrong=p.mark_wrong,
-        magnified=c.tracing.magnified, wipe=s.wipe, shares=p.work_shares, beneath=p.beneath, tone=s.tone,
+        magnified=c.scheduler.magnified, wipe=s.wipe, shares=p.work_shares, beneath=p.beneath, tone=s.tone,
         clipping=s.clipping, slice=s.cut,
     )  # fmt: skip
     return options.with_span(c.comparing.span(view))

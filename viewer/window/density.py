@@ -22,7 +22,7 @@ class Density:
     def __init__(self) -> None:
         self._first: tuple[float, float] | None = None
 
-    def follow(self) -> None:
+    def update(self) -> None:
         """Let letters be as large on this screen as they were on others; to be called where no frame is under way."""
         now, style = content_scale(), imgui.get_style()
         if self._first is None:

@@ -90,6 +90,8 @@ class Display(PictureTexture):
         self.frame: Frame | None = None
         self.part_of: NDArray[np.int32] | None = None
         """(primitives,) the part of the scene that each primitive belongs to, needed while one is selected."""
+        self.selected = -1
+        """The primitive that is drawn as selected."""
         self._drawn: tuple[Frame, object] | None = None
         self._failed: tuple[Frame, object] | None = None
 
@@ -111,7 +113,7 @@ class Display(PictureTexture):
             return
         self._failed = wanted
         self._draw(frame, draw, window)
-        self._drawn, self._failed = wanted, None
+        self._drawn, self._failed, self.selected = wanted, None, window.selected
 
     def _draw(self, frame: Frame, draw: DrawOptions, window: InWindow) -> None:
         pixels = colorize(frame, draw, window.highlight)

@@ -117,8 +117,8 @@ def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
 def in_window(ui: Ui) -> InWindow:
     """Return what the window adds to the picture, but for what is selected."""
     c = ui.controller
-    smooth, view = c.preferences.smooth_upscaling and c.session.zoom.fits, c.tracing.drawn_view
-    line = view is not View.WIPE or not c.tracing.becoming_finer  # of few pixels it would be thick
+    smooth, view = c.preferences.smooth_upscaling and c.session.zoom.fits, c.scheduler.drawn_view
+    line = view is not View.WIPE or not c.scheduler.becoming_finer  # of few pixels it would be thick
     return InWindow(smooth=smooth, highlight=Highlight(ui.fate_shown if view is View.FATE else None, line))
 
 
@@ -134,8 +134,8 @@ def capture(ui: Ui) -> None:
         ui.capture_wanted = ui.capture_view = None
         c.notices.say(f"no picture of the view {view.label}: {why}", error=True)
         return
-    shown = c.tracing.drawn_view is c.session.view
-    ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
+    shown = c.scheduler.drawn_view is c.session.view
+    ready = shown and not c.scheduler.becoming_finer  # else the picture is saved when it has come
     if ui.display is not None and ready:
         ui.capture_wanted = ui.capture_view = None
         options, window = comparing.draw_options(ui), in_window(ui)  # without what is selected
@@ -158,11 +158,11 @@ def capture(ui: Ui) -> None:
 def _why_none(c: Controller) -> str:
     """Why there is no picture in the chosen view, and none is on its way; nothing where there is, or may be."""
     frame, view, run = c.frame, c.session.view, c.runs.current
-    if frame is None or c.tracing.drawn_view is view:
+    if frame is None or c.scheduler.drawn_view is view:
         return ""
     if run is not None and (lacks := run.lacks(view)):
         return f"the {run.name} {lacks}"
-    if run is None and (c.tracing.awaits or c.renderer.busy):
+    if run is None and (c.scheduler.awaits or c.renderer.busy):
         return ""
     found = missing(view, frame, c.preferences.work_shares)
     return found.text if found is not None else ""

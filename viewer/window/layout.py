@@ -84,7 +84,7 @@ class Layout:
 
     # --- one frame -------------------------------------------------------------------------------
 
-    def follow(self) -> None:
+    def update(self) -> None:
         """Before the panels are drawn: fold them or unfold them, and keep their shares of the window."""
         fold = self._ui.fold
         room = imgui.get_main_viewport().work_size

@@ -34,10 +34,10 @@ _applied: tuple[float, str] = (0.0, "")
 _density = Density()
 
 
-def follow(theme: str, scale: float) -> bool:
+def update(theme: str, scale: float) -> bool:
     """Set all styles for this theme, the screen's density and the user's scale; whether anything has changed."""
     global _applied
-    _density.follow()
+    _density.update()
     style = imgui.get_style()
     style.font_scale_main = scale  # the fonts are drawn anew at the size that comes of it
     # Hello ImGui knows the size of letters only while a frame is under way.

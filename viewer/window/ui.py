@@ -21,11 +21,11 @@ from viewer.state.pixels import Pixels
 from viewer.state.preferences import default_screenshot_folder
 from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.views import View
-from viewer.window.command import Command, is_key
+from viewer.window.command import Command
 from viewer.window.display import Compared, Display
 from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
-from viewer.window.keyboard import Keyboard
+from viewer.window.keyboard import Keyboard, is_key
 from viewer.window.magnifier import Magnifier
 from viewer.window.preview import PreviewDisplay
 from viewer.window.screening import Screening
@@ -107,11 +107,8 @@ class Ui:
     dialogs: list[Dialog] = field(default_factory=list)
     keyboard: Keyboard = field(default_factory=Keyboard)
     fate_shown: Fate | None = None
-    key_wanted: str = ""
     paste_from: Callable[[], str] = lambda: ""
     copy_to: Callable[[str], None] = lambda text: None
-    modifiers: int = 0
-    chorded: set[str] = field(default_factory=set)
     dropped: list[Path] = field(default_factory=list)
     renderer_name: str = ""
     request_exit: Callable[[], None] = lambda: None

@@ -10,8 +10,8 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from viewer.state.views import View
-from viewer.window.escape import ANY_POPUP
 from viewer.window.finder import Finder
+from viewer.window.menus import ANY_POPUP
 from viewer.window.panels.names import NameField
 
 KEY = imgui.Key

@@ -190,4 +190,6 @@ def _two_methods(d: Driver) -> None:
     d.settle()
     d.press(int(KEY.c) | SHIFT)
     d.settle()
-    assert not state.on and d.c.traced.second is None and d.ui.compared.a.texture_id is None, "what is not seen takes no memory"
+    assert not state.on and d.c.traced.second is None and d.ui.compared.a.texture_id is None, (
+        "what is not seen takes no memory"
+    )

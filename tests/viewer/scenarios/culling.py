@@ -15,9 +15,8 @@ from tracer.renderer import Renderer
 from viewer.state.views import View
 from viewer.views.tree_slice import layer_of
 from viewer.views.voxel_slice import slice_seen
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
-from viewer.window.panels.light_buffer import CubeState
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
 
@@ -60,7 +59,7 @@ def certifying(d: Driver) -> None:
         traced = d.c.history.frames
         for key, view in ((KEY._2, View.OCCLUSION), (KEY._3, View.SHADOW), (KEY._7, View.PIXEL_COUNT)):
             d.press(key)
-            assert d.c.tracing.drawn_view is view and d.c.history.frames == traced
+            assert d.c.scheduler.drawn_view is view and d.c.history.frames == traced
             assert np.abs(d.shown().astype(int) - picture(d.c.frame, view, d.c.session.light)).max() <= 2
         seen = [row.name for row in classes_in(d.c.frame, View.OCCLUSION) if row.pixels]
         assert "FULLY_RENDERED" in seen, seen
@@ -73,11 +72,11 @@ def certifying(d: Driver) -> None:
         assert d.c.frame.settings.method == "paper"
     d.press(KEY._0)
     assert d.c.session.view is View.CERTIFICATE and d.c.frame.certificates is None
-    assert d.c.tracing.drawn_view is View.COLOR
+    assert d.c.scheduler.drawn_view is View.COLOR
     d.certify()
     d.context.item_click("//Picture/**/Use certified##instead")
     d.settle()
-    assert d.c.frame.settings.method == "certified" and d.c.tracing.drawn_view is View.CERTIFICATE
+    assert d.c.frame.settings.method == "certified" and d.c.scheduler.drawn_view is View.CERTIFICATE
     d.context.menu_click("//##MainMenuBar/Culling/Method certified")
     d.context.item_click("//Culling/method/##method")
     names = [*(kind.name for kind in bases()), *(f"+{kind.name}" for kind in additions("certified"))]
@@ -98,7 +97,7 @@ def certifying(d: Driver) -> None:
     for key in ("H", "Shift+H"):
         d.press(chord(key))
         d.settle()
-        assert d.c.tracing.drawn_view is d.c.session.view and not d.c.tracing.outdated
+        assert d.c.scheduler.drawn_view is d.c.session.view and not d.c.scheduler.outdated
     _clusters(d)
     _space(d)
 
@@ -110,7 +109,7 @@ def _clusters(d: Driver) -> None:
     d.context.item_click("//Picture/**/Use lightcuts##instead")
     d.c.settings.change(lamp_radius=0.3, lamp_samples=16)
     d.settle()
-    assert d.c.frame.settings.method.startswith("lightcuts") and d.c.tracing.drawn_view is View.CUTS
+    assert d.c.frame.settings.method.startswith("lightcuts") and d.c.scheduler.drawn_view is View.CUTS
     assert d.c.frame.statistics.cuts.most > 3
     expected = picture(d.c.frame, View.CUTS)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
@@ -123,31 +122,21 @@ def _clusters(d: Driver) -> None:
 
 
 def _space(d: Driver) -> None:
-    """What methods keep of space: a slice through voxels, which keys and a slider move; cells by the lights that they
-    ask; and a light's cube in a panel, whose cells say what they list."""
+    """What methods keep of space: a slice through voxels, which keys and a slider move; and cells by the lights that
+    they ask."""
     d.c.settings.change(lamp_radius=None, lamp_samples=None)
     for view, name in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact")):
         d.press(chord(view.key))
         d.settle()
-        assert d.c.tracing.drawn_view is View.COLOR, "the method has nothing to show"
+        assert d.c.scheduler.drawn_view is View.COLOR, "the method has nothing to show"
         d.context.item_click(f"//Picture/**/Use {name}##instead")
         d.settle()
-        assert d.c.frame.settings.method.startswith(name) and d.c.tracing.drawn_view is view
+        assert d.c.frame.settings.method.startswith(name) and d.c.scheduler.drawn_view is view
         expected = picture(d.c.frame, view, beneath=d.c.preferences.beneath, slice=d.c.session.cut)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
         if view is View.VOXELS:
             _slice(d)
     _tree(d)
-    d.ui.show_panel("Light buffer")
-    d.frames(3)
-    d.context.item_click("//Light buffer/Use lightbuffer##instead")
-    d.settle()
-    assert "light cubes" in d.c.frame.structures
-    d.frames(3)
-    panel, cube = imgui.internal.find_window_by_name("Light buffer"), d.c.frame.structures["light cubes"][0].cube
-    assert cube is not None and panel.draw_list.vtx_buffer.size() > 0
-    d.context.item_click("//Light buffer/**/full shadow##cube")
-    assert d.ui.state(CubeState).shows == 1
 
 
 def _tree(d: Driver) -> None:
@@ -156,7 +145,7 @@ def _tree(d: Driver) -> None:
     d.settle()
     d.context.item_click("//Picture/**/Use kdtree-lazy##instead")
     d.settle()
-    assert d.c.frame.settings.accelerator == "kdtree-lazy" and d.c.tracing.drawn_view is View.TREE
+    assert d.c.frame.settings.accelerator == "kdtree-lazy" and d.c.scheduler.drawn_view is View.TREE
     d.c.settings.change(method="none")
     d.settle()
     at = d.c.session.cut
@@ -170,7 +159,7 @@ def _tree(d: Driver) -> None:
     x, y, z = home.direction
     d.c.motion.move(replace(home, direction=(-x, -y, -z)))
     d.settle()
-    assert (d.c.frame.primitive < 0).all() and d.c.tracing.drawn_view is View.TREE
+    assert (d.c.frame.primitive < 0).all() and d.c.scheduler.drawn_view is View.TREE
     assert d.c.frame.statistics.built.primitives == 3, "what was built stays"
     d.c.motion.move(home)
     d.c.settings.change(accelerator="bvh8")

@@ -13,7 +13,7 @@ from tests.viewer.scenarios.steps import figure4
 from viewer.state.palette import WRONG
 from viewer.state.views import View
 from viewer.views.wipe import wipe_column
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 
 KEY = imgui.Key
 

@@ -15,7 +15,7 @@ from tests.viewer.driver import Driver
 from tests.viewer.scenarios.studios import standing
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 from viewer.window.panels import open_file
 from viewer.window.panels.open_file import OpenFileState
 
@@ -141,7 +141,7 @@ def reopening(d: Driver) -> None:
         d.c.notices.say("what could not be saved has been told")
         d.c.renderer.take = take
         d.settle()
-        assert d.c.tracing.drawn_view is view
+        assert d.c.scheduler.drawn_view is view
         expected = picture(d.c.frame, view, shading=d.c.preferences.shading)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
 

@@ -23,7 +23,7 @@ def flying(d: Driver) -> None:
     assert np.dot(np.subtract(ahead.position, home.position), home.basis()[2]) > 0.0
     assert ahead.basis()[2] @ home.basis()[2] > 0.999
     d.settle()
-    assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size, "at idle the resolution is the window's"
+    assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size, "at idle the resolution is the window's"
     assert d.c.traced.request.divisor == 1 and d.c.traced.whole
 
     before = d.c.session.camera
@@ -131,8 +131,8 @@ def resizing(d: Driver) -> None:
         glfw.set_window_size(window, *size)
         d.frames(4)
         d.settle()
-        if min(d.c.tracing.now.size) > 0:
-            assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size
+        if min(d.c.scheduler.inputs.size) > 0:
+            assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size
     d.fix_resolution(120, 90)
     d.settle()
     assert (d.c.frame.width, d.c.frame.height) == (120, 90)

@@ -115,7 +115,7 @@ def _keys(d: Driver) -> None:
     d.frames(3)
     d.context.item_click("//Keyboard and mouse/**/Fly forward/W##key")
     d.frames(2)
-    assert d.ui.key_wanted == "Fly forward"
+    assert d.ui.keyboard.wanted_for == "Fly forward"
     before = d.c.session.camera
     d.press(KEY.x)
     d.frames(2)

@@ -45,7 +45,7 @@ def panels(d: Driver) -> None:
     assert d.c.session.view is View.DEPTH
     d.c.preferences.keep_tracing = True
     traced = d.c.history.frames
-    d.c.tracing.trace_again()
+    d.c.scheduler.trace_again()
     d.wait(lambda: d.c.history.frames >= traced + 3, "frames at idle")
     d.c.preferences.keep_tracing = False
 
@@ -144,7 +144,7 @@ def hiding(d: Driver) -> None:
     d.frames(3)
     assert set(_places_of_panels()) == {PICTURE} and _picture_share() > 0.9
     d.settle()
-    assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size and d.c.tracing.now.size[0] > 1200
+    assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.scheduler.inputs.size[0] > 1200
     d.hold(KEY.d, 0.1)
     assert not d.c.session.follow, "keys fly while the panels are hidden"
     d.press(KEY.tab)

@@ -44,7 +44,7 @@ def experimenting(d: Driver) -> None:
     d.wait(lambda: runs.current is None, "the experiment to stop", 20.0)
     assert 3 <= len(run.results.frames) < 3000 and "what was done is kept" in d.c.notices.message.text
     d.settle()
-    assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size and d.c.frame.camera == home
+    assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.frame.camera == home
 
     runs.experiment_plan.frames = 6
     d.context.menu_click("//##MainMenuBar/Run/Experiment")

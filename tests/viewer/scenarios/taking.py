@@ -55,7 +55,7 @@ def _nothing_to_save(d: Driver) -> None:
     for keys in (KEY.f12, int(KEY.c) | CTRL):
         d.press(KEY._0)
         d.settle()
-        assert d.c.tracing.drawn_view is not View.CERTIFICATE
+        assert d.c.scheduler.drawn_view is not View.CERTIFICATE
         d.press(keys)
         d.frames(2)
         assert d.ui.capture_wanted is None

@@ -29,7 +29,7 @@ def why(d: Driver) -> None:
     d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path == ROOM, "the room")
     d.settle()
     for _ in range(3):
-        d.c.tracing.trace_again()
+        d.c.scheduler.trace_again()
         d.settle()
     _culled(d)
     _occluded(d)

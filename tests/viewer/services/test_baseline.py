@@ -163,7 +163,7 @@ def test_it_begins_at_rest_stops_at_once_and_goes_on_where_it_stopped():
     baseline = Baseline(thread, lambda: now[0])
 
     def follow(newest=paper, moving=False, busy=False):
-        baseline.follow(newest, "", moving, busy)
+        baseline.update(newest, "", moving, busy)
 
     follow()
     assert not thread.works and baseline.measured is None
@@ -209,7 +209,7 @@ def test_no_tree_is_built_for_a_figure():
     thread = Thread()
     baseline = Baseline(thread, lambda: 1e9)
     for _ in range(2):
-        baseline.follow(traced(accelerator="kdtree-lazy"), "", False, False)
+        baseline.update(traced(accelerator="kdtree-lazy"), "", False, False)
     assert not thread.works and "built" in baseline.why_not
 
 
@@ -220,7 +220,7 @@ def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
     def rest(newest: Traced) -> None:
         for _ in range(2):
             now[0] += 2.0 * STILL
-            baseline.follow(newest, "", False, False)
+            baseline.update(newest, "", False, False)
 
     rest(traced())
     begun, renderer = thread.works[-1], Timed({"none": [0.1], "paper": [0.1]})
@@ -230,7 +230,7 @@ def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
     assert not begun.step(renderer, lambda: False)
     rest(traced())
     assert "out of memory" in baseline.why_not
-    baseline.follow(traced(), "", True, False)
+    baseline.update(traced(), "", True, False)
     given = len([work for work in thread.works if work is not None])
     rest(traced())
     assert "out of memory" in baseline.why_not

@@ -140,11 +140,11 @@ def test_a_hidden_occluder_changes_modes_to_unshadowed(desk: Desk):
     c.settings.change(method="paper")
     desk.rest()
     for _ in range(3):
-        c.tracing.trace_again()
+        c.scheduler.trace_again()
         desk.rest()
     edit(desk, lambda: c.editing.hide("ball"))
     for _ in range(3):
-        c.tracing.trace_again()
+        c.scheduler.trace_again()
         desk.rest()
     changes = {(a, b) for one in c.before_edits.effects.shadows for a, b, _ in one.pairs()}
     assert ("partial shadow", "non shadow") in changes
@@ -228,15 +228,15 @@ def test_what_is_forgotten_is_forgotten_of_all_scenes(desk: Desk):
     c, first = desk.c, desk.c.renderer._renderer
     c.settings.change(method="paper")
     desk.rest()
-    ask = c.tracing.ask
+    ask = c.scheduler.request
 
     def known() -> int:
         """Histories of the scene as it was read, once it is back and before a frame of it is traced."""
-        c.tracing.ask = lambda now: None
+        c.scheduler.request = lambda now: None
         c.editing.clear()
         desk.until(lambda: not c.editing.under_way)
         assert c.renderer._renderer is first
-        c.tracing.ask = ask
+        c.scheduler.request = ask
         found = len(first.state.histories)
         desk.rest()
         return found
@@ -244,10 +244,10 @@ def test_what_is_forgotten_is_forgotten_of_all_scenes(desk: Desk):
     edit(desk, lambda: c.editing.hide("ball"))
     assert known() > 0, "it is kept"
     edit(desk, lambda: c.editing.hide("ball"))
-    c.tracing.reset_modes()
+    c.reset_modes()
     desk.rest()
     assert known() == 0
-    c.tracing.reset_modes()
+    c.reset_modes()
     edit(desk, lambda: c.editing.hide("ball"))  # before a picture
     assert known() == 0
 
@@ -369,7 +369,7 @@ def test_an_answer_that_fails_is_told_of_and_stops_nothing(desk: Desk, monkeypat
     desk.until(lambda: len(desk.came) > count + 2)
     c.session.playing = False
     desk.rest()
-    assert not c.tracing.awaits and c.tracing._failed is None
+    assert not c.scheduler.awaits and c.scheduler._failed is None
 
 
 def test_a_frame_that_fails_stops_what_plays(desk: Desk, monkeypatch: pytest.MonkeyPatch):

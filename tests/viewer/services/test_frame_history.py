@@ -24,7 +24,7 @@ def flown(desk: Desk, method: str) -> dict[int, Frame]:
     c = desk.c
     c.settings.change(method=method, depth=3)
     desk.rest()
-    c.tracing.reset_modes()
+    c.reset_modes()
     desk.rest()
     seen = {c.history.frames - 1: c.frame}
 
@@ -135,7 +135,7 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
     c.settings.change(method="paper", depth=2)
     desk.rest()
     before = c.history.frames
-    c.tracing.reset_modes()
+    c.reset_modes()
     desk.rest()
     for number in (0, 4, 9):
         c.session.go_to_frame(number)

@@ -27,7 +27,8 @@ from viewer.services.pixel_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer,
 from viewer.services.queries import Newest, Queries, Query
 from viewer.state import navigation
 from viewer.state.preferences import Preferences
-from viewer.window.panels.links import follow
+from viewer.window.app import advance
+from viewer.window.panels.links import go_to
 from viewer.window.panels.overlays import BLOCKER, LIT, OCCLUDER, STOPPED, shadow_lines
 from viewer.window.panels.why import summary, unanswered
 from viewer.window.ui import Ui
@@ -51,7 +52,7 @@ class Desk:
         end, held = time.monotonic() + 120.0, 0  # kernels may be compiled first
         while held < ticks:
             assert time.monotonic() < end, "in vain"
-            self.c.tick(SIZE)
+            advance(self.c, SIZE)
             held = held + 1 if holds() else 0
             time.sleep(0.001)
 
@@ -202,12 +203,12 @@ def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: Desk):
     desk.until(lambda: desk.c.frame is not first, ticks=1)
     assert desk.c.inspector.why is answer.why and not desk.c.inspector.names_pixels_of(desk.c.frame)
     before = desk.c.selection.picked
-    follow(ui, neighbour)
+    go_to(ui, neighbour)
     assert desk.c.selection.picked is before, "it would be another pixel"
     desk.until(lambda: not desk.c.active)
     desk.answered()
     assert desk.c.inspector.names_pixels_of(desk.c.frame)
-    follow(ui, neighbour)
+    go_to(ui, neighbour)
     assert (desk.c.selection.picked.x, desk.c.selection.picked.y) == neighbour.pixel
 
 

@@ -58,7 +58,6 @@ def test_the_tree_is_of_the_newest_picture_and_keeps_what_is_selected(desk: Desk
     desk.until(lambda: rays.tree is not None)
     first, row = rays.tree, rays.seen[1][1]
     rays.select(row)
-    desk.until(lambda: rays.visits is not None)
     desk.c.motion.move(navigation.look(desk.c.session.camera, 0.02, 0.0, desk.c.motion.world_up))
     desk.until(lambda: rays.tree is not first and rays.tree.frame.primitive is desk.c.frame.primitive)
     assert rays.selected is not None and rays.selected.key == row.key
@@ -67,13 +66,12 @@ def test_the_tree_is_of_the_newest_picture_and_keeps_what_is_selected(desk: Desk
     assert rays.tree is not None, "out of sight it is what it was"
 
 
-def test_rays_and_steps_follow_an_edit_of_the_scene(desk: Desk) -> None:
+def test_rays_follow_an_edit_of_the_scene(desk: Desk) -> None:
     """The picture before and the one after are of the same time, camera and settings."""
     rays, c = looked_at(desk), desk.c
     c.selection.select(middle(desk))
     desk.until(lambda: rays.tree is not None)
     rays.select(rays.seen[1][1])
-    desk.until(lambda: rays.visits is not None)
     first, drawn = rays.tree, lines(rays)
     assert drawn
     c.editing.switch(0, False)
@@ -87,26 +85,11 @@ def test_rays_and_steps_follow_an_edit_of_the_scene(desk: Desk) -> None:
     assert (again, again.frame) != (first, first.frame), "arrays alone cannot be compared as one"
 
 
-def test_steps_lead_through_the_tree(desk: Desk) -> None:
-    rays = looked_at(desk)
-    desk.c.selection.select(middle(desk))
-    desk.until(lambda: rays.tree is not None)
-    rays.select(next(row for _, row in rays.seen if len(row.places) == 1))
-    desk.until(lambda: rays.visits is not None)
-    assert rays.visits and rays.step == 0
-    rays.go(1000)
-    assert rays.step == len(rays.visits) - 1
-    rays.go(-1000)
-    assert rays.step == 0
-    rays.select(None)
-    assert rays.visits is None
-
-
 def test_frame_after_frame_is_looked_into(desk: Desk) -> None:
     rays = looked_at(desk)
     desk.c.selection.select(middle(desk))
     desk.c.preferences.keep_tracing = True
-    desk.c.tracing.trace_again()
+    desk.c.scheduler.trace_again()
     seen = []
 
     def others() -> bool:

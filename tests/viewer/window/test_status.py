@@ -66,7 +66,7 @@ def _idle(**changes: object) -> SimpleNamespace:
     )
     c = SimpleNamespace(
         loader=SimpleNamespace(warm_up_job=None, load_job=None, method_job=None, compiles=False),
-        frame=None, runs=SimpleNamespace(current=None), tracing=tracing, renderer=SimpleNamespace(busy=False),
+        frame=None, runs=SimpleNamespace(current=None), scheduler=tracing, renderer=SimpleNamespace(busy=False),
         motion=SimpleNamespace(under_way=False, lively=False),
         session=SimpleNamespace(scene=object(), playing=False, settings=SimpleNamespace(method="lie", samples=1)),
         selection=SimpleNamespace(picked=None, pixel=None), inspector=SimpleNamespace(problem=""),

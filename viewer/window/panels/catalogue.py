@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.output.figure1 import TITLE
-from viewer.window import finding
 from viewer.window.panels import (
     camera,
     compare,
@@ -19,7 +18,6 @@ from viewer.window.panels import (
     find,
     hunt,
     inspector,
-    light_buffer,
     log,
     picture,
     pixels,
@@ -65,8 +63,7 @@ PANELS = {
         Panel("Plots", "Bottom", icons.ICON_FA_CHART_LINE, plots.show, wide=True),
         Panel("Compare", "Bottom", icons.ICON_FA_CODE_COMPARE, compare.show, wide=True),
         Panel("Pixels", "Bottom", icons.ICON_FA_BORDER_ALL, pixels.show, wide=True),
-        Panel(finding.PANEL, "Bottom", icons.ICON_FA_TABLE_LIST, find.show, wide=True),
-        Panel(light_buffer.PANEL, "Bottom", icons.ICON_FA_CUBE, light_buffer.show, wide=True),
+        Panel("Find", "Bottom", icons.ICON_FA_TABLE_LIST, find.show, wide=True),
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
         Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),
         Panel("Hunt", "Bottom", icons.ICON_FA_CROSSHAIRS, hunt.show, wide=True),

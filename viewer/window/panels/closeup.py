@@ -14,7 +14,7 @@ from viewer.state.comparison import Side
 from viewer.state.keymap import HELD
 from viewer.state.pixels import Point, region_between
 from viewer.state.zooming import GRID_FROM, STEP, panned, pixels_shown
-from viewer.window import closer, comparing
+from viewer.window import comparing, picture_commands
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
@@ -47,7 +47,7 @@ def wheel(ui: Ui, area: Area) -> bool:
         return False
     if io.mouse_wheel:
         at = (io.mouse_pos.x - area.corner.x) / area.size.x, (io.mouse_pos.y - area.corner.y) / area.size.y
-        closer.zoom_by(ui, STEP**io.mouse_wheel, at)
+        picture_commands.zoom_by(ui, STEP**io.mouse_wheel, at)
     return True
 
 
@@ -73,7 +73,7 @@ def drag(ui: Ui, area: Area) -> bool:
         ui.pixels.region = region_between(start, here) if moved and max(moved) >= 0.5 else None
     if released:
         if state.gesture == "region" and ui.pixels.region is not None:
-            closer.offer(ui, "Pixels")
+            picture_commands.offer(ui, "Pixels")
         state.gesture = ""
     return True
 
@@ -94,9 +94,9 @@ def menu(ui: Ui) -> None:
         if imgui.menu_item("Inspect this pixel", "Click", False, True)[0]:
             c.selection.select(state.menu_at)
         if imgui.menu_item("Watch this pixel, or no longer", ui.key_label("Watch pixel"), False, True)[0]:
-            closer.pin(ui, state.menu_at)
+            picture_commands.pin(ui, state.menu_at)
         imgui.separator()
-    for name in ("Keep as A", "Fit picture", "Clear the region"):
+    for name in ("Keep as A", "Fit picture", "Clear region"):
         command = next((one for one in ui.commands if one.name == name), None)
         if command is not None and imgui.menu_item(name, ui.key_label(name), False, command.enabled())[0]:
             ui.guard.step(f"The command {name}", command.run)

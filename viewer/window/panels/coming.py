@@ -8,9 +8,9 @@ from viewer.window.panels import status
 
 def after(c: Controller) -> str:
     """What is traced before a question about the picture is answered; nothing where it is answered at once."""
-    if c.tracing.refines_lamps:
+    if c.scheduler.refines_lamps:
         return "the samples of lamps"
-    if c.tracing.adds_samples:
+    if c.scheduler.adds_samples:
         return "this sample"
     return "this picture" if c.renderer.busy else ""
 

@@ -14,8 +14,8 @@ from viewer.state.preferences import RECENT_COMMANDS
 from viewer.util.resources import embedded_scenes
 from viewer.window import setting_entries
 from viewer.window.command import Command
-from viewer.window.escape import ANY_POPUP
 from viewer.window.finder import Finder, Item, Kind
+from viewer.window.menus import ANY_POPUP
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, fitted, paragraph, tooltip
 

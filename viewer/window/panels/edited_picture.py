@@ -15,9 +15,9 @@ from tracer.scene.lights import light_in_words
 from viewer.state import edit_effects
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.views import View
+from viewer.window.edit_commands import WhatIfState
 from viewer.window.panels.marks import SHADE
 from viewer.window.ui import Ui
-from viewer.window.what_if_commands import WhatIfState
 from viewer.window.widgets import count, em, tooltip_at
 
 _REACH = 0.7  # ems from a mark's middle at which it can be taken hold of
@@ -163,7 +163,7 @@ def show_changed(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     if not ui.state(WhatIfState).changed_shown or ui.shots is None:
         return
     found, frame = c.before_edits.effects, c.before_edits.frame
-    if found is None or frame is None or found.changes is None or c.tracing.drawn_view is not View.COLOR:
+    if found is None or frame is None or found.changes is None or c.scheduler.drawn_view is not View.COLOR:
         return
     changes = found.changes
     shot = ui.cached("changed pixels", found, None, lambda: ChangedPixels(frame, changes))

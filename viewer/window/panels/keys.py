@@ -43,7 +43,7 @@ class KeysState:
 def show(ui: Ui) -> None:
     """The dialog, while it is open."""
     if Dialog.KEYS not in ui.dialogs:
-        ui.key_wanted = ""
+        ui.keyboard.wanted_for = ""
         return
     viewport = imgui.get_main_viewport()
     size = ImVec2(min(em(58.0), 0.96 * viewport.work_size.x), min(em(46.0), 0.92 * viewport.work_size.y))
@@ -87,24 +87,24 @@ def _head(ui: Ui, at_odds: int) -> None:
         imgui.same_line(0.0, em(1.0))
         imgui.text_colored(ERROR, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {at_odds} conflicts")
     paragraph(
-        f"Press a key for {ui.key_wanted}, or Escape to leave it." if ui.key_wanted else
+        f"Press a key for {ui.keyboard.wanted_for}, or Escape to leave it." if ui.keyboard.wanted_for else
         "Click a key to choose another; the right button offers more. Keys without Ctrl or Alt are places on the "
         "keyboard, shown by what is printed there.",
-        None if ui.key_wanted else QUIET,
+        None if ui.keyboard.wanted_for else QUIET,
     )  # fmt: skip
 
 
 def _capture(ui: Ui) -> None:
     """Take the key that is pressed for the command that waits for one."""
-    if not ui.key_wanted:
+    if not ui.keyboard.wanted_for:
         return
     if imgui.is_key_pressed(imgui.Key.escape, repeat=False):
-        ui.key_wanted = ""
+        ui.keyboard.wanted_for = ""
         return
     key = ui.keyboard.pressed()
     if key is None:
         return
-    name, ui.key_wanted = ui.key_wanted, ""
+    name, ui.keyboard.wanted_for = ui.keyboard.wanted_for, ""
     if name in HELD:
         key = key.split("+")[-1]  # it is held with any modifier: Shift flies faster
     ui.keymap.choose(name, [key, *ui.keymap.of(name)[1:]])
@@ -146,13 +146,13 @@ def _group(ui: Ui, title: str, names: list[str], conflicts: dict[str, list[str]]
 
 
 def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
-    keymap, waiting = ui.keymap, ui.key_wanted == name
+    keymap, waiting = ui.keymap, ui.keyboard.wanted_for == name
     label = "press a key" if waiting else ui.keyboard.label(keymap.shown(name)) or "-"
     left = imgui.get_cursor_pos_x()
     color = ERROR if conflicts else imgui.get_style_color_vec4(imgui.Col_.text)
     imgui.push_style_color(imgui.Col_.text, color)
     if imgui.selectable(f"{label}##key", waiting, 0, ImVec2(em(_KEY - 0.6), 0.0))[0]:
-        ui.key_wanted = "" if waiting else name
+        ui.keyboard.wanted_for = "" if waiting else name
     imgui.pop_style_color()
     others = ", ".join(ui.keyboard.label(key) for key in keymap.of(name)[1:])
     if conflicts:

@@ -14,7 +14,7 @@ from imgui_bundle import imgui
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.scene.lights import Light, as_lamps, number_of
 from tracer.scene.model import Scene
-from viewer.services.lamps import OFFERED
+from viewer.services.refinement import OFFERED
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph, row, tooltip
 
@@ -63,8 +63,8 @@ def lamp_rows(ui: Ui) -> None:
             c.settings.change(lamp_radius=None)
         tooltip("lights as the scene says")
     row("Lamp samples", _SAMPLES)
-    most = c.tracing.lamps.wanted
-    imgui.begin_disabled(most == 1 and not c.tracing.lamps.any)
+    most = c.scheduler.lamps.wanted
+    imgui.begin_disabled(most == 1 and not c.scheduler.lamps.any)
     if imgui.begin_combo("##lamp-samples", str(s.lamp_samples) if s.lamp_samples else _SCENE_SAYS):
         for number in (None, *OFFERED):
             if imgui.selectable(str(number) if number else _SCENE_SAYS, s.lamp_samples == number)[0]:

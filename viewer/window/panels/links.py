@@ -13,8 +13,8 @@ from tracer.frame import Frame, Settings
 from tracer.reasons import SECTIONS
 from tracer.why_in_words import Link, Sentence
 from viewer.state.pixels import Point
-from viewer.window import closer
-from viewer.window.finding import fly_to_selected
+from viewer.window import picture_commands
+from viewer.window.camera_commands import fly_to_selected
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, fitted, tooltip
 
@@ -88,7 +88,7 @@ def _link(ui: Ui, link: Link, text: str, number: int) -> None:
         tooltip(f"{link.text}  {SECTIONS[link.section]}")
         return
     if imgui.text_link(f"{text}##{number}"):
-        follow(ui, link)
+        go_to(ui, link)
     if imgui.is_item_hovered():
         ui.state(Pointed).link = link
     tooltip(f"{_about(ui, link)}\n\nThe right button offers more.")
@@ -97,7 +97,7 @@ def _link(ui: Ui, link: Link, text: str, number: int) -> None:
         imgui.end_popup()
 
 
-def follow(ui: Ui, link: Link) -> None:
+def go_to(ui: Ui, link: Link) -> None:
     """Go to the frame, or select the pixel or the primitive, that a link stands for."""
     c = ui.controller
     if link.frame is not None:
@@ -123,17 +123,17 @@ def _menu(ui: Ui, link: Link) -> None:
     """What can be done with what a link stands for."""
     if link.frame is not None:
         if imgui.menu_item(f"{icons.ICON_FA_CLOCK}  Go there", "", False)[0]:
-            follow(ui, link)
+            go_to(ui, link)
     elif link.pixel is not None:
         if imgui.menu_item(f"{icons.ICON_FA_ARROW_POINTER}  Select", "", False)[0]:
-            follow(ui, link)
+            go_to(ui, link)
         if imgui.menu_item(f"{icons.ICON_FA_MAP_PIN}  Mark and watch it", ui.key("Watch pixel").strip(" ()"), False)[0]:
-            closer.pin(ui, _point(ui, link))
+            picture_commands.pin(ui, _point(ui, link))
     elif link.primitive is not None:
         if imgui.menu_item(f"{icons.ICON_FA_ARROW_POINTER}  Select", "", False)[0]:
-            follow(ui, link)
+            go_to(ui, link)
         if imgui.menu_item(f"{icons.ICON_FA_PLANE}  Fly there", ui.key("Focus").strip(" ()"), False)[0]:
-            follow(ui, link)
+            go_to(ui, link)
             fly_to_selected(ui)
 
 

@@ -92,7 +92,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     if frame is None or texture is None or c.session.scene is None:
         _placeholder(ui, room)
         return
-    ui.pixels.follow(c.session.scene.path)
+    ui.pixels.enter(c.session.scene.path)
     width, height = c.traced.full_size if c.traced is not None else (1, 1)
     ui.picture.shape = width, height
     seen, gap = comparing.shown(ui), em(sides.GAP)
@@ -246,13 +246,20 @@ def _wheel(ui: Ui, notches: float) -> None:
 def fly(ui: Ui) -> None:
     """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
     c, io = ui.controller, imgui.get_io()
-    if ui.key_wanted or io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.seen is None:
+    if (
+        ui.keyboard.wanted_for
+        or io.want_text_input
+        or io.key_ctrl
+        or io.key_alt
+        or io.key_super
+        or c.session.seen is None
+    ):
         return
     if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup_id | imgui.PopupFlags_.any_popup_level)):
         return
 
     def down(name: str) -> float:
-        return float(name not in ui.chorded and ui.keyboard.is_down(ui.keymap.of(name)))
+        return float(name not in ui.keyboard.chorded and ui.keyboard.is_down(ui.keymap.of(name)))
 
     def axis(plus: str, minus: str) -> float:
         return down(plus) - down(minus)
@@ -276,19 +283,19 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
     frame, request = c.frame, c.traced.request if c.traced is not None else None
     if frame is None or request is None:
         return corner.y
-    text = f"{c.tracing.title}   {frame.width} x {frame.height}"
+    text = f"{c.scheduler.title}   {frame.width} x {frame.height}"
     if request.divisor > 1:
         text += f"   1/{request.divisor}"
     if frame.statistics.part < 1.0:
         text += f"   {whole_percent(frame.statistics.part)} shaded"
     elif request.samples > 1:
-        text += f"   {c.tracing.samples_shown} of {request.samples} samples"
+        text += f"   {c.scheduler.samples_shown} of {request.samples} samples"
     if not c.session.zoom.fits:
         text += f"   {c.session.zoom.scale:.3g} x"
     tone = c.session.tone.in_words()
-    text += f"   {tone}" if tone and c.tracing.drawn_view.shows_picture else ""
+    text += f"   {tone}" if tone and c.scheduler.drawn_view.shows_picture else ""
     counter = ""
-    if c.tracing.drawn_view.needs_verify and not ui.state(LegendState).shown:
+    if c.scheduler.drawn_view.needs_verify and not ui.state(LegendState).shown:
         counter = f"   {verified.in_short(frame.statistics)}"
     size = imgui.calc_text_size(text + counter)
     if end.x - corner.x < size.x + em(2.0):

@@ -1,4 +1,4 @@
-"""Over the picture: the rays that the panel lists, the selected one picked out, and the node that it is in.
+"""Over the picture: the rays that the panel lists, the selected one picked out.
 
 Rays are drawn on their way, and shadow rays as far as light comes, and on."""
 
@@ -13,7 +13,6 @@ from imgui_bundle import ImVec4
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.geometry.visits import Visit
 from tracer.told_rays import AWAY, TRACED, RayTree
 from viewer.output.ray_rows import Row
 from viewer.state.palette import Color
@@ -88,16 +87,6 @@ def box_edges(corners: NDArray) -> list[NDArray]:
     return [corners[[a, a | 1 << axis]] for axis in range(3) for a in range(8) if not a >> axis & 1]
 
 
-def inside_strokes(frame: Frame, tree: RayTree, number: int, place: int | None, visit: Visit) -> list[Stroke]:
-    """The part of a ray that lies in a node's box."""
-    ray = tree.rays[number]
-    start, way = ray.origin.astype(np.float64), ray.direction.astype(np.float64)
-    if place is not None:
-        start = tree.samples[place].astype(np.float64)
-        way = ray.end.astype(np.float64) - start
-    return strokes(frame, [start + visit.enter * way, start + min(visit.leave, 1e6) * way])
-
-
 _COLORS: dict[Part, Color] = {
     Part.PATH: (0.36, 0.93, 0.72),
     Part.ASKED: (0.98, 0.87, 0.25),
@@ -109,9 +98,6 @@ _BEHIND = 0.4  # opacity of what lies behind something
 _FADED = 0.16  # of rays other than the one that is pointed at or selected
 _BLOCKED = ImVec4(0.84, 0.37, 0.0, 1.0)
 _PALE = ImVec4(0.8, 0.86, 1.0, 0.35)  # around what is dark
-BOX, HIT_BOX, INSIDE = (1.0, 0.62, 0.10), (1.0, 0.25, 0.30), (1.0, 1.0, 1.0)
-"""A node's box, one in which the ray hits something, and the part of the ray in it."""
-_DARK = ImVec4(0.02, 0.02, 0.03, 0.9)  # around a box, which is to be seen on wood and on brick
 _MANY = 40  # lines, from which on they are thin
 _MOST_OF_A_ROW = 64  # shadow rays of a row that are picked out
 
@@ -131,13 +117,6 @@ def draw(ui: Ui, made: Pen, frame: Frame, alpha: float) -> None:
         for line in _of_row(tree, frame, lines, row):
             _line(made, line, clicked, 1.0)
     _points(made, tree, frame, rays.pointed or rays.selected)
-    chosen = rays.selected
-    if chosen is not None and rays.visits:
-        visit, one = rays.visits[rays.step], int(chosen.places[0]) if len(chosen.places) else None
-        box = [stroke for edge in box_edges(visit.corners) for stroke in strokes(frame, edge)]
-        made.strokes(box, ImVec4(*(HIT_BOX if visit.hits else BOX), 1.0), 0.2, 0.55, _DARK, 0.11)
-        inside = inside_strokes(frame, tree, chosen.ray, one, visit)
-        made.strokes(inside, ImVec4(*INSIDE, 1.0), 0.28, 0.55, _DARK, 0.11)
 
 
 def _of_row(tree: RayTree, frame: Frame, lines: Sequence[RayLine], row: Row) -> list[RayLine]:

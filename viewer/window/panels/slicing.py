@@ -49,7 +49,7 @@ def rows(ui: Ui) -> None:
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     """What a pixel of the newest frame shows of space, in a view of that; nothing where it shows none."""
     c = ui.controller
-    frame, view, light = c.frame, c.tracing.drawn_view, c.session.light
+    frame, view, light = c.frame, c.scheduler.drawn_view, c.session.light
     if frame is None:
         return []
     if view is View.VOXELS:

@@ -48,7 +48,7 @@ def show(ui: Ui) -> None:
     part = f"{whole_percent(s.part)} of " if s.part < 1.0 else ""
     clipped(f"{part}{frame.width} x {frame.height} pixels{coarse}")
     tooltip("of the first sample of each pixel that is shaded; primary rays and proofs are those of all pixels")
-    old = c.tracing.outdated  # said in a line that is there anyway, so that nothing moves
+    old = c.scheduler.outdated  # said in a line that is there anyway, so that nothing moves
     clipped(f"method {frame.settings.method}{', before the change' if old else ''}", QUIET if old else None)
     if old:
         tooltip("These are for the previous settings; a new frame is being traced.")
@@ -64,7 +64,7 @@ def show(ui: Ui) -> None:
                 amount("Tree built", percent(s.built.primitives, s.built.of), tip)
                 size = f"in {s.built.memory_bytes / 1e6:.1f} MB, with what waits for rays"
                 amount("  nodes", count(s.built.nodes), size)
-    if terms.asks_by_beams(frame, c.tracing.lamps.any):
+    if terms.asks_by_beams(frame, c.scheduler.lamps.any):
         paragraph(terms.BY_BEAMS, QUIET)
     heading("Time")
     with _amounts("time") as shown:

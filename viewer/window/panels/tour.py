@@ -29,7 +29,7 @@ def show(ui: Ui) -> None:
     """The step that is next, and what to do; all steps while there is no picture yet."""
     state = ui.state(TourState)
     tour = ui.tour
-    tour.follow()
+    tour.update()
     if tour.step is None and not tour.last_word:
         state.height = 0.0
         return

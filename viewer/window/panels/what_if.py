@@ -16,9 +16,9 @@ from viewer.services.before_edits import Lack
 from viewer.state import terms
 from viewer.state.edit_effects import Effects, Transitions
 from viewer.state.edits import one_by_one
+from viewer.window.edit_commands import WhatIfState
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
-from viewer.window.what_if_commands import WhatIfState
 from viewer.window.widgets import (
     QUIET,
     checkbox,

@@ -53,7 +53,7 @@ def _there(ui: Ui) -> bool:
     seen = comparing.shown(ui)
     if seen is not None:
         return seen[2] is CompareMode.WIPE and not comparing.shows_a(ui)
-    return ui.controller.tracing.drawn_view is View.WIPE
+    return ui.controller.scheduler.drawn_view is View.WIPE
 
 
 def _names(ui: Ui) -> tuple[str, str]:
