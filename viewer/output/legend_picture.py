@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from viewer.state.palette import Color, color_map, signed_map
-from viewer.views.legend import Legend
-from viewer.views.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting
+from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, Swatch, fitting
 from viewer.views.shadow import STRIPE
 
 SMALLEST, LINES = 11, 42

@@ -11,7 +11,7 @@ from viewer.output.caption import LINES, SMALLEST
 from viewer.output.legend_picture import font, in_bytes
 from viewer.state.palette import FATE_COLORS, Color, label_color
 from viewer.state.savings import PALE, Bar, bar_of, counters_in_words
-from viewer.views.legend_layout import BACKDROP, TEXT, wrapped
+from viewer.views.legend import BACKDROP, TEXT, wrapped
 
 
 def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None) -> NDArray[np.uint8]:

@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 
 from tracer.culling.modes import OcclusionMode, has_shadow_mode, occlusion_mode, shadow_mode
 from tracer.frame import Frame
+from tracer.scene.lights import named_light
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import CERTIFICATE_COLORS, CERTIFICATE_MEANING, OCCLUSION_COLORS, Certificate
 from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, single, spoken
-from viewer.views.legend import Legend, named_light
+from viewer.views.legend import Legend
 from viewer.views.modes import Class, at_rest, class_entries
 from viewer.views.paint import by_class
 from viewer.views.shadow import not_culled

@@ -7,13 +7,14 @@ import numpy as np
 from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from tracer.method import Method
+from tracer.scene.lights import named_light
 from viewer.state import terms
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import FATE_COLORS, FATE_MEANING, FATE_NAMES, fate_palette
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, once, single
-from viewer.views.legend import Entry, Legend, Note, named_light
+from viewer.views.legend import Entry, Legend, Note
 from viewer.views.paint import by_code
 
 _PAPER = (Fate.PARTLY_OCCLUDED, Fate.PARTIAL_SHADOW, Fate.NOT_SEEN_WHOLE, Fate.DYNAMIC)

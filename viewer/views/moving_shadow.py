@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.frame import EVERYWHERE, Frame, Region
+from tracer.scene.lights import named_light
 from viewer.state import terms
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import OCCLUSION_COLORS, Color, hex_color
@@ -17,7 +18,7 @@ from viewer.state.views import Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, single
 from viewer.views.fate import filled_in
-from viewer.views.legend import Entry, Legend, Note, fact, named_light
+from viewer.views.legend import Entry, Legend, Note, fact
 from viewer.views.paint import LUMINANCE, by_color, shaded
 
 PALE = 0.5

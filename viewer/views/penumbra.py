@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
+from tracer.scene.lights import named_light
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import FACES_AWAY, SHADOW_COLORS, UNKNOWN, Color, hex_color
 from viewer.state.views import Record
@@ -26,7 +27,7 @@ from viewer.views.base import (
     shaded_pixels,
     single,
 )  # fmt: skip
-from viewer.views.legend import Entry, Legend, fact, named_light
+from viewer.views.legend import Entry, Legend, fact
 from viewer.views.paint import by_color
 
 

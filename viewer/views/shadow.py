@@ -6,11 +6,11 @@ import numpy as np
 
 from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode, occlusion_mode, shadow_mode
 from tracer.frame import Frame
-from tracer.scene.lights import number_of
+from tracer.scene.lights import named_light, number_of
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS, SHADOW_MEANING
 from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, per_pixel, single, spoken
-from viewer.views.legend import Legend, Note, NoteKind, named_light
+from viewer.views.legend import Legend, Note, NoteKind
 from viewer.views.modes import (
     Class,
     culled_by_modes,

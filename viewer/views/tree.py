@@ -14,12 +14,12 @@ from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Word
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Scale, fact
 from viewer.views.paint import FAINT_LINE, OUTLINE, checkered, in_range, mapped, on_line, shaded
-from viewer.views.tree_slice import (
+from viewer.views.slices import (
     BORDER,
     HIDDEN,
     LEVEL,
     LINE,
-    NOTHING,
+    NO_PART,
     SAMPLES,
     STRIPE,
     WAITS,
@@ -55,7 +55,7 @@ class Tree(FrameView):
     def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
         parts, cut = tree_of(frame), draw.slice
         found = once(frame, ("tree", cut), lambda: tree_codes(frame, parts, cut))
-        pixels, there = _behind(frame, draw), found != NOTHING
+        pixels, there = _behind(frame, draw), found != NO_PART
         codes, stripes = found[there], checkered(found.shape, STRIPE)[there]
         colors = mapped(in_range((codes & LEVEL).astype(float), draw.span or self.span(frame)))
         waits = codes & WAITS != 0

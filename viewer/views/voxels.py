@@ -7,15 +7,16 @@ import numpy as np
 from tracer.culling.modes import ShadowMode
 from tracer.culling.voxels.tell import STATE_NAMES, VoxelStates
 from tracer.frame import Frame
+from tracer.scene.lights import named_light
 from viewer.state.draw_options import AXES, DrawOptions
 from viewer.state.palette import GREY, SHADOW_COLORS, Color
 from viewer.state.readings import VOXELS
 from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, once, single
 from viewer.views.color import dimmed
-from viewer.views.legend import Entry, Legend, Note, NoteKind, fact, named_light
+from viewer.views.legend import Entry, Legend, Note, NoteKind, fact
 from viewer.views.paint import CELL_LINE, by_color, in_bytes
-from viewer.views.voxel_slice import LINE, NOTHING, STATE, middle_of, slice_codes, slice_seen, voxel_words
+from viewer.views.slices import NO_VOXEL, STATE, VOXEL_LINE, middle_of, slice_codes, slice_seen, voxel_words
 
 FULL, LIT = int(ShadowMode.FULL_SHADOW), int(ShadowMode.NON_SHADOW)
 STATES: dict[int, tuple[Color, str]] = {
@@ -49,9 +50,9 @@ class Voxels(FrameView):
     def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
         states, light, cut = voxels_of(frame), draw.light, draw.slice
         codes = once(frame, ("voxels", light, cut), lambda: slice_codes(frame, states, light, cut))
-        pixels, there = by_color(frame, draw, dimmed(frame, draw.tone, draw.beneath)), codes != NOTHING
+        pixels, there = by_color(frame, draw, dimmed(frame, draw.tone, draw.beneath)), codes != NO_VOXEL
         colors = _PALETTE[codes[there] & STATE]
-        colors[codes[there] & LINE != 0] *= np.float32(CELL_LINE)
+        colors[codes[there] & VOXEL_LINE != 0] *= np.float32(CELL_LINE)
         pixels[there] = in_bytes(colors)
         return pixels
 

@@ -11,7 +11,7 @@ from viewer.state.preferences import SCALES
 from viewer.state.scene_rows import Level
 from viewer.state.views import View
 from viewer.window.command import Command, Condition, switch
-from viewer.window.layers_of_slice import step, turn
+from viewer.window.panels.slicing import step, turn
 from viewer.window.ui import Ui
 
 

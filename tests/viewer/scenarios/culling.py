@@ -13,8 +13,7 @@ from tests.viewer.driver import Driver
 from tracer.method import additions, bases
 from tracer.renderer import Renderer
 from viewer.state.views import View
-from viewer.views.tree_slice import layer_of
-from viewer.views.voxel_slice import slice_seen
+from viewer.views.slices import layer_of, slice_seen
 from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
 from viewer.window.panels.links import Pointed

@@ -36,8 +36,18 @@ from viewer.state.palette import FATE_COLORS, FATE_NAMES, GREY, OCCLUSION_COLORS
 from viewer.state.views import View
 from viewer.util.numbers import count, percent
 from viewer.util.resources import embedded_scenes
-from viewer.views.legend import Legend, NoteKind
-from viewer.views.legend_layout import BACKDROP, BACKDROP_OPACITY, NOTES, QUIET, TEXT, fitting, lay_out, wrapped
+from viewer.views.legend import (
+    BACKDROP,
+    BACKDROP_OPACITY,
+    NOTES,
+    QUIET,
+    TEXT,
+    Legend,
+    NoteKind,
+    fitting,
+    lay_out,
+    wrapped,
+)
 from viewer.views.voxels import voxels_of
 
 SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)

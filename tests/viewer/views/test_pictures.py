@@ -48,9 +48,8 @@ from viewer.views.difference import RING_DIMMING
 from viewer.views.moving_shadow import MOVING_SHADOWS, MovingShadow
 from viewer.views.paint import CELL_LINE, FAINT_LINE
 from viewer.views.penumbra import ARRIVALS, Arrival
+from viewer.views.slices import slice_seen, tree_seen
 from viewer.views.tree import tree_of
-from viewer.views.tree_slice import tree_seen
-from viewer.views.voxel_slice import slice_seen
 from viewer.views.voxels import STATES, voxels_of
 
 SCENE = """\

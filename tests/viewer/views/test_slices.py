@@ -16,7 +16,7 @@ from viewer.cli.arguments import slice_
 from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.session import Snapshot
 from viewer.state.views import View
-from viewer.views.voxel_slice import LINE, NOTHING, middle_of, slice_codes, slice_seen, voxel_seen
+from viewer.views.slices import NO_VOXEL, VOXEL_LINE, middle_of, slice_codes, slice_seen, voxel_seen
 from viewer.views.voxels import voxels_of
 
 CUTS = [Slice(0, 0.0), Slice(0, 0.2), Slice(1, 0.3), Slice(1, 0.9), Slice(2, 0.5), Slice(2, 1.0)]
@@ -64,20 +64,20 @@ def test_each_pixel_sees_the_voxel_that_its_ray_meets(frame: Frame, cut: Slice) 
 def test_codes_are_states_with_lines_where_voxels_end(frame: Frame) -> None:
     states, cut = voxels_of(frame), Slice(2, 0.5)
     numbers, codes = slice_seen(frame, states.grid, cut).numbers, slice_codes(frame, states, 1, cut)
-    assert ((codes == NOTHING) == (numbers < 0)).all()
+    assert ((codes == NO_VOXEL) == (numbers < 0)).all()
     for y, x in np.argwhere(numbers[:-1, :-1] >= 0):
         found = voxel_seen(states, 1, int(numbers[y, x]))
         assert codes[y, x] & 3 == found.state == int(states.words[numbers[y, x]] >> 4) & 3
         assert words_in(frame, View.VOXELS, 1, int(x), int(y), slice=cut)[0] == "{}, {}, {}".format(*found.place)
-        if not codes[y, x] & LINE:
+        if not codes[y, x] & VOXEL_LINE:
             continue
         assert numbers[y, x] != numbers[y, x + 1] or numbers[y, x] != numbers[y + 1, x]
-    assert ((codes != NOTHING) & (codes & LINE != 0)).any() and (codes & (LINE | NOTHING) == 0).any()
+    assert ((codes != NO_VOXEL) & (codes & VOXEL_LINE != 0)).any() and (codes & (VOXEL_LINE | NO_VOXEL) == 0).any()
 
 
 def test_a_light_that_has_no_states_is_unknown_everywhere(frame: Frame) -> None:
     codes = slice_codes(frame, voxels_of(frame), 2, Slice(2, 0.5))
-    assert (codes[codes != NOTHING] & 3 == 0).all() and words_in(frame, View.VOXELS, 0, 0, 0, slice=Slice(0, 0.0)) == (
+    assert (codes[codes != NO_VOXEL] & 3 == 0).all() and words_in(frame, View.VOXELS, 0, 0, 0, slice=Slice(0, 0.0)) == (
         "-",
     )
 

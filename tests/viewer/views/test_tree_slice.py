@@ -16,13 +16,12 @@ from viewer.state.draw_options import Slice
 from viewer.state.missing import missing
 from viewer.state.readings import can_draw
 from viewer.state.views import View
-from viewer.views.tree import tree_of
-from viewer.views.tree_slice import (
+from viewer.views.slices import (
     BORDER,
     HIDDEN,
     LEVEL,
     LINE,
-    NOTHING,
+    NO_PART,
     WAITS,
     PartSeen,
     part_words,
@@ -31,6 +30,7 @@ from viewer.views.tree_slice import (
     tree_codes,
     tree_seen,
 )
+from viewer.views.tree import tree_of
 
 CUTS = [Slice(0, 0.3), Slice(1, 0.1), Slice(1, 0.9), Slice(2, 0.45)]
 
@@ -66,7 +66,7 @@ def test_each_pixel_sees_the_part_that_its_ray_meets_whatever_lies_before(frame:
                 continue
             i, k = np.floor(4.0 * point[[0, 2]]) if point[0] == point[0] else (0, 0)
             if not ((point >= tree.extent[:3]) & (point < tree.extent[3:])).all():
-                assert codes[y, x] == NOTHING and words_in(frame, View.TREE, 0, x, y, slice=cut) == ("-",)
+                assert codes[y, x] == NO_PART and words_in(frame, View.TREE, 0, x, y, slice=cut) == ("-",)
                 continue
             expected = (6 if k >= 0 else 3) | (0 if i % 2 == 0 else WAITS) | HIDDEN * (distance > frame.depth[y, x])
             assert int(codes[y, x]) & ~(LINE | BORDER) == expected, (x, y)
@@ -78,7 +78,7 @@ def test_each_pixel_sees_the_part_that_its_ray_meets_whatever_lies_before(frame:
             kinds.add(int(codes[y, x]) & (WAITS | HIDDEN))
     assert kinds >= {0, WAITS} if cut.axis else len(kinds) >= 1
     values = values_in(frame, View.TREE, slice=cut)
-    assert np.array_equal(values.known, codes != NOTHING)
+    assert np.array_equal(values.known, codes != NO_PART)
 
 
 def test_lines_are_where_parts_end_and_borders_where_objects_do() -> None:
@@ -86,7 +86,7 @@ def test_lines_are_where_parts_end_and_borders_where_objects_do() -> None:
     cut, tree = Slice(2, 0.45), tree_of(frame)
     codes, parts = tree_codes(frame, tree, cut), tree_seen(frame, tree, cut).parts
     found = {LINE: 0, BORDER: 0}
-    for y, x in np.argwhere(codes[:-1, :-1] != NOTHING):
+    for y, x in np.argwhere(codes[:-1, :-1] != NO_PART):
         here, others = parts.numbers[y, x], (parts.numbers[y, x + 1], parts.numbers[y + 1, x])
         owners = parts.owners[y, x + 1], parts.owners[y + 1, x]
         assert not codes[y, x] & LINE or any(other != here for other in others)
@@ -105,7 +105,7 @@ def test_the_share_that_is_built_is_that_of_the_slice_whatever_is_seen_of_it(fra
 def test_a_tree_that_is_gone_shows_nothing(frame: Frame) -> None:
     gone = CubesBuilt()
     gone.alive = False
-    assert (tree_codes(frame, gone, CUTS[0]) == NOTHING).all() and share_built(gone, CUTS[0]) is None
+    assert (tree_codes(frame, gone, CUTS[0]) == NO_PART).all() and share_built(gone, CUTS[0]) is None
     assert not can_draw(make_frame(), View.TREE) and can_draw(frame, View.TREE)
     left = replace(frame, structures={"tree": gone})
     assert not can_draw(left, View.TREE) and "freed with its world" in missing(View.TREE, left).text

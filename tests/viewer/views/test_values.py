@@ -22,7 +22,7 @@ from tracer.frame import Settings
 from viewer.state.pixels import ALL, MOST_WATCHED, Pixels, Region, region_between
 from viewer.state.readings import can_draw
 from viewer.state.views import View
-from viewer.views.histogram import histogram
+from viewer.views.base import histogram
 
 FRAME = with_cuts(
     with_lamps(with_certificates(make_frame(Settings(width=16, height=8, verify=True, record_work=True))))

@@ -9,8 +9,7 @@ from imgui_bundle import ImVec2, imgui
 from viewer.state.palette import color_map, signed_map
 from viewer.state.placing import Rect
 from viewer.views import legend_of, picture_options
-from viewer.views.legend import Legend
-from viewer.views.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting, lay_out
+from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, Swatch, fitting, lay_out
 from viewer.window import comparing
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, tooltip_at

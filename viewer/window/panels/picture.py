@@ -24,7 +24,6 @@ from viewer.window.panels import (
     coming,
     edited_picture,
     film,
-    layers,
     legend,
     missing,
     overlays,
@@ -34,7 +33,6 @@ from viewer.window.panels import (
     slicing,
     timeline,
     tour,
-    wipe,
 )
 from viewer.window.panels.area import Area
 from viewer.window.panels.legend import LegendState
@@ -104,12 +102,12 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     top = at.y + (room.y - size.y) / 2.0
     if beside and seen is not None and ui.compared is not None:
         area = _area(ui, "picture of A", left, top, size)
-        layers.draw(ui, comparing.OF_A, ui.compared.a.texture_id or 0, area)
+        sides.draw_picture(ui, comparing.OF_A, ui.compared.a.texture_id or 0, area)
         _pointer(ui, area, takes_edits=False)
         closeup.show(ui, area, seen[0])
         left += size.x + gap
     area = _area(ui, "picture", left, top, size)
-    layers.draw(ui, comparing.PICTURE, texture, area)
+    sides.draw_picture(ui, comparing.PICTURE, texture, area)
     if seen is not None:
         sides.draw_a(ui, area, seen)
     with _inside(area):
@@ -119,7 +117,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     closeup.show(ui, area)
     if seen is not None:
         overlays.show_worst_pixels(ui, area, seen[1].frame)
-    wipe.show(ui, area)
+    sides.show(ui, area)
     lower = _overlay(ui, area.corner, area.end)
     with _inside(area):
         edited_picture.show_lights(ui, area.whole, area.whole_end)
@@ -189,7 +187,7 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
             _wheel(ui, io.mouse_wheel)
     if takes_edits and edited_picture.handle(ui, area.whole, area.whole_size):
         return
-    if wipe.handle(ui, area) or closeup.drag(ui, area):
+    if sides.handle(ui, area) or closeup.drag(ui, area):
         return
     if imgui.is_item_activated():
         ui.picture.dragged = False

@@ -15,8 +15,8 @@ from viewer.state.pixels import ALL
 from viewer.state.readings import can_draw
 from viewer.state.views import View
 from viewer.views import picture_options, values_of, words_at
+from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
-from viewer.views.histogram import Histogram, histogram
 from viewer.window import comparing, picture_commands
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip

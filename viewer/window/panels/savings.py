@@ -12,7 +12,7 @@ from viewer.state.palette import FATE_COLORS, Color, label_color
 from viewer.state.savings import LONGEST, PALE, Bar, Clause, Part, Standing, Tone, bar_of, fitting, sentence
 from viewer.state.views import View
 from viewer.util.numbers import count
-from viewer.views.legend_layout import BACKDROP, TEXT
+from viewer.views.legend import BACKDROP, TEXT
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, packed, tooltip
 

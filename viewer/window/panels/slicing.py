@@ -1,6 +1,8 @@
-"""The slice through space: its axis and its place in the panel View; and, over the picture, what the pointer is on."""
+"""The slice through space: its rows in the panel View, going through its layers, and what the pointer is on."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from imgui_bundle import imgui
@@ -9,16 +11,15 @@ from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
 from viewer.services.controller import Controller
 from viewer.services.pixel_inspector import MOST_CLUSTERS
-from viewer.state.draw_options import AXES
+from viewer.state.draw_options import AXES, Slice
 from viewer.state.picking import pixel_at
+from viewer.state.readings import VOXELS, can_draw
 from viewer.state.views import View
 from viewer.util.numbers import several
 from viewer.views import cell_lights
+from viewer.views.slices import LAYERS, layer_of, middle_of, part_seen, part_words, place_of, slice_seen, voxel_seen
 from viewer.views.tree import tree_of
-from viewer.views.tree_slice import part_seen, part_words
-from viewer.views.voxel_slice import slice_seen, voxel_seen
 from viewer.views.voxels import voxels_of
-from viewer.window.layers_of_slice import go_to, layer_now
 from viewer.window.panels import words
 from viewer.window.panels.area import Area
 from viewer.window.panels.coming import after
@@ -110,3 +111,40 @@ def show(ui: Ui, area: Area) -> None:
         return
     room = area.corner.x, area.corner.y, area.end.x, area.end.y
     words.write(lines, imgui.get_io().mouse_pos, room, ui.state(LegendState).place)
+
+
+class Layer(NamedTuple):
+    """The layer that is cut, of so many, and where its middle lies along the axis."""
+
+    number: int
+    many: int
+    place: float
+
+
+def layer_now(ui: Ui) -> Layer | None:
+    """That of the view's slice; None while there is nothing to cut."""
+    frame, cut, view = ui.controller.frame, ui.controller.session.cut, ui.controller.session.view
+    if frame is not None and view is View.VOXELS and VOXELS in frame.structures:
+        states = voxels_of(frame)
+        return Layer(cut.layer(states.shape), states.shape[cut.axis], middle_of(states.grid, cut))
+    if frame is not None and view is View.TREE and can_draw(frame, view):
+        return Layer(layer_of(cut), LAYERS, place_of(tree_of(frame), cut))
+    return None
+
+
+def go_to(cut: Slice, layer: int, many: int) -> Slice:
+    """The slice in another layer of so many, or in the last one before these end."""
+    return cut._replace(at=(min(max(layer, 0), many - 1) + 0.5) / many)
+
+
+def step(ui: Ui, layers: int) -> None:
+    """Go on by so many layers."""
+    s, layer = ui.controller.session, layer_now(ui)
+    if layer is not None:
+        s.cut = go_to(s.cut, layer.number + layers, layer.many)
+
+
+def turn(ui: Ui) -> None:
+    """Cut across the next axis."""
+    s = ui.controller.session
+    s.cut = s.cut._replace(axis=(s.cut.axis + 1) % len(AXES))
