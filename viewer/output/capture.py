@@ -130,8 +130,10 @@ def read_data(path: Path) -> dict[str, Any]:
     """All that a capture carries, as JSON has it; raises CaptureError."""
     try:
         with open_image(BytesIO(read_regular(path)), ("PNG",)) as image:
-            image.load()  # text chunks may follow the pixels
-            text = getattr(image, "text", {}).get(CHUNK)
+            text = image.info.get(CHUNK)
+            if text is None:  # another program may have put it after the pixels, which else need not be decoded
+                image.load()
+                text = getattr(image, "text", {}).get(CHUNK)
     except FileNotFoundError:
         raise CaptureError(f"{path}: no such file") from None
     except (SceneError, OSError, ValueError, SyntaxError) as error:

@@ -18,7 +18,7 @@ from tracer.scene.model import Camera
 from tracer.settings import RECORDS
 from viewer.services import refinement
 from viewer.services.frame_budget import AT_ONCE, FrameBudget, Plan, divided
-from viewer.services.refinement import LampSteps, Refinement
+from viewer.services.refinement import LampSamples, Refinement
 from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import Run
@@ -74,7 +74,7 @@ class FrameScheduler:
         self.traced: Traced | None = None
         self.budget = budget or FrameBudget()
         self.refinement = Refinement()
-        self.lamps = LampSteps(session)
+        self.lamps = LampSamples(session)
         self.learnt = Learnt()
         self._serial = 0
         self._frozen: FrozenFrame | None = None

@@ -32,8 +32,8 @@ SECONDS = 0.4
 FEWEST_LAMP_SAMPLES = 4
 """Samples of a lamp in the first frame at rest, and in motion where there is time for them."""
 LAMP_SAMPLES_GROWTH = 4
-MOST_RADII = 4
-"""Radii of lamps whose samples are known, the last."""
+MOST_RADII = 16
+"""Radii of lamps whose samples are known at once."""
 OFFERED = (1, 4, 16, 64, 256)
 """Samples of lamps to choose from; the scene may say any other number."""
 
@@ -112,82 +112,64 @@ def _is_about_certificates(request: RenderRequest, view: View) -> bool:
     return method.has_certificates and (not method.adaptive or view is View.CERTIFICATE)
 
 
-class LampSamples:
-    """What lamps a scene has by some settings, and how many samples they have."""
-
-    def __init__(self) -> None:
-        self._lights: tuple[Light, ...] | None = None
-        self._said: dict[float | None, int] = {}
-
-    def any(self, lights: tuple[Light, ...], settings: Settings) -> bool:
-        """Whether any light is no point."""
-        return self._by_scene(lights, settings.lamp_radius) > 0
-
-    def most(self, lights: tuple[Light, ...], settings: Settings) -> int:
-        """Samples of the lamp that has the most; 1 where all lights are points, or there are none."""
-        said = self._by_scene(lights, settings.lamp_radius)
-        return max(said, 1) if settings.lamp_samples is None or said == 0 else settings.lamp_samples
-
-    def _by_scene(self, lights: tuple[Light, ...], radius: float | None) -> int:
-        """Most samples of a lamp that the scene says, 0 without lamps; lights are gone through once."""
-        if lights is not self._lights:
-            self._lights, self._said = lights, {}
-        if radius not in self._said:
-            lamps = (light for light in as_lamps(lights, radius, None) if light.kind != "point")
-            self._said = {
-                **dict(list(self._said.items())[1 - MOST_RADII :]),
-                radius: max((x.samples for x in lamps), default=0),
-            }
-        return self._said[radius]
+def has_lamps(lights: tuple[Light, ...], settings: Settings) -> bool:
+    """Return whether any light is no point, by these settings."""
+    return any(light.kind != "point" for light in as_lamps(lights, settings.lamp_radius, None))
 
 
 def first(most: int) -> int:
-    """Samples of the first picture at idle, of so many in the end."""
+    """Return the samples of the first frame at rest, of so many in the end."""
     return most if most < 2 * FEWEST_LAMP_SAMPLES else FEWEST_LAMP_SAMPLES
 
 
 def after(samples: int, most: int) -> int:
-    """Samples of the picture after one with so many: the last step is skipped where it adds little."""
+    """Return the samples of the frame after one with so many: the last step is skipped where it adds little."""
     more = FEWEST_LAMP_SAMPLES
     while more <= samples:
         more *= LAMP_SAMPLES_GROWTH
     return most if 2 * more > most else more
 
 
-class LampSteps:
-    """How many samples the lamps of the session's scene have in the next picture, and in the last at idle."""
+class LampSamples:
+    """How many samples the lamps of the session's scene have in the next frame, and in the last at rest."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._table = LampSamples()
+        self._lights: tuple[Light, ...] = ()
+        self._by_scene: dict[float | None, int] = {}  # samples that the scene says, by radius; 0 without lamps
         self._moving: int | None = None  # samples while anything moves
 
     def most(self, settings: Settings) -> int:
-        """Samples by some settings, of the lamp that has the most."""
-        scene = self._session.scene
-        return self._table.most(scene.lights, settings) if scene is not None else 1
+        """Return the samples of the lamp that has the most; 1 where all lights are points, or there are none."""
+        lights, radius = self._session.scene.lights if self._session.scene is not None else (), settings.lamp_radius
+        if lights is not self._lights or len(self._by_scene) > MOST_RADII:
+            self._lights, self._by_scene = lights, {}
+        if radius not in self._by_scene:  # there may be thousands of lights, and it is asked for many times a frame
+            lamps = (light for light in as_lamps(lights, radius, None) if light.kind != "point")
+            self._by_scene[radius] = max((lamp.samples for lamp in lamps), default=0)
+        by_scene = self._by_scene[radius]
+        return max(by_scene, 1) if settings.lamp_samples is None or by_scene == 0 else settings.lamp_samples
 
     @property
     def wanted(self) -> int:
-        """How many there should be at idle."""
+        """How many there should be at rest."""
         return self.most(self._session.settings)
 
     @property
     def any(self) -> bool:
         """Whether any light is no point, by the settings."""
-        scene = self._session.scene
-        return scene is not None and self._table.any(scene.lights, self._session.settings)
+        return self.most(self._session.settings) > 0 and self._by_scene[self._session.settings.lamp_radius] > 0
 
     def in_motion(self, budget: FrameBudget, size: tuple[int, int], seconds: float) -> int:
-        """Samples of the next picture of this size, which there are so many seconds for; the same until `at_rest`, so
-        that modes are of use."""
+        """Return the samples of the next frame of this size, which there are so many seconds for; the same until
+        `at_rest`, so that modes are of use."""
         if self._moving is None:
             self._moving = budget.moving_samples(*size, seconds)
         return min(self._moving, self.wanted)
 
     def at_rest(self, last: Settings | None, come: bool) -> int:
-        """Samples of the next picture; `last` are the settings of the picture of the same view that was asked for last,
-        and `come` says whether it is there, whole."""
+        """Return the samples of the next frame; `last` are the settings of the frame of the same view that was asked
+        for last, and `come` says whether it is there, whole."""
         self._moving = None
         most = self.wanted
         if last is None:

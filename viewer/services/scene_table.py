@@ -133,7 +133,7 @@ class SceneTable:
         selection = self._selection
         done = selection.select_part(row) if self.level is Level.OBJECTS else selection.select_primitive(row)
         if not done:
-            self._notices.say("it is hidden" if self.is_hidden(row) else "it is nowhere in the world at this moment")
+            self._notices.say("it is hidden" if self.is_hidden(row) else "it is not in the scene at this time")
         self.chosen = selection.serial
 
     @property
@@ -184,10 +184,10 @@ class SceneTable:
         """Write the rows that are seen as CSV into the folder of the pictures, once they are those of the scene as it
         is edited."""
         if self.listing is None or self._session.scene is None:
-            self._notices.say("there is no table to save yet: open the panel Find")
+            self._notices.say("there is no table yet: open the panel Find")
         elif self._is_stale:
             self._saves = True
-            self._notices.say("the table is saved when the picture shows the scene as it is edited")
+            self._notices.say("the table will be saved when the picture shows the edited scene")
         else:
             self._write()
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from tracer.scene.lights import Light
-from viewer.state.draw_options import DrawOptions
+from viewer.state.draw_options import DrawOptions, Slice
 from viewer.state.views import Declaration, Record
 from viewer.views.legend import Legend
 
@@ -34,6 +34,18 @@ class Highlight(NamedTuple):
 
     fate: Fate | None = None
     line: bool = True
+
+
+class Layer(NamedTuple):
+    """The layer of a slice, of so many, and where its middle lies along the axis, in units of the scene."""
+
+    number: int
+    many: int
+    place: float
+
+    def goes_to(self, cut: Slice, number: int) -> Slice:
+        """Return the slice in another layer, or in the last one before these end."""
+        return cut._replace(at=(min(max(number, 0), self.many - 1) + 0.5) / self.many)
 
 
 @dataclass(frozen=True)
@@ -69,6 +81,10 @@ class FrameView(Declaration):
     def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
         """Return what it shows of one pixel, in a few short lines."""
         raise NotImplementedError
+
+    def layer(self, frame: Frame, cut: Slice) -> Layer | None:
+        """Return the layer that a slice shows; None where there is nothing to cut."""
+        return None
 
 
 _found: WeakKeyDictionary[Frame, dict[Hashable, Any]] = WeakKeyDictionary()

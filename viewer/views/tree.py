@@ -6,23 +6,25 @@ import numpy as np
 
 from tracer.frame import Frame
 from tracer.geometry.tree_parts import NOWHERE, TreeParts
-from viewer.state.draw_options import AXES, DrawOptions
+from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import BACKGROUND, hex_color
 from viewer.state.readings import TREE, TREE_IS_GONE
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, once, single
+from viewer.views.base import FrameView, Highlight, Layer, Lights, Pixels, Values, Words, hits, once, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Scale, fact
 from viewer.views.paint import FAINT_LINE, OUTLINE, checkered, in_range, mapped, on_line, shaded
 from viewer.views.slices import (
     BORDER,
     HIDDEN,
+    LAYERS,
     LEVEL,
     LINE,
     NO_PART,
     SAMPLES,
     STRIPE,
     WAITS,
+    layer_of,
     part_seen,
     part_words,
     place_of,
@@ -95,6 +97,9 @@ class Tree(FrameView):
     def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
         tree = tree_of(frame)
         return part_words(part_seen(frame, tree, draw.slice, x, y), tree.owner)
+
+    def layer(self, frame: Frame, cut: Slice) -> Layer | None:
+        return Layer(layer_of(cut), LAYERS, place_of(tree_of(frame), cut)) if self.can_draw(frame) else None
 
 
 def _behind(frame: Frame, draw: DrawOptions) -> Pixels:

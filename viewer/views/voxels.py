@@ -8,11 +8,11 @@ from tracer.culling.modes import ShadowMode
 from tracer.culling.voxels.tell import STATE_NAMES, VoxelStates
 from tracer.frame import Frame
 from tracer.scene.lights import named_light
-from viewer.state.draw_options import AXES, DrawOptions
+from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import GREY, SHADOW_COLORS, Color
 from viewer.state.readings import VOXELS
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, once, single
+from viewer.views.base import FrameView, Highlight, Layer, Lights, Pixels, Values, Words, once, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Note, NoteKind, fact
 from viewer.views.paint import CELL_LINE, by_color, in_bytes
@@ -89,6 +89,12 @@ class Voxels(FrameView):
 
     def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
         return voxel_words(frame, voxels_of(frame), draw.light, draw.slice, x, y)
+
+    def layer(self, frame: Frame, cut: Slice) -> Layer | None:
+        if not self.can_draw(frame):
+            return None
+        states = voxels_of(frame)
+        return Layer(cut.layer(states.shape), states.shape[cut.axis], middle_of(states.grid, cut))
 
 
 def voxels_of(frame: Frame) -> VoxelStates:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from viewer.state import camera_text, navigation
 from viewer.state.picking import extent_at, point_at
-from viewer.state.selection_lookup import looking_at, place_of, place_of_part
+from viewer.state.selection_lookup import looking_at, part_points, place_of, primitive_points
 from viewer.window.command import Command, Condition, scene_open, switch
 from viewer.window.ui import Ui
 
@@ -104,9 +104,10 @@ def fly_to_selected(ui: Ui) -> None:
     if now is None or picked is None:
         return
     time = c.session.time
-    place = place_of(now.scene, picked.primitive, time) if part is None else place_of_part(now, part, time)
+    points = primitive_points(now.scene, picked.primitive, time) if part is None else part_points(now, part, time)
+    place = place_of(points)
     if place is None:
-        c.notices.say("what is selected is nowhere in the world at this moment")
+        c.notices.say("the selection is not in the scene at this time")
         return
     x, y, z = place.middle.tolist()
     ui.picture.pivot = x, y, z
@@ -166,14 +167,14 @@ def _text(ui: Ui, here: Condition) -> list[Command]:
 
     def copy(text: Callable[[], str], what: str) -> Callable[[], None]:
         def do() -> None:
-            ui.copy_to(text())
+            ui.desktop.copy(text())
             c.notices.say(f"camera copied as {what}")
 
         return do
 
     def paste() -> None:
         try:
-            pasted = camera_text.read(ui.paste_from() or "", c.session.camera, aspect())
+            pasted = camera_text.read(ui.desktop.paste() or "", c.session.camera, aspect())
         except ValueError as error:
             c.notices.say(f"no camera pasted: {error}", error=True)
             return

@@ -48,7 +48,7 @@ def draw_options(ui: Ui) -> DrawOptions:
 
 def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
     """Bring to the GPU what is to be seen besides the live picture, which is drawn with these options."""
-    comparing, compared = ui.controller.comparing, ui.compared
+    comparing, compared = ui.controller.comparing, ui.graphics.compared
     if compared is None:
         return
     sides = comparing.sides
@@ -67,7 +67,7 @@ def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
 
 def shown(ui: Ui) -> Seen | None:
     """Return A, B and the mode in which both are seen now; None where only B is."""
-    comparing, compared = ui.controller.comparing, ui.compared
+    comparing, compared = ui.controller.comparing, ui.graphics.compared
     sides = comparing.sides
     if sides is None or compared is None:
         return None
@@ -95,27 +95,27 @@ def marked(ui: Ui) -> tuple[Spot, ...]:
 
 def shows_a(ui: Ui) -> bool:
     """Return whether A alone is seen, in the modes that show one at a time or while the key is held."""
-    state, compared = ui.controller.comparing.state, ui.compared
+    state, compared = ui.controller.comparing.state, ui.graphics.compared
     there = compared is not None and compared.a.texture_id is not None and shown(ui) is not None
     return there and state.shows_a(time.monotonic()) and state.mode is not CompareMode.SIDE
 
 
 def filling(ui: Ui) -> PictureTexture | None:
     """Return what fills the picture: B, or A, or their difference; A's part of a wipe is drawn over it."""
-    seen, compared = shown(ui), ui.compared
+    seen, compared = shown(ui), ui.graphics.compared
     if seen is None or compared is None:
-        return ui.display
+        return ui.graphics.display
     if shows_a(ui):
         return compared.a
-    return compared.difference if seen[2] is CompareMode.DIFFERENCE else ui.display
+    return compared.difference if seen[2] is CompareMode.DIFFERENCE else ui.graphics.display
 
 
 def magnify(ui: Ui, options: DrawOptions, smooth: bool) -> None:
     """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
-    magnifier, size, zoom = ui.magnifier, ui.picture.size, ui.controller.session.zoom
+    magnifier, size, zoom = ui.graphics.magnifier, ui.picture.size, ui.controller.session.zoom
     if magnifier is None or min(size) < 1:
         return
-    seen, compared = shown(ui), ui.compared
+    seen, compared = shown(ui), ui.graphics.compared
     a = compared.a if compared is not None else None
     beside = seen is not None and seen[2] in (CompareMode.SIDE, CompareMode.WIPE) and not shows_a(ui)
     for name, drawn in ((PICTURE, filling(ui)), (OF_A, a if beside else None)):
@@ -161,7 +161,7 @@ def words(ui: Ui, options: DrawOptions, side: Side | None = None) -> tuple[Frame
 
 def composed_picture(ui: Ui, b: Pixels) -> Pixels:
     """Return the picture to save: B as it was drawn, and what is compared with it."""
-    seen, compared = shown(ui), ui.compared
+    seen, compared = shown(ui), ui.graphics.compared
     if seen is None or compared is None:
         return b
     if seen[2] is CompareMode.DIFFERENCE and not shows_a(ui):

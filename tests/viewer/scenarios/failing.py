@@ -24,7 +24,7 @@ KEY = imgui.Key
 def failing(d: Driver) -> None:
     """Whatever fails, in drawing, a panel, a menu, a command or a thread, is a notice; the window lives on."""
     d.settle()
-    notices, log, guard, display = d.c.notices, d.c.notices.log, d.ui.guard, d.ui.display
+    notices, log, guard, display = d.c.notices, d.c.notices.log, d.ui.guard, d.ui.graphics.display
     again = f"{icons.ICON_FA_ROTATE_RIGHT}  Try again"
 
     def fail(*_: object) -> None:

@@ -8,7 +8,7 @@ from imgui_bundle import glfw_utils, imgui
 from tests.sweeps import cases
 from tests.viewer.driver import Driver
 from viewer.state.views import View
-from viewer.window.panels.catalogue import PANELS, PICTURE
+from viewer.window.layout import PANELS, PICTURE
 from viewer.window.ui import Dialog
 
 KEY = imgui.Key

@@ -14,7 +14,8 @@ import glfw  # after imgui_bundle, which brings the library that both must share
 from tests.viewer.driver import Driver
 from tracer.frame import Frame
 from viewer.state.views import View
-from viewer.window import density, graphics
+from viewer.window import graphics
+from viewer.window import style as window_style
 
 KEY = imgui.Key
 SMALL = (1100, 700)
@@ -68,7 +69,7 @@ def _denser_screen(d: Driver) -> None:
     style = imgui.get_style()
     before = _lengths()
     for scale in (2.0, 1.5, 1.0):
-        with mock.patch.object(density, "content_scale", lambda scale=scale: scale):
+        with mock.patch.object(window_style, "content_scale", lambda scale=scale: scale):
             d.frames(3)
             assert style.font_scale_dpi == scale and d.ui.fold.folded == (scale > 1.0)
             assert np.allclose(_lengths(), np.multiply(before, scale), atol=1.0)

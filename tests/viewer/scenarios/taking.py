@@ -71,9 +71,12 @@ def _nothing_to_save(d: Driver) -> None:
     d.c.settings.set_view(View.COLOR)
     d.settle()
     assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1, "one that comes is waited for"
-    d.ui.capture_wanted, d.ui.capture_view = CaptureKind.PICTURE, View.DIFFERENCE
+    d.ui.capture_wanted, d.ui.graphics.capture_view = CaptureKind.PICTURE, View.DIFFERENCE
     d.frames(3)
-    assert d.ui.capture_wanted is d.ui.capture_view is None and "another view was chosen" in d.c.notices.message.text
+    assert (
+        d.ui.capture_wanted is d.ui.graphics.capture_view is None
+        and "another view was chosen" in d.c.notices.message.text
+    )
     assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1
 
 

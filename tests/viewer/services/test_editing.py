@@ -193,14 +193,14 @@ def test_what_follows_the_newest_picture_gets_none_of_another_scene(desk: Desk):
     c, given = desk.c, []
     c.settings.change(method="paper")
     desk.rest()
-    follow = c.table.follow
+    follow = c.table.update
 
     def watched(traced, moving):
         if traced is not None:
             given.append((len(traced.frame.modes), c.session.scene.primitive_count))
         follow(traced, moving)
 
-    c.table.follow = watched
+    c.table.update = watched
     edit(desk, lambda: c.editing.hide("ball"))
     edit(desk, c.editing.clear)
     assert given and all(modes == primitives for modes, primitives in given)

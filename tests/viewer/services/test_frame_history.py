@@ -15,7 +15,9 @@ from tracer.culling import modes
 from tracer.frame import Frame
 from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.scene.edits import NO_EDITS, Edits
+from tracer.scene.model import Cancelled
 from viewer.services.frame_history import JumpTarget
+from viewer.services.origin_pixels import trace_once_more
 from viewer.state.views import View
 
 
@@ -208,3 +210,9 @@ def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
         picked = c.selection.picked
         assert (picked is None) == (here.primitive < 0) == bool(edits)
         assert picked is None or (picked.primitive == here.primitive and picked.seen)
+
+
+def test_tracing_a_frame_once_more_for_who_set_a_mode_can_be_cancelled(desk: Desk) -> None:
+    scene, settings = desk.c.session.scene, replace(desk.c.session.settings, width=64, height=48)
+    with pytest.raises(Cancelled):
+        trace_once_more(tracer.Renderer(scene, settings), 0.0, scene.camera_at(0.0), settings, 0, False, lambda: True)

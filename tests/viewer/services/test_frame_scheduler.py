@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from itertools import count
+from threading import Event, Thread
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ from tracer.frame import Settings
 from tracer.scene.model import Camera, Cancelled
 from viewer.services.controller import Controller
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
+from viewer.services.jobs import Wake
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -102,3 +104,30 @@ def test_a_hand_that_falters_starves_no_picture():
         assert len(shown) >= 5
     finally:
         assert controller.close()
+
+
+def test_a_window_stays_until_nobody_is_just_waking_it():
+    """A thread that refreshed a window which has gone would call into what is no more."""
+    wake, waking, go_on, gone = Wake(), Event(), Event(), Event()
+
+    def refresh() -> None:
+        waking.set()
+        assert go_on.wait(20.0) and not gone.is_set()
+
+    wake.connect(refresh)
+    thread = Thread(target=wake)
+    thread.start()
+    assert waking.wait(20.0)
+
+    def close() -> None:
+        wake.connect(None)
+        gone.set()
+
+    closing = Thread(target=close)
+    closing.start()
+    assert not gone.wait(0.05), "the window has gone while a thread was waking it"
+    go_on.set()
+    thread.join(20.0)
+    closing.join(20.0)
+    assert gone.is_set()
+    wake()  # does nothing

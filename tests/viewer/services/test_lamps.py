@@ -14,7 +14,7 @@ from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
 from viewer.services.frame_budget import FrameBudget
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
-from viewer.services.refinement import LampSamples, after, first
+from viewer.services.refinement import LampSamples, after, first, has_lamps
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.preferences import Preferences
 from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER
@@ -46,13 +46,15 @@ def test_samples_are_those_of_the_lamp_that_has_the_most(kinds: str, radius: flo
         "r": Light("c", (0, 0, 0), kind="rectangle", edges=((1, 0, 0), (0, 1, 0)), samples=16),
         "d": Light("d", (0, 0, 0), kind="dome", radius=1.0, edges=((0, 1, 0),), samples=25),
     }
-    lights, table = tuple(known[kind] for kind in kinds), LampSamples()
-    lamps = as_lamps(lights, radius, samples)
-    settings = Settings(lamp_radius=radius, lamp_samples=samples)
+    lights, session = tuple(known[kind] for kind in kinds), Session(settings=Settings(lamp_radius=radius))
+    lamps, table = as_lamps(lights, radius, samples), LampSamples(session)
+    session.open(replace(make_scene(), lights=lights))
+    session.settings = settings = Settings(lamp_radius=radius, lamp_samples=samples)
     for _ in range(2):
-        assert table.most(lights, settings) == max((len(lamp.offsets()) for lamp in lamps), default=1)
-        assert table.any(lights, settings) == any(lamp.kind != "point" for lamp in lamps)
-    assert table.most((), settings) == 1, "the lights of another scene"
+        assert table.most(settings) == max((len(lamp.offsets()) for lamp in lamps), default=1)
+        assert table.any == has_lamps(lights, settings) == any(lamp.kind != "point" for lamp in lamps)
+    session.open(replace(make_scene(), lights=()))
+    assert table.most(settings) == 1, "the lights of another scene"
 
 
 class Renders:

@@ -220,7 +220,7 @@ def _explained(light: int, samples: int = 16, reached: int = 16, due: bool = Tru
 
 def test_lights_are_summed_up_by_the_samples_that_arrive():
     lights = [_explained(0), _explained(1, 16, 3), _explained(2, due=False), _explained(3, 16, 0), _explained(4, 4, 0)]
-    assert summary(lights) == "1 lit, 1 in part, 2 in shadow, 1 behind it"
+    assert summary(lights) == "1 lit, 1 in part, 2 in shadow, 1 facing away"
 
 
 def test_of_many_lights_the_nearest_are_drawn():

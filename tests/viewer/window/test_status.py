@@ -9,8 +9,7 @@ from tests.viewer.fakes import make_frame, with_certificates
 from tracer.settings import Settings
 from viewer.state import terms
 from viewer.window.panels import loading
-from viewer.window.panels.coming import first_picture
-from viewer.window.panels.status import doing
+from viewer.window.panels.status import doing, first_picture
 from viewer.window.panels.why import unanswered
 
 
@@ -88,7 +87,7 @@ def test_without_a_picture_it_is_said_what_goes_on() -> None:
 def test_what_was_asked_says_what_it_waits_for() -> None:
     """Nothing moves while samples are added, and an answer comes all the same only after one."""
     for changes, said in (
-        ({}, "looking into it ..."),
+        ({}, "tracing its shadow rays ..."),
         ({"adds_samples": True}, "answered after this sample"),
         ({"refines_lamps": True}, "answered after the samples of lamps"),
         ({"renderer": SimpleNamespace(busy=True)}, "answered after this picture"),

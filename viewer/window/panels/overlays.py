@@ -15,10 +15,10 @@ from tracer.reasons import Why
 from viewer.services.pixel_inspector import MOST_CLUSTERS, Answer, drawn_primitives
 from viewer.state.palette import FATE_COLORS, SHADOW_COLORS, color_map
 from viewer.state.projection import Stroke, place, strokes
-from viewer.state.selection_lookup import lines_of, lines_of_part
+from viewer.state.selection_lookup import outline_of, part_points, primitive_points
 from viewer.window import comparing
-from viewer.window.panels import ray_overlay, slicing, words
-from viewer.window.panels.area import Area
+from viewer.window.panels import ray_overlay, slicing
+from viewer.window.panels.area import Area, write_beside
 from viewer.window.panels.legend import LegendState
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.marks import Pen, pen
@@ -125,7 +125,11 @@ def _why(ui: Ui, made: Pen, frame: Frame) -> None:
 def _outline(ui: Ui, made: Pen, frame: Frame, primitive: int, color: ImVec4, name: str) -> None:
     scene = ui.controller.session.scene
     if scene is not None and primitive < scene.primitive_count:
-        pieces = ui.cached(name, frame, primitive, lambda: _projected(frame, lines_of(scene, primitive, frame.time)))
+
+        def lines() -> list[Stroke]:
+            return _projected(frame, outline_of(primitive_points(scene, primitive, frame.time)))
+
+        pieces = ui.cached(name, frame, primitive, lines)
         made.strokes(pieces, color, _OUTLINE)
 
 
@@ -164,9 +168,8 @@ def _occluded_selection(ui: Ui, made: Pen, frame: Frame) -> None:
         return
 
     def lines() -> list[Stroke]:
-        if part is not None:
-            return _projected(frame, lines_of_part(now, part, frame.time))
-        return _projected(frame, lines_of(now.scene, picked.primitive, frame.time))
+        points = primitive_points(now.scene, picked.primitive, frame.time)
+        return _projected(frame, outline_of(points if part is None else part_points(now, part, frame.time)))
 
     made.strokes(ui.cached("occluded selection", frame, (picked.primitive, part), lines), _WHITE, 0.12, behind=0.75)
 
@@ -209,7 +212,9 @@ def _clusters(ui: Ui, made: Pen, frame: Frame) -> None:
         where = (at[0] + 0.5) / frame.width, (at[1] + 0.5) / frame.height
         made.ring(where)
         corner, end = made.area.whole, made.area.whole_end
-        words.write(waits, made.area.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place)
+        write_beside(
+            waits, made.area.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place
+        )
 
 
 def show_worst_pixels(ui: Ui, area: Area, frame: Frame) -> None:

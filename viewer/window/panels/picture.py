@@ -18,10 +18,8 @@ from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
 from viewer.util.numbers import whole_percent
 from viewer.window import comparing
-from viewer.window.palette import ON_PICTURE_ERROR
 from viewer.window.panels import (
     closeup,
-    coming,
     edited_picture,
     film,
     legend,
@@ -31,11 +29,13 @@ from viewer.window.panels import (
     savings,
     sides,
     slicing,
+    status,
     timeline,
     tour,
 )
 from viewer.window.panels.area import Area
 from viewer.window.panels.legend import LegendState
+from viewer.window.style import ON_PICTURE_ERROR
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, em, paragraph
 
@@ -100,9 +100,9 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     at = imgui.get_cursor_pos()
     left = at.x + (room.x - (2.0 * size.x + gap if beside else size.x)) / 2.0
     top = at.y + (room.y - size.y) / 2.0
-    if beside and seen is not None and ui.compared is not None:
+    if beside and seen is not None and ui.graphics.compared is not None:
         area = _area(ui, "picture of A", left, top, size)
-        sides.draw_picture(ui, comparing.OF_A, ui.compared.a.texture_id or 0, area)
+        sides.draw_picture(ui, comparing.OF_A, ui.graphics.compared.a.texture_id or 0, area)
         _pointer(ui, area, takes_edits=False)
         closeup.show(ui, area, seen[0])
         left += size.x + gap
@@ -166,7 +166,7 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
     if c.loader.load_job is not None or c.loader.warm_up_job is not None:
         return  # the progress window speaks
-    text = coming.first_picture(c)
+    text = status.first_picture(c)
     if c.session.scene is None:
         text = f"Open a scene{ui.key('Open...')}, or drop one on this window"
     width = imgui.calc_text_size(text).x

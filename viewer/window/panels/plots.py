@@ -15,7 +15,7 @@ from tracer.experiments.experiment import REFERENCE, Results
 from viewer.services.runs import Experiment
 from viewer.state import terms
 from viewer.util.numbers import whole_percent
-from viewer.window.palette import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
+from viewer.window.style import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, short
 

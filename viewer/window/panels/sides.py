@@ -40,11 +40,11 @@ def draw_a(ui: Ui, area: Area, seen: Seen) -> None:
     if (
         seen[2] is not CompareMode.WIPE
         or comparing.shows_a(ui)
-        or ui.compared is None
-        or ui.compared.a.texture_id is None
+        or ui.graphics.compared is None
+        or ui.graphics.compared.a.texture_id is None
     ):
         return
-    draw_picture(ui, comparing.OF_A, ui.compared.a.texture_id, area, ui.controller.session.wipe)
+    draw_picture(ui, comparing.OF_A, ui.graphics.compared.a.texture_id, area, ui.controller.session.wipe)
 
 
 def show_names(ui: Ui, area: Area, seen: Seen, top: float) -> None:
@@ -187,7 +187,8 @@ def draw_picture(ui: Ui, name: str, texture: int, area: Area, right: float = 1.0
         return
     at = ImVec2(area.corner.x + (right - left) / (end - left) * area.size.x, area.end.y)
     start, stop = ImVec2(left, top), ImVec2(right, bottom)
-    crisp = ui.magnifier.texture_of(name, texture, area.zoom, ui.picture.size) if ui.magnifier is not None else None
+    magnifier = ui.graphics.magnifier
+    crisp = magnifier.texture_of(name, texture, area.zoom, ui.picture.size) if magnifier is not None else None
     if crisp is not None:
         texture, start, stop = crisp, ImVec2(0.0, 0.0), ImVec2((right - left) / (end - left), 1.0)
     imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), area.corner, at, start, stop)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from imgui_bundle import imgui
 
@@ -11,19 +9,17 @@ from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
 from viewer.services.controller import Controller
 from viewer.services.pixel_inspector import MOST_CLUSTERS
-from viewer.state.draw_options import AXES, Slice
+from viewer.state.draw_options import AXES
 from viewer.state.picking import pixel_at
-from viewer.state.readings import VOXELS, can_draw
 from viewer.state.views import View
 from viewer.util.numbers import several
-from viewer.views import cell_lights
-from viewer.views.slices import LAYERS, layer_of, middle_of, part_seen, part_words, place_of, slice_seen, voxel_seen
+from viewer.views import cell_lights, view_of
+from viewer.views.slices import part_seen, part_words, slice_seen, voxel_seen
 from viewer.views.tree import tree_of
 from viewer.views.voxels import voxels_of
-from viewer.window.panels import words
-from viewer.window.panels.area import Area
-from viewer.window.panels.coming import after
+from viewer.window.panels.area import Area, write_beside
 from viewer.window.panels.legend import LegendState
+from viewer.window.panels.status import traced_before_an_answer
 from viewer.window.ui import Ui
 from viewer.window.widgets import count, em, percent, row
 
@@ -37,14 +33,15 @@ def rows(ui: Ui) -> None:
             imgui.same_line(0.0, em(0.6))
         if imgui.radio_button(f"{name}##slice", s.cut.axis == axis):
             s.cut = s.cut._replace(axis=axis)
-    layer = layer_now(ui)
+    frame = ui.controller.frame
+    layer = view_of(s.view).layer(frame, s.cut) if frame is not None else None
     if layer is None:
         return
     row("Layer", "along the axis; Ctrl+click to type one")
     flags, shown = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[s.cut.axis]} = {layer.place:.4g})"
     changed, number = imgui.slider_int("##layer", layer.number, 0, layer.many - 1, shown, flags)
     if changed:
-        s.cut = go_to(s.cut, number, layer.many)
+        s.cut = layer.goes_to(s.cut, number)
 
 
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
@@ -81,7 +78,8 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
 
 def awaited(c: Controller) -> list[str]:
     """That the clusters of a pixel are to come, where they do not come at once."""
-    return [f"its clusters are drawn after {after(c)}"] if after(c) else []
+    before = traced_before_an_answer(c)
+    return [f"its clusters are drawn after {before}"] if before else []
 
 
 def cut_lines(cut: LightCut) -> list[str]:
@@ -110,41 +108,4 @@ def show(ui: Ui, area: Area) -> None:
     if not lines:
         return
     room = area.corner.x, area.corner.y, area.end.x, area.end.y
-    words.write(lines, imgui.get_io().mouse_pos, room, ui.state(LegendState).place)
-
-
-class Layer(NamedTuple):
-    """The layer that is cut, of so many, and where its middle lies along the axis."""
-
-    number: int
-    many: int
-    place: float
-
-
-def layer_now(ui: Ui) -> Layer | None:
-    """That of the view's slice; None while there is nothing to cut."""
-    frame, cut, view = ui.controller.frame, ui.controller.session.cut, ui.controller.session.view
-    if frame is not None and view is View.VOXELS and VOXELS in frame.structures:
-        states = voxels_of(frame)
-        return Layer(cut.layer(states.shape), states.shape[cut.axis], middle_of(states.grid, cut))
-    if frame is not None and view is View.TREE and can_draw(frame, view):
-        return Layer(layer_of(cut), LAYERS, place_of(tree_of(frame), cut))
-    return None
-
-
-def go_to(cut: Slice, layer: int, many: int) -> Slice:
-    """The slice in another layer of so many, or in the last one before these end."""
-    return cut._replace(at=(min(max(layer, 0), many - 1) + 0.5) / many)
-
-
-def step(ui: Ui, layers: int) -> None:
-    """Go on by so many layers."""
-    s, layer = ui.controller.session, layer_now(ui)
-    if layer is not None:
-        s.cut = go_to(s.cut, layer.number + layers, layer.many)
-
-
-def turn(ui: Ui) -> None:
-    """Cut across the next axis."""
-    s = ui.controller.session
-    s.cut = s.cut._replace(axis=(s.cut.axis + 1) % len(AXES))
+    write_beside(lines, imgui.get_io().mouse_pos, room, ui.state(LegendState).place)

@@ -118,3 +118,20 @@ def _summary(ui: Ui) -> str:
     if rate is not None and c.active:
         parts.append(rate_in_words(rate))
     return "   ".join(filter(None, parts))
+
+
+def traced_before_an_answer(c: Controller) -> str:
+    """What is traced before a question about the picture is answered; nothing where it is answered at once."""
+    if c.scheduler.refines_lamps:
+        return "the samples of lamps"
+    if c.scheduler.adds_samples:
+        return "this sample"
+    return "this picture" if c.renderer.busy else ""
+
+
+def first_picture(c: Controller) -> str:
+    """What goes on while there is no picture, in a sentence."""
+    now = doing(c)
+    if now == IDLE:
+        return "No picture has been traced yet."
+    return "Tracing the first picture ..." if now == TRACING else f"{now[0].upper()}{now[1:]}"

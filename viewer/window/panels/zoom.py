@@ -11,10 +11,10 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.experiments.zoom import Approach, Results, Step
 from viewer.output.reports import changes_in_words, happenings, modes_in_words
 from viewer.services.runs import LONGEST_SIDE, ZoomTest
-from viewer.window.palette import MARK
 from viewer.window.panels import film
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
 from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress, whose
+from viewer.window.style import MARK
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
