@@ -64,18 +64,6 @@ def test_the_certificate_legend_counts_the_cells_that_are_seen():
     assert classes_in(make_frame(), View.CERTIFICATE, 1) == classes_in(frame, View.CERTIFICATE, 15) == []
 
 
-@pytest.mark.parametrize("view", [View.SAVED, View.COST])
-def test_the_range_of_work_ends_at_nearly_the_most(view):
-    frame = with_certificates(make_frame(Settings(width=160, height=80)))
-    work = frame.saved if view is View.SAVED else frame.cost
-    low, top = view.declared.span(frame)
-    assert low == 0.0 and np.percentile(work[frame.primitive >= 0], 98) <= top <= work.max()
-    for empty in (replace(frame, saved=work * 0, cost=work * 0), replace(frame, primitive=work * 0 - 1)):
-        assert view.declared.span(empty) == (0.0, 1.0)
-    with pytest.raises(ValueError, match="did not record"):
-        view.declared.span(make_frame())
-
-
 def test_wide_words_reach_light_30():
     frame = make_frame()
     words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
@@ -136,11 +124,6 @@ def test_a_small_share_does_not_look_like_none(part, whole, said):
 
 def test_numbers_of_other_places_are_written_as_in_the_window():
     assert in_window_style("1,234,570 (0.499%), lights 0, 2: 12") == "1,234,570 (0.499 %), lights 0, 2: 12"
-
-
-def test_no_rings_where_nothing_is_wrong():
-    frame = make_frame(Settings(width=16, height=8, verify=True))
-    assert not wrong_marks(replace(frame, wrong=np.zeros_like(frame.wrong))).any()
 
 
 def test_the_line_of_a_wipe_reaches_both_edges():

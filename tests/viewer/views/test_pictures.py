@@ -39,7 +39,6 @@ from viewer.state.palette import (
     Certificate,
     color_map,
 )
-from viewer.state.tone import Curve, Tone
 from viewer.state.verified import largest_difference
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
@@ -467,21 +466,6 @@ def test_the_window_shows_the_same_and_what_is_selected(certified_frame: Frame, 
         assert (display.read()[border] == 255).mean() < 1.0, "it is the part that has the border"
         display.release()
     context.release()
-
-
-def test_pictures_have_a_tone_and_numbers_a_range(certified_frame: Frame) -> None:
-    """Of pictures with each curve, with what is clipped marked and without; and of numbers in a range."""
-    color = certified_frame.color * np.linspace(0.0, 6.0, certified_frame.width, dtype=np.float32)[None, :, None]
-    shown = replace(certified_frame, color=color)
-    toned = [
-        {"view": view, "tone": Tone(0.7, 1.5, curve), "clipping": clipping}
-        for view in (View.COLOR, View.WIPE, View.DIFFERENCE)
-        for curve in Curve
-        for clipping in (True, False)
-    ]
-    for more in [*toned, *({"view": view, "span": (1.5, 4.0)} for view in View if view.has_range)]:
-        here, plain = (picture(shown, light=1, **how).astype(int) for how in (more, {"view": more["view"]}))
-        assert np.abs(here - plain).max() > 5, "nothing has changed"
 
 
 def test_each_view_declares_what_a_person_needs_to_find_it() -> None:
