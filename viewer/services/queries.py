@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, Protocol
 
 from tracer.frame import Frame
 from tracer.scene.model import Cancelled
-from viewer.util.failures import one_line
+from viewer.util.messages import one_line
 
 MOST_ANSWERS = 16
 """Answers of one function about one frame that are kept."""

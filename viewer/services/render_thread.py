@@ -30,7 +30,7 @@ from viewer.services.jobs import TRACER, step_back
 from viewer.services.pair import Pair
 from viewer.services.queries import Function, Queries, Query
 from viewer.services.render_request import Parts, RenderRequest, Spare, Task, Traced, Traces
-from viewer.util.failures import Failure, failure
+from viewer.util.messages import Failure, failure
 
 QUERY_SECONDS = 0.25
 """That a picture waits at most for the answer to a query; a longer one is cancelled, and may be asked for anew."""

@@ -24,7 +24,7 @@ from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Scene
 from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
-from viewer.util.failures import failure
+from viewer.util.messages import failure
 from viewer.util.resources import default_scene
 from viewer.window import commands, comparing, graphics, menus, style
 from viewer.window.full_screen import Rect

@@ -11,9 +11,11 @@ from tracer.culling.modes import OcclusionMode
 from tracer.mode_origins import Origin
 from tracer.scene.model import Material
 from tracer.why_in_words import Link, Words
+from viewer.state.palette import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
 from viewer.state.picking import Pick
-from viewer.state.readings import can_draw, cell_lights
-from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING, View
+from viewer.state.readings import can_draw
+from viewer.state.views import View
+from viewer.views import cell_lights
 from viewer.window.panels import rays, why
 from viewer.window.panels.links import sentence
 from viewer.window.ui import Ui
@@ -78,7 +80,7 @@ def _details(ui: Ui, pick: Pick, at: tuple[int, int] | None) -> None:
         if pick.material is not None:
             fact("Material", pick.material.name, _describe(pick.material))
         if frame is not None and at is not None and can_draw(frame, View.CELL_LIGHTS):
-            asked = int(cell_lights(frame)[at[1], at[0]])
+            asked = int(cell_lights.VIEW.found(frame)[at[1], at[0]])
             if asked >= 0:
                 lights = f"looks at {count(asked)} of {count(frame.lights)} lights"
                 fact("Its cell", lights, "of the octree of this method: all but those known to be hidden from it")
