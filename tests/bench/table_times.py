@@ -217,8 +217,7 @@ class User:
             d.context.mouse_down(0)
 
             def seen(primitive: int = primitive) -> bool:
-                drawn = self.app.ui.display._drawn
-                return drawn is not None and drawn[1].selected == primitive and primitive in self.watch.rows
+                return self.app.ui.graphics.display.selected == primitive and primitive in self.watch.rows
 
             self.watch.doing = "clicking"
             self.watch.wait_for("a click is seen", seen)
@@ -256,7 +255,7 @@ def measure(triangles: int, size: tuple[int, int], clicks: int) -> dict[str, Any
         raise RuntimeError(failed[0])
     return {
         "triangles": made.triangle_count,
-        "renderer": app.ui.renderer_name,
+        "renderer": app.ui.graphics.renderer_name,
         "frames": dict(watch.frames),
         "answers": dict(watch.answers),
         "most_rows": watch.most_rows,

@@ -61,9 +61,13 @@ class Watch:
     def after(self) -> None:
         self.frames[self.state].append((time.perf_counter() - self._began, time.thread_time() - self._worked))
         self._saw("window")
-        if self.app.ui.preview is not None and self.app.ui.preview.texture_id is not None:
+        if self.app.ui.graphics.preview is not None and self.app.ui.graphics.preview.texture_id is not None:
             self._saw("preview")
-        if self.c.traced is not None and self.app.ui.display is not None and self.app.ui.display.texture_id is not None:
+        if (
+            self.c.traced is not None
+            and self.app.ui.graphics.display is not None
+            and self.app.ui.graphics.display.texture_id is not None
+        ):
             self._saw("first picture")
             if self.c.traced.request.divisor == 1 and self.c.traced.whole:
                 self._saw("full picture")
@@ -102,7 +106,7 @@ class Watch:
 
     def report(self) -> dict[str, Any]:
         return {
-            "renderer": self.app.ui.renderer_name,
+            "renderer": self.app.ui.graphics.renderer_name,
             "seen": self.seen,
             "worked": self.worked,
             "load": os.getloadavg()[0],

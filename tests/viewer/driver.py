@@ -69,11 +69,11 @@ class Driver:
             before_render()
             filled = bool(self._of_window) or app._capture_this_frame
             if not filled:
-                self.ui.display.context.enable_direct(RASTERIZER_DISCARD)
+                self.ui.graphics.display.context.enable_direct(RASTERIZER_DISCARD)
 
         def end() -> None:
             if not filled:
-                self.ui.display.context.disable_direct(RASTERIZER_DISCARD)
+                self.ui.graphics.display.context.disable_direct(RASTERIZER_DISCARD)
             before_swap()
             while filled and self._of_window:
                 self._of_window.pop()()
@@ -119,7 +119,7 @@ class Driver:
     def shown(self) -> np.ndarray:
         """The drawn view, read where GL work is done: scenarios run on a thread without the window's context."""
         got: list[np.ndarray] = []
-        self._in_frame.append(lambda: got.append(self.ui.display.read()))
+        self._in_frame.append(lambda: got.append(self.ui.graphics.display.read()))
         self.wait(lambda: bool(got), "the picture to be read")
         return got[0]
 
@@ -127,7 +127,7 @@ class Driver:
         """All of the window as it is drawn next."""
         got: list[np.ndarray] = []
         size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
-        self._of_window.append(lambda: got.append(self.ui.display.read_window(*size)))
+        self._of_window.append(lambda: got.append(self.ui.graphics.display.read_window(*size)))
         while not got:
             self.context.yield_()
         return got[0]

@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import string
 from collections.abc import Mapping
-from contextlib import ExitStack
 from datetime import datetime
 from io import BytesIO
 from pathlib import Path
@@ -24,7 +23,7 @@ from tracer.scene.files import read_regular
 from tracer.scene.model import SceneError
 from tracer.scene.textures import open_image
 from viewer.state.session import Snapshot
-from viewer.util.files import reserved, write_whole
+from viewer.util.files import write_new, write_whole
 
 CHUNK = "shadowcull"
 FORMAT = 1
@@ -100,16 +99,14 @@ def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
     info.add_itxt(CHUNK, text)
     info.add_text("Software", "Shadowcull")
     image = Image.fromarray(np.ascontiguousarray(pixels))
-    with ExitStack() as stack:
-        try:
-            path = stack.enter_context(reserved(folder, name.removesuffix(".png"), ".png"))
-        except OSError as error:
-            raise CaptureError(f"no picture saved: {error}") from None
-        try:
-            write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
-        except (OSError, ValueError) as error:
-            raise CaptureError(f"no picture saved: {error}") from None
-    return path
+
+    def write(path: Path) -> None:
+        write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
+
+    try:
+        return write_new(folder, name.removesuffix(".png"), ".png", write)
+    except (OSError, ValueError) as error:
+        raise CaptureError(f"no picture saved: {error}") from None
 
 
 def read(path: Path) -> Snapshot:

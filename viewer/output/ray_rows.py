@@ -19,8 +19,8 @@ from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
 from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.why_in_words import primitive_in_words
+from viewer.state.palette import Color
 from viewer.state.verdicts import SAID, Filter, color_of, color_of_all
-from viewer.state.views import Color
 from viewer.util.numbers import count, several
 
 MOST_LIGHTS = 12
@@ -77,9 +77,9 @@ class RayRows:
 
     def _path_tip(self, ray: PathRay) -> str:
         parts = [
-            f"ray {ray.number}, bounce {ray.bounce}; counts with {ray.weight.max():.3g}; "
+            f"ray {ray.number}, bounce {ray.bounce}; weight {ray.weight.max():.3g}; "
             f"{count(ray.steps)} steps and {count(ray.tests)} tests, traced alone",
-            "brings the pixel ({:.3g}, {:.3g}, {:.3g}) by itself".format(*ray.light),
+            "adds ({:.3g}, {:.3g}, {:.3g}) to the pixel".format(*ray.light),
         ]
         if ray.shadows is not None:
             parts.append("shadow rays: " + self.summary(ray.shadows, np.arange(len(ray.shadows.light))))
@@ -165,7 +165,7 @@ class RayRows:
         return self._scene.name_of(int(s.blocker[place])) if s.blocker[place] >= 0 else ""
 
     def _blocked(self, s: ShadowRays, place: int) -> str:
-        return f"blocked by {self.name(int(s.blocker[place]))}" if s.blocker[place] >= 0 else "said to be in shadow"
+        return f"blocked by {self.name(int(s.blocker[place]))}" if s.blocker[place] >= 0 else "in shadow by its mode"
 
     def _tip(self, s: ShadowRays, place: int) -> str:
         verdict = VERDICTS[s.verdict[place]]
@@ -175,13 +175,13 @@ class RayRows:
         if place in s.named:
             names = [self.name(number) for number in s.named[place][:MOST_NAMED]]
             more = len(s.named[place]) - len(names)
-            parts.append("It names " + ", ".join(names) + (f" and {more} more." if more else "."))
+            parts.append("Named: " + ", ".join(names) + (f" and {more} more." if more else "."))
         if s.asked_moving[place]:
-            parts.append(f"Asking what moves took {s.steps[place]} steps and {s.tests[place]} tests.")
+            parts.append(f"Testing dynamic objects took {s.steps[place]} steps and {s.tests[place]} tests.")
         if verdict is Verdict.TRACED and s.met[place] not in (-1, s.blocker[place]):
-            parts.append(f"The search came upon {self.name(int(s.met[place]))} first.")
+            parts.append(f"Tracing hit {self.name(int(s.met[place]))} first.")
         if s.wrong[place]:
-            truth = f"it is {self._blocked(s, place)}" if s.blocker[place] >= 0 else "nothing is in its way"
+            truth = f"it is {self._blocked(s, place)}" if s.blocker[place] >= 0 else "nothing blocks the ray"
             parts.append(f"This answer is wrong: {truth}.")
         return "\n".join(parts)
 

@@ -21,7 +21,7 @@ from viewer.services.render_request import Traced, Traces
 from viewer.services.render_thread import RenderThread
 from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import NO_CULLING
-from viewer.util.failures import one_line
+from viewer.util.messages import one_line
 
 STILL = 0.7
 """Seconds that the picture must have rested before anything is measured."""

@@ -202,21 +202,22 @@ class Controller:
         if self.runs.current is None:
             self.scheduler.record_light()
 
-    def request_frame(self, size: tuple[int, int]) -> None:
-        """Ask for the frame that should come next, in a window that has room for so many pixels."""
-        session, scene = self.session, self.session.scene
+    def compile_method(self) -> None:
+        """Compile what the chosen method has of its own, the first time that it is chosen."""
+        settings, scene = self.session.settings, self.session.scene
         if scene is not None:
-            self.loader.prepare(session.settings.method, len(scene.lights), session.settings.accelerator)
-        self.scheduler.request(
-            FrameInputs(
-                size,
-                self.motion.under_way,
-                self.runs.current,
-                self.editing.at_work,
-                self.loader.ready,
-                self.comparing.second_method,
-                self.selection.hovered,
-            )
+            self.loader.prepare(settings.method, len(scene.lights), settings.accelerator)
+
+    def frame_inputs(self, size: tuple[int, int]) -> FrameInputs:
+        """Return what decides how the next frame is traced, in a window that has room for so many pixels."""
+        return FrameInputs(
+            size,
+            moving=self.motion.under_way,
+            run=self.runs.current,
+            edited=self.editing.at_work,
+            ready=self.loader.ready,
+            second=self.comparing.second_method,
+            focus=self.selection.hovered,
         )
 
     def keep_frame(self) -> None:

@@ -23,7 +23,7 @@ from viewer.services.render_request import Traces
 from viewer.services.render_thread import RenderThread
 from viewer.state.notices import Notices
 from viewer.state.session import Session
-from viewer.util.failures import KNOWN, Failure, failure
+from viewer.util.messages import KNOWN, Failure, failure
 
 KEPT = 2
 """Renderers that are kept besides that of the scene as it was read."""

@@ -16,7 +16,7 @@ from contextlib import suppress
 from typing import Generic, TypeVar
 
 from tracer.scene.model import Cancelled, Progress
-from viewer.util.failures import KNOWN, Failure, failure
+from viewer.util.messages import KNOWN, Failure, failure
 
 Result = TypeVar("Result")
 

@@ -6,12 +6,11 @@ is placed again whenever the turn changes, as methods differ in what they count 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
 
-from tracer.renderer import Frame
-from viewer.services.render_request import RenderRequest, Traces
+from viewer.services.render_request import Parts, RenderRequest, Traces
 
 
 class Pair:
@@ -25,7 +24,7 @@ class Pair:
         """Return whether it is the pair of this renderer, in the world that this one has now."""
         return renderer is self._first and getattr(renderer, "world", None) is self._world
 
-    def refine(self, request: RenderRequest, cancel: Callable[[], bool]) -> Generator[tuple[Frame, Frame], None, None]:
+    def refine(self, request: RenderRequest, cancel: Callable[[], bool]) -> Parts:
         """Yield each part of the picture by the first renderer, and the same by the second with the other method.
 
         The world is always left as the first has placed it: queries may be answered between two parts."""
@@ -34,12 +33,12 @@ class Pair:
         first, second = request.refine(self._first, cancel), request.refine(self._second, cancel)
         with closing(first) as ours, closing(second) as theirs:
             begun = False
-            for frame in ours:
+            for frame, _ in ours:
                 try:
                     if begun:
                         self._second.take_turn(request.time)
                     begun = True
-                    other = next(theirs)
+                    other, _ = next(theirs)
                 finally:
                     self._first.take_turn(request.time)
                 yield frame, other

@@ -16,7 +16,6 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import clipboard, exr, png, tev
-from viewer.output.legend_parts import Legend
 from viewer.output.legend_picture import with_legend
 from viewer.output.recipe import Recipe, cannot_come_back
 from viewer.services import stills
@@ -29,7 +28,8 @@ from viewer.state.plans import MOST_MULTIPLE, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.util.files import reserved
+from viewer.util.files import write_new
+from viewer.views.legend import Legend
 
 MOST_PIXELS = 1 << 26
 JPEG = ".jpg"
@@ -74,11 +74,14 @@ class PictureRun(Run[Path]):
         pixels, _ = (frame.pixels, "") if as_exr else stills.draw(frame, scene, self.recipe)
         text = stills.text(pixels, frame, scene, self.recipe)
         stem = f"{scene.path.stem}-{self.recipe.view.value}-{width}x{height}"
-        with reserved(self.folder, stem, self.ending) as path:
+
+        def write(path: Path) -> None:
             if as_exr:
                 exr.write(path, frame, text)
             else:
                 write_picture(path, pixels, text)
+
+        path = write_new(self.folder, stem, self.ending, write)
         self.traced = self.frames
         yield path
 

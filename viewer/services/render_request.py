@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
@@ -12,6 +13,8 @@ from tracer.statistics import FrameStatistics
 
 Warmup = tuple[tuple[float, Camera], ...]
 """Frames by time and camera."""
+Parts = Generator[tuple[Frame, Frame | None], None, None]
+"""Frames of a picture, each with the same by a second method, if any."""
 
 
 class Traces(Protocol):
@@ -69,9 +72,12 @@ class RenderRequest:
     focus: tuple[float, float] | None = field(default=None, compare=False)
     warmup: Warmup | None = None
 
-    def refine(self, renderer: Traces, cancel: Callable[[], bool]) -> Generator[Frame, None, None]:
+    def refine(self, renderer: Traces, cancel: Callable[[], bool]) -> Parts:
         """Yield its parts and samples, each of them a frame, by the renderer's settings."""
-        return renderer.refine(self.time, self.camera, cancel, self.parts, self.samples, self.focus)
+        refining = renderer.refine(self.time, self.camera, cancel, self.parts, self.samples, self.focus)
+        with closing(refining):
+            for frame in refining:
+                yield frame, None
 
     def supersedes(self, running: RenderRequest, shown: bool = False) -> bool:
         """Whether a trace of `running`, part of which has been shown or not, is no longer worth going on with now that

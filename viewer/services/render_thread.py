@@ -17,20 +17,20 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Generator, Hashable
+from collections.abc import Callable, Hashable
 from concurrent.futures import Future
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from tracer.renderer import Frame
+from tracer.frame import Frame
 from tracer.scene.model import Cancelled
 from viewer.services.jobs import TRACER, step_back
 from viewer.services.pair import Pair
 from viewer.services.queries import Function, Queries, Query
-from viewer.services.render_request import RenderRequest, Spare, Task, Traced, Traces
-from viewer.util.failures import Failure, failure
+from viewer.services.render_request import Parts, RenderRequest, Spare, Task, Traced, Traces
+from viewer.util.messages import Failure, failure
 
 QUERY_SECONDS = 0.25
 """That a picture waits at most for the answer to a query; a longer one is cancelled, and may be asked for anew."""
@@ -294,15 +294,14 @@ class RenderThread:
     def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
         failed = first = shown = None
         try:
-            if reset:
+            if reset or request.warmup is not None:
                 self._forget(renderer)
             seconds = max(request.settings.certificate_seconds, request.refinement_seconds)
             patient = request.refinement_seconds > 0.0
             renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
-            if request.warmup is not None:
-                self._warm_up(renderer, request)
-            with closing(self._refining(renderer, request)) as refining:
-                for frame, second in refining:
+            self._warm_up(renderer, request)
+            with closing(self._parts_of(renderer, request)) as parts:
+                for frame, second in parts:
                     first = first or frame.statistics
                     shown = Traced(request, frame, first, second)
                     self._answer_meanwhile(renderer, request.time)  # a newer picture makes the window ask anew
@@ -322,8 +321,7 @@ class RenderThread:
         self._wake()
 
     def _warm_up(self, renderer: Traces, request: RenderRequest) -> None:
-        """Forget all modes, and trace frames that set them."""
-        self._forget(renderer)
+        """Trace the frames that set the modes of a picture."""
         as_wanted = renderer.settings
         renderer.settings = replace(as_wanted, verify=False)
         for moment, camera in request.warmup or ():
@@ -333,15 +331,14 @@ class RenderThread:
                 self._learnt.append(self._first_to_learn(traced))
         renderer.settings = as_wanted
 
-    def _refining(self, renderer: Traces, request: RenderRequest) -> Generator[tuple[Frame, Frame | None], None, None]:
-        """The pictures that a request asks for, each with that by the second method where there is one."""
+    def _parts_of(self, renderer: Traces, request: RenderRequest) -> Parts:
+        """Return the parts and samples of a picture, each with that by the second method where there is one."""
         if not request.second:
             self._pair = None  # nor is what it has learnt kept in memory
-            yield from ((frame, None) for frame in request.refine(renderer, lambda: self._cancel))
-            return
+            return request.refine(renderer, lambda: self._cancel)
         if self._pair is None or not self._pair.is_of(renderer):
             self._pair = Pair(renderer)
-        yield from self._pair.refine(request, lambda: self._cancel)
+        return self._pair.refine(request, lambda: self._cancel)
 
     def _first_to_learn(self, traced: Traced) -> Traced:
         """The frame, which has set modes, and whether it is the first since these were forgotten."""

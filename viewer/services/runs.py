@@ -28,7 +28,7 @@ from viewer.output.film import Film
 from viewer.services.render_request import Traces
 from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
 from viewer.state.views import View
-from viewer.util.failures import Failure, failure
+from viewer.util.messages import Failure, failure
 from viewer.util.time_left import TimeLeft
 
 LONGEST_SIDE = 4096

@@ -72,7 +72,7 @@ def _holds(table: Table, token: str) -> NDArray[np.bool_]:
         return _anywhere(table, token.replace('"', ""))
     name, comparing, wanted = comparison[1].lower(), comparison[2], comparison[3].replace('"', "")
     if not wanted:
-        raise FilterError(f"{name}{comparing} what? Type what it is compared with")
+        raise FilterError(f"{name}{comparing} needs a value")
     if name == "is":
         return _state(table, wanted.lower())
     if name == "mode" and table.level is Level.PRIMITIVES:
@@ -90,7 +90,7 @@ def _column(table: Table, name: str) -> Values:
         raise FilterError(f"no column is called {name}: {hint}")
     values = table.columns.get(name)
     if values is None:
-        raise FilterError(_WHEN_KNOWN.get(name, "the rays at its pixels are not counted yet"))
+        raise FilterError(_WHEN_KNOWN.get(name, "shadow rays are not counted yet"))
     return values
 
 

@@ -49,16 +49,16 @@ _LIGHT = "for the chosen light, or for all of them together"
 _AT_PIXELS = "at the pixels that show it, of all bounces"
 _DUE = Column("due", "Due", f"shadow rays that are due {_AT_PIXELS}")
 _SAVED = Column("saved", "Untraced", f"shadow rays {_AT_PIXELS} that were not traced through the whole scene")
-_SHARE = Column("share", "Share", "part of the shadow rays that are due which is untraced, in per cent")
+_SHARE = Column("share", "Share", "share of the due shadow rays that is untraced, in per cent")
 _WRONG = Column("wrong", "Wrong", "wrong shadow answers at its pixels; known while frames are verified")
-_PIXELS = Column("pixels", "Pixels", "pixels that show it now")
+_PIXELS = Column("pixels", "Pixels", "pixels that it covers now")
 COLUMNS: dict[Level, tuple[Column, ...]] = {
     Level.PRIMITIVES: (
-        Column("number", "Number", "the primitive's number, which pictures and messages refer to"),
+        Column("number", "Number", "the primitive's number in the scene"),
         Column("object", "Object", "the object, or the part of the static geometry, that it belongs to", False),
         _PIXELS,
-        Column("occlusion", "Occlusion", "its occlusion mode; of cells, that of all cells that are seen", False),
-        Column("shadow", "Shadow", f"its shadow mode {_LIGHT}; of cells, that of all cells that are seen", False),
+        Column("occlusion", "Occlusion", "its occlusion mode; of cells, that of all visible cells", False),
+        Column("shadow", "Shadow", f"its shadow mode {_LIGHT}; of cells, that of all visible cells", False),
         _DUE, _SAVED, _SHARE, _WRONG,
         Column("kind", "Kind", "triangle, sphere or cone", False),
         Column("material", "Material", "its material", False),
@@ -66,12 +66,12 @@ COLUMNS: dict[Level, tuple[Column, ...]] = {
     ),
     Level.OBJECTS: (
         Column("object", "Object", "its name in the scene", False),
-        Column("primitives", "Primitives", "how many it has"),
-        Column("seen", "Seen", "how many of these have a pixel"),
+        Column("primitives", "Primitives", "number of its primitives"),
+        Column("seen", "Seen", "number of its primitives that are visible"),
         _PIXELS,
-        Column("rendered", "Rendered", "how many of its primitives are fully rendered, so that their rays are saved"),
-        Column("full_shadow", "In shadow", f"how many of its primitives have full shadow {_LIGHT}"),
-        Column("non_shadow", "Lit", f"how many of its primitives have non-shadow {_LIGHT}"),
+        Column("rendered", "Rendered", "number of its primitives that are fully rendered, so that rays can be culled"),
+        Column("full_shadow", "In shadow", f"number of its primitives with full shadow {_LIGHT}"),
+        Column("non_shadow", "Lit", f"number of its primitives with non-shadow {_LIGHT}"),
         _DUE, _SAVED, _SHARE, _WRONG,
         Column("motion", "Motion", "whether it is static or dynamic", False),
     ),

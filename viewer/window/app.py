@@ -24,7 +24,7 @@ from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Scene
 from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
-from viewer.util.failures import failure
+from viewer.util.messages import failure
 from viewer.util.resources import default_scene
 from viewer.window import commands, comparing, graphics, menus, style
 from viewer.window.full_screen import Rect
@@ -74,7 +74,8 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     # The scheduler: queries about the newest frame are answered before the next.
     step("Inspecting the pixel", c.inspect_pixel)
     step("Listing the scene", c.list_scene)
-    step("Asking for the next frame", lambda: c.request_frame(size))
+    step("Compiling the method", c.compile_method)
+    step("Asking for the next frame", lambda: c.scheduler.request(c.frame_inputs(size)))
     step("Recording the light", c.record_light)
     # What the newest frame is kept for.
     step("Keeping the frame", c.keep_frame)
@@ -102,7 +103,7 @@ class App:
         self.ui = Ui(self.controller)
         self.ui.guard = Guard(self.controller.notices, lambda name, fault: log.instead_of_part(self.ui, name, fault))
         self.ui.take_commands(commands.build(self.ui))
-        self.ui.paste_from, self.ui.copy_to = imgui.get_clipboard_text, imgui.set_clipboard_text
+        self.ui.desktop.paste, self.ui.desktop.copy = imgui.get_clipboard_text, imgui.set_clipboard_text
         self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
         self.meshes = meshes
         self.scene, self.on_frame = scene, on_frame
@@ -110,13 +111,14 @@ class App:
         self.layout_file = LayoutFile(config_folder())
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
-        self.ui.request_exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
-        self.ui.restart_graphics = lambda: setattr(self.context_loss, "cause", "graphics were restarted")
+        self.ui.desktop.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
+        self.ui.desktop.restart_graphics = lambda: setattr(self.context_loss, "cause", "graphics were restarted")
         if preferences.tour:
             preferences.tour = False  # on the first start only; the menu Help has it again
             self.ui.tour.start()
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
+        self._dropped_files: list[Path] = []
         self.drawn_by_processor = self.iconified = self.was_open = self._opened = self._ended = False
         self.context_loss = ContextLoss()
         self._room = (0, 0)
@@ -182,7 +184,7 @@ class App:
         step("The script's function", self._call_script)
         draws("Drawing the picture", lambda: graphics.draw(ui))
         draws("Drawing the preview", lambda: graphics.draw_preview(ui))
-        draws("Drawing recorded pictures", lambda: ui.shots.bring() if ui.shots is not None else None)
+        draws("Drawing recorded pictures", lambda: ui.graphics.shots.bring() if ui.graphics.shots is not None else None)
         draws("Saving the picture", self._capture_picture)
         self._set_frame_rate()
 
@@ -215,7 +217,7 @@ class App:
         style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
 
     def _open_dropped(self) -> None:
-        dropped, self.ui.dropped = self.ui.dropped, []
+        dropped, self._dropped_files = self._dropped_files, []
         if len(dropped) > 1:
             self.controller.notices.say(f"{len(dropped)} files were dropped; only {dropped[0].name} is opened")
         if dropped:
@@ -257,10 +259,10 @@ class App:
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
 
     def _capture_window(self) -> None:
-        if self._capture_this_frame and self.ui.display is not None:
+        if self._capture_this_frame and self.ui.graphics.display is not None:
             self._capture_this_frame = False
             size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
-            self.controller.captures.capture(self.controller.frame, self.ui.display.read_window(*size))
+            self.controller.captures.capture(self.controller.frame, self.ui.graphics.display.read_window(*size))
 
     def _set_frame_rate(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
@@ -313,7 +315,7 @@ class App:
         self.was_open, self.iconified = True, False
         self.context_loss.watch()
         graphics.make(self.ui)
-        self.drawn_by_processor = any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
+        self.drawn_by_processor = any(name in self.ui.graphics.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
             self.params.fps_idling.fps_max = FASTEST_BY_PROCESSOR
         self.controller.wake.connect(hello_imgui.request_refresh)
@@ -340,13 +342,13 @@ class App:
     def _close_wanted(self, window: Any) -> None:
         """The window's close button, or the desktop: the same as the command."""
         glfw.set_window_should_close(window, False)
-        self.ui.guard.step("Quitting", self.ui.request_exit)
+        self.ui.guard.step("Quitting", self.ui.desktop.exit)
 
     def _iconify(self, _window: Any, iconified: int) -> None:
         self.iconified = bool(iconified)
 
     def _dropped(self, _window: Any, paths: list[str]) -> None:
-        self.ui.dropped = [Path(p) for p in paths]
+        self._dropped_files = [Path(p) for p in paths]
         hello_imgui.request_refresh()
 
     def _release(self) -> None:

@@ -107,7 +107,7 @@ def fly_to_selected(ui: Ui) -> None:
     points = primitive_points(now.scene, picked.primitive, time) if part is None else part_points(now, part, time)
     place = place_of(points)
     if place is None:
-        c.notices.say("what is selected is nowhere in the world at this moment")
+        c.notices.say("the selection is not in the scene at this time")
         return
     x, y, z = place.middle.tolist()
     ui.picture.pivot = x, y, z
@@ -167,14 +167,14 @@ def _text(ui: Ui, here: Condition) -> list[Command]:
 
     def copy(text: Callable[[], str], what: str) -> Callable[[], None]:
         def do() -> None:
-            ui.copy_to(text())
+            ui.desktop.copy(text())
             c.notices.say(f"camera copied as {what}")
 
         return do
 
     def paste() -> None:
         try:
-            pasted = camera_text.read(ui.paste_from() or "", c.session.camera, aspect())
+            pasted = camera_text.read(ui.desktop.paste() or "", c.session.camera, aspect())
         except ValueError as error:
             c.notices.say(f"no camera pasted: {error}", error=True)
             return

@@ -44,7 +44,7 @@ def _file(ui: Ui) -> list[Command]:
                 tip="the frame and its buffers, to tev or HDRView; the panel Saving says where it listens"),
         switch("Start where I left off", "File", p, "start_where_left", separated=True),
         Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset)),
-        Command("Quit", "File", lambda: ui.request_exit(), "Ctrl+Q", separated=True),
+        Command("Quit", "File", lambda: ui.desktop.exit(), "Ctrl+Q", separated=True),
     ]  # fmt: skip
 
 
@@ -88,7 +88,7 @@ def copy_command(ui: Ui) -> None:
     """Put the command that makes the picture on the clipboard."""
     words = ui.controller.recipes.command()
     if words is not None:
-        ui.copy_to(words)
+        ui.desktop.copy(words)
 
 
 def _run(ui: Ui) -> list[Command]:
@@ -138,6 +138,6 @@ def _help(ui: Ui) -> list[Command]:
         Command("Tour", "Help", tour, checked=lambda: ui.tour.step is not None),
         dialog(Dialog.KEYS, "F1", "keys shortcuts"),
         dialog(Dialog.ABOUT),
-        Command("Restart graphics", "Help", lambda: ui.restart_graphics(), separated=True,
+        Command("Restart graphics", "Help", lambda: ui.desktop.restart_graphics(), separated=True,
                 tip="for broken pictures or letters, as after sleep: the window is made anew, nothing is lost"),
     ]  # fmt: skip

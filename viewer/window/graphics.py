@@ -12,9 +12,10 @@ from viewer.state.missing import missing
 from viewer.state.parts import parts_of
 from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.savings import comparison_in_words
+from viewer.state.views import View
+from viewer.views.base import Highlight
 from viewer.window import comparing
-from viewer.window.compared import Compared
-from viewer.window.display import Display, Look
+from viewer.window.display import Compared, Display, InWindow
 from viewer.window.magnifier import Magnifier
 from viewer.window.panels import legend, savings
 from viewer.window.preview import PreviewDisplay
@@ -27,44 +28,37 @@ PREVIEW_UPLOAD_SECONDS = 0.01
 
 def make(ui: Ui) -> None:
     """Make all that a new context needs."""
-    ui.display = Display()
-    ui.shots = Shots(ui.display.context)
-    ui.compared = Compared(ui.display.passes)
-    ui.magnifier = Magnifier(ui.display.passes)
-    ui.renderer_name = ui.display.context.info["GL_RENDERER"]
+    ui.graphics.display = Display()
+    ui.graphics.shots = Shots(ui.graphics.display.context)
+    ui.graphics.compared = Compared(ui.graphics.display.context)
+    ui.graphics.magnifier = Magnifier(ui.graphics.display.context)
+    ui.graphics.renderer_name = ui.graphics.display.context.info["GL_RENDERER"]
 
 
 def release(ui: Ui) -> None:
     """Free all of it, before the context goes."""
-    if ui.compared is not None:
-        ui.compared.release()
-        ui.compared = None
-    if ui.magnifier is not None:
-        ui.magnifier.release()
-        ui.magnifier = None
     release_preview(ui)
-    if ui.display is not None:
-        ui.display.release()
-        ui.display = None
-    if ui.shots is not None:
-        ui.shots.release()
-        ui.shots = None
+    gl = ui.graphics
+    for part in (gl.compared, gl.magnifier, gl.display, gl.shots):
+        if part is not None:
+            part.release()
+    gl.compared = gl.magnifier = gl.display = gl.shots = None
 
 
 def draw(ui: Ui) -> None:
     """Bring a new frame to the GPU, and draw the view if anything about it has changed."""
-    display, c = ui.display, ui.controller
+    display, c = ui.graphics.display, ui.controller
     if display is None:
         return
-    display.show(c.frame)
     picked, part, now = c.selection.picked, c.selection.part, c.session.edited
     if part is not None and now is not None:
-        display.know_parts(ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives]))
-    look = look_of(ui, picked.primitive if picked is not None else -1)
-    look = replace(look if part is None else replace(look, selected_part=part), fate=ui.fate_shown)
-    display.draw(look)
-    comparing.draw(ui, look)
-    comparing.magnify(ui, look)
+        display.part_of = ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives])
+    options, window = comparing.draw_options(ui), in_window(ui)
+    if picked is not None:
+        window = replace(window, selected=picked.primitive, selected_part=-1 if part is None else part)
+    display.draw(c.frame, options, window)
+    comparing.draw(ui, options, window.smooth)
+    comparing.magnify(ui, options, window.smooth)
 
 
 def draw_preview(ui: Ui) -> None:
@@ -73,39 +67,39 @@ def draw_preview(ui: Ui) -> None:
 
     A geometry that failed to be drawn is not tried again in this window."""
     geometry = ui.controller.preview.geometry
-    if ui.display is None or geometry is None:
+    if ui.graphics.display is None or geometry is None:
         release_preview(ui)
-    elif ui.not_previewed is not geometry:
+    elif ui.graphics.not_previewed is not geometry:
         try:
-            _draw_preview(ui, ui.display, geometry)
+            _draw_preview(ui, ui.graphics.display, geometry)
         except Exception:
             release_preview(ui)
-            ui.not_previewed = geometry
+            ui.graphics.not_previewed = geometry
             raise
 
 
 def release_preview(ui: Ui) -> None:
     """Free what the preview took; whatever comes next is tried."""
-    if ui.preview is not None:
-        ui.preview.release()
-    ui.preview = ui.not_previewed = None
+    if ui.graphics.preview is not None:
+        ui.graphics.preview.release()
+    ui.graphics.preview = ui.graphics.not_previewed = None
 
 
 def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
     c = ui.controller
-    if ui.preview is None or ui.preview.geometry is not geometry:
+    if ui.graphics.preview is None or ui.graphics.preview.geometry is not geometry:
         release_preview(ui)
-        ui.preview = PreviewDisplay(display.context, geometry)
+        ui.graphics.preview = PreviewDisplay(display.context, geometry)
     width, height = ui.picture.area
     if min(width, height) < 1:
         return
     window = display.context.detect_framebuffer()
     try:
         until = time.perf_counter() + PREVIEW_UPLOAD_SECONDS
-        while ui.preview.bring() and time.perf_counter() < until:
+        while ui.graphics.preview.bring() and time.perf_counter() < until:
             pass
-        if ui.preview.whole:
-            ui.preview.draw(c.session.camera, (width, height), hurried=c.motion.under_way)
+        if ui.graphics.preview.whole:
+            ui.graphics.preview.draw(c.session.camera, (width, height), hurried=c.motion.under_way)
         else:
             c.wake()
     finally:
@@ -113,53 +107,38 @@ def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
         display.context.disable(moderngl.DEPTH_TEST)
 
 
-def look_of(ui: Ui, selected: int = -1) -> Look:
-    """How the view is to be drawn, with an outline around a primitive unless it is -1."""
-    c, p = ui.controller, ui.controller.preferences
-    return Look(
-        view=c.scheduler.drawn_view,
-        light=c.session.light,
-        shading=p.shading,
-        outlines=p.outlines,
-        selected=selected,
-        smooth=p.smooth_upscaling and c.session.zoom.fits,
-        marked=p.mark_wrong,
-        magnified=c.scheduler.magnified,
-        wipe=c.session.wipe,
-        line=not c.scheduler.becoming_finer,
-        shares=p.work_shares,
-        beneath=p.beneath,
-        tone=c.session.tone,
-        clipping=c.session.clipping,
-        span=c.comparing.span(c.scheduler.drawn_view),
-        cut=c.session.cut,
-    )
+def in_window(ui: Ui) -> InWindow:
+    """Return what the window adds to the picture, but for what is selected."""
+    c = ui.controller
+    smooth, view = c.preferences.smooth_upscaling and c.session.zoom.fits, c.scheduler.drawn_view
+    line = view is not View.WIPE or not c.scheduler.becoming_finer  # of few pixels it would be thick
+    return InWindow(smooth=smooth, highlight=Highlight(ui.fate_shown if view is View.FATE else None, line))
 
 
 def capture(ui: Ui) -> None:
     """Save the picture, or copy it, if that was asked for and it has come; where it will not come, say why."""
     c, wanted = ui.controller, ui.capture_wanted
     if wanted not in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD):
-        ui.capture_view = None
+        ui.graphics.capture_view = None
         return
-    view = ui.capture_view = ui.capture_view or c.session.view
+    view = ui.graphics.capture_view = ui.graphics.capture_view or c.session.view
     why = _why_none(c) if view is c.session.view else "another view was chosen before it came"
     if why:
-        ui.capture_wanted = ui.capture_view = None
+        ui.capture_wanted = ui.graphics.capture_view = None
         c.notices.say(f"no picture of the view {view.label}: {why}", error=True)
         return
     shown = c.scheduler.drawn_view is c.session.view
     ready = shown and not c.scheduler.becoming_finer  # else the picture is saved when it has come
-    if ui.display is not None and ready:
-        ui.capture_wanted = ui.capture_view = None
-        look = look_of(ui, selected=-1)  # the mark is for the user, not for the picture
-        ui.display.draw(look)
-        pixels = ui.display.read() if ui.display.drawn(look) else None
+    if ui.graphics.display is not None and ready:
+        ui.capture_wanted = ui.graphics.capture_view = None
+        options, window = comparing.draw_options(ui), in_window(ui)  # without what is selected
+        ui.graphics.display.draw(c.frame, options, window)
+        pixels = ui.graphics.display.read() if ui.graphics.display.shows(options, window) else None
         compared = pixels is not None and comparing.shown(ui) is not None
         if pixels is not None and compared:
-            pixels = comparing.composed(ui, pixels)
+            pixels = comparing.composed_picture(ui, pixels)
         described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
-        recipe = c.recipes.of(c.frame, look.view) if c.frame is not None and not compared else None
+        recipe = c.recipes.of(c.frame, options.view) if c.frame is not None and not compared else None
         if recipe is not None and c.frame is not None and recipe.tells_counters:
             said = comparison_in_words(c.frame, savings.standing(c))
             recipe = replace(recipe, style=replace(recipe.style, savings=said))

@@ -115,7 +115,7 @@ class Layout:
         docking.main_dock_space_node_flags = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button)
         docking.docking_splits = _splits()
         docking.dockable_windows = [self._window(panel) for panel in PANELS.values()]
-        ui.show_panel, ui.reset_layout = self.show, self.reset
+        ui.show_panel, ui.desktop.reset_layout = self.show, self.reset
         ui.panel_labels = tuple(label for label in PANELS if label != PICTURE)
 
     def go_on_from(self, other: Layout) -> None:

@@ -22,8 +22,7 @@ from viewer.state.preferences import default_screenshot_folder
 from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.views import View
 from viewer.window.command import Command
-from viewer.window.compared import Compared
-from viewer.window.display import Display
+from viewer.window.display import Compared, Display
 from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard, is_key
@@ -82,6 +81,32 @@ class Picture:
 
 
 @dataclass
+class Desktop:
+    """What commands ask of the window itself, and of the clipboard."""
+
+    exit: Callable[[], None] = lambda: None
+    reset_layout: Callable[[], None] = lambda: None
+    restart_graphics: Callable[[], None] = lambda: None
+    paste: Callable[[], str] = lambda: ""
+    copy: Callable[[str], None] = lambda text: None
+
+
+@dataclass
+class Graphics:
+    """What lives as long as the window's GL context, and is None without one.  `not_previewed` could not be drawn in
+    this window; `capture_view` is the view that a picture is wanted of."""
+
+    renderer_name: str = ""
+    display: Display | None = None
+    shots: Shots | None = None
+    compared: Compared | None = None
+    magnifier: Magnifier | None = None
+    preview: PreviewDisplay | None = None
+    not_previewed: PreviewGeometry | None = None
+    capture_view: View | None = None
+
+
+@dataclass
 class RaysState:
     """For how many frames the tree of rays is to unfold."""
 
@@ -93,39 +118,25 @@ State = TypeVar("State")
 
 @dataclass(slots=True)
 class Ui:
-    """See the module.  `dialogs` are those that are open, the newest last; `capture_view` is the view that a picture is
-    wanted of; `fate_shown` is the fate of shadow rays whose pixels are to stand out; `key_wanted` is the command that
-    waits for a key to be pressed; `chorded` are the keys that steer which were pressed with Ctrl, Alt or Super;
-    `screening` is the recorded picture that is shown in the picture's place."""
+    """See the module.  `dialogs` are those that are open, the newest last, `fate_shown` is the fate of shadow rays
+    whose pixels are to stand out, and `screening` the recorded picture that is shown in the picture's place."""
 
     controller: Controller
-    display: Display | None = None
     commands: list[Command] = field(default_factory=list)
     fold: Fold = field(default_factory=Fold)
     full_screen: FullScreen = field(default_factory=FullScreen)
     capture_wanted: CaptureKind | None = None
-    capture_view: View | None = None
     dialogs: list[Dialog] = field(default_factory=list)
     keyboard: Keyboard = field(default_factory=Keyboard)
     fate_shown: Fate | None = None
-    paste_from: Callable[[], str] = lambda: ""
-    copy_to: Callable[[str], None] = lambda text: None
-    dropped: list[Path] = field(default_factory=list)
-    renderer_name: str = ""
-    request_exit: Callable[[], None] = lambda: None
-    reset_layout: Callable[[], None] = lambda: None
-    restart_graphics: Callable[[], None] = lambda: None
+    desktop: Desktop = field(default_factory=Desktop)
+    graphics: Graphics = field(default_factory=Graphics)
     show_panel: Callable[[str], Any] = lambda label: None
     panel_labels: tuple[str, ...] = ()
     guard: Guard = field(init=False)
     keymap: Keymap = field(init=False)
     tour: Tour = field(init=False)
-    shots: Shots | None = None
-    preview: PreviewDisplay | None = None
-    not_previewed: PreviewGeometry | None = None
     screening: Screening | None = None
-    compared: Compared | None = None
-    magnifier: Magnifier | None = None
     pixels: Pixels = field(default_factory=Pixels)
     picture: Picture = field(default_factory=Picture)
     _states: dict[type, Any] = field(default_factory=dict)

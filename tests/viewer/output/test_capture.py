@@ -92,7 +92,7 @@ def test_a_read_only_folder_is_one_line(tmp_path: Path, monkeypatch: pytest.Monk
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "open", denied)
-    with pytest.raises(capture.CaptureError, match=r"cannot write to .*Permission denied") as caught:
+    with pytest.raises(capture.CaptureError, match=r"not written: Permission denied") as caught:
         capture.save(PIXELS, tmp_path, "a.png", text())
     assert "\n" not in str(caught.value)
 

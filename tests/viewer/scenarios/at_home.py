@@ -150,7 +150,7 @@ def _reloading(d: Driver) -> None:
     good = path.read_text()
     _write(path, good.replace("l 3 5 4", "l -6 5 4"))
     d.wait(lambda: d.c.session.scene is not scene, "the scene that has changed", 30.0)
-    assert d.ui.display.texture_id is not None
+    assert d.ui.graphics.display.texture_id is not None
     d.settle()
     assert d.c.session.snapshot() == here and d.c.notices.message.text.endswith("tiny.aff changed")
     assert np.abs(d.shown().astype(int) - picture).max() > 20, "another picture"

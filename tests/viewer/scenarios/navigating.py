@@ -61,7 +61,7 @@ def _bookmarks(d: Driver) -> None:
 
 def _texts(d: Driver) -> None:
     clipboard: list[str] = []
-    d.ui.copy_to, d.ui.paste_from = clipboard.append, lambda: clipboard[-1]
+    d.ui.desktop.copy, d.ui.desktop.paste = clipboard.append, lambda: clipboard[-1]
     camera = d.c.session.camera
     d.press(CTRL | SHIFT | int(KEY.c))
     assert json.loads(clipboard[-1]) == camera.to_json()

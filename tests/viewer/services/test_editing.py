@@ -315,10 +315,10 @@ def test_the_command_makes_the_edited_picture_again(
 @pytest.mark.parametrize(
     ("option", "said"),
     [
-        ("--without-light=7", "the scene has the lights 0 to 1"),
+        ("--without-light=7", "the scene's lights are 0 to 1"),
         ("--hide=sofa", "no object of this name; there is parts, ball, car"),
         ("--hide-primitive=99", "the primitives 0 to"),
-        ("--make-static=ball=1", "no object that moves of this name; there is car"),
+        ("--make-static=ball=1", "no moving object of this name; there is car"),
         ("--make-static=car", "give them like train=2.5"),
         ("--make-moving=car", "no static object of this name"),
         ("--move-light=0", "give them like 2=1.5,3,-0.5"),

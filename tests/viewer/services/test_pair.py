@@ -37,7 +37,7 @@ def test_neither_knows_what_the_other_has_found_out(tmp_path, keeps_modes):
     for moment in (1.0, 2.0, 2.0, 2.0, 4.0):
         asked = RenderRequest(moment, CAMERA, settings, samples=2, second=methods[1], parts=(1, 8, 16))
         steps = list(pair.refine(asked, never))
-        expected = [list(asked.refine(renderer, never)) for renderer in alone]
+        expected = [[frame for frame, _ in asked.refine(renderer, never)] for renderer in alone]
         assert len(steps) == len(expected[0]) == 4
         for both, *each in zip(steps, *expected, strict=True):
             assert [frame.settings.method for frame in both] == list(methods)

@@ -105,3 +105,7 @@ def test_culling_is_switched(ui):
 def test_the_keys_of_views_are_those_of_their_commands(ui):
     by_name = {c.name: c for c in ui.commands}
     assert [by_name[view.label].key for view in View] == [view.key for view in View]
+
+
+def test_what_one_panel_needs_is_not_kept_for_all():
+    assert len(Ui.__slots__) <= 21, "keep it in the panel's own state: ui.state(YourState)"

@@ -87,7 +87,7 @@ def test_without_a_picture_it_is_said_what_goes_on() -> None:
 def test_what_was_asked_says_what_it_waits_for() -> None:
     """Nothing moves while samples are added, and an answer comes all the same only after one."""
     for changes, said in (
-        ({}, "looking into it ..."),
+        ({}, "tracing its shadow rays ..."),
         ({"adds_samples": True}, "answered after this sample"),
         ({"refines_lamps": True}, "answered after the samples of lamps"),
         ({"renderer": SimpleNamespace(busy=True)}, "answered after this picture"),

@@ -100,7 +100,9 @@ def _picture(ui: Ui, mark: dict, corner: ImVec2, height: float) -> float:
     room, draw = 1.6 * height, imgui.get_window_draw_list()
     text = mark.get("picture")
     picture = ui.cached(f"picture of {id(mark)}", mark, text, lambda: from_text(text))
-    texture = ui.shots.texture_id(picture, True) if picture is not None and ui.shots is not None else None
+    texture = (
+        ui.graphics.shots.texture_id(picture, True) if picture is not None and ui.graphics.shots is not None else None
+    )
     low, high = ImVec2(corner.x, corner.y), ImVec2(corner.x + room, corner.y + height)
     if picture is None or texture is None:
         draw.add_rect_filled(low, high, imgui.get_color_u32(imgui.Col_.frame_bg), em(0.2))

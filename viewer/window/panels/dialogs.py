@@ -37,7 +37,7 @@ def _about(ui: Ui) -> None:
             QUIET,
         )
         imgui.spacing()
-        paragraph(f"Drawn by {ui.renderer_name}" if ui.renderer_name else "", QUIET)
+        paragraph(f"Drawn by {ui.graphics.renderer_name}" if ui.graphics.renderer_name else "", QUIET)
     imgui.end()
 
 

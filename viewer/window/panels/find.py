@@ -10,9 +10,9 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from viewer.services.scene_table import Listing, SceneTable
+from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.state.row_filter import HELP, HINTS
 from viewer.state.scene_rows import COLUMNS, Column, Level
-from viewer.state.views import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.window.camera_commands import fly_to_selected
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
@@ -132,7 +132,7 @@ def _said(ui: Ui, table: SceneTable, listing: Listing) -> None:
     said = f"{count(rows)} {noun}" if found == rows else f"{count(found)} of {count(rows)} {noun}"
     row = table.selected
     if row >= 0 and found < rows and ui.cached("find-there", listing, row, lambda: table.place_of(row)) is None:
-        clipped(f"{said}; what is selected is not among them", QUIET)
+        clipped(f"{said}; the selection is not among them", QUIET)
         imgui.same_line()
         if imgui.small_button("Show all"):
             table.filter("")
@@ -144,7 +144,7 @@ def _said(ui: Ui, table: SceneTable, listing: Listing) -> None:
         imgui.same_line()
         if imgui.small_button("Show everything"):
             ui.controller.editing.show_everything()
-        tooltip("what is hidden comes back; is:hidden finds it")
+        tooltip("show all that is hidden; the filter is:hidden lists it")
         return
     clipped(said, QUIET)
 
@@ -292,7 +292,7 @@ def _eye(table: SceneTable, row: int, hidden: bool) -> None:
     color = imgui.get_color_u32(imgui.Col_.text if on_it or hidden else imgui.Col_.text_disabled)
     imgui.get_window_draw_list().add_text(at, color, icon)
     if on_it:
-        tooltip("show it again" if hidden else "hide it: the picture is traced as if it were not there")
+        tooltip("show it again" if hidden else "hide it: the picture is traced without it")
     imgui.same_line(0.0, em(0.3))
 
 
@@ -328,4 +328,4 @@ def _menu(ui: Ui, table: SceneTable, listing: Listing, row: int) -> None:
     if imgui.menu_item(verb, "", False)[0]:
         table.hide(row, not hidden)
     if imgui.menu_item(f"{icons.ICON_FA_COPY}  Copy {copied if len(copied) < 24 else 'its name'}", "", False)[0]:
-        ui.copy_to(copied)
+        ui.desktop.copy(copied)

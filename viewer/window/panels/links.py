@@ -109,8 +109,8 @@ def _about(ui: Ui, link: Link) -> str:
         kept = ui.controller.history.records.get(link.frame) is not None
         return f"Go to {ui.controller.navigator.name_of(link.frame)}" if kept else "This picture is no longer kept."
     if link.pixel is not None:
-        return "Select this pixel" if _point(ui, link) is not None else "A pixel of another picture than this one"
-    return "Select it; resting here outlines it in the picture"
+        return "Select this pixel" if _point(ui, link) is not None else "A pixel of another picture"
+    return "Select it; while the pointer rests here, the picture outlines it"
 
 
 def _point(ui: Ui, link: Link) -> Point | None:

@@ -22,7 +22,7 @@ _BEHIND, _WORDS = (0.05, 0.06, 0.08, 0.85), (0.93, 0.94, 0.96, 1.0)
 
 def show(ui: Ui, room: ImVec2, drag: Callable[[Ui, int, float, float], None]) -> bool:
     """The preview, if there is any; `drag` moves the camera by a drag with a button of so many picture heights."""
-    texture = ui.preview.texture_id if ui.preview is not None else None
+    texture = ui.graphics.preview.texture_id if ui.graphics.preview is not None else None
     if texture is None:
         return False
     corner = imgui.get_cursor_screen_pos()

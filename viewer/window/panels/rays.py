@@ -25,13 +25,13 @@ from viewer.window.widgets import (
 
 _ROWS = 14  # of the tree that are seen at once
 _DRAWN = (
-    "in the picture, the shadow rays of the clicked point: yellow as far as light comes, then blue; outlined in "
+    "over the picture, the shadow rays of the clicked pixel: yellow as far as light comes, then blue; outlined in "
     "red is what blocks it, in orange what a certificate names; dashes are hidden. In the colour of partially "
     "occluded, what hides its primitive; three squares are the pixel and the two that it is compared with (Figure 3)"
 )
 _LIGHT = 7.0  # ems of width, at least, for the name of a light
 _SHOWN_TIPS = {
-    Shown.ALL: "every shadow ray, and those to lights that the surface faces away from",
+    Shown.ALL: "all lights, also those that the surface faces away from",
     Shown.TRACED: "shadow rays that were traced through the scene",
     Shown.UNTRACED: "shadow rays that were not, though they are due: culled, dynamic only, candidates and cache",
     Shown.BLOCKED: "shadow rays that do not reach their light",
@@ -53,7 +53,7 @@ def section(ui: Ui) -> None:
         imgui.set_scroll_here_y(0.0)
     if opened:
         _section(ui, rays)
-    checkbox("Draw for a click", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), _DRAWN)
+    checkbox("Draw shadow rays", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), _DRAWN)
 
 
 def _section(ui: Ui, rays: RayInspector) -> None:

@@ -33,7 +33,7 @@ def show(ui: Ui) -> None:
     if tour.step is None and not tour.last_word:
         state.height = 0.0
         return
-    if ui.controller.frame is None and ui.preview is None:
+    if ui.controller.frame is None and ui.graphics.preview is None:
         _all_steps(ui)
     elif state.place is not None:
         _strip(ui, *state.place)

@@ -11,7 +11,7 @@ from tracer.reasons import Reason, Rule, Why
 from tracer.why_in_words import Words, plain
 from viewer.services.origin_pixels import with_origins
 from viewer.services.pixel_inspector import MOST_LIGHTS, nearest_first
-from viewer.state.views import FATE_COLORS, FATE_NAMES
+from viewer.state.palette import FATE_COLORS, FATE_NAMES
 from viewer.window.panels import lights
 from viewer.window.panels.links import Pointed, sentence
 from viewer.window.panels.status import traced_before_an_answer
@@ -60,7 +60,8 @@ def unanswered(ui: Ui) -> str:
         return f"No answer: {c.inspector.problem}."
     if c.motion.lively:
         return "answered when nothing moves"
-    return f"answered after {traced_before_an_answer(c)}" if traced_before_an_answer(c) else "looking into it ..."
+    before = traced_before_an_answer(c)
+    return f"answered after {before}" if before else "tracing its shadow rays ..."
 
 
 def summary(known: Sequence[Explanation]) -> str:
@@ -68,7 +69,7 @@ def summary(known: Sequence[Explanation]) -> str:
     due = [one for one in known if one.due]
     lit = sum(one.reached == one.samples for one in due)
     dark = sum(one.reached == 0 for one in due)
-    parts = {"lit": lit, "in part": len(due) - lit - dark, "in shadow": dark, "behind it": len(known) - len(due)}
+    parts = {"lit": lit, "in part": len(due) - lit - dark, "in shadow": dark, "facing away": len(known) - len(due)}
     return ", ".join(f"{count(number)} {name}" for name, number in parts.items() if number)
 
 
@@ -142,4 +143,4 @@ def _many(ui: Ui, words: Words, found: Why, known: Sequence[Explanation], chosen
 
 def _beyond(wrong: int) -> str:
     answers = "1 shadow answer" if wrong == 1 else f"{count(wrong)} shadow answers"
-    return f"Wrong, too: {answers} at what is mirrored here or seen through it (X lists the rays)."
+    return f"Also wrong: {answers} at what is reflected here or seen through it; Rays lists them."
