@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from bisect import bisect_left
 from collections.abc import Callable
+from itertools import pairwise
 from statistics import median
 
 
@@ -22,28 +23,27 @@ class TimeLeft:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._total = 0
-        self._done: list[int] = []
-        self._at: list[float] = []
+        self._marks: list[tuple[int, float]] = []  # how many steps were done, and when: one append, as others read it
 
     def mark(self, done: int, total: int) -> None:
         """So many steps of `total` are done now."""
         self._total = total
-        self._at.append(self._clock())
-        self._done.append(done)
+        self._marks.append((done, self._clock()))
 
     def seconds(self) -> float | None:
         """What is left, counting the step under way as one like the others; None before the first step is done."""
-        if not self._done or self._done[-1] == self._done[0]:
+        marks = self._marks[:]
+        if not marks or marks[-1][0] == marks[0][0]:
             return None
-        done, left = self._done[-1], self._total - self._done[-1]
-        first = bisect_left(self._done, done - max(left, self.FEWEST))
-        pace = self._pace(first)
-        return left * pace - min(self._clock() - self._at[-1], pace) if left else 0.0
+        done, at = marks[-1]
+        left = self._total - done
+        first = bisect_left(marks, done - max(left, self.FEWEST), key=lambda mark: mark[0])
+        pace = self._pace(marks[first:])
+        return left * pace - min(self._clock() - at, pace) if left else 0.0
 
-    def _pace(self, first: int) -> float:
-        """Seconds for a step, of those since mark `first`."""
-        marks = range(first + 1, len(self._at))
-        steps = [(self._done[n] - self._done[n - 1], self._at[n] - self._at[n - 1]) for n in marks]
+    def _pace(self, marks: list[tuple[int, float]]) -> float:
+        """Seconds for a step, of those between the marks."""
+        steps = [(done - before, at - then) for (before, then), (done, at) in pairwise(marks)]
         paces = [seconds / count for count, seconds in steps if count]
         longest = self.LONGEST * median(paces)
         return sum(min(seconds, longest * max(count, 1)) for count, seconds in steps) / sum(count for count, _ in steps)
