@@ -17,6 +17,7 @@ from viewer.state.comparison import (
     Way,
     apart,
     difference_words,
+    elided,
     fitted,
     named,
     signed_difference,
@@ -162,3 +163,23 @@ def test_a_difference_is_put_into_words():
     assert said == [("0",), ("+0.25",), ("-1.5",), ("miss", "in B"), ("miss", "in A")]
     classes = values_of(make_frame(), View.OCCLUSION, cut=MIDDLE)
     assert [difference_words(difference, classes, x, 0) for x in (0, 1)] == [("same",), ("other",)]
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "room", "shown"),
+    [
+        ("paper", "certified", 9, "paper"),
+        ("certified+cache, frame 3", "certified+cache, frame 12", 24, "certified+cache, frame 3"),
+        ("certified+cache, frame 3", "certified+cache, frame 12", 16, "certified+ca...3"),
+        ("certified+cache, frame 3", "certified+cache, frame 12", 6, "ce...3"),
+        ("certified+cache", "certified+rest", 10, "ce...cache"),
+        ("certified+cache", "certified", 8, "certi..."),
+        ("certified+cache, depth 10", "certified+cache, depth 2", 5, "...10"),
+        ("certified, frame 3", "certified, depth 3, frame 3", 12, "ce...frame 3"),
+        ("certified", "certified", 6, "cer..."),
+        ("certified", "paper", 6, "cer..."),
+    ],
+)
+def test_of_two_names_in_little_room_what_differs_is_seen(name: str, other: str, room: int, shown: str) -> None:
+    found = elided(name, other, lambda text: len(text) <= room)
+    assert found == shown and len(found) <= room
