@@ -6,7 +6,7 @@ import base64
 import re
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.scene.model import Scene
 from viewer.output.capture import CHUNK
-from viewer.output.pictures import picture
 from viewer.output.recipe import Recipe
-from viewer.state.readings import work_top
+from viewer.state.palette import color_map
 from viewer.state.session import Session
-from viewer.state.views import View, color_map
+from viewer.state.views import View
 from viewer.util.numbers import changed
+from viewer.views import colorize
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,19 +78,13 @@ class Shown:
         view = self.recipe.view
         if self.recipe.style.span is not None or not view.needs_work:
             return self.recipe.style.span
-        return 0.0, max(work_top(frame, view) for frame in self.frames.values())
+        return 0.0, max(view.declared.span(frame)[1] for frame in self.frames.values())
 
     @property
     def pictures(self) -> dict[str, NDArray[np.uint8]]:
         """(h, w, 3) of each method, in one range of colours for all."""
-        view, style = self.recipe.view, self.recipe.style
-        return {
-            method: picture(
-                frame, view, self.recipe.light, style.shading, style.marked, self.recipe.wipe, style.shares,
-                style.beneath, style.outlines, 1, style.tone, style.clipping, self.span, style.cut,
-            )
-            for method, frame in self.frames.items()
-        }  # fmt: skip
+        draw = replace(self.recipe.draw, magnified=1).with_span(self.span)
+        return {method: colorize(frame, draw) for method, frame in self.frames.items()}
 
     def difference(self, method: str) -> NDArray[np.float32]:
         """(h, w) how far a method's colours are from those of "none": the largest of the three channels."""
