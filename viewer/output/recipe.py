@@ -20,16 +20,15 @@ from tracer.scene.load import AFF_EXTENSIONS
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
-from viewer.output.pictures import SHADING
 from viewer.state import codec
 from viewer.state import edits as scene_edits
-from viewer.state.draw_options import DrawOptions
-from viewer.state.marks import wipe_column
-from viewer.state.slices import MIDDLE, Slice
+from viewer.state.draw_options import MIDDLE, SHADING, DrawOptions, Slice
+from viewer.state.palette import BENEATH
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.view_state import ViewState, Warmup
-from viewer.state.views import BENEATH, View
+from viewer.state.views import View
 from viewer.util import resources
+from viewer.views.wipe import wipe_column
 
 MOST_BEFORE = 100_000  # frames
 CHANCE = "what is certified depends on time and threads"
@@ -90,6 +89,19 @@ class Recipe:
         return self.settings.width, self.settings.height
 
     @property
+    def draw(self) -> DrawOptions:
+        """How the frame is drawn."""
+        style = self.style
+        options = DrawOptions(
+            view=self.view, light=self.light, wipe=self.wipe, slice=style.cut, beneath=style.beneath,
+            shading=style.shading, tone=style.tone, outlines=style.outlines, shares=style.shares,
+            mark_wrong=style.marked, clipping=style.clipping, magnified=style.magnified, savings=style.savings,
+            caption=style.caption, legend=style.legend is not None,
+            legend_at=style.legend or DrawOptions().legend_at,
+        )  # fmt: skip
+        return options.with_span(style.span)
+
+    @property
     def needs_history(self) -> bool:
         """Whether frames before it show in the picture."""
         return needs_history(self.settings.method, self.view, self.tells_counters)
@@ -107,19 +119,17 @@ class Recipe:
 
     def state(self) -> ViewState:
         """Return the state that a picture carries."""
-        style = self.style
-        legend_at = style.legend or DrawOptions().legend_at
-        draw = DrawOptions(
-            view=self.view, light=self.light, wipe=self.wipe, slice=style.cut, beneath=style.beneath,
-            shading=style.shading, tone=style.tone, legend=style.legend is not None, legend_at=legend_at,
-            outlines=style.outlines, shares=style.shares, mark_wrong=style.marked, clipping=style.clipping,
-            savings=style.savings, caption=style.caption, magnified=style.magnified,
-        )  # fmt: skip
-        draw = draw if style.span is None else draw.with_span(style.span)
         settings = self.settings if self.by_one_thread else replace(self.settings, threads=0)
         warmup = Warmup(self.before, self.warmup, self.repeats, self.modes, self.history)
         return ViewState(
-            str(self.scene.absolute()), self.meshes, self.edits, self.time, self.camera, settings, draw, warmup=warmup
+            str(self.scene.absolute()),
+            self.meshes,
+            self.edits,
+            self.time,
+            self.camera,
+            settings,
+            self.draw,
+            warmup=warmup,
         )
 
 

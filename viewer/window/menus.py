@@ -109,8 +109,6 @@ def close_newest(ui: Ui) -> bool:
     A dialog that has the keyboard to itself closes itself."""
     if imgui.is_popup_open("", ANY_POPUP):
         _close_list()
-    elif ui.tour.step is not None and ui.controller.frame is None:  # a window until there is a picture
-        ui.tour.end()
     elif ui.dialogs:
         ui.dialogs.pop()
     elif ui.fold.drawer:

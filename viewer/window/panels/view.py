@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from imgui_bundle import imgui
 
-from viewer.state.readings import can_draw, span_of
+from viewer.state.readings import can_draw
 from viewer.state.tone import MID_GREY, NEUTRAL
 from viewer.state.views import View
 from viewer.window.panels import legend, lights, slicing
@@ -70,7 +70,7 @@ def _range(ui: Ui) -> None:
     spans = ALL["draw.spans"]
     if not c.session.state.applies(spans) or frame is None or not can_draw(frame, draw.view, draw.light):
         return
-    low, high = c.comparing.span(draw.view) or ui.cached("span", frame, draw.view, lambda: span_of(frame, draw.view))
+    low, high = c.comparing.span(draw.view) or draw.view.declared.span(frame)
     row(spans.label, f"{spans.help} Drag, or Ctrl+click to type.")
     imgui.set_next_item_width(-em(4.2))
     speed = max((high - low) / 200.0, 1e-6)
@@ -88,7 +88,7 @@ def _range(ui: Ui) -> None:
 def _explanation(ui: Ui) -> None:
     """What the view shows, and what it costs."""
     c = ui.controller
-    view, run, text = c.session.draw.view, c.runs.current, c.session.draw.view.explanation
+    view, run, text = c.session.draw.view, c.runs.current, c.session.draw.view.help
     lacks = run.lacks(view) if run is not None else ""
     if lacks:
         paragraph(f"This run {lacks}.", WARNING)
