@@ -24,11 +24,11 @@ def test_the_way_to_see_culling_can_be_gone_in_order_from_every_method():
         text = CULLING.text(c, KEYS.__getitem__)
         assert text.index("Choose paper") < text.index("press Q twice")
         for method, said in (("paper", "Press Q twice."), ("none", "Press Q once more")):
-            c.session.change(settings=Settings(16, 8, method=method))
+            c.session.settings = Settings(16, 8, method=method)
             assert CULLING.text(c, KEYS.__getitem__).startswith(said)
     shadow = c.frame.statistics.shadow
     shadow.culled = shadow.candidates_only = shadow.dynamic_only = shadow.cache_hits = 0
-    c.session.change(settings=Settings(16, 8, method="paper"))
+    c.session.settings = Settings(16, 8, method="paper")
     for c.active, c.scheduler.awaits in ((True, False), (False, True)):
         assert "is on its way" in CULLING.text(c, KEYS.__getitem__)
     c.scheduler.awaits = False

@@ -20,7 +20,7 @@ def test_wrong_answers_are_those_of_the_method_that_is_shown():
     )  # fmt: skip
     text, color = wrong_answers(c)
     assert text.startswith("3 wrong answers (") and color == ERROR
-    c.session.change(settings=Settings(16, 8, method="paper"))
+    c.session.settings = Settings(16, 8, method="paper")
     assert wrong_answers(c)[0] == f"{text} (verified for the view Difference)", "the box Verify is not ticked"
     c.runs.current = SimpleNamespace(name="zoom test")
     text, color = wrong_answers(c)
@@ -36,7 +36,7 @@ def test_below_a_method_stands_what_it_trusts_whether_it_is_exact_and_what_it_do
     )
     first, second = trust(c).split(" cache: ")
     assert first.startswith("paper: Trusts ") and "Wrong now and then." in first and second.endswith("as the method.")
-    c.session.change(settings=Settings(16, 8, method="auto"))
+    c.session.settings = Settings(16, 8, method="auto")
     c.frame.statistics.decision = "Every shadow ray is traced."
     assert trust(c).endswith(" Exact."), "the picture is another method's"
     c.frame = make_frame(c.session.settings)
