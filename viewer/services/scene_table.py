@@ -16,7 +16,6 @@ from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from tracer.scene.model import Progress
 from viewer.output import exports
-from viewer.output.rows_csv import write_rows
 from viewer.services.capture_service import CaptureService
 from viewer.services.editing import Editing
 from viewer.services.jobs import Job
@@ -192,7 +191,9 @@ class SceneTable:
             return
         name = f"{scene.path.stem}-{listing.table.level.value.lower()}"
         folder, table, rows = self._preferences.picture_folder, listing.table, listing.rows
-        self._files.write(lambda: exports.save(folder, name, ".csv", lambda path: write_rows(table, rows, path)))
+        self._files.write(
+            lambda: exports.save(folder, name, ".csv", lambda path: exports.write_rows(table, rows, path))
+        )
 
     # --- one frame of the window -----------------------------------------------------------------
 
