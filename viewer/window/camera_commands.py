@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 from viewer.state import camera_text, navigation
@@ -13,8 +12,6 @@ from viewer.window.setting_rows import setting_command
 from viewer.window.ui import Ui
 
 KEYED_BOOKMARKS = 9
-STEP = math.radians(15.0)
-"""Of a turn by a key."""
 
 # Name: right, up and towards us, as `navigation.looking_from` has them; and key.
 _SIDES = (
@@ -43,7 +40,7 @@ def camera(ui: Ui) -> list[Command]:
         Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.on_path), "P",
                 checked=lambda: c.session.on_path, enabled=here),
         Command("Add bookmark", "Camera/Bookmarks", c.bookmarks.add, "Ctrl+B", enabled=here, separated=True),
-        *_sides(ui, here), *_turns(ui, here), *_text(ui, here), *_bookmarks(ui, here),
+        *_sides(ui, here), *_text(ui, here), *_bookmarks(ui, here),
     ]  # fmt: skip
 
 
@@ -125,37 +122,6 @@ def _sides(ui: Ui, here: Condition) -> list[Command]:
     return [
         Command(f"Look from {name}", "Camera/Look from", go(side), key, enabled=here, tip=tip, separated=not number)
         for number, (name, side, key) in enumerate(_SIDES)
-    ]
-
-
-def _turns(ui: Ui, here: Condition) -> list[Command]:
-    c, p = ui.controller, ui.controller.preferences
-
-    def orbit(right: float, up: float) -> Callable[[], None]:
-        return lambda: c.motion.move(
-            navigation.orbit(c.session.camera, pivot_of(ui), right * STEP, up * STEP, c.motion.world_up)
-        )
-
-    def dolly(notches: float) -> Callable[[], None]:
-        return lambda: c.motion.move(navigation.dolly(c.session.camera, pivot_of(ui), notches))
-
-    def speed(factor: float) -> Callable[[], None]:
-        def change() -> None:
-            p.speed = min(max(p.speed * factor, 0.001), 1000.0)
-            c.notices.say(f"flying speed {p.speed:.3g}")
-
-        return change
-
-    menu = "Camera/Turn"
-    return [
-        Command("Orbit left", menu, orbit(-1.0, 0.0), enabled=here, repeats=True),
-        Command("Orbit right", menu, orbit(1.0, 0.0), enabled=here, repeats=True),
-        Command("Orbit up", menu, orbit(0.0, -1.0), enabled=here, repeats=True),
-        Command("Orbit down", menu, orbit(0.0, 1.0), enabled=here, repeats=True),
-        Command("Nearer", menu, dolly(1.0), enabled=here, repeats=True),
-        Command("Farther", menu, dolly(-1.0), enabled=here, repeats=True),
-        Command("Fly faster", menu, speed(2.0), repeats=True, separated=True),
-        Command("Fly slower", menu, speed(0.5), repeats=True),
     ]
 
 

@@ -52,6 +52,7 @@ def _point_at_sample(d: Driver, number: int) -> None:
     d.context.mouse_move_to_pos((window.pos.x + 0.2 * window.size.x, window.pos.y + 0.6 * window.size.y))
     d.frames(2)
     for place in np.linspace(0.02, 0.98, 97):  # the plot says itself which frame the pointer is on
+        d.ui.state(PlotsState).pointed = None
         d.context.mouse_move_to_pos((window.pos.x + place * window.size.x, window.pos.y + 0.6 * window.size.y))
         d.frames(2)
         if d.ui.state(PlotsState).pointed == number:

@@ -102,11 +102,6 @@ def _drags(d: Driver) -> None:
     d.frames(3)
     assert math.dist(d.c.session.camera.position, d.ui.picture.pivot) < near
     d.c.preferences.navigation = "fly"
-    d.ui.keymap.choose("Turn right", ["J"])
-    heading = d.c.session.camera.basis()
-    d.hold(KEY.j, 0.1)
-    assert d.c.session.camera.basis()[2] @ heading[0] > 0.01, "a key turns"
-    d.ui.keymap.reset("Turn right")
     d.settle()
 
 

@@ -49,7 +49,6 @@ _ALL_BUTTONS = int(
     | imgui.ButtonFlags_.mouse_button_middle
 )
 FASTER = 4.0  # with Shift
-TURN = 1.6  # radians per second while a key turns
 
 
 def show(ui: Ui) -> None:
@@ -263,16 +262,10 @@ def fly(ui: Ui) -> None:
         return down(plus) - down(minus)
 
     move = axis("Fly right", "Fly left"), axis("Fly up", "Fly down"), axis("Fly forward", "Fly back")
-    turn = axis("Turn right", "Turn left"), axis("Turn up", "Turn down")
-    seconds = min(io.delta_time, 0.1)
-    camera, up = c.session.camera, c.motion.world_up
     if any(move):
-        way = c.motion.pace * c.preferences.speed * seconds * (FASTER if io.key_shift else 1.0)
-        camera = navigation.fly(camera, way * move[0], way * move[1], way * move[2], up)
-    if any(turn):
-        camera = navigation.look(camera, TURN * seconds * turn[0], TURN * seconds * turn[1], up)
-    if any(move) or any(turn):
-        c.motion.move(camera)
+        way = c.motion.pace * c.preferences.speed * min(io.delta_time, 0.1) * (FASTER if io.key_shift else 1.0)
+        right, up, forward = (way * along for along in move)
+        c.motion.move(navigation.fly(c.session.camera, right, up, forward, c.motion.world_up))
 
 
 def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
