@@ -15,18 +15,18 @@ from tracer.setting import settings_of
 from tracer.settings import Settings
 from viewer.cli import arguments, options
 from viewer.cli.arguments import ChosenView, Parser
-from viewer.output import capture, recipe
-from viewer.output.recipe import Recipe, Style
+from viewer.output import capture, commands
 from viewer.services import stills
 from viewer.services.scene_files import find_scene, is_capture
 from viewer.state.draw_options import MIDDLE, DrawOptions
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
 from viewer.state.tone import NEUTRAL, Tone
+from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
 
 LOWER_LEFT = 0.0, 1.0
-_DRAWN = "outlines", "mark_wrong", "clipping", "legend", "shading", "beneath", "slice", "magnified"
-_TONE = "exposure", "white", "curve"
+_SPECIAL = {"view", "spans", "savings", "caption"}  # whose options are no plain values
+_DRAWN = [one for one in settings_of(DrawOptions) if one.option and one.path not in _SPECIAL]
 OR_PICTURE = ", or a saved picture, for its scene, settings and view"
 
 
@@ -46,7 +46,7 @@ def add_picture(parser: Parser) -> None:
         "moving-shadow:LIGHT, saved or cost, as counts of rays or as shares like saved:share (default: color)"
     )
     add("--view", type=arguments.view, default="color", metavar="V", help=help_)
-    options.add_settings(parser, DrawOptions, *_DRAWN, *_TONE)
+    options.add_settings(parser, DrawOptions, *(one.name for one in _DRAWN))
     help_ = "what has the first and the last colour in the views depth, saved, cost and lights (default: as they come)"
     add("--range", type=arguments.value_range, metavar="LOW:HIGH", help=help_)
     help_ = "where the legend is: 0,0 is the upper left (default: 0,1)"
@@ -67,7 +67,7 @@ def picture_settings(given: Namespace) -> Settings:
     return settings
 
 
-def recipe_of(scene: Scene, settings: Settings, given: Namespace) -> Recipe:
+def recipe_of(scene: Scene, settings: Settings, given: Namespace) -> ViewState:
     """Return what the options ask for, with a caption that may have fields.
 
     Raises ValueError, in one line, for a moment or a light that the scene does not have."""
@@ -75,30 +75,20 @@ def recipe_of(scene: Scene, settings: Settings, given: Namespace) -> Recipe:
     edits = options.edits_of(given)
     if view.of_light:
         light = options.light_index(given, f"--view {view.value}:", light, scene)
-    style = Style(
-        shares=shares,
-        marked=given.mark_wrong,
-        magnified=given.magnified,
-        shading=given.shading,
-        beneath=given.beneath,
-        outlines=given.outlines,
-        legend=(given.legend_at or LOWER_LEFT) if given.legend else None,
-        caption=given.caption,
-        tone=_tone(given),
-        clipping=given.clipping,
-        span=given.range,
-        cut=given.slice,
-        savings=given.savings,
-    )
-    history = ""
-    if recipe.by_chance(settings, view, style.savings is not None):
-        history = f"what the method {settings.method} makes depends on time and threads"
-    return Recipe(
-        given.path, options.moment(scene, given), given.camera, settings, view,
-        light if view.of_light else edits.light_index(light) or 0, wipe, style, given.warmup, given.repeat, history,
-        folders=tuple(given.folder), before=given.before, meshes=options.mesh_options(given).of_file(given.path),
-        edits=edits,
+    draw = DrawOptions(
+        view=view, light=light if view.of_light else edits.light_index(light) or 0, wipe=wipe, shares=shares,
+        legend_at=given.legend_at or LOWER_LEFT, savings=given.savings, caption=given.caption,
     )  # fmt: skip
+    for one in _DRAWN:
+        draw = one.put(draw, getattr(given, one.name))
+    draw = draw.with_span(given.range)
+    unknown = ""
+    if commands.by_chance(settings, draw):
+        unknown = f"what the method {settings.method} makes depends on time and threads"
+    warmup = Warmup(given.before, given.warmup, given.repeat, unknown=unknown)
+    meshes = options.mesh_options(given).of_file(given.path)
+    path, time = str(given.path.absolute()), options.moment(scene, given)
+    return ViewState(path, meshes, edits, time, given.camera, settings, draw, warmup=warmup)
 
 
 def _tone(given: Namespace) -> Tone:
@@ -150,16 +140,15 @@ def check_tree(settings: Settings, view: View, scene: Scene) -> None:
         raise ValueError(f"--view {view.value}: {why}")
 
 
-def check_lights(wanted: Recipe, scene: Scene) -> None:
+def check_lights(wanted: ViewState, scene: Scene) -> None:
     """Raise ValueError, in one line, where memory has no room for what all lights send to each pixel."""
     if not stills.lights_fit(wanted, scene):
-        raise ValueError(f"--view {wanted.view.value}: too many lights for pictures of this size")
+        raise ValueError(f"--view {wanted.draw.view.value}: too many lights for pictures of this size")
 
 
 # --- saved pictures --------------------------------------------------------------------------------
 
 _SETTINGS = [one.name for one in settings_of(Settings) if one.option and one.name != "threads"]
-_STYLE = ("magnified", "shading", "beneath", "outlines", "savings")
 
 
 def filled_in(parser: Parser, given: Namespace, words: list[str]) -> Namespace:
@@ -171,12 +160,12 @@ def filled_in(parser: Parser, given: Namespace, words: list[str]) -> Namespace:
     saved, kept = _defaults(given.path)
     parser.set_defaults(**kept)
     given, picture = parser.parse_args(words), given.path
-    given.path = saved.scene
-    view, tone = given.view.view, saved.style.tone  # a view that has no use for something takes none of the picture's
+    given.path = Path(saved.scene)
+    view, tone = given.view.view, saved.draw.tone  # a view that has no use for something takes none of the picture's
     if not view.shows_picture and _tone(given) == tone:
         given.exposure, given.white, given.curve = NEUTRAL.exposure, NEUTRAL.white, NEUTRAL.curve
-    given.clipping &= view.shows_clipped or not saved.style.clipping
-    if given.range == saved.style.span and (view is not saved.view or given.view.shares):
+    given.clipping &= view.shows_clipped or not saved.draw.clipping
+    if given.range == saved.draw.span and (view is not saved.draw.view or given.view.shares):
         given.range = None
     if given.frame is None and given.time is None:
         given.time = saved.time
@@ -185,21 +174,19 @@ def filled_in(parser: Parser, given: Namespace, words: list[str]) -> Namespace:
     return given
 
 
-def _defaults(path: Path) -> tuple[Recipe, dict[str, Any]]:
+def _defaults(path: Path) -> tuple[ViewState, dict[str, Any]]:
     """Return the recipe of a saved picture, and what it carries by the names of the options; raises CaptureError."""
-    saved = recipe.of_state(capture.read(path))
-    saved, style = replace(saved, scene=scene_of(path)), saved.style
+    saved = capture.read(path)
+    saved, draw = replace(saved, scene=str(scene_of(path))), saved.draw
     kept: dict[str, Any] = {name: getattr(saved.settings, name) for name in _SETTINGS}
-    kept |= {name: getattr(style, name) for name in _STYLE}
-    kept |= {"before": saved.before, "warmup": saved.warmup, "repeat": saved.repeats}
-    kept |= {"mark_wrong": style.marked, "legend": style.legend is not None, "legend_at": style.legend}
-    kept |= {"exposure": style.tone.exposure, "white": style.tone.white, "curve": style.tone.curve}
-    kept |= {"clipping": style.clipping, "range": style.span, "slice": style.cut}
-    kept["caption"] = style.caption.replace("{", "{{").replace("}", "}}")
+    kept |= {one.name: one.get(draw) for one in _DRAWN}
+    kept |= {"before": saved.warmup.frames, "warmup": saved.warmup.of_path, "repeat": saved.warmup.repeats}
+    kept |= {"legend_at": draw.legend_at, "range": draw.span, "savings": draw.savings}
+    kept["caption"] = draw.caption.replace("{", "{{").replace("}", "}}")
     kept["size"] = saved.size
     if saved.camera is not None:
         kept["camera"] = saved.camera
-    kept["view"] = ChosenView(saved.view, saved.edits.light_number(saved.light), saved.wipe, style.shares)
+    kept["view"] = ChosenView(draw.view, saved.edits.light_number(draw.light), draw.wipe, draw.shares)
     kept |= {"no_studio": not saved.meshes.studio, "up": saved.meshes.up, "crease": saved.meshes.crease}
     return saved, kept | options.edits_as_options(saved.edits)
 

@@ -17,13 +17,13 @@ from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Progress
 from viewer.output import capture
 from viewer.output.legend_picture import with_legend
-from viewer.output.recipe import Recipe
 from viewer.output.savings_picture import with_savings
 from viewer.services import stills
 from viewer.services.jobs import Job
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.views.legend import Legend
 
 
@@ -64,7 +64,7 @@ class CaptureService:
         frame: Frame | None,
         pixels: NDArray[np.uint8] | None,
         legend: Legend | None = None,
-        recipe: Recipe | None = None,
+        recipe: ViewState | None = None,
     ) -> None:
         """Save a picture, (h, w, 3) uint8, of a frame, with its legend, named by the user's template.
 
@@ -106,10 +106,10 @@ class CaptureService:
             described = with_legend(pixels, legend, place) if legend is not None else None
             saved = pixels if described is None else described
             if recipe is not None:
-                saved = with_savings(saved, frame, recipe.style.savings)
+                saved = with_savings(saved, frame, recipe.draw.savings)
             if recipe is None:
                 return capture.save(saved, folder, name, text)
-            kept = recipe if described is not None else replace(recipe, style=replace(recipe.style, legend=None))
-            return capture.save(saved, folder, name, stills.text(saved, frame, scene, kept))
+            kept = recipe if described is not None else recipe.with_draw(legend=False)
+            return capture.save(saved, folder, name, stills.text(saved, frame, scene, kept, by_gpu=True))
 
         self.write(save)

@@ -12,8 +12,8 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import movie
+from viewer.output.commands import cannot_come_back
 from viewer.output.movie import VIDEO
-from viewer.output.recipe import Recipe, cannot_come_back
 from viewer.services import filming
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.filming import Script
@@ -26,6 +26,7 @@ from viewer.state.notices import Notices
 from viewer.state.plans import FilmPlan, frames_within
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
 
 
@@ -41,10 +42,10 @@ class FilmRun(Run[int]):
 
     @property
     def verifies(self) -> bool:
-        return self.script.recipe.settings.verify or self.script.recipe.view.needs_verify
+        return self.script.recipe.settings.verify or self.script.recipe.draw.view.needs_verify
 
     def lacks(self, view: View) -> str:
-        return "" if view is self.script.recipe.view else super().lacks(view)
+        return "" if view is self.script.recipe.draw.view else super().lacks(view)
 
     @property
     def where(self) -> str:
@@ -114,7 +115,7 @@ class FilmController:
         self.film = FilmRun(scene, script, self._wake)
         self._runs.begin(self.film)
 
-    def _script(self, scene: Scene, recipe: Recipe) -> Script:
+    def _script(self, scene: Scene, recipe: ViewState) -> Script:
         plan = self.plan
         if max(plan.size) > LONGEST_SIDE:
             raise ValueError(f"{plan.size[0]} x {plan.size[1]} is too large; {LONGEST_SIDE} pixels a side at most")
@@ -128,10 +129,9 @@ class FilmController:
             samples=plan.samples,
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()
-        p, place = self._preferences, self._session.draw.legend_at
-        style = replace(recipe.style, magnified=1, caption=plan.caption, legend=place if plan.legend else None)
-        history = cannot_come_back(settings, recipe.view, recipe.tells_counters)
-        recipe = replace(recipe, settings=settings, style=style, repeats=0, history=history, by_gpu=False)
+        p = self._preferences
+        recipe = replace(recipe, settings=settings, warmup=Warmup(unknown=cannot_come_back(settings, recipe.draw)))
+        recipe = recipe.with_draw(magnified=1, caption=plan.caption, legend=plan.legend)
         name = f"{scene.path.stem}-film-{datetime.now():%Y-%m-%d-%H-%M-%S}"
         folder = p.picture_folder / name
         video = p.picture_folder / (name + VIDEO) if plan.video else None

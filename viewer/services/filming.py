@@ -14,10 +14,11 @@ from pathlib import Path
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from viewer.output import png
+from viewer.output.commands import needs_history
 from viewer.output.movie import VIDEO, Video, frame_name, video
-from viewer.output.recipe import Recipe
 from viewer.services import stills
 from viewer.state.flight import Take
+from viewer.state.view_state import ViewState
 
 FILMED = "its modes were learnt from the frames of its film before it"
 _NUMBERED = re.compile(r"\d{4,}\.png")
@@ -31,7 +32,7 @@ class Script:
     pictures go to, the video if one is wanted, and its frames a second."""
 
     takes: Sequence[Take]
-    recipe: Recipe
+    recipe: ViewState
     folder: Path
     video: Path | None = None
     fps: float = 25.0
@@ -91,7 +92,7 @@ def shoot(
         told = ""
         for number, take in enumerate(script.takes):
             recipe = stills.with_caption_filled(recipe_of(script.recipe, take), scene)
-            frame = stills.trace(renderer, replace(recipe, warmup=0), cancelled=cancelled)
+            frame = stills.trace(renderer, recipe.with_warmup(of_path=0), cancelled=cancelled)
             pixels, missing = stills.draw(frame, scene, recipe)
             if missing and not told:
                 note(told := missing)
@@ -112,9 +113,9 @@ def picture_numbers(takes: Sequence[Take]) -> list[int]:
     return of_path if len(of_path) == len(takes) else list(range(len(takes)))
 
 
-def recipe_of(recipe: Recipe, take: Take) -> Recipe:
+def recipe_of(recipe: ViewState, take: Take) -> ViewState:
     """How to make a take again, alone: after as many frames of the scene's path, where these were before it."""
     taken = replace(recipe, time=take.time, camera=take.camera)
-    if not taken.needs_history or taken.history:  # where chance has a part in it, nothing brings it back
+    if not needs_history(taken) or taken.warmup.unknown:  # where chance has a part in it, nothing brings it back
         return taken
-    return replace(taken, history=FILMED) if take.warmup is None else replace(taken, warmup=take.warmup)
+    return taken.with_warmup(unknown=FILMED) if take.warmup is None else taken.with_warmup(of_path=take.warmup)

@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,19 +22,20 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version
 from viewer.output import capture, png
+from viewer.output.commands import needs_history
 from viewer.output.movie import Video, frame_name, video
-from viewer.output.recipe import Recipe
 from viewer.services import filming, stills
 from viewer.services.filming import Script
 from viewer.state import codec
+from viewer.state.view_state import ViewState
 from viewer.util.files import write_bytes
 
 _SCENE = "film"
 
 
-def filmed_alone(recipe: Recipe) -> bool:
+def filmed_alone(recipe: ViewState) -> bool:
     """Whether a picture is the same without the frames before it."""
-    return not recipe.needs_history
+    return not needs_history(recipe)
 
 
 def shoot(
@@ -96,7 +96,7 @@ def kept_pictures(script: Script, scene: Scene) -> set[int]:
     return found
 
 
-def _otherwise(path: Path, recipe: Recipe, scene: Scene) -> str:
+def _otherwise(path: Path, recipe: ViewState, scene: Scene) -> str:
     """In what a picture differs from what the recipe makes, in words; empty where it is the same."""
     try:
         data = capture.read_data(path)
@@ -107,7 +107,7 @@ def _otherwise(path: Path, recipe: Recipe, scene: Scene) -> str:
         "version": (made.get("version"), program_version()),
         "scene": (made.get("scene"), fingerprint.of_scene(scene)),
         "size": (data.get("size"), list(recipe.size)),
-        "settings": (data.get("state"), _as_json(codec.state_to_json(recipe.state(), of_picture=True))),
+        "settings": (data.get("state"), _as_json(codec.state_to_json(recipe, of_picture=True))),
     }
     return ", ".join(f"another {name}" for name, (old, new) in expected.items() if old != new)
 
@@ -121,10 +121,10 @@ def _paths(script: Script) -> list[Path]:
     return [script.folder / frame_name(number, max(numbers)) for number in numbers]
 
 
-def _recipes(script: Script, scene: Scene) -> list[Recipe]:
+def _recipes(script: Script, scene: Scene) -> list[ViewState]:
     """How each picture is made, alone, by a process of one thread that may work in another folder."""
     recipe = script.recipe
-    recipe = replace(recipe, scene=recipe.scene.absolute(), settings=replace(recipe.settings, threads=1))
+    recipe = recipe.with_settings(threads=1)
     return [stills.with_caption_filled(filming.recipe_of(recipe, take), scene) for take in script.takes]
 
 
@@ -154,13 +154,13 @@ def _pixels(path: Path) -> NDArray[np.uint8]:
         return np.asarray(image.convert("RGB"))
 
 
-def picture(given: tuple[Recipe, str], scene: Scene, emit: Emit, cancelled: Callable[[], bool]) -> bytes:
+def picture(given: tuple[ViewState, str], scene: Scene, emit: Emit, cancelled: Callable[[], bool]) -> bytes:
     """In a process of the cluster: one picture as the bytes of a PNG."""
     recipe, code = given
     settings = recipe.settings
     prepare(len(scene.lights), settings.accelerator, settings.method)
     renderer = Renderer(scene, settings, world=world_of(scene, code, settings.accelerator, scene.time_range[0]))
-    frame = stills.trace(renderer, replace(recipe, warmup=0), cancelled=cancelled)
+    frame = stills.trace(renderer, recipe.with_warmup(of_path=0), cancelled=cancelled)
     pixels, missing = stills.draw(frame, scene, recipe)
     if missing:
         emit(missing)

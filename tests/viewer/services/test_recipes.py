@@ -14,7 +14,7 @@ from PIL import Image
 from tests.commands import run
 from tests.viewer.desk import ELSEWHERE, Desk
 from tests.viewer.fakes import TINY_SCENE
-from viewer.output.recipe import BUILT
+from viewer.output.commands import BUILT
 from viewer.services import stills
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
