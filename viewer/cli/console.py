@@ -18,12 +18,12 @@ from rich.progress import BarColumn, Progress, ProgressColumn, Task, TaskID, Tex
 from rich.table import Table
 from rich.text import Text
 
+from tracer.experiments.time_left import TimeLeft
 from tracer.scene.model import Cancelled
 from tracer.settings import Settings
 from tracer.statistics import FrameStatistics
 from viewer.state import terms, verified
 from viewer.util.messages import in_one_line, printable, say
-from viewer.util.time_left import TimeLeft
 
 
 class _TimeLeftColumn(ProgressColumn):

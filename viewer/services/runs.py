@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Generic, TypeVar, cast
 
 from tracer.experiments import experiment, zoom
+from tracer.experiments.time_left import TimeLeft
 from tracer.frame import Frame, Settings
 from tracer.method import in_order
 from tracer.renderer import Renderer
@@ -29,7 +30,6 @@ from viewer.services.render_request import Traces
 from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
 from viewer.state.views import View
 from viewer.util.failures import Failure, failure
-from viewer.util.time_left import TimeLeft
 
 LONGEST_SIDE = 4096
 """Pixels of a run's pictures: it traces many."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from viewer.util.time_left import TimeLeft
+from tracer.experiments.time_left import TimeLeft
 
 
 class Clock:

@@ -9,7 +9,7 @@ from statistics import median
 
 
 class TimeLeft:
-    """How long steps of uneven length will still take.
+    """How long steps of uneven length will still take; one thread marks them while others ask.
 
     Steps that are near each other on a path take about as long: where n steps remain, the estimate uses the last n that
     were done, but at least FEWEST.
@@ -22,28 +22,27 @@ class TimeLeft:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._total = 0
-        self._done: list[int] = []
-        self._at: list[float] = []
+        self._marks: list[tuple[int, float]] = []  # steps done, and when; one append for both
 
     def mark(self, done: int, total: int) -> None:
         """So many steps of `total` are done now."""
         self._total = total
-        self._at.append(self._clock())
-        self._done.append(done)
+        self._marks.append((done, self._clock()))
 
     def seconds(self) -> float | None:
-        """What is left, counting the step under way as one like the others; None before the first step is done."""
-        if not self._done or self._done[-1] == self._done[0]:
+        """Return what is left, counting the step under way as one like the others; None before the first is done."""
+        marks = list(self._marks)
+        if not marks or marks[-1][0] == marks[0][0]:
             return None
-        done, left = self._done[-1], self._total - self._done[-1]
-        first = bisect_left(self._done, done - max(left, self.FEWEST))
-        pace = self._pace(first)
-        return left * pace - min(self._clock() - self._at[-1], pace) if left else 0.0
+        done, then = marks[-1]
+        left = self._total - done
+        if not left:
+            return 0.0
+        pace = self._pace(marks[bisect_left(marks, (done - max(left, self.FEWEST), -1.0)) :])
+        return left * pace - min(self._clock() - then, pace)
 
-    def _pace(self, first: int) -> float:
-        """Seconds for a step, of those since mark `first`."""
-        marks = range(first + 1, len(self._at))
-        steps = [(self._done[n] - self._done[n - 1], self._at[n] - self._at[n - 1]) for n in marks]
-        paces = [seconds / count for count, seconds in steps if count]
-        longest = self.LONGEST * median(paces)
+    def _pace(self, marks: list[tuple[int, float]]) -> float:
+        """Seconds for a step, between these marks."""
+        steps = [(done - before, at - then) for (before, then), (done, at) in zip(marks, marks[1:])]
+        longest = self.LONGEST * median(seconds / count for count, seconds in steps if count)
         return sum(min(seconds, longest * max(count, 1)) for count, seconds in steps) / sum(count for count, _ in steps)
