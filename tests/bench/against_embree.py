@@ -42,7 +42,8 @@ from tracer.frame import Settings
 from tracer.geometry.world import ACCELERATORS, World
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene, SceneError
-from viewer.cli.console import print_table, say
+from viewer.cli.console import print_table
+from viewer.util.messages import say
 from viewer.util.resources import scene_path
 
 ROBOT = KITCHEN.parents[1] / "robot" / "Robot.aff"

@@ -33,7 +33,8 @@ from tests.bench.frame_times import KITCHEN, in_words, machine
 from tracer.frame import Settings
 from tracer.kernel_cache import cache_root
 from tracer.parallel import thread_count
-from viewer.cli.console import print_table, say
+from viewer.cli.console import print_table
+from viewer.util.messages import say
 from viewer.util.resources import scene_path
 
 ROOT = Path(__file__).resolve().parents[2]

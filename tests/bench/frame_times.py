@@ -32,7 +32,8 @@ from tracer.frame import Frame, Settings
 from tracer.parallel import thread_count
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from viewer.cli.console import print_table, say
+from viewer.cli.console import print_table
+from viewer.util.messages import say
 from viewer.util.resources import scene_path
 
 METHODS = ("none", "paper")

@@ -31,7 +31,7 @@ from tracer.parallel import thread_count
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.state import open_world
-from viewer.cli.console import say
+from viewer.util.messages import say
 
 
 def measure(path: Path, settings: Settings, methods: list[str], frames: int, step: int | None) -> dict[str, Any]:

@@ -36,7 +36,8 @@ from tracer.method import Method, line_up
 from tracer.renderer import Renderer
 from tracer.scene.load import load_visible_scene
 from tracer.state import open_world
-from viewer.cli.console import print_table, say
+from viewer.cli.console import print_table
+from viewer.util.messages import say
 from viewer.util.numbers import memory
 from viewer.util.resources import scene_path
 

@@ -13,7 +13,8 @@ from rich.table import Table
 from tracer.compilation import warm_up
 from tracer.frame import Settings
 from tracer.geometry.world import ACCELERATORS
-from viewer.cli.console import print_table, say
+from viewer.cli.console import print_table
+from viewer.util.messages import say
 from viewer.util.resources import scene_path
 
 BART = Path(__file__).resolve().parents[3] / "shared" / "bart"

@@ -26,7 +26,7 @@ from tracer.frame import Settings
 from tracer.parallel import thread_count
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from viewer.cli.console import say
+from viewer.util.messages import say
 
 METHODS = ("none", "auto")
 WINDOW = 50  # frames

@@ -27,7 +27,7 @@ from tests.bench import results_tables as tables
 from tests.bench.frame_times import machine
 from tests.bench.of_scenes import SCENES
 from tests.bench.results_tables import Figures
-from viewer.cli.console import say
+from viewer.util.messages import say
 
 ROOT = Path(__file__).resolve().parents[2]
 KITCHEN, ROBOT, MUSEUM = map(str, SCENES)

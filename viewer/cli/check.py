@@ -26,8 +26,9 @@ from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Cancelled, Scene, SceneError
 from tracer.version import program_version
+from viewer.cli import options
+from viewer.cli.arguments import FAILED, Parser
 from viewer.cli.console import Work, working
-from viewer.cli.tracing_options import prepare_kernels
 from viewer.output import capture, comparison_figure, exr, recipe
 from viewer.output.recipe import BUILT, CHANCE, Recipe
 from viewer.services import comparison, stills
@@ -40,6 +41,44 @@ from viewer.util.messages import ERROR, in_one_line, printable
 KINDS = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", exr.ENDING: b"\x76\x2f\x31\x01"}
 """How a file of each kind that is checked begins."""
 ROUNDING = 2  # of 255, by which a GPU may draw a view otherwise
+EPILOG = """\
+examples:
+  shadowcull check figure.png
+  shadowcull check paper/*.png paper/methods.pdf
+
+A picture carries its scene, camera, time, settings, view and the frames that its modes came from. It is true if it is
+the same again, bit for bit; a view that a GPU has drawn may be off by rounding. Otherwise the line says how many
+pixels differ, and what has changed since: a part of the scene, the version, or the file itself. Files that are
+missing, or none of these kinds, are errors. The exit code is 0 only if all are true.
+"""
+
+
+def parser() -> Parser:
+    description = "Render saved pictures and figures again, and say of each whether it is still true."
+    parser = Parser("check", description, EPILOG)
+    help_ = "a .png or .exr that this program saved, or a .png or .pdf of figure"
+    parser.add_argument("pictures", nargs="+", type=Path, metavar="FILE", help=help_)
+    options.add_folders(parser)
+    options.add_threads(parser)
+    return parser
+
+
+def run(given: Namespace) -> int:
+    """Check all files, and print a line for each, an error for those that cannot be read."""
+    good = True
+    with working() as work:
+        checker = Checker(given, work)
+        for number, path in enumerate(given.pictures):
+            work.count(f"checking {path.name}", number, len(given.pictures))
+            try:
+                verdict = checker.check(path)
+            except (ValueError, OSError) as error:
+                work.note(f"{ERROR}{path}: {_why(error)}")
+                good = False
+                continue
+            good &= verdict.true is True
+            print(printable(f"{path}: {verdict}"), flush=True)
+    return 0 if good else FAILED
 
 
 @dataclass(frozen=True)
@@ -56,8 +95,8 @@ class Verdict:
 class Checker:
     """Checks one file after another; a scene that several have in common is read once."""
 
-    def __init__(self, options: Namespace, work: Work) -> None:
-        self._options, self._work = options, work
+    def __init__(self, given: Namespace, work: Work) -> None:
+        self._given, self._work = given, work
         self._scene: tuple[tuple[Path, MeshOptions, Edits], Scene] | None = None
         self._world: tuple[str, World] | None = None
 
@@ -81,11 +120,11 @@ class Checker:
             again = self._figure(path, data, ".png")
             with Image.open(BytesIO(again), formats=("PNG",)) as image:
                 return self._compared(kept, np.asarray(image.convert("RGB")), data, {}, False)
+        if data.get("picture", {}).get("style", {}).get("annotations"):
+            return Verdict(None, "arrows, boxes or words are drawn on it, which are not drawn any more")
         if data.get("window"):
             return Verdict(None, "it shows two pictures, or the window with its panels, which cannot be rendered again")
         wanted = self._wanted(data)
-        if data.get("picture", {}).get("style", {}).get("annotations"):
-            return Verdict(None, "arrows, boxes or words are drawn on it, which are not drawn any more")
         if wanted.history and not wanted.modes and wanted.view is View.COLOR and not wanted.tells_counters:
             return self._against_tracing_all(path, kept, wanted)
         frame, wanted = self._traced(path, wanted)
@@ -182,12 +221,12 @@ class Checker:
         if found is None:
             raise ValueError(f"its scene is gone: {wanted.scene}")
         if self._scene is None or self._scene[0] != (found, wanted.meshes, wanted.edits):
-            read = load_visible_scene(found, self._work.progress, self._options.folder, wanted.meshes)
+            read = load_visible_scene(found, self._work.progress, self._given.folder, wanted.meshes)
             self._scene = (found, wanted.meshes, wanted.edits), edited(read, wanted.edits).scene
             self._world = None
         scene = self._scene[1]
-        prepare_kernels(self._work, len(scene.lights), wanted.settings.accelerator, *methods)
-        settings = replace(wanted.settings, threads=wanted.settings.threads or self._options.threads)
+        options.prepare_kernels(self._work, len(scene.lights), wanted.settings.accelerator, *methods)
+        settings = replace(wanted.settings, threads=wanted.settings.threads or self._given.threads)
         start, end = scene.time_range
         if not start <= wanted.time <= end:
             raise ValueError(f"its time, {wanted.time:g} s, is none of the scene's any more")
@@ -274,22 +313,3 @@ def _why(error: Exception) -> str:
     if isinstance(error, FileNotFoundError):
         return "no such file"
     return getattr(error, "strerror", None) or str(error)
-
-
-def check(options: Namespace) -> bool:
-    """Check all files and print a line for each, an error for those that cannot be read; returns whether all are
-    true."""
-    good = True
-    with working() as work:
-        checker = Checker(options, work)
-        for number, path in enumerate(options.pictures):
-            work.count(f"checking {path.name}", number, len(options.pictures))
-            try:
-                verdict = checker.check(path)
-            except (ValueError, OSError) as error:
-                work.note(f"{ERROR}{path}: {_why(error)}")
-                good = False
-                continue
-            good &= verdict.true is True
-            print(printable(f"{path}: {verdict}"), flush=True)
-    return good

@@ -1,35 +1,31 @@
 """What a command says while it works, and how it stops.
 
-Results go to standard output; everything else goes to standard error, as a progress bar where
-that is a terminal and as next to nothing where it is not.  Ctrl-C is a wish: it is noted, and the
-work ends by `Cancelled` at the next report of progress; a second one ends it at once.
+Results go to standard output; everything else goes to standard error, as a progress bar where that is a terminal and as
+next to nothing where it is not.  Ctrl-C is a wish: it is noted, and the work ends by `Cancelled` at the next report of
+progress; a second one ends it at once.
 """
 
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from datetime import timedelta
 from types import FrameType
+from typing import TypeVar
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, ProgressColumn, Task, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 from rich.text import Text
 
 from tracer.experiments.time_left import TimeLeft
 from tracer.scene.model import Cancelled
-from tracer.settings import Settings
-from tracer.statistics import FrameStatistics
-from viewer.state import terms, verified
 from viewer.util.messages import in_one_line, printable, say
 
+T = TypeVar("T")
 
-class _TimeLeftColumn(ProgressColumn):
-    def render(self, task: Task) -> Text:
-        left = task.fields["left"].seconds() if "left" in task.fields else None
-        return Text("" if left is None else f"{timedelta(seconds=round(left))} left", "progress.remaining")
+_PACE_OVER = 600.0  # seconds: frames may take minutes, and the time left is told from those of the last ones
 
 
 class Work:
@@ -37,34 +33,30 @@ class Work:
 
     def __init__(self) -> None:
         self.stopped = False
-        self._left = TimeLeft()
         self._bar: Progress | None = None
         self._task: TaskID | None = None
 
     def progress(self, label: str, fraction: float) -> None:
-        """A `Progress` of the tracer; raises Cancelled once Ctrl-C was pressed."""
+        """Show a `Progress` of the tracer; raises Cancelled once Ctrl-C was pressed."""
         if self.stopped:
             raise Cancelled("cancelled")
-        self._left = TimeLeft()
-        self._show(label, fraction)
+        self._show(label, min(max(fraction, 0.0), 1.0 - 1e-9), 1.0)  # what was once finished keeps the time of it
 
     def count(self, label: str, done: int, total: int) -> None:
-        """So many of `total` like steps are done: shows the time left too, and leaves stopping to `cancelled`."""
-        self._left.mark(done, total)
-        self._show(label, done / total)
+        """Show that so many of `total` like steps are done; leaves stopping to `cancelled`."""
+        self._show(label, done, total)
 
-    def _show(self, label: str, fraction: float) -> None:
+    def _show(self, label: str, done: float, total: float) -> None:
         if self._bar is not None:
             if self._task is None:
-                self._task = self._bar.add_task(label, total=1.0)
-            completed = min(max(fraction, 0.0), 1.0 - 1e-9)  # a task that was once finished keeps the time of it
-            self._bar.update(self._task, description=in_one_line(label), completed=completed, left=self._left)
+                self._task = self._bar.add_task(label, total=total)
+            self._bar.update(self._task, description=in_one_line(label), completed=done, total=total)
 
     def cancelled(self) -> bool:
         return self.stopped
 
     def note(self, line: str) -> None:
-        """One line above the bar."""
+        """Print one line above the bar."""
         if self._bar is None:
             say(line)
         else:
@@ -76,30 +68,51 @@ class Work:
         self.stopped = True
 
 
+def last_of(grown: Iterable[T]) -> T:
+    """Let the work go on to its end, and return its results as they are then.
+
+    Raises Cancelled where it was cancelled before there were any."""
+    found = deque(grown, maxlen=1)
+    if not found:
+        raise Cancelled("cancelled")
+    return found[0]
+
+
 @contextmanager
 def working() -> Iterator[Work]:
-    """Work under way, with a bar on a terminal, and with Ctrl-C turned into `Cancelled`."""
+    """Begin a piece of work, with a bar on a terminal, and with Ctrl-C turned into `Cancelled`."""
     work = Work()
     before = signal.signal(signal.SIGINT, work._interrupt)
     console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(bar_width=24),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        TextColumn("left"),
+    )
     try:
         if not console.is_terminal:
             yield work
             return
-        columns = (
-            TextColumn("{task.description}", markup=False),
-            BarColumn(bar_width=24),
-            TimeElapsedColumn(),
-            _TimeLeftColumn(),
-        )
-        with Progress(*columns, console=console, transient=True) as work._bar:
+        with Progress(*columns, console=console, transient=True, speed_estimate_period=_PACE_OVER) as work._bar:
             yield work
     finally:
         signal.signal(signal.SIGINT, before)
 
 
+# --- tables ----------------------------------------------------------------------------------------
+
+
+def titled(title: str, caption: str = "") -> Table:
+    """Begin a table with its title and its caption at the left."""
+    table = Table(title=title, title_justify="left", title_style="bold", caption=caption or None)
+    table.caption_justify = "left"
+    return table
+
+
 def print_table(table: Table) -> None:
-    """A table on standard output; where that is no terminal as wide as it is, and 100 columns at least.
+    """Print a table on standard output; where that is no terminal as wide as it is, and 100 columns at least.
 
     Its title may be wider than itself, such as a path, which must not be broken; nor must figures be cut: where a
     terminal is too narrow for these, its own lines are."""
@@ -119,58 +132,28 @@ def print_table(table: Table) -> None:
 
 
 def width_of(table: Table) -> int:
-    """How many columns a table takes, with its cells in one line each."""
+    """Return how many columns a table takes, with its cells in one line each."""
     return Console(width=1000).measure(table).maximum
 
 
 def terminal_width() -> int | None:
-    """The columns of the terminal; None where standard output is none."""
+    """Return the columns of the terminal; None where standard output is none."""
     console = Console()
     return console.width if console.is_terminal else None
 
 
-def statistics_table(statistics: FrameStatistics, title: str, settings: Settings, remark: str = "") -> Table:
-    """The counters of a frame by a method, primary, secondary and shadow rays apart; what is wrong where it was
-    verified."""
-    caption = "\n".join(filter(None, (statistics.decision, remark))) or None
-    table = Table(title=title, title_justify="left", title_style="bold", caption=caption)
-    table.caption_justify = "left"
-    table.add_column("")
-    for name in ("primary", "secondary", "shadow"):
-        table.add_column(name, justify="right")
-    kinds = (statistics.primary, statistics.secondary, statistics.shadow)
-    traced = (statistics.primary.rays, statistics.secondary.rays, statistics.shadow.traced)
-    table.add_row("rays traced", *(f"{rays:,}" for rays in traced))
-    table.add_row("traversal steps", *(f"{kind.traversal_steps:,}" for kind in kinds))
-    table.add_row("intersection tests", *(f"{kind.intersection_tests:,}" for kind in kinds), end_section=True)
-    shadow = statistics.shadow
-    due = max(shadow.due, 1)
-    table.add_row(f"shadow rays {terms.DUE}", "", "", f"{shadow.due:,}")
-    table.add_row(f"  {terms.SAVED}", f"{shadow.saved / due:.1%}", "", f"{shadow.saved:,}")
-    table.add_row(f"    {terms.CULLED}", f"{shadow.culled / due:.1%}", "", f"{shadow.culled:,}")
-    table.add_row(f"    {terms.DYNAMIC_ONLY}", f"{shadow.dynamic_only / due:.1%}", "", f"{shadow.dynamic_only:,}")
-    if shadow.candidates_only:
-        table.add_row(
-            f"  {terms.CANDIDATES_ONLY}", f"{shadow.candidates_only / due:.1%}", "", f"{shadow.candidates_only:,}"
-        )
-    if shadow.cache_hits:
-        table.add_row(f"  {terms.CACHE_HITS}", f"{shadow.cache_hits / due:.1%}", "", f"{shadow.cache_hits:,}")
-    table.add_row(f"  {terms.TRACED}", f"{shadow.traced / due:.1%}", "", f"{shadow.traced:,}")
-    wrong = statistics.wrong
-    if wrong is not None:
-        if statistics.cuts is None:
-            name, share = verified.named(terms.WRONG, wrong), f"{wrong.answers / max(wrong.due, 1):.3%}"
-            table.add_row(name, share, "", f"{wrong.answers:,}")
-        name = verified.named(terms.WRONG_PIXELS if statistics.cuts is None else terms.BEYOND, wrong)
-        table.add_row(name, f"{wrong.pixels / max(wrong.shaded, 1):.3%}", "", f"{wrong.pixels:,}")
-    if shadow.passed_over:
-        table.add_row(f"samples {terms.PASSED_OVER}", "", "", f"{shadow.passed_over:,}")
-    if statistics.certificates and terms.made(settings.method)[0]:
-        table.add_row(terms.made(settings.method)[0], "", "", f"{statistics.certificates:,}")
-        table.add_row("  traversal steps", "", "", f"{statistics.certificate_steps:,}")
-        table.add_row("  intersection tests", "", "", f"{statistics.certificate_tests:,}")
-    table.add_row("occlusion tests", f"{statistics.occlusion_tests:,}", "", "", end_section=True)
-    for name, seconds in statistics.phases.items():
-        table.add_row(terms.phase(name, settings)[0], f"{1000.0 * seconds:,.1f} ms", "", "")
-    table.add_row("frame", f"{1000.0 * statistics.seconds:,.1f} ms", "", "")
-    return table
+def left_out(
+    least_wanted: Sequence[str], made: Callable[[Sequence[str]], Sequence[Table]], width: int | None
+) -> Sequence[str]:
+    """Return the fewest columns to leave out so that all tables, as `made` without these, fit in a terminal so wide.
+
+    That is all of them where even that does not help, and none where `width` is None."""
+    for count in range(len(least_wanted)):
+        if width is None or all(width_of(table) <= width for table in made(least_wanted[:count])):
+            return least_wanted[:count]
+    return least_wanted
+
+
+def named(headings: Sequence[str]) -> str:
+    """Return headings, which may stand in several lines, as a list in words; "" of none."""
+    return ", ".join(" ".join(heading.split()) for heading in headings)

@@ -3,48 +3,75 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from dataclasses import replace
 from pathlib import Path
 
 from PIL import Image
-from rich.table import Table
 
 from tracer.methods.lightbuffer import LightBuffer
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
-from tracer.scene.load import check_scene_file, load_visible_scene
-from viewer.cli.console import print_table, working
-from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
+from tracer.scene.load import check_scene_file
+from viewer.cli import arguments, options
+from viewer.cli.arguments import Parser, count
+from viewer.cli.console import print_table, titled, working
 from viewer.output.light_cube import EMPTY, FEW, MANY, ONE, described, picture_of, seen
 from viewer.output.pictures import lights_in_words
 from viewer.util.messages import printable
 
+EPILOG = """\
+examples:
+  shadowcull cube default --light 1 -o cube.png
+  shadowcull cube kitchen.aff --side 512 --accelerator kdtree
 
-def cube(path: Path, options: Namespace) -> None:
+Left, cells with nothing in them are white, and those that one triangle covers blue; those with a list of candidates
+go from violet, for one, to yellow, for the longest list there is, and those with more than eight are grey. Right is
+the distance at which full shadow begins. The legends have the numbers.
+"""
+
+
+def parser() -> Parser:
+    description = (
+        "Save what a light sees, as the method lightbuffer has it: its cube unfolded, with what is known of each cell "
+        "on the left, and the distance at which full shadow begins on the right."
+    )
+    parser = Parser("cube", description, EPILOG)
+    add = parser.add_argument
+    options.add_scene(parser)
+    add("--light", type=count(0, 2**31 - 1), default=0, metavar="N", help="which light (default: 0)")
+    help_ = "cells along an edge, a power of two from 16 to 1024 (default: 256)"
+    add("--side", type=arguments.cube_side, default=256, metavar="N", help=help_)
+    add("-o", "--output", type=Path, default=Path("cube.png"), metavar="FILE", help="the picture (default: cube.png)")
+    add("--no-legend", action="store_true", help="a pixel for each cell, without legends")
+    options.add_moment(parser)
+    options.add_tracing(parser, zoom_factor=False)
+    parser.set_defaults(size=(16, 16))
+    return parser
+
+
+def run(given: Namespace) -> int:
     """Save the unfolded cube of a light, and print what its cells have; raises SceneError and ValueError in one line,
     or Cancelled."""
-    check_scene_file(path)
-    settings = replace(tracing_settings(options), method="lightbuffer", light_buffer_side=options.side).validated()
+    check_scene_file(given.path)
+    settings = options.tracing_settings(given, method="lightbuffer", light_buffer_side=given.side)
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
-        if not options.light < len(scene.lights):
-            raise ValueError(f"--light {options.light}: {lights_in_words(len(scene.lights))}")
-        time = moment(scene, options.frame, options.time)
-        prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
+        scene = options.read_scene(given.path, given, work)
+        if not given.light < len(scene.lights):
+            raise ValueError(f"--light {given.light}: {lights_in_words(len(scene.lights))}")
+        time = options.moment(scene, given)
+        options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
         frame = renderer.render(time, None, work.cancelled)
         method = renderer.state.method("lightbuffer")
         assert isinstance(method, LightBuffer)
-        found = method.cube_of(options.light)
+        found = method.cube_of(given.light)
     if found is None:
-        why = method.why_not(options.light) or "there is nothing static"
-        raise ValueError(f"--light {options.light} has no light buffer, and its shadow rays are traced: {why}")
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    name = named_light(scene.lights, options.light)
-    Image.fromarray(picture_of(found) if options.no_legend else described(found, name)).save(options.output)
+        why = method.why_not(given.light) or "there is nothing static"
+        raise ValueError(f"--light {given.light} has no light buffer, and its shadow rays are traced: {why}")
+    given.output.parent.mkdir(parents=True, exist_ok=True)
+    light = named_light(scene.lights, given.light)
+    Image.fromarray(picture_of(found) if given.no_legend else described(found, light)).save(given.output)
     counts = seen(found).counts
-    table = Table(title=f"{path.name}, {name}, {time:.3f} s", title_justify="left")
+    table = titled(f"{given.path.name}, {light}, {time:.3f} s")
     table.add_column("cells of its cube")
     table.add_column("", justify="right")
     for name, number in zip((EMPTY, ONE, FEW, MANY), counts, strict=True):
@@ -52,4 +79,5 @@ def cube(path: Path, options: Namespace) -> None:
     table.add_row("memory", f"{found.bytes / 1e6:.1f} MB")
     table.add_row("building, all lights", f"{1e3 * frame.statistics.phases['certification']:.0f} ms")
     print_table(table)
-    print(printable(options.output))
+    print(printable(given.output))
+    return 0

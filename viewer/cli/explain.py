@@ -5,12 +5,8 @@ from __future__ import annotations
 import json
 from argparse import Namespace
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
@@ -22,15 +18,13 @@ from tracer.mode_origins import ModeOrigins
 from tracer.reasons import Why
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
-from tracer.scene.load import check_scene_file, load_visible_scene
+from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
 from tracer.told_rays import RayTree
 from tracer.why import why
+from viewer.cli import arguments, options
+from viewer.cli.arguments import Parser, count
 from viewer.cli.console import working
-from viewer.cli.edit_options import edited_scene, light_index
-from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.render import times_before
-from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
 from viewer.output.ray_json import ray_data
 from viewer.output.ray_rows import RayRows, Row, totals
 from viewer.output.why_lines import why_data, why_lines
@@ -38,71 +32,104 @@ from viewer.services.teachers import Answers, Teacher, answers_at, can_be_asked,
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
 
+EPILOG = """\
+examples:
+  shadowcull explain default --pixel 200,300
+  shadowcull explain kitchen.aff --frame 50 --warmup 10 --pixel 256,400 --only wrong
+  shadowcull explain default --pixel 200,300 --method certified
+  shadowcull explain default --pixel 200,300 --accelerator kdtree --json
 
-def explain(path: Path, options: Namespace) -> None:
+The tree has the pixel's primary, reflected and refracted rays, and below each the shadow rays from where it ends.
+Each shadow ray was not due, as the surface faces away from its light; culled, by a mode of the paper, a certificate
+or a cached occluder; passed over, as its light is hidden from the region; or traced, with its traversal steps and
+intersection tests, counted for the ray alone. It says what blocks a ray first, seen from the light, and which culled
+answers are wrong. Where a point has more than 12 lights, those with the same fate have one line.
+
+Culling uses what earlier frames have shown: --warmup N first traces the N frames before the one that is explained,
+and --repeat N that frame itself N times.
+"""
+
+
+def parser() -> Parser:
+    description = "Say what became of each ray of a pixel: which shadow rays were due, culled or traced, and why."
+    parser = Parser("explain", description, EPILOG + options.method_summaries())
+    add = parser.add_argument
+    options.add_scene(parser)
+    help_ = "column and row, counted from the upper left"
+    add("--pixel", type=arguments.pixel, required=True, metavar="X,Y", help=help_)
+    options.add_moment(parser)
+    options.add_size(parser)
+    help_ = f"how shadow rays are culled: {options.method_names()} (default: {DEFAULT_METHOD})"
+    add("--method", type=arguments.method, metavar="M", help=help_)
+    only = ("all", "traced", "untraced", "blocked", "wrong")
+    add("--only", choices=only, default="all", help="which shadow rays are listed (default: all)")
+    add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
+    add("--json", action="store_true", help="all rays as JSON on standard output")
+    add("--camera", type=arguments.camera, metavar="JSON", help=f"another camera: {options.CAMERA}")
+    options.add_edits(parser)
+    options.add_history(parser)
+    help_ = "then trace the frame itself N times (default: 1 without --warmup and --before, else 0)"
+    add("--repeat", type=count(0, 1000), metavar="N", help=help_)
+    options.add_tracing(parser)
+    return parser
+
+
+def run(given: Namespace) -> int:
     """Trace a frame, and print the reasons and the tree of a pixel's rays; raises SceneError and ValueError in one
     line, or Cancelled."""
-    check_scene_file(path)
-    settings = replace(tracing_settings(options), method=options.method or DEFAULT_METHOD)
-    x, y = options.pixel
+    check_scene_file(given.path)
+    settings = options.tracing_settings(given)
+    x, y = given.pixel
     if not (x < settings.width and y < settings.height):
         raise ValueError(f"--pixel {x},{y}: the picture is {settings.width} x {settings.height}")
     with working() as work:
-        read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
-        scene = edited_scene(read, options)
-        light = None if options.light is None else light_index(options, "--light ", options.light, scene)
-        time = moment(scene, options.frame, options.time)
-        prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
+        scene = options.read_scene(given.path, given, work)
+        light = None if given.light is None else options.light_index(given, "--light ", given.light, scene)
+        time = options.moment(scene, given)
+        options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
-        times = times_before(scene, time, options.warmup, work)
-        times += [time] * _repeats(options)
-        before = [*options.before, *(WarmupFrame(then, options.camera) for then in times)]
-        ledger, moves = ModeOrigins(len(scene.lights)), _Moves(scene)
+        times = options.warmup_times(scene, time, given.warmup, work)
+        times += [time] * _repeats(given)
+        before = [*given.before, *(WarmupFrame(then, given.camera) for then in times)]
+        origins, places = ModeOrigins(len(scene.lights)), None
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
             modes = renderer.render(earlier.time, earlier.camera, work.cancelled).modes
-            ledger.add(done, modes, moves.since(earlier.time))
+            were, places = places, scene.light_positions(earlier.time)
+            origins.add(done, modes, None if were is None else (were != places).any(axis=1))  # lights that have moved
         work.count("tracing", len(before), len(before) + 1)
-        frame = renderer.render(time, options.camera, work.cancelled)
+        frame = renderer.render(time, given.camera, work.cancelled)
         found = why(renderer, frame, x, y, work.cancelled)
         work.count("asking which frames have taught it", len(before), len(before) + 1)
-        found = _with_teachers(found, renderer, frame, ledger, before)
+        found = _with_teachers(found, renderer, frame, origins, before)
     tree = found.tree
     assert tree is not None
-    if options.json:
+    if given.json:
         print(json.dumps(ray_data(tree, scene) | {"why": why_data(found, scene)}, indent=2))
-        return
-    title = f"{path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
-    _print(found, tree, scene, Filter(Shown(options.only), light), title)
+        return 0
+    title = (
+        f"{given.path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
+    )
+    _print(found, tree, scene, Filter(Shown(given.only), light), title)
+    return 0
 
 
-def _repeats(options: Namespace) -> int:
-    """How often the frame itself is traced before: as in the window at rest where no others come before it, so that
-    what culls by earlier frames has seen one."""
-    if options.repeat is not None:
-        return int(options.repeat)
-    return 0 if options.warmup or options.before else 1
+def _repeats(given: Namespace) -> int:
+    """Return how often the frame itself is traced before.
 
-
-class _Moves:
-    """Which lights are elsewhere than they were in the frame before."""
-
-    def __init__(self, scene: Scene) -> None:
-        self._scene = scene
-        self._before: NDArray[np.float64] | None = None
-
-    def since(self, time: float) -> NDArray[np.bool_] | None:
-        """(lights,) bool, None in the first frame."""
-        before, self._before = self._before, self._scene.light_positions(time)
-        return None if before is None else (before != self._before).any(axis=1)
+    Where no others come before it, that is once, as in the window at rest, so that what culls by earlier frames has
+    seen one."""
+    if given.repeat is not None:
+        return int(given.repeat)
+    return 0 if given.warmup or given.before else 1
 
 
 def _with_teachers(
-    found: Why, renderer: Renderer, frame: Frame, ledger: ModeOrigins, before: Sequence[WarmupFrame]
+    found: Why, renderer: Renderer, frame: Frame, origins: ModeOrigins, before: Sequence[WarmupFrame]
 ) -> Why:
-    """The same with the frames, and the pixels of these, that gave the primitive its modes."""
+    """Add the frames, and the pixels of these, that gave the primitive its modes."""
     unit = int(frame.cell[found.y, found.x])
-    taught = ledger.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
+    taught = origins.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
     if taught is None:
         return found
 
@@ -143,7 +170,7 @@ def _print(found: Why, tree: RayTree, scene: Scene, shown: Filter, title: str) -
 
 
 def _add(tree: Tree, row: Row) -> None:
-    """A row, and those below it, but for the single samples and lights of many with the same fate."""
+    """Add a row, and those below it, but for the single samples and lights of many with the same fate."""
     red, green, blue = (round(255 * channel) for channel in row.color)
     below = tree.add(Text(printable(row.text), f"rgb({red},{green},{blue})" if len(row.places) else "bold"))
     if "fate" in row.key:

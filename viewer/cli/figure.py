@@ -6,70 +6,87 @@ from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
 
-from rich.table import Table
-
 from tracer.geometry.world import World
-from tracer.scene.load import check_scene_file, load_visible_scene
-from viewer.cli.console import print_table, working
-from viewer.cli.edit_options import edited_scene
-from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.render import check_display, check_view, recipe_of, times_before
-from viewer.cli.tracing_options import prepare_kernels, tracing_settings
+from tracer.scene.load import check_scene_file
+from viewer.cli import arguments, options, pictures
+from viewer.cli.arguments import Parser
+from viewer.cli.console import print_table, titled, working
 from viewer.output import comparison_figure
-from viewer.output.comparison_figure import ENDINGS, Crop, Shown
-from viewer.services import comparison, stills
+from viewer.output.comparison_figure import ENDINGS, Crop
+from viewer.services import comparison
 from viewer.services.comparison import Comparison
 from viewer.state.views import View
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
 
+EPILOG = """\
+examples:
+  shadowcull figure default -o methods.pdf --frame 50 --warmup 20 --size 640x480
+  shadowcull figure kitchen.aff -o paper.png --frame 100 --warmup 20 --crops '40,60,80,60;200,90,80,60'
+  shadowcull figure kitchen.aff -o cost.pdf --frame 100 --warmup 20 --view cost --methods none,certified,certified+cache
 
-def figure(path: Path, options: Namespace) -> None:
+Each method has a column, with modes of its own: the picture with the crops marked in it, each crop enlarged without
+smoothing, its difference to the picture of none, and the counters. Differences have one range of colours, and so have
+maps of work. The counters are those of the kd-tree, ray by ray, unless --accelerator says otherwise; the work that
+goes into certificates is among them. The figure carries how it was made: `shadowcull check` draws it again.
+"""
+
+
+def parser() -> Parser:
+    description = "Draw one frame by several methods side by side: crops, what differs from none, and counts."
+    parser = Parser("figure", description, EPILOG + options.method_summaries())
+    add = parser.add_argument
+    options.add_scene(parser, pictures.OR_PICTURE)
+    add("-o", "--output", type=Path, metavar="FILE", help="the figure, a .png or .pdf, which says how it was made")
+    help_ = "which methods, in the order of the columns (default: none,paper,certified)"
+    add("--methods", type=arguments.methods, default=["none", "paper", "certified"], metavar="M,...", help=help_)
+    help_ = "rectangles of pixels that are shown enlarged"
+    add("--crops", type=arguments.crops, default=(), metavar="X,Y,W,H;...", help=help_)
+    options.add_history(parser)
+    options.add_moment(parser)
+    pictures.add_picture(parser)
+    options.add_tracing(parser, "kdtree")  # whose steps are the paper's
+    parser.set_defaults(repeat=0, verify=False)
+    return parser
+
+
+def run(given: Namespace) -> int:
     """Trace and draw; raises SceneError, ValueError and OSError, each in one line, or Cancelled."""
-    check_scene_file(path)
-    view = options.view.view
-    if options.output is None or options.output.suffix.lower() not in ENDINGS:
+    check_scene_file(given.path)
+    view = given.view.view
+    if given.output is None or given.output.suffix.lower() not in ENDINGS:
         raise ValueError(f"figure: give -o FILE, one of {' '.join(ENDINGS)}")
-    check_writable(options.output)
+    check_writable(given.output)
     if view is View.CERTIFICATE:
         raise ValueError("figure: certificates are of one method alone; give another --view")
     if view is View.TREE:
         raise ValueError("figure: all methods share one tree; give another --view, or `render --view tree`")
-    check_display(options)
-    settings = replace(tracing_settings(options), samples=options.samples)
-    for method in options.methods:
-        check_view(replace(settings, method=method), view, "--methods")
+    pictures.check_display(given)
+    settings = options.tracing_settings(given)
+    for method in given.methods:
+        pictures.check_view(replace(settings, method=method), view, "--methods")
     with working() as work:
-        read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
-        scene = edited_scene(read, options)
-        for warning in scene.warnings:
-            work.note(f"warning: {warning}")
-        recipe = recipe_of(path, scene, settings, options)
-        crops = tuple(Crop(*crop) for crop in options.crops)
-        wanted = Comparison(recipe, tuple(options.methods), crops).checked()
-        stills.check_light(recipe, scene)
-        if not stills.lights_fit(recipe, scene):
-            raise ValueError(f"--view {view.value}: too many lights for pictures of this size")
-        times_before(scene, recipe.time, recipe.warmup, work)
-        prepare_kernels(work, len(scene.lights), options.accelerator, *wanted.methods)
-        world = World(scene, recipe.time, options.accelerator, work.progress)
+        scene = options.read_scene(given.path, given, work)
+        recipe = pictures.recipe_of(scene, settings, given)
+        crops = tuple(Crop(*crop) for crop in given.crops)
+        wanted = Comparison(recipe, tuple(given.methods), crops).checked()
+        pictures.check_lights(recipe, scene)
+        options.warmup_times(scene, recipe.time, recipe.warmup, work)
+        options.prepare_kernels(work, len(scene.lights), given.accelerator, *wanted.methods)
+        world = World(scene, recipe.time, given.accelerator, work.progress)
 
         def tell(method: str, done: int, total: int) -> None:
             work.count(f"{method}, frame {done + 1} of {total}", done, total)
 
         shown = comparison.trace(scene, wanted, world, tell, work.cancelled)
         work.progress("drawing", 1.0)
-        comparison_figure.save(shown, options.output, comparison.text(shown, wanted))
-    print_table(_table(shown))
-    print(printable(options.output))
-
-
-def _table(shown: Shown) -> Table:
-    table = Table(title=f"{shown.scene.path.name}, {shown.recipe.time:.3f} s", title_justify="left", title_style="bold")
+        comparison_figure.save(shown, given.output, comparison.text(shown, wanted))
+    table = titled(f"{scene.path.name}, {recipe.time:.3f} s")
     table.add_column("")
-    columns = [shown.counts(method) for method in shown.frames]
     for method in shown.frames:
         table.add_column(method, justify="right")
-    for line in zip(*columns):
+    for line in zip(*(shown.counts(method) for method in shown.frames)):
         table.add_row(line[0][0], *(value for _, value in line))
-    return table
+    print_table(table)
+    print(printable(given.output))
+    return 0

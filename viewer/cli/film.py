@@ -13,73 +13,99 @@ from pathlib import Path
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
-from tracer.scene.load import check_scene_file, load_visible_scene
+from tracer.scene.load import check_scene_file
 from tracer.scene.model import Cancelled, Scene
-from viewer.cli import film_elsewhere
+from viewer.cli import arguments, options, pictures, processes
+from viewer.cli.arguments import INTERRUPTED, Parser, number
 from viewer.cli.console import Work, working
-from viewer.cli.edit_options import edited_scene
-from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.render import check_display, check_tree, check_view, recipe_of
-from viewer.cli.tracing_options import prepare_kernels, tracing_settings
 from viewer.output import capture, movie
+from viewer.output.recipe import Recipe
 from viewer.services import filming, stills
 from viewer.services.filming import Script
 from viewer.state import flight
 from viewer.state.flight import Stop, Take
-from viewer.state.methods import default_for
+from viewer.state.methods import CERTIFIED
 from viewer.state.preferences import load_preferences
 from viewer.state.session import Snapshot
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
 
+EPILOG = """\
+examples:
+  shadowcull film kitchen.aff -o kitchen --size 1280x720 --samples 4
+  shadowcull film kitchen.aff -o kitchen.mp4 --frames 100-300 --method certified --size 1920x1080
+  shadowcull film default -o modes.mp4 --frames 0-49 --view occlusion --legend
+  shadowcull film kitchen.aff -o flight.mp4 --through door.png table.png window.png --seconds 10
+  shadowcull film kitchen.aff -o flight --bookmarks --fps 30
 
-def film(path: Path, options: Namespace) -> bool:
-    """Write a film; returns whether it was not stopped before its end.
+Every frame is traced whole, and each picture carries how it was made, for `shadowcull check`. Modes are learnt from
+frame to frame. A flight moves evenly: each frame goes on as far as the others, where turning counts as well, and time
+goes on from picture to picture. The video needs PyAV: install shadowcull[video]. An odd width or height of the video
+is made even by repeating its last row or column. Ctrl-C keeps what is done; the exit code is then 130.
+"""
 
-    Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished."""
-    check_scene_file(path)
-    method = options.method or default_for(options.view.view)
-    settings = replace(tracing_settings(options), method=method, samples=options.samples)
-    check_view(settings, options.view.view)
-    check_display(options)
-    if options.output is None:
+
+def parser() -> Parser:
+    description = (
+        "Trace the frames of a scene's path, or of a flight through bookmarks, into numbered pictures, and into a "
+        "video."
+    )
+    parser = Parser("film", description, EPILOG + options.method_summaries())
+    add = parser.add_argument
+    options.add_scene(parser, pictures.OR_PICTURE)
+    help_ = "a folder for the pictures; or film.mp4, whose pictures go to film-frames"
+    add("-o", "--output", type=Path, metavar="DIR|FILE.mp4", help=help_)
+    help_ = "the frames A to B of the path, or one (default: all)"
+    add("--frames", type=arguments.frame_span, metavar="A-B", help=help_)
+    help_ = "fly through where these saved pictures were taken, at an even speed, in place of the path"
+    add("--through", type=Path, nargs="+", metavar="PICTURE", help=help_)
+    add("--bookmarks", action="store_true", help="fly through the scene's bookmarks, which the window keeps")
+    help_ = "how long the film is (default: every frame of the path once; 2 seconds from bookmark to bookmark)"
+    add("--seconds", type=number(0.01, 86_400.0), metavar="S", help=help_)
+    add("--fps", type=number(1.0, 240.0), default=25.0, metavar="F", help="frames a second (default: 25)")
+    processes.add_processes(parser)
+    pictures.add_picture(parser)
+    options.add_tracing(parser)
+    options.add_verify(parser)
+    parser.set_defaults(frame=None, time=None, warmup=0, repeat=0, before=())
+    return parser
+
+
+def run(given: Namespace) -> int:
+    """Write a film; raises SceneError, ValueError and OSError in one line, or Cancelled where no frame was finished."""
+    check_scene_file(given.path)
+    settings = pictures.picture_settings(given)
+    if given.output is None:
         raise ValueError("film: nothing to write; give -o FOLDER, or -o film.mp4")
-    folder, video = filming.places(options.output)
+    folder, video = filming.places(given.output)
     if video is not None:
         movie.check_video()
         check_writable(video)
-    stops = _stops(path, options)
+    stops = _stops(given)
     with working() as work:
-        read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
-        scene = edited_scene(read, options)
-        for warning in scene.warnings:
-            work.note(f"warning: {warning}")
-        recipe = replace(recipe_of(path, scene, settings, options), before=())  # modes are learnt from the film alone
-        stills.check_light(recipe, scene)
+        scene = options.read_scene(given.path, given, work)
+        recipe = replace(pictures.recipe_of(scene, settings, given), before=())  # modes are learnt from the film alone
         stills.with_caption_filled(recipe, scene)  # or say now what is wrong with it
-        check_tree(settings, recipe.view, scene)
-        if not stills.lights_fit(recipe, scene):
-            raise ValueError(f"--view {recipe.view.value}: too many lights for pictures of this size")
-        takes = _takes(scene, stops, options)
-        script = Script(takes, recipe, folder, video, options.fps)
-        shared = film_elsewhere.is_wanted(recipe, options, work)
+        pictures.check_tree(settings, recipe.view, scene)
+        pictures.check_lights(recipe, scene)
+        takes = _takes(scene, stops, given)
+        script = Script(takes, recipe, folder, video, given.fps)
+        shared = _is_shared(recipe, given, work)
         if not shared:
             filming.check_folder(folder)
-        if options.scheduler is None or not shared:
-            prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
-        shoot = film_elsewhere.shoot if shared else _shoot
-        done = shoot(scene, script, options, work)
+        if given.scheduler is None or not shared:
+            options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
+        done = _by_processes(scene, script, given, work) if shared else _in_turn(scene, script, work)
         if done < len(takes):
             if not done:
                 raise Cancelled("cancelled")
             work.note(f"cancelled after {done} of {len(takes)} frames; these are kept")
-    for written in (folder, video):
-        if written is not None:
-            print(printable(written))
-    return done == len(takes)
+    for written in filter(None, (folder, video)):
+        print(printable(written))
+    return 0 if done == len(takes) else INTERRUPTED
 
 
-def _shoot(scene: Scene, script: Script, options: Namespace, work: Work) -> int:
+def _in_turn(scene: Scene, script: Script, work: Work) -> int:
     """Trace frame after frame; returns how many there are, fewer than all where that was cancelled."""
     renderer = Renderer(scene, script.recipe.settings, work.progress)
     done, count = 0, len(script.takes)
@@ -97,32 +123,73 @@ def _shoot(scene: Scene, script: Script, options: Namespace, work: Work) -> int:
     return done
 
 
-def _takes(scene: Scene, stops: Sequence[Stop], options: Namespace) -> list[Take]:
-    count = None if options.seconds is None else max(2, round(options.seconds * options.fps))
+def _is_shared(recipe: Recipe, given: Namespace, work: Work) -> bool:
+    """Whether several processes shall share the film, and can; raises ValueError, in one line, without Dask."""
+    if given.workers is None and given.scheduler is None:
+        return False
+    from tracer.experiments.cluster import check_dask
+    from viewer.services.films_elsewhere import filmed_alone
+
+    check_dask()
+    if filmed_alone(recipe):
+        return True
+    settings = recipe.settings
+    exact = replace(recipe, settings=replace(settings, method=CERTIFIED))
+    work.note(
+        f"pictures by {settings.method} in the view {recipe.view.value} depend on the frames before them: one process "
+        f"traces them all, in turn{f'; give --method {CERTIFIED} to share them' if filmed_alone(exact) else ''}"
+    )
+    return False
+
+
+def _by_processes(scene: Scene, script: Script, given: Namespace, work: Work) -> int:
+    """Trace what is missing of a film; returns how many pictures there are, fewer than all where that was cancelled."""
+    from viewer.services import films_elsewhere
+
+    filming.make_folder(script.folder)
+    kept, count = films_elsewhere.kept_pictures(script, scene), len(script.takes)
+    done = len(kept)
+    if kept:
+        work.note(f"{done} of {count} pictures are there already; going on from there")
+    with processes.cluster_of(given, count - done) as cluster:
+        watch = processes.Watch(cluster, work)
+
+        def on_progress(now: int) -> None:
+            nonlocal done
+            done = now
+            watch.look()
+            work.count(f"frame {min(now + 1, count)} of {count}, {watch}", now, count)
+
+        on_progress(done)
+        with suppress(Cancelled):
+            for _ in films_elsewhere.shoot(cluster, scene, script, kept, work.cancelled, on_progress, work.note):
+                pass
+    return done
+
+
+def _takes(scene: Scene, stops: Sequence[Stop], given: Namespace) -> list[Take]:
+    count = None if given.seconds is None else max(2, round(given.seconds * given.fps))
     if stops:
+        start, end = scene.time_range
         for stop in stops:
-            start, end = scene.time_range
             if not start <= stop.time <= end:
                 raise ValueError(f"--through: a picture's time, {stop.time:g}, is none of the scene's")
-        return flight.through(stops, count or round(flight.LEG * options.fps) * (len(stops) - 1) + 1)
-    first, last = options.frames or (0, scene.frames - 1)
-    return flight.along_path(scene, first, last, count, options.camera)
+        return flight.through(stops, count or round(flight.LEG * given.fps) * (len(stops) - 1) + 1)
+    first, last = given.frames or (0, scene.frames - 1)
+    return flight.along_path(scene, first, last, count, given.camera)
 
 
-def _stops(path: Path, options: Namespace) -> list[Stop]:
-    """Where a flight goes through; none for the scene's own path.  Raises ValueError in one line."""
-    given = [options.through is not None, options.bookmarks, options.frames is not None]
-    if sum(given) > 1:
+def _stops(given: Namespace) -> list[Stop]:
+    """Return where a flight goes through, none for the scene's own path; raises ValueError in one line."""
+    if sum([given.through is not None, given.bookmarks, given.frames is not None]) > 1:
         raise ValueError("film: give one of --frames, --through and --bookmarks")
-    if options.through is not None:
-        found = [capture.read(picture) for picture in options.through]
-        names = "--through"
-    elif options.bookmarks:
-        kept = load_preferences()[0].bookmarks.get(str(path.absolute()), [])
-        found = [Snapshot.from_json(bookmark.get("state")) for bookmark in kept]
-        names = "--bookmarks"
+    if given.through is not None:
+        found, option = [capture.read(picture) for picture in given.through], "--through"
+    elif given.bookmarks:
+        kept = load_preferences()[0].bookmarks.get(str(given.path.absolute()), [])
+        found, option = [Snapshot.from_json(bookmark.get("state")) for bookmark in kept], "--bookmarks"
     else:
         return []
     if len(found) < 2:
-        raise ValueError(f"{names}: {path.name} has {len(found)}; a flight needs two at least")
+        raise ValueError(f"{option}: {given.path.name} has {len(found)}; a flight needs two at least")
     return [Stop(snapshot.time, snapshot.camera) for snapshot in found]

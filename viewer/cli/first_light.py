@@ -13,13 +13,12 @@ from rich.table import Table
 from tracer.frame import Frame, Settings
 from tracer.geometry.accelerators import BVH8
 from tracer.renderer import Renderer
-from tracer.scene.load import check_scene_file, load_visible_scene
+from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
-from viewer.cli.console import Work, print_table, working
-from viewer.cli.mesh_arguments import mesh_options
+from viewer.cli import options
+from viewer.cli.console import Work, print_table, titled, working
 from viewer.cli.render import write_picture
-from viewer.cli.tracing_options import prepare_kernels
 from viewer.output import figure1_svg
 from viewer.output.figure1 import TITLE, Stage, figure_of
 from viewer.output.recipe import Recipe
@@ -36,21 +35,19 @@ _SIZE = 640, 480
 _AGAIN = 2  # frames by none: the first makes room in memory, the last is timed
 
 
-def show(path: Path, options: Namespace) -> None:
+def show(path: Path, given: Namespace) -> None:
     """Trace, print and write; raises SceneError, ValueError and OSError in one line, or Cancelled."""
     check_scene_file(path)
     for file in (PICTURE, FIGURE):
         file.parent.mkdir(exist_ok=True)
         check_writable(file)
-    lamps = {"lamp_radius": options.lamp_radius, "lamp_samples": options.lamp_samples}
+    lamps = {"lamp_radius": given.lamp_radius, "lamp_samples": given.lamp_samples}
     settings = Settings(*_SIZE, method=BY_MODES, **lamps).validated()
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
-        for warning in scene.warnings:
-            work.note(f"warning: {warning}")
-        prepare_kernels(work, len(scene.lights), settings.accelerator, BY_MODES)
+        scene = options.read_scene(path, given, work)
+        options.prepare_kernels(work, len(scene.lights), settings.accelerator, BY_MODES)
         time = scene.frame_time(min(FRAMES, scene.frames) - 1)
-        folders, meshes = tuple(options.folder), mesh_options(options).of_file(path)
+        folders, meshes = tuple(given.folder), options.mesh_options(given).of_file(path)
         recipe = Recipe(path, time, None, settings, warmup=FRAMES - 1, folders=folders, meshes=meshes)
         frame, all_traced = _trace(scene, recipe, work)
         work.progress("writing", 1.0)
@@ -81,13 +78,8 @@ def _trace(scene: Scene, recipe: Recipe, work: Work) -> tuple[Frame, Frame]:
 def _table(path: Path, recipe: Recipe, frames: int, frame: Frame, all_traced: Frame) -> Table:
     """What each stage did, beside what `none` did, and what that saved."""
     size, end = f"{frame.width} × {frame.height}", f"{recipe.time:.2f} s"
-    table = Table(
-        title=f"{TITLE}: {path.name}, {size}, the last of {frames} frames, at {end}",
-        title_justify="left",
-        title_style="bold",
-        caption=_caption(frame, all_traced),
-        caption_justify="left",
-    )
+    title = f"{TITLE}: {path.name}, {size}, the last of {frames} frames, at {end}"
+    table = titled(title, _caption(frame, all_traced))
     for name in ("", BY_MODES, "", NO_CULLING, "saved"):
         table.add_column(name, justify="right" if name or len(table.columns) else "left")
     stages = figure_of(frame).stages

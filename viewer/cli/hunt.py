@@ -6,7 +6,6 @@ Ctrl-C ends it after the last whole picture: what was found is shown, and writte
 from __future__ import annotations
 
 from argparse import Namespace
-from dataclasses import replace
 from pathlib import Path
 
 from rich.table import Table
@@ -16,32 +15,74 @@ from tracer.experiments.hunt import Search
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.scene.lights import number_of
-from tracer.scene.load import check_scene_file, load_visible_scene
+from tracer.scene.load import check_scene_file
 from tracer.scene.model import Cancelled, Scene
-from viewer.cli.console import Work, print_table, working
-from viewer.cli.mesh_arguments import as_arguments, mesh_options
-from viewer.cli.tracing_options import prepare_kernels, tracing_settings
+from viewer.cli import arguments, options
+from viewer.cli.arguments import INTERRUPTED, Parser, count, number
+from viewer.cli.console import Work, last_of, print_table, titled, working
 from viewer.services import counterexamples
 from viewer.state import flight
 from viewer.state.methods import NO_CULLING
 from viewer.util.messages import printable
 
+EPILOG = """\
+examples:
+  shadowcull hunt kitchen.aff --frames 0-99 --size 256x256 --output wrong
+  shadowcull hunt kitchen.aff --method paper --step 10 --around 100 --radius 0.5 --seed 7
+  shadowcull hunt default --method certified --around 50
+  shadowcull check wrong/*.png
+  shadowcull explain kitchen.aff --frame 12 --pixel 147,125 --before '[[0, null]]' --only wrong
 
-def run(path: Path, options: Namespace) -> bool:
-    """Hunt, print what was found, and write it; returns whether it was not stopped before its end.
+The frames are traced one after another, as in bench, so that the method learns from each; every culled shadow ray is
+verified. Wrong pixels are ranked by how far their colour is from the right one, and of each primitive and light the
+worst is kept. Then the fewest frames before it are looked for that make the pixel just as wrong: often the one that
+taught the mode. --around N traces N extra random views near the worst findings; --radius says how far from the camera
+of a finding, in parts of its distance to what is wrong there.
+
+--output writes for each finding a figure that shows it beside the right picture, which `shadowcull check` can draw
+again, a JSON with all about it, which --before of render, figure and explain takes, and hunt.json with all. For an
+exact method nothing is found, and the last line says how many pixels were compared. Ctrl-C keeps what was found; the
+exit code is then 130.
+"""
+
+
+def parser() -> Parser:
+    description = "Search a path of frames, and pictures beside it, for the worst wrong pixels of a method."
+    parser = Parser("hunt", description, EPILOG + options.method_summaries())
+    add = parser.add_argument
+    options.add_scene(parser)
+    help_ = f"whose wrong pixels: {options.method_names()} (default: paper)"
+    add("--method", type=arguments.method, default="paper", metavar="M", help=help_)
+    help_ = "the frames A to B of the path, or one (default: all)"
+    add("--frames", type=arguments.frame_span, metavar="A-B", help=help_)
+    add("--step", type=count(1, 1_000_000), default=1, metavar="N", help="only every N-th of them (default: 1)")
+    help_ = f"stand still, and let time pass: {options.CAMERA}"
+    add("--camera", type=arguments.camera, metavar="JSON", help=help_)
+    help_ = "then N extra random views near the worst findings (default: 0)"
+    add("--around", type=count(0, 1_000_000), default=0, metavar="N", help=help_)
+    help_ = "how far these are, at most, in parts of the distance to what is wrong (default: 0.3)"
+    add("--radius", type=number(0.0, 100.0), default=0.3, metavar="R", help=help_)
+    add("--seed", type=count(0, 2**31 - 1), default=1, metavar="S", help="which of them are drawn (default: 1)")
+    add("--keep", type=count(1, 1000), default=8, metavar="K", help="how many findings, the worst (default: 8)")
+    options.add_size(parser)
+    help_ = "a folder for a figure and a JSON of each finding, and for hunt.json"
+    add("-o", "--output", type=Path, metavar="DIR", help=help_)
+    options.add_tracing(parser)
+    return parser
+
+
+def run(given: Namespace) -> int:
+    """Hunt, print what was found, and write it.
 
     Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no picture was finished."""
-    check_scene_file(path)
-    settings = replace(tracing_settings(options), method=options.method, verify=True)
-    found, whole = None, True
+    check_scene_file(given.path)
+    settings = options.tracing_settings(given, verify=True)
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
-        for warning in scene.warnings:
-            work.note(f"warning: {warning}")
-        search = _search(scene, settings, options)
-        if options.output is not None:
-            counterexamples.check_folder(options.output)
-        prepare_kernels(work, len(scene.lights), options.accelerator, settings.method, NO_CULLING)
+        scene = options.read_scene(given.path, given, work)
+        search = _search(scene, settings, given)
+        if given.output is not None:
+            counterexamples.check_folder(given.output)
+        options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method, NO_CULLING)
         world = World(scene, search.times[0], settings.accelerator, work.progress)
         done = 0
 
@@ -51,71 +92,58 @@ def run(path: Path, options: Namespace) -> bool:
             work.count(label, done, search.frames)
 
         work.count(f"frame 1 of {len(search.times)}", 0, search.frames)
-        for grown in hunt.run(scene, search, work.cancelled, world, on_frame):
-            found = grown
-        if found is None:
-            raise Cancelled("cancelled")
+        found = last_of(hunt.run(scene, search, work.cancelled, world, on_frame))
         whole = not work.stopped
         if not whole:
             work.note(f"cancelled after {done} of {search.frames} pictures; the table is of these")
-        written = _write(found, scene, search, world, options, work) if options.output is not None else []
+        written = _write(found, scene, search, world, given, work) if given.output is not None else []
     if found.finds:
         print_table(_table(found, scene))
     print(printable(found.summary))
     for file in written:
         print(printable(file))
-    return whole
+    return 0 if whole else INTERRUPTED
 
 
-def _search(scene: Scene, settings: Settings, options: Namespace) -> Search:
-    first, last = options.frames or (0, scene.frames - 1)
-    takes = flight.along_path(scene, first, last)[:: options.step]
-    return Search(
-        settings,
-        [take.time for take in takes],
-        options.camera,
-        options.around,
-        options.radius,
-        options.seed,
-        options.keep,
-    )
+def _search(scene: Scene, settings: Settings, given: Namespace) -> Search:
+    first, last = given.frames or (0, scene.frames - 1)
+    takes = flight.along_path(scene, first, last)[:: given.step]
+    times = [take.time for take in takes]
+    return Search(settings, times, given.camera, given.around, given.radius, given.seed, given.keep)
 
 
-def _write(
-    found: hunt.Results, scene: Scene, search: Search, world: World, options: Namespace, work: Work
-) -> list[Path]:
-    """The files of all finds; of a hunt that was stopped the JSON alone, as figures take long."""
-    written = []
-    for number, find in enumerate(found.finds, 1):
-        stem = options.output / f"find-{number}"
-        counterexamples.save_json(find, found, scene, stem.with_suffix(".json"), as_arguments(mesh_options(options)))
+def _write(found: hunt.Results, scene: Scene, search: Search, world: World, given: Namespace, work: Work) -> list[Path]:
+    """Write the files of all findings; of a hunt that was stopped the JSON alone, as figures take long."""
+    written, meshes = [], options.mesh_options(given)
+    for rank, find in enumerate(found.finds, 1):
+        stem = given.output / f"find-{rank}"
+        counterexamples.save_json(find, found, scene, stem.with_suffix(".json"), options.mesh_arguments(meshes))
         if not work.stopped:
-            work.count(f"figure {number} of {len(found.finds)}", number - 1, len(found.finds))
-            meshes = mesh_options(options).of_file(Path(scene.path))
-            folders = tuple(options.folder)
-            wanted = counterexamples.comparison_of(find, found, scene, search.settings, folders, meshes)
+            work.count(f"figure {rank} of {len(found.finds)}", rank - 1, len(found.finds))
+            of_file, folders = meshes.of_file(Path(scene.path)), tuple(given.folder)
+            wanted = counterexamples.comparison_of(find, found, scene, search.settings, folders, of_file)
             try:
                 counterexamples.save_figure(wanted, scene, world, stem.with_suffix(".png"), cancelled=work.cancelled)
                 written.append(stem.with_suffix(".png"))
             except Cancelled:
                 work.note("cancelled: the figures from here on are not drawn")
         written.append(stem.with_suffix(".json"))
-    counterexamples.save_all(found, scene, options.output)
-    return [*written, options.output / counterexamples.ALL]
+    counterexamples.save_all(found, scene, given.output)
+    return [*written, given.output / counterexamples.ALL]
 
 
 def _table(found: hunt.Results, scene: Scene) -> Table:
     size = f"{found.size[0]} × {found.size[1]}"
     title = f"{Path(found.scene).name}, {size}, method {found.method}: the worst wrong pixels"
-    table = Table(title=title, title_justify="left", title_style="bold", caption_justify="left")
+    table = titled(title, "difference: of the colour, of 1; wrong pixels: of the picture; light: (+ others)")
     for heading in ("", "difference", "pixel", "wrong pixels"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("frame", no_wrap=True)
     for heading in ("primitive", "light", "culled by", "truly", "learnt"):
         table.add_column(heading, overflow="fold")
-    for number, find in enumerate(found.finds, 1):
+    for rank, find in enumerate(found.finds, 1):
         table.add_row(
-            str(number),
+            str(rank),
             f"{find.difference:.3f}",
             f"{find.x},{find.y}",
             f"{find.pixels:,}",
@@ -126,5 +154,4 @@ def _table(found: hunt.Results, scene: Scene) -> Table:
             "blocked" if find.lit else "lit",
             counterexample.taught_by(find, scene),
         )
-    table.caption = "difference: of the colour, of 1; wrong pixels: of the picture; light: (+ others)"
     return table

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -15,12 +16,39 @@ from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.model import Scene
 from tracer.scene.studio import FLOOR_TRIANGLES, LAMPS, up_in_studio
-from viewer.cli.console import Work, print_table, working
+from viewer.cli import pictures
+from viewer.cli.arguments import Parser
+from viewer.cli.console import Work, print_table, titled, working
+from viewer.cli.options import add_scene
 from viewer.util.messages import say
+
+EPILOG = """\
+examples:
+  shadowcull info kitchen.aff
+  shadowcull info default --json
+"""
+
+
+def parser() -> Parser:
+    description = (
+        "Say what a scene, or that of a saved picture, holds: primitives, lights, materials, frames, bounds, and "
+        "warnings. Of a model without camera and lights it counts what is in the file, lit by two lights, and says "
+        "what the studio adds in which the window and the commands that trace set it."
+    )
+    parser = Parser("info", description, EPILOG)
+    add_scene(parser)
+    parser.add_argument("--json", action="store_true", help="as JSON on standard output")
+    return parser
+
+
+def run(options: Namespace) -> int:
+    """Print what a scene holds; raises SceneError."""
+    info(pictures.scene_of(options.path), options.json, options.folder)
+    return 0
 
 
 def info(path: Path, as_json: bool, folders: Sequence[Path] = ()) -> None:
-    """Print what a scene holds; raises SceneError."""
+    """Print what the file of a scene holds; raises SceneError."""
     with working() as work:
         scene = load_scene(path, work.progress, folders)
         studio = {"triangles": FLOOR_TRIANGLES, "lights": LAMPS} if _gets_studio(scene, work, folders) else None
@@ -28,7 +56,7 @@ def info(path: Path, as_json: bool, folders: Sequence[Path] = ()) -> None:
     if as_json:
         print(json.dumps(facts, indent=2))
         return
-    print_table(_facts_table(path, facts))
+    print_table(_table(path, facts))
     if studio is not None:
         print(
             f"in the window and in pictures, a studio adds {FLOOR_TRIANGLES} triangles, and {LAMPS} lamps in place of "
@@ -49,8 +77,9 @@ def _gets_studio(scene: Scene, work: Work, folders: Sequence[Path]) -> bool:
     return up_in_studio(load_scene(scene.path, work.progress, folders, IN_STUDIO)) is not None
 
 
-def _facts_table(path: Path, facts: dict[str, Any]) -> Table:
-    table = Table(title=str(path), title_justify="left", title_style="bold", show_header=False)
+def _table(path: Path, facts: dict[str, Any]) -> Table:
+    table = titled(str(path))
+    table.show_header = False
     table.add_column()
     table.add_column(justify="right")
     for name, value in facts.items():
@@ -70,7 +99,7 @@ def _facts_table(path: Path, facts: dict[str, Any]) -> Table:
 
 
 def _light_kind(alike: dict[str, Any]) -> str:
-    """What lights that are alike are, in a few words."""
+    """Say in a few words what lights that are alike are."""
     samples = f", {alike['samples']} sample{'s' * (alike['samples'] > 1)}" if alike["kind"] != "point" else ""
     falloff = f", falloff {alike['falloff']}" if alike["falloff"] != "none" else ""
     return f"{alike['kind']}{samples}{falloff}"

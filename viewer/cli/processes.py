@@ -8,11 +8,20 @@ from argparse import Namespace
 from contextlib import AbstractContextManager
 
 from tracer.experiments.cluster import Cluster, connected, local_cluster
+from viewer.cli.arguments import Parser, count
 from viewer.cli.console import Work
 
 
+def add_processes(parser: Parser) -> None:
+    """Add who does the work: processes of this machine, or those of a cluster."""
+    add = parser.add_mutually_exclusive_group().add_argument
+    add("--workers", type=count(1, 1024), metavar="N", help="so many processes of this machine, with one thread each")
+    help_ = "the workers of a Dask scheduler that runs there, such as tcp://10.0.0.1:8786"
+    add("--scheduler", metavar="ADDRESS", help=help_)
+
+
 def cluster_of(options: Namespace, tasks: int) -> AbstractContextManager[Cluster]:
-    """The processes that the options ask for; no more of this machine than there are tasks."""
+    """Start the processes that the options ask for; no more of this machine than there are tasks."""
     if options.scheduler is not None:
         return connected(options.scheduler)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -20,7 +29,7 @@ def cluster_of(options: Namespace, tasks: int) -> AbstractContextManager[Cluster
 
 
 class Watch:
-    """Says how many processes there are, and when one has died, as they were at the last look: once a second."""
+    """Says how many processes there are, and when one has died, as they were when it last looked: once a second."""
 
     EVERY = 1.0
 

@@ -14,29 +14,24 @@ from typing import Any
 
 import numpy as np
 from PIL import Image
+from rich.table import Table
 
 from tracer.frame import Frame, Settings
-from tracer.geometry.accelerators import BVH8, LAZY
-from tracer.geometry.world import LARGE
 from tracer.method import Method
 from tracer.renderer import Renderer
-from tracer.scene.load import check_scene_file, load_visible_scene
+from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
-from viewer.cli.console import Work, print_table, statistics_table, working
-from viewer.cli.edit_options import edited_scene, edits_of, light_index
-from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
+from tracer.statistics import FrameStatistics
+from viewer.cli import options, pictures
+from viewer.cli.arguments import Parser, count
+from viewer.cli.console import Work, print_table, titled, working
 from viewer.output import exr, figure1_svg, png, recipe, tev
 from viewer.output.buffers import buffers
-from viewer.output.recipe import Recipe, Style
+from viewer.output.recipe import Recipe
 from viewer.services import stills
 from viewer.services.lamps import LampSamples
-from viewer.state import terms
-from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
+from viewer.state import terms, verified
 from viewer.state.readings import MOST_RECORDED
-from viewer.state.slices import MIDDLE
-from viewer.state.tone import Tone
-from viewer.state.views import View
 from viewer.util.files import check_writable, write_whole
 from viewer.util.messages import printable, say
 
@@ -51,116 +46,119 @@ PICTURES = {
     exr.ENDING: "EXR",
 }
 BYTES_OF_A_LIGHT = 7  # of a pixel: samples asked and reached in 2 each, lit, due and shadow_mode in 1 each
-LEGEND_PLACE = 0.0, 1.0  # the lower left corner
+
+EPILOG = """\
+examples:
+  shadowcull render -o room.png
+  shadowcull render kitchen.aff -o soft.png --frame 100 --samples 16 --lamp-radius 0.1 --lamp-samples 64
+  shadowcull render kitchen.aff -o bright.png --exposure 1 --white 4 --tone filmic
+  shadowcull render kitchen.aff -o modes.png --frame 50 --warmup 20 --view shadow:2 --legend
+  shadowcull render kitchen.aff -o cells.png --frame 50 --warmup 20 --method certified --view certificate:0
+  shadowcull render kitchen.aff --frame 50 --warmup 20 --figure1 kitchen.svg
+  shadowcull render Robot.aff --frame 10 --warmup 10 --buffers robot.npz
+  shadowcull render Robot.aff -o robot.exr --frame 10 --warmup 10 --verify
+  shadowcull render saved.png --samples 16 --size 1920x1080
+  shadowcull render kitchen.aff -o same.png --camera saved.png
+  shadowcull render bunny.ply -o bunny.png --camera '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
+
+Culling uses what earlier frames have shown: --warmup N first traces the N frames before the one that is rendered.
+
+A picture saved by the window or by render carries its scene, camera, time, settings and view. Given instead of SCENE,
+it is rendered again, and options replace what it carries. Without -o the result is NAME-rendered.png.
+
+The .npz holds color (H,W,3 float32), depth (H,W float32, distance along the unit ray, inf for a miss), primitive and
+cell (H,W int32, -1 for a miss), occlusion_mode (H,W uint8, 255 for a miss), shadow_mode (H,W,lights uint8), and for
+each light and primary hit lit and due (H,W,lights bool); with --verify also reference (H,W,3 float32), the colour
+with every shadow answer right, and wrong (H,W int32), the number of wrong shadow answers of each pixel. The method
+certified adds certificate (H,W,lights uint8: 0 none, 1 full shadow, 2 lit, 3 candidates), and the views saved and
+cost add arrays of their names (H,W int32). An .exr holds the same as channels; it needs OpenEXR (install
+shadowcull[exr]).
+
+The views difference and wipe verify by themselves: wrong pixels, and the traced picture beside the correct one.
+"""
 
 
-def render(path: Path, options: Namespace) -> None:
+def parser() -> Parser:
+    description = "Trace one frame, print its statistics, and write it as a picture, as buffers, or as a figure."
+    parser = Parser("render", description, EPILOG + options.method_summaries())
+    add = parser.add_argument
+    options.add_scene(parser, ", or a saved picture, to render it again")
+    help_ = "the picture; a .png also remembers how it was made, and an .exr has all buffers"
+    add("-o", "--output", type=Path, metavar="FILE", help=help_)
+    options.add_moment(parser)
+    pictures.add_picture(parser)
+    options.add_history(parser)
+    add("--repeat", type=count(0, 1000), default=0, metavar="N", help="then trace the frame itself N times")
+    add("--print-command", action="store_true", help="print the whole command for this picture, and trace nothing")
+    help_ = "show the frame and its buffers in tev or HDRView, which is open there"
+    add("--to-tev", type=tev.address, metavar="HOST:PORT", help=help_)
+    add("--half", action="store_true", help="colours and normals of an .exr with 16 bits, not 32")
+    add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
+    help_ = "the paper's Figure 1 with the numbers of this frame, for slides"
+    add("--figure1", type=Path, metavar="FILE.svg", help=help_)
+    options.add_tracing(parser)
+    options.add_verify(parser)
+    return parser
+
+
+def run(given: Namespace) -> int:
     """Trace one frame and write it; raises SceneError, ValueError and OSError in one line, or Cancelled."""
-    check_scene_file(path)
-    view = options.view.view
-    as_exr = options.output is not None and options.output.suffix.lower() == exr.ENDING
-    everything = options.buffers is not None or as_exr or options.to_tev is not None
-    settings = replace(tracing_settings(options), method=options.method or default_for(view), samples=options.samples)
+    check_scene_file(given.path)
+    view = given.view.view
+    as_exr = given.output is not None and given.output.suffix.lower() == exr.ENDING
+    everything = given.buffers is not None or as_exr or given.to_tev is not None
     if as_exr:
         exr.check()
-    if not options.print_command:
-        _check_outputs(options.output, options.buffers, options.figure1, options.to_tev is not None)
-    check_view(settings, view)
-    check_display(options)
+    if not given.print_command:
+        _check_outputs(given)
+    settings = pictures.picture_settings(given)
     with working() as work:
-        read = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
-        scene = edited_scene(read, options)
-        for warning in scene.warnings:
-            work.note(f"warning: {warning}")
-        wanted = stills.with_caption_filled(recipe_of(path, scene, settings, options), scene)
-        stills.check_light(wanted, scene)
-        if options.print_command:
-            words = recipe.arguments(wanted, scene, str(options.output or f"{path.stem}.png"))
+        scene = options.read_scene(given.path, given, work)
+        wanted = stills.with_caption_filled(pictures.recipe_of(scene, settings, given), scene)
+        if given.print_command:
+            words = recipe.arguments(wanted, scene, str(given.output or f"{given.path.stem}.png"))
             print(shlex.join(["shadowcull", *words]))
-            return
-        check_tree(settings, view, scene)
+            return 0
+        pictures.check_tree(settings, view, scene)
         if not stills.lights_fit(wanted, scene, everything):
-            raise ValueError(_too_many_lights(options, settings.width * settings.height, len(scene.lights)))
-        prepare_kernels(work, len(scene.lights), options.accelerator, settings.method)
+            raise ValueError(_too_many_lights(given, settings.width * settings.height, len(scene.lights)))
+        options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
-        modes = options.figure1 is not None and not Method.parse(settings.method).culls  # it says what they would do
-        asked = replace(wanted, settings=replace(wanted.settings, modes=True)) if modes else wanted
-        frame = _traced(renderer, asked, everything, work)
+        modes = given.figure1 is not None and not Method.parse(settings.method).culls  # it says what they would do
+        traced = replace(wanted, settings=replace(wanted.settings, modes=True)) if modes else wanted
+        frame = _traced(renderer, traced, everything, work)
         work.progress("writing", 1.0)
         if as_exr:
-            exr.write(options.output, frame, stills.text(frame.pixels, frame, scene, wanted), options.half)
-        elif options.output is not None:
-            write_picture(options.output, scene, frame, wanted)
-        if options.buffers is not None:
+            exr.write(given.output, frame, stills.text(frame.pixels, frame, scene, wanted), given.half)
+        elif given.output is not None:
+            write_picture(given.output, scene, frame, wanted)
+        if given.buffers is not None:
             arrays: dict[str, Any] = buffers(frame)
-            write_whole(options.buffers, lambda file: np.savez(file, **arrays))
-        if options.figure1 is not None:
-            figure1_svg.write(options.figure1, frame, scene)
-        if options.to_tev is not None:
-            tev.send(options.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
-    title = f"{path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
+            write_whole(given.buffers, lambda file: np.savez(file, **arrays))
+        if given.figure1 is not None:
+            figure1_svg.write(given.figure1, frame, scene)
+        if given.to_tev is not None:
+            tev.send(given.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
+    title = f"{given.path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
     by_beams = terms.asks_by_beams(frame, LampSamples().any(scene.lights, frame.settings))
     remarks = " ".join(filter(None, (terms.BY_BEAMS if by_beams else "", _first(wanted))))
-    print_table(statistics_table(frame.statistics, title, frame.settings, remarks))
-    for written in (options.output, options.buffers, options.figure1):
+    print_table(_statistics_table(frame.statistics, title, frame.settings, remarks))
+    for written in (given.output, given.buffers, given.figure1):
         if written is not None:
             print(printable(written))
+    return 0
 
 
 def _first(wanted: Recipe) -> str:
-    """Why a method that culls by what earlier frames have shown has culled nothing, where there were none."""
+    """Say why a method that culls by what earlier frames have shown has culled nothing, where there were none."""
     method = wanted.settings.method
     if wanted.before or wanted.warmup or wanted.repeats or not Method.parse(method).uses_modes:
         return ""
     return f"{method} culls by what earlier frames have shown, and this is the first: give --warmup N, or --repeat N."
 
 
-def recipe_of(path: Path, scene: Scene, settings: Settings, options: Namespace) -> Recipe:
-    """What the options ask for, with a caption that may have fields.
-
-    Raises ValueError, in one line, for a moment that the scene does not have."""
-    view, light, wipe, shares = options.view
-    if view.of_light:
-        light = light_index(options, f"--view {view.value}:", light, scene)
-    else:
-        light = edits_of(options).light_index(light) or 0
-    style = Style(
-        shares=shares,
-        marked=not options.no_marks,
-        magnified=options.magnified,
-        shading=options.shading,
-        beneath=options.beneath,
-        outlines=options.outlines,
-        legend=(options.legend_at or LEGEND_PLACE) if options.legend else None,
-        caption=options.caption,
-        tone=_tone(options),
-        clipping=options.mark_clipped,
-        span=options.range,
-        cut=options.slice,
-        savings=options.savings,
-    )
-    time = moment(scene, options.frame, options.time)
-    history = ""
-    if recipe.by_chance(settings, view, style.savings is not None):
-        history = f"what the method {settings.method} makes depends on time and threads"
-    return Recipe(
-        path, time, options.camera, settings, view, light, wipe, style, options.warmup, options.repeat, history,
-        folders=tuple(options.folder), before=options.before, meshes=mesh_options(options).of_file(path),
-        edits=edits_of(options),
-    )  # fmt: skip
-
-
-def times_before(scene: Scene, time: float, warmup: int, work: Work) -> list[float]:
-    """Times of the frames of `--warmup`, with a note where there are not so many."""
-    times = stills.times_before(scene, time, warmup)
-    if len(times) < warmup:
-        come = {0: "no frame comes", 1: "only one frame comes"}.get(len(times), f"only {len(times)} frames come")
-        work.note(f"--warmup {warmup}: {come} before this one")
-    return times
-
-
 def _traced(renderer: Renderer, wanted: Recipe, everything: bool, work: Work) -> Frame:
-    times_before(renderer.scene, wanted.time, wanted.warmup, work)
+    options.warmup_times(renderer.scene, wanted.time, wanted.warmup, work)
     settings = wanted.settings
 
     def show(done: int, frames: int) -> None:
@@ -172,12 +170,9 @@ def _traced(renderer: Renderer, wanted: Recipe, everything: bool, work: Work) ->
     return stills.trace(renderer, wanted, everything, show, work.cancelled)
 
 
-def _too_many_lights(options: Namespace, pixels: int, lights: int) -> str:
-    option = (
-        "--buffers"
-        if options.buffers is not None or not options.view.view.needs_lights
-        else f"--view {options.view.view.value}"
-    )
+def _too_many_lights(given: Namespace, pixels: int, lights: int) -> str:
+    view = given.view.view
+    option = f"--view {view.value}" if given.buffers is None and view.needs_lights else "--buffers"
     needed, most = (BYTES_OF_A_LIGHT * n / 1e9 for n in (pixels * lights, MOST_RECORDED))
     return (
         f"{option}: {lights:,} lights at {pixels:,} pixels take {needed:.1f} GB, {most:.1f} GB at most; "
@@ -185,72 +180,72 @@ def _too_many_lights(options: Namespace, pixels: int, lights: int) -> str:
     )
 
 
-def _check_outputs(output: Path | None, npz: Path | None, figure: Path | None, sent: bool) -> None:
-    if output is None and npz is None and figure is None and not sent:
+def _check_outputs(given: Namespace) -> None:
+    files = given.output, given.buffers, given.figure1
+    if not any(files) and given.to_tev is None:
         raise ValueError("render: nothing to write; give -o out.png, --buffers out.npz, --figure1 out.svg, or several")
+    output, npz, figure = files
     if output is not None and output.suffix.lower() not in PICTURES:
         raise ValueError(f"{output}: unknown kind of picture; give one of {' '.join(PICTURES)}")
     if npz is not None and npz.suffix.lower() != ".npz":
         raise ValueError(f"{npz}: --buffers writes a .npz")
     if figure is not None and figure.suffix.lower() != ".svg":
         raise ValueError(f"{figure}: --figure1 writes a .svg")
-    for path in (output, npz, figure):
-        if path is not None:
-            check_writable(path)
-
-
-def _tone(options: Namespace) -> Tone:
-    return Tone(options.exposure, options.white, options.tone)
-
-
-def check_display(options: Namespace) -> None:
-    """Raises ValueError for options that the view has no use for."""
-    view, shares = options.view.view, options.view.shares
-    if not view.shows_picture and not _tone(options).neutral:
-        raise ValueError(f"--exposure, --white and --tone are for pictures: --view {view.value} shows none")
-    if options.mark_clipped and not view.shows_clipped:
-        raise ValueError(f"--mark-clipped is for the views color and wipe, not {view.value}")
-    if options.slice != MIDDLE and not view.has_slice:
-        raise ValueError(f"--slice is for the views voxels and tree, not {view.value}")
-    if options.range is not None and (not view.has_range or shares):
-        names = ", ".join(one.value for one in View if one.has_range)
-        raise ValueError(f"--range is for views of numbers: {names}{' as counts' if shares else ''}")
-
-
-def check_view(settings: Settings, view: View, option: str = "--method") -> None:
-    """Raise ValueError, in one line, where the method has nothing for a view of what single methods have; `option` is
-    the one that names methods."""
-    method = Method.parse(settings.method)
-    if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
-        may = "may make" if method.adaptive else "makes"
-        raise ValueError(f"--view certificate: the method {settings.method} {may} none; give {option} {CERTIFIED}")
-    if view is View.CUTS and not method.clusters:
-        why = f"the method {settings.method} makes no clusters of lights"
-        raise ValueError(f"--view {view.value}: {why}; give {option} {SHOWN_BY[view]}")
-    if view.needs_fates and method.clusters:
-        why = f"the method {settings.method} shades by clusters of lights, and single lights have no rays"
-        raise ValueError(f"--view {view.value}: {why}; give {option} {BY_MODES}")
-    shows = {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}.get(view)
-    if shows is not None and not any(name == method.base or method.has(name) for name in shows):
-        raise ValueError(f"--view {view.value}: not with the method {settings.method}; give {option} {shows[0]}")
-
-
-def check_tree(settings: Settings, view: View, scene: Scene) -> None:
-    """Raise ValueError, in one line, where a view of what rays have had built meets a tree that is built before."""
-    static = len(scene.objects[0].triangles) + len(scene.objects[0].quadrics)
-    waits = settings.accelerator == LAZY or (settings.accelerator == BVH8 and static > LARGE)
-    if view is View.TREE and not waits:
-        why = f"{settings.accelerator} builds all of its tree before rays come; give --accelerator {LAZY}"
-        raise ValueError(f"--view {view.value}: {why}")
+    for path in filter(None, files):
+        check_writable(path)
 
 
 def write_picture(path: Path, scene: Scene, frame: Frame, wanted: Recipe) -> None:
-    """The frame as its recipe draws it; a PNG remembers, as the window's captures do, how it was made."""
+    """Write the frame as its recipe draws it; a PNG remembers, as the window's captures do, how it was made."""
     pixels, missing = stills.draw(frame, scene, wanted)
     if missing:
         say(missing)
-    image = Image.fromarray(pixels)
-    notes = png.notes(stills.text(pixels, frame, scene, wanted))
     kind = PICTURES[path.suffix.lower()]
-    extras: dict[str, dict[str, Any]] = {"PNG": {"pnginfo": notes}, "JPEG": {"quality": 95}}
-    png.write_image(path, image, kind, **extras.get(kind, {}))
+    extras: dict[str, dict[str, Any]] = {"JPEG": {"quality": 95}}
+    if kind == "PNG":
+        extras[kind] = {"pnginfo": png.notes(stills.text(pixels, frame, scene, wanted))}
+    png.write_image(path, Image.fromarray(pixels), kind, **extras.get(kind, {}))
+
+
+def _statistics_table(statistics: FrameStatistics, title: str, settings: Settings, remarks: str) -> Table:
+    """Show the counters of a frame, primary, secondary and shadow rays apart, and what is wrong where it was
+    verified."""
+    table = titled(title, "\n".join(filter(None, (statistics.decision, remarks))))
+    table.add_column("")
+    for name in ("primary", "secondary", "shadow"):
+        table.add_column(name, justify="right")
+    kinds = (statistics.primary, statistics.secondary, statistics.shadow)
+    traced = (statistics.primary.rays, statistics.secondary.rays, statistics.shadow.traced)
+    table.add_row("rays traced", *(f"{rays:,}" for rays in traced))
+    table.add_row("traversal steps", *(f"{kind.traversal_steps:,}" for kind in kinds))
+    table.add_row("intersection tests", *(f"{kind.intersection_tests:,}" for kind in kinds), end_section=True)
+    shadow = statistics.shadow
+
+    def add(name: str, rays: int, share: str | None = None) -> None:
+        table.add_row(name, f"{rays / max(shadow.due, 1):.1%}" if share is None else share, "", f"{rays:,}")
+
+    add(f"shadow rays {terms.DUE}", shadow.due, "")
+    add(f"  {terms.SAVED}", shadow.saved)
+    add(f"    {terms.CULLED}", shadow.culled)
+    add(f"    {terms.DYNAMIC_ONLY}", shadow.dynamic_only)
+    for name, rays in ((terms.CANDIDATES_ONLY, shadow.candidates_only), (terms.CACHE_HITS, shadow.cache_hits)):
+        if rays:
+            add(f"  {name}", rays)
+    add(f"  {terms.TRACED}", shadow.traced)
+    if (wrong := statistics.wrong) is not None:
+        if statistics.cuts is None:
+            share = f"{wrong.answers / max(wrong.due, 1):.3%}"
+            add(verified.named(terms.WRONG, wrong), wrong.answers, share)
+        name = verified.named(terms.WRONG_PIXELS if statistics.cuts is None else terms.BEYOND, wrong)
+        add(name, wrong.pixels, f"{wrong.pixels / max(wrong.shaded, 1):.3%}")
+    if shadow.passed_over:
+        add(f"samples {terms.PASSED_OVER}", shadow.passed_over, "")
+    if statistics.certificates and terms.made(settings.method)[0]:
+        add(terms.made(settings.method)[0], statistics.certificates, "")
+        add("  traversal steps", statistics.certificate_steps, "")
+        add("  intersection tests", statistics.certificate_tests, "")
+    table.add_row("occlusion tests", f"{statistics.occlusion_tests:,}", "", "", end_section=True)
+    for name, seconds in statistics.phases.items():
+        table.add_row(terms.phase(name, settings)[0], f"{1000.0 * seconds:,.1f} ms", "", "")
+    table.add_row("frame", f"{1000.0 * statistics.seconds:,.1f} ms", "", "")
+    return table

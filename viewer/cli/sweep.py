@@ -6,19 +6,25 @@ Ctrl-C ends it at once: what is traced is kept, and the same command goes on fro
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rich.table import Table
+
 from tracer.experiments.cluster import check_dask
+from tracer.experiments.experiment import REFERENCE
 from tracer.experiments.study import Study, read_study
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Cancelled, Scene
-from viewer.cli import sweep_table
-from viewer.cli.console import Work, print_table, terminal_width, working
-from viewer.cli.processes import Watch, cluster_of
-from viewer.cli.tracing_options import prepare_kernels
+from viewer.cli import options, processes
+from viewer.cli.arguments import INTERRUPTED, Parser
+from viewer.cli.console import Work, left_out, named, print_table, terminal_width, titled, width_of, working
+from viewer.state import terms
+from viewer.util import numbers
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
 from viewer.util.resources import embedded_scenes
@@ -32,47 +38,102 @@ RESULTS = "-results"
 """What the folder of a study's results is called after it."""
 
 
-def sweep(path: Path, options: Namespace) -> bool:
-    """Trace what is missing of a study, print its table, draw it; returns whether it was not stopped before its end.
+EPILOG = """\
+examples:
+  shadowcull sweep study.toml
+  shadowcull sweep study.toml --workers 8 --plot study.svg
+  shadowcull sweep study.toml --scheduler tcp://10.0.0.1:8786
+  shadowcull sweep study.toml --table
+
+A study is a TOML file:
+
+  title = "Three rooms"
+  scenes = ["default", "office", "kitchen/kitchen.aff"]  # of the program, or files beside the study
+  methods = ["none", "paper", "certified"]
+  sizes = ["256x256", "512x512"]
+  seeds = [1, 2, 3]    # each traces all of it
+  shake = 0.01         # and moves the camera aside, by up to this part of the scene's diagonal
+  warmup = 20          # a method that learns sees only so many frames before each, which are then independent
+  [path]
+  frames = 100         # resample the animation
+  first = 0
+  last = 49
+  [settings]           # a value, or a list of them: depth, symmetric, zoom_factor, verify, accelerator, lamp_radius,
+  depth = [2, 10]      # lamp_samples, certificates, certificate_seconds, certificate_memory, lightcuts_error,
+                       # lightcuts_nodes, light_buffer_side, light_buffer_memory
+
+Frames of methods that learn nothing are tasks of their own. Other methods trace their whole path in one task, as in
+bench, unless there is a warmup. Each task has one thread. Every frame is kept as soon as it is traced, as a row of
+Parquet in the folder of results, and the same command again traces only what is missing. Ctrl-C ends the sweep at
+once.
+
+The table says of each method, under the same circumstances, how many steps and tests it saves on average; which part
+of the shadow rays is saved; the median processor time of a frame; and the speed-up, which is the processor time of
+all frames by none over that by the method.
+
+--scheduler takes the address of a Dask scheduler whose workers have the same version of Shadowcull and one thread
+each; scenes are sent to them. Needs Dask and PyArrow: install shadowcull[sweep].
+"""
+
+
+def parser() -> Parser:
+    description = (
+        "Trace a study, scenes by methods by settings by seeds, by several processes, and keep every frame as a row."
+    )
+    parser = Parser("sweep", description, EPILOG)
+    add = parser.add_argument
+    add("study", type=Path, metavar="STUDY.toml", help="what to trace; see below")
+    help_ = "the folder of the results (default: beside the study, STUDY-results)"
+    add("-o", "--output", type=Path, metavar="DIR", help=help_)
+    processes.add_processes(parser)
+    add("--table", action="store_true", help="trace nothing; print the table of what there is")
+    add("--plot", type=Path, metavar="FILE", help="draw what there is at the end: a .png, .svg or .pdf")
+    add("--anew", action="store_true", help="throw away what there is, and trace all of it")
+    return parser
+
+
+def run(given: Namespace) -> int:
+    """Trace what is missing of a study, print its table, draw it.
 
     Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished."""
+    path = given.study
     check_dask()
     from tracer.experiments import sweep as sweeping
     from tracer.experiments.sweep_store import Store
 
     study = read_study(path, embedded_scenes())
-    if options.plot is not None:
+    if given.plot is not None:
         from viewer.output.figures import check_ending
 
-        check_ending(options.plot)
-        check_writable(options.plot)
-    store = Store(options.output or path.with_name(path.stem + RESULTS))
-    if options.table and not store.folder.is_dir():
+        check_ending(given.plot)
+        check_writable(given.plot)
+    store = Store(given.output or path.with_name(path.stem + RESULTS))
+    if given.table and not store.folder.is_dir():
         raise OSError(f"{store.folder}: no results yet; leave out --table to trace the study")
     whole, report = True, sweeping.Report()
     with working() as work:
         scenes = _scenes(study, work)
-        if not options.table:
+        if not given.table:
             store.lock()
             try:
-                if options.anew:
+                if given.anew:
                     store.clear()
                 plan = sweeping.planned(study, scenes, store)
-                whole, report = _trace(plan, store, options, work)
+                whole, report = _trace(plan, store, given, work)
             finally:
                 store.unlock()
         else:
             plan = sweeping.planned(study, scenes, store)
     lines = _summary(plan, store)
     if lines:
-        for table in sweep_table.tables(study, lines, terminal_width()):
+        for table in tables(study, lines, terminal_width()):
             print_table(table)
-    if options.plot is not None:
-        _plot(study, lines, options.plot)
-    if not options.table and store.results.exists():
+    if given.plot is not None:
+        _plot(study, lines, given.plot)
+    if not given.table and store.results.exists():
         print(printable(store.results))
     _check(report)
-    return whole
+    return 0 if whole else INTERRUPTED
 
 
 def _scenes(study: Study, work: Work) -> dict[str, Scene]:
@@ -87,7 +148,7 @@ def _scenes(study: Study, work: Work) -> dict[str, Scene]:
     return found
 
 
-def _trace(plan: Plan, store: Store, options: Namespace, work: Work) -> tuple[bool, Report]:
+def _trace(plan: Plan, store: Store, given: Namespace, work: Work) -> tuple[bool, Report]:
     """Trace what is missing; returns whether it was not stopped, and what came of it."""
     from tracer.experiments import sweep as sweeping
 
@@ -102,15 +163,15 @@ def _trace(plan: Plan, store: Store, options: Namespace, work: Work) -> tuple[bo
         return True, report
     if plan.done:
         work.note(f"{plan.done:,} of {plan.frames:,} frames are kept; going on from there")
-    if options.scheduler is None:
+    if given.scheduler is None:
         for lights, accelerator in {(len(plan.scenes[t.scene].lights), t.settings.accelerator) for t in missing}:
             methods = {task.settings.method for task in missing if task.settings.accelerator == accelerator}
-            prepare_kernels(work, lights, accelerator, *methods)
+            options.prepare_kernels(work, lights, accelerator, *methods)
     store.set_study(sweeping.identity(plan.study, plan.scenes))
     done = plan.done
     try:
-        with cluster_of(options, len(missing)) as cluster:
-            watch = Watch(cluster, work)
+        with processes.cluster_of(given, len(missing)) as cluster:
+            watch = processes.Watch(cluster, work)
 
             def on_progress(now: int) -> None:
                 nonlocal done
@@ -161,3 +222,86 @@ def _check(report: Report) -> None:
         )
     if report.failures:
         raise OSError(in_words(report.failures))
+
+
+# --- tables ----------------------------------------------------------------------------------------
+
+LEAST_WANTED = ("frames", "saved", "tests\nsaved", "wrong")
+"""Columns that are left out, one after another, where there is no room for all."""
+
+
+def _saved(value: float, spread: float = float("nan")) -> str:
+    return "" if value != value else numbers.saved(value, spread if spread == spread else None)
+
+
+COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
+    ("frames", lambda line: f"{line.frames:,}"),
+    ("steps\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.steps, line.spread)),
+    ("tests\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.tests)),
+    (terms.SAVED, lambda line: "" if line.method == REFERENCE else f"{line.known:.1%}"),
+    ("wrong", lambda line: f"{line.wrong:,}" if line.verified else ""),
+    ("frame,\nmedian\nms", lambda line: "" if line.seconds != line.seconds else f"{1000 * line.seconds:,.1f}"),
+    ("speed-\nup, all\nframes", lambda line: "" if line.speed_up != line.speed_up else f"{line.speed_up:.2f}"),
+)
+"""What a table says of a line: headings, and the cells below them."""
+
+
+def tables(study: Study, lines: list[Line], width: int | None) -> Iterator[Table]:
+    """Yield one table where a terminal so wide has room for it, else one for each scene, size and combination of
+    settings; None is any width."""
+    whole = _table(study.title, lines, lines)
+    if width is None or width_of(whole) <= width:
+        yield whole
+        return
+    parts = [
+        list(part) for _, part in groupby(lines, lambda line: (line.scene, line.width, line.height, line.settings))
+    ]
+    left = left_out(LEAST_WANTED, lambda left: [_of_part(part, lines, left) for part in parts], width)
+    for number, part in enumerate(parts):
+        table = _of_part(part, lines, left)
+        first, last = number == 0, number == len(parts) - 1
+        table.title = f"{printable(study.title) if first else ''}\n{_where(part[0])}"
+        if not last:
+            table.caption = None
+        elif left:
+            table.caption = f"{table.caption}; a wider terminal shows {named(left)}, too"
+        yield table
+
+
+def _where(line: Line) -> str:
+    return ", ".join(filter(None, (printable(line.scene), f"{line.width}×{line.height}", line.settings)))
+
+
+def _of_part(part: list[Line], lines: list[Line], left: Sequence[str]) -> Table:
+    """The methods of one scene, size and combination of settings, without the columns that are left out."""
+    return _table("", [replace(line, settings="") for line in part], lines, left, where=False)
+
+
+def _table(title: str, shown: list[Line], lines: list[Line], left: Sequence[str] = (), where: bool = True) -> Table:
+    """A section for each scene, size and combination of settings, a row for each method."""
+    verified = all(line.verified for line in lines)
+    saved = f"\n{terms.SAVED} are shadow rays {terms.MEANINGS[terms.SAVED]}" * (terms.SAVED not in left)
+    caption = (
+        f"saved against {REFERENCE}, certificates included; times are processor time of one thread"
+        + (", with verifying" if verified else "; verify = true counts wrong answers")
+        + saved
+    )
+    table = titled(printable(title), caption)
+    settings = where and any(line.settings for line in lines)
+    for heading in (*(("scene", "size") if where else ()), *(["settings"] if settings else []), "method"):
+        table.add_column(heading, no_wrap=heading != "settings")
+    columns = [(heading, cell) for heading, cell in COLUMNS if heading not in left and (verified or heading != "wrong")]
+    for heading, _ in columns:
+        table.add_column(heading, justify="right", no_wrap=True)
+    before: tuple[str, ...] = ("", "", "")
+    for number, line in enumerate(shown):
+        place = (printable(line.scene), f"{line.width}×{line.height}", line.settings)
+        names = 3 if settings else 2 if where else 0
+        cells = ["" if place[: i + 1] == before[: i + 1] else place[i] for i in range(names)]
+        next_ = shown[number + 1] if number + 1 < len(shown) else None
+        ends = next_ is not None and (next_.scene, next_.width, next_.height, next_.settings) != (
+            line.scene, line.width, line.height, line.settings,
+        )  # fmt: skip
+        table.add_row(*cells, line.method, *(cell(line) for _, cell in columns), end_section=ends)
+        before = place
+    return table

@@ -16,11 +16,11 @@ from tracer.experiments.zoom import Aim, Approach, Results
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
-from tracer.scene.load import check_scene_file, load_visible_scene
-from tracer.scene.model import Cancelled, Scene
-from viewer.cli.console import Work, print_table, working
-from viewer.cli.mesh_arguments import mesh_options
-from viewer.cli.tracing_options import moment, prepare_kernels, tracing_settings
+from tracer.scene.load import check_scene_file
+from tracer.scene.model import Scene
+from viewer.cli import arguments, options
+from viewer.cli.arguments import INTERRUPTED, Parser, count, number
+from viewer.cli.console import Work, last_of, print_table, titled, working
 from viewer.output import exports
 from viewer.output.reports import (
     NEVER_WHOLE,
@@ -33,39 +33,76 @@ from viewer.output.reports import (
     zoom_title,
 )
 from viewer.state.methods import NO_CULLING
+from viewer.state.plans import parse_factors
 from viewer.util.messages import say
 
 WHICH = (
     "zoom: towards which primitive? give --pixel X,Y, for what a pixel of the picture shows, or --primitive N; the "
     "viewer's inspector shows its number, and so does the array 'primitive' of render --buffers"
 )
+EPILOG = """\
+examples:
+  shadowcull zoom figure4 --primitive 0 --size 128x128 --factors 4,64 --plot figure4.png
+  shadowcull zoom kitchen.aff --frame 100 --primitive 15548 --size 256x256 --ratio 0.9 --factors 4,64
+  shadowcull zoom figure4 --pixel 64,64 --size 128x128 --json zoom.json --csv zoom.csv
+
+A primitive that was fully rendered from afar is culled by what its few pixels met then, until it covers more pixels
+than the zoom factor times its highest pixel count; then it is examined again. The camera starts where it is at that
+time and moves straight towards the primitive: along its view if that meets the primitive, else turned to the middle
+of the visible part. The first frames stay in place until the modes settle. Every culled shadow ray is verified, and a
+pixel with a wrong answer is a wrong pixel. Ctrl-C keeps the finished frames; the exit code is then 130.
+
+The tables show the steps where something changes, and a summary of each factor; the JSON and the CSV hold every step,
+and the plot draws them. In these, wrong_of_primitive counts the wrong pixels of this primitive, wrong those of the
+whole picture. A primitive that is never fully rendered is never culled, so nothing is tested.
+"""
 
 
-def run(path: Path, options: Namespace) -> bool:
-    """Do a zoom test, print what happened, and write its files; returns whether it was not stopped before its end.
+def parser() -> Parser:
+    description = "Move towards a primitive in steps, and show whether its shadows stay right for each zoom factor."
+    parser = Parser("zoom", description, EPILOG)
+    add = parser.add_argument
+    options.add_scene(parser)
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--primitive", type=count(0, 2**31 - 1), metavar="N", help="towards this primitive")
+    help_ = "towards what this pixel of the first frame shows"
+    which.add_argument("--pixel", type=arguments.pixel, metavar="X,Y", help=help_)
+    options.add_moment(parser)
+    add("--camera", type=arguments.camera, metavar="JSON", help=f"where to start from: {options.CAMERA}")
+    add("--steps", type=count(1, 10_000), default=30, metavar="N", help="how many (default: 30)")
+    help_ = "each step goes to this part of the distance (default: 0.94)"
+    add("--ratio", type=number(0.001, 0.9999), default=0.94, metavar="R", help=help_)
+    add("--factors", type=parse_factors, default=(4.0, 16.0), metavar="F,...", help="zoom factors (default: 4,16)")
+    options.add_size(parser)
+    add("--json", type=Path, metavar="FILE", help="every figure of every step")
+    add("--csv", type=Path, metavar="FILE", help="a line for each step")
+    add("--plot", type=Path, metavar="FILE", help="counts, modes and wrong pixels over the steps: a .png, .svg or .pdf")
+    options.add_tracing(parser, zoom_factor=False)
+    parser.set_defaults(verify=True)
+    return parser
 
-    Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished.
-    """
-    check_scene_file(path)
-    if options.primitive is None and options.pixel is None:
+
+def run(given: Namespace) -> int:
+    """Do a zoom test, print what happened, and write its files.
+
+    Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished."""
+    check_scene_file(given.path)
+    if given.primitive is None and given.pixel is None:
         raise ValueError(WHICH)
-    settings = tracing_settings(options)
-    zoom.settings_of_tests(settings, options.factors, options.steps, options.ratio)
-    if options.pixel is not None:
-        zoom.check_pixel(options.pixel, options.size)
-    wanted = exports.wanted_files(options)
-    results = None
+    settings = options.tracing_settings(given)
+    zoom.settings_of_tests(settings, given.factors, given.steps, given.ratio)
+    if given.pixel is not None:
+        zoom.check_pixel(given.pixel, given.size)
+    wanted = exports.wanted_files(given)
     with working() as work:
-        scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
-        for warning in scene.warnings:
-            work.note(f"warning: {warning}")
-        time = moment(scene, options.frame, options.time)
-        if options.primitive is not None:
-            zoom.check_primitive(scene, options.primitive)
-        prepare_kernels(work, len(scene.lights), options.accelerator, zoom.METHOD)
+        scene = options.read_scene(given.path, given, work)
+        time = options.moment(scene, given)
+        if given.primitive is not None:
+            zoom.check_primitive(scene, given.primitive)
+        options.prepare_kernels(work, len(scene.lights), given.accelerator, zoom.METHOD)
         world = World(scene, time, settings.accelerator, work.progress)
-        start = _aim(scene, settings, world, time, options, work)
-        frames, done = len(options.factors) * (options.steps + zoom.STILL_FRAMES), 0
+        start = _aim(scene, settings, world, time, given, work)
+        frames, done = len(given.factors) * (given.steps + zoom.STILL_FRAMES), 0
 
         def on_frame(factor: float, number: int, frame: Frame) -> None:
             nonlocal done
@@ -73,11 +110,8 @@ def run(path: Path, options: Namespace) -> bool:
             work.count(f"towards primitive {start.primitive}, zoom factor {factor:g}, step {number}", done, frames)
 
         work.count(f"towards primitive {start.primitive}", 0, frames)
-        way = (options.factors, options.steps, options.ratio)
-        for grown in zoom.run(scene, settings, start, *way, work.cancelled, world, on_frame):
-            results = grown
-        if results is None:
-            raise Cancelled("cancelled")
+        way = (given.factors, given.steps, given.ratio)
+        results = last_of(zoom.run(scene, settings, start, *way, work.cancelled, world, on_frame))
         if done < frames:
             work.note(f"cancelled after {done} of {frames} frames; the tables are of these")
         failures = exports.write_files(exports.ZOOM_WRITERS, results, wanted)
@@ -88,20 +122,20 @@ def run(path: Path, options: Namespace) -> bool:
         say(f"primitive {results.primitive}: {NEVER_WHOLE}")
     if failures:
         raise OSError("; ".join(failures))
-    return done == frames
+    return 0 if done == frames else INTERRUPTED
 
 
-def _aim(scene: Scene, settings: Settings, world: World, time: float, options: Namespace, work: Work) -> Aim:
+def _aim(scene: Scene, settings: Settings, world: World, time: float, given: Namespace, work: Work) -> Aim:
     """Where to start from, seen in a picture of the primary rays alone."""
     look = replace(settings, method=NO_CULLING, depth=0, verify=False)
-    frame = Renderer(scene, look, world=world).render(time, options.camera, work.cancelled)
-    if options.pixel is not None:
-        return zoom.aim(frame, zoom.primitive_at(frame, *options.pixel))
-    return zoom.aim(frame, options.primitive)
+    frame = Renderer(scene, look, world=world).render(time, given.camera, work.cancelled)
+    if given.pixel is not None:
+        return zoom.aim(frame, zoom.primitive_at(frame, *given.pixel))
+    return zoom.aim(frame, given.primitive)
 
 
 def _steps_table(approach: Approach) -> Table:
-    table = Table(title=f"zoom factor {approach.factor:g}", title_justify="left", caption_justify="left")
+    table = titled(f"zoom factor {approach.factor:g}", f"wrong: {WRONG_PIXELS}; in picture: those of the whole picture")
     for heading in ("step", "distance", "pixels", "highest", "wrong", "in picture"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("modes from there on")
@@ -109,13 +143,14 @@ def _steps_table(approach: Approach) -> Table:
         numbers = (step.pixels, step.highest, step.wrong_of_primitive, step.wrong)
         modes = modes_in_words(step.changes)
         table.add_row(str(step.number), f"{step.distance:.4g}", *(f"{number:,}" for number in numbers), modes)
-    table.caption = f"wrong: {WRONG_PIXELS}; in picture: those of the whole picture"
     return table
 
 
 def _summary_table(results: Results) -> Table:
-    table = Table(*SUMMARY, title=zoom_title(results), title_justify="left", title_style="bold", caption_justify="left")
-    table.caption = "wrong pixels: those of this primitive\nculled, dynamic only: shares of the shadow rays due"
+    caption = "wrong pixels: those of this primitive\nculled, dynamic only: shares of the shadow rays due"
+    table = titled(zoom_title(results), caption)
+    for heading in SUMMARY:
+        table.add_column(heading)
     for approach in results.approaches:
         table.add_row(*summary(approach))
     return table

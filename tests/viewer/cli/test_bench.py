@@ -12,9 +12,9 @@ import pytest
 from tests.terminal import Terminal
 from tracer.version import program_version
 from viewer.__main__ import main
+from viewer.cli.arguments import MISUSED
 from viewer.cli.bench import frame_range
 from viewer.cli.console import Work
-from viewer.cli.parser import MISUSED
 from viewer.output import figures
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -188,7 +188,7 @@ def test_files_that_cannot_be_are_known_before_any_work(wrong, said, tmp_path: P
     def work(*_: object) -> None:
         raise AssertionError("nothing may be read or traced")
 
-    monkeypatch.setattr("viewer.cli.bench.load_visible_scene", work)
+    monkeypatch.setattr("viewer.cli.options.load_visible_scene", work)
     assert main([*SMALL, *(word.replace("OUT", str(tmp_path)) for word in wrong)]) == 1
     _mistake(capsys, said)
     assert not list(tmp_path.iterdir())

@@ -12,8 +12,8 @@ from rich.table import Table
 from tracer.experiments.experiment import FIGURES, Results
 from tracer.experiments.lamp_experiment import LampResults
 from tracer.method import line_up
-from viewer.cli import console, lamp_bench
-from viewer.cli.bench_table import _COLUMNS, bench_table
+from viewer.cli import bench, console
+from viewer.cli.bench import COLUMNS, bench_table
 
 LARGE = 123_456_789.0
 
@@ -52,7 +52,7 @@ def test_methods_have_a_line_each_and_no_figure_is_cut(width: int | None, verifi
     caption = " ".join(text[text.rindex("┘") + 1 :].split())
     assert "--csv FILE has all figures" in caption
     headings = " ".join(text[: text.index("┡")].split())
-    for heading in _COLUMNS.values():
+    for heading in COLUMNS.values():
         name = " ".join(heading.split())
         shown = heading.split("\n")[0] in headings
         meant = name != ("speed- up" if verified else "wrong")
@@ -72,7 +72,7 @@ def test_few_methods_have_columns_where_these_fit():
 
 @pytest.mark.parametrize("width", [80, 100, None])
 def test_lamps_fit_too(width: int | None):
-    text = printed(lamp_bench.lamp_table(LampResults([results([*line_up(6)])]), width), width)
+    text = printed(bench.lamp_table(LampResults([results([*line_up(6)])]), width), width)
     assert "…" not in text and max(map(len, text.splitlines())) <= (width or 1000)
     assert "59,653.9 ms" in text
     caption = " ".join(text[text.rindex("┘") :].split())

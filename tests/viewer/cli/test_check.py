@@ -12,7 +12,6 @@ from PIL import Image
 from tests.commands import ROOM, complaint, run
 from tracer.culling.fate import Fate
 from viewer.cli.console import Work
-from viewer.cli.saved_pictures import defaults
 from viewer.output import capture, png
 from viewer.state.views import FATE_COLORS
 
@@ -93,8 +92,9 @@ def test_what_culling_saves_stands_above_the_picture_and_comes_back(
     assert (both[:-height] == np.round(255.0 * np.array(bar))).all(-1).any(), "no part of the bar is seen"
     code, lines = verdict(capfd, "savings.png", "counted.png")
     assert code == 0 and all("true" in line for line in lines), lines
-    kept = defaults(Path("savings.png"))[1]
-    assert kept["savings"] == said and defaults(Path("plain.png"))[1]["savings"] is None
+    for name, shown in (("savings.png", True), ("plain.png", False)):
+        words = run(capfd, "render", name, "--print-command")[1]
+        assert (said in words) == shown == ("--savings" in words)
 
 
 def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> None:

@@ -21,7 +21,7 @@ from tracer.frame import Settings
 from tracer.scene.load import load_scene
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from viewer.cli import main as command_line
-from viewer.cli import render as rendering
+from viewer.cli import pictures
 from viewer.output import capture
 from viewer.state.views import BENEATH, TOO_BRIGHT, View
 
@@ -290,7 +290,7 @@ def test_slices_and_cells_are_drawn_by_methods_that_have_them(
         (("--view", "voxels", "--method", "none"), "not with the method none; give --method voxels"),
         (("--view", "cell-lights", "--method", "paper"), "give --method lie-exact"),
         (("--slice", "x:0.1"), "--slice is for the views voxels and tree, not color"),
-        (("--view", "voxels", "--slice", "q:0.1"), "is no slice"),
+        (("--view", "voxels", "--slice", "q:0.1"), "is not a slice"),
     ):
         code, _, errors = render(capfd, room, "-o", path, *wrong)
         assert code != 0 and said in errors, errors
@@ -302,11 +302,11 @@ def test_what_moves_makes_no_tree_wait(tmp_path: Path, monkeypatch: pytest.Monke
     scene = load_scene(path)
     static = len(scene.objects[0].triangles) + len(scene.objects[0].quadrics)
     assert static < scene.primitive_count
-    monkeypatch.setattr(rendering, "LARGE", static - 1)
-    rendering.check_tree(Settings(), View.TREE, scene)
-    monkeypatch.setattr(rendering, "LARGE", static)
+    monkeypatch.setattr(pictures, "LARGE", static - 1)
+    pictures.check_tree(Settings(), View.TREE, scene)
+    monkeypatch.setattr(pictures, "LARGE", static)
     with pytest.raises(ValueError, match="before rays come"):
-        rendering.check_tree(Settings(), View.TREE, scene)
+        pictures.check_tree(Settings(), View.TREE, scene)
 
 
 def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -400,7 +400,7 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         ([], "nothing to write"),
         (["-o", "OUT/x.png", "--frame", "10"], "frame numbers are 0 to 9"),
         (["-o", "OUT/x.png", "--frame", "-1"], "frame numbers are 0 to 9"),
-        (["-o", "OUT/x.png", "--frame", "two"], "invalid int value: 'two'"),
+        (["-o", "OUT/x.png", "--frame", "two"], "'two' is not a whole number"),
         (["-o", "OUT/x.png", "--time", "nan"], "time runs from 0 to 9"),
         (["-o", "OUT/x.png", "--time", "9.5"], "time runs from 0 to 9"),
         (["-o", "OUT/x.png", "--frame", "1", "--time", "1"], "not allowed with"),
@@ -500,7 +500,7 @@ def test_an_output_that_cannot_be_written_is_known_before_tracing(
         (["rendr", "x.aff"], "did you mean 'render'?"),
         (["inof"], "did you mean 'info'?"),
         (["info", "figur4"], "figur4: no such file, and no scene of the program: did you mean 'figure4'?"),
-        (["frobnicate"], "the commands are render, bench, zoom, explain, info"),
+        (["frobnicate"], "the commands are render, film, bench"),
         (["--frame", "3"], "unrecognized arguments"),
     ],
 )
@@ -636,7 +636,7 @@ def test_exposure_and_tone_are_those_of_the_picture_alone(
         (("--tone", "sepia"), "'sepia' is no tone; there is none, reinhard, filmic, srgb"),
         (("--exposure", "17"), "17 is not in -16 to 16"),
         (("--white", "0"), "0 is not in 0.01 to 1,000"),
-        (("--range", "5:2", "--view", "depth"), "'5:2' is not a range: the first number is to be the smaller"),
+        (("--range", "5:2", "--view", "depth"), "'5:2' is not a range: the first number must be the smaller one"),
         (("--range", "much", "--view", "depth"), "'much' is not a range; give one like 0:12.5"),
         (("--range", "0:5"), "--range is for views of numbers: depth, saved, cost, lights"),
         (("--range", "0:5", "--view", "cost:share"), "--range is for views of numbers"),

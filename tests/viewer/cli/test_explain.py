@@ -10,7 +10,7 @@ import pytest
 
 from tests.commands import ROOM, complaint, run
 from tracer.method import DEFAULT_METHOD
-from viewer.cli import examples
+from viewer.cli.explain import EPILOG
 
 ROOT = Path(__file__).parents[3]
 
@@ -88,7 +88,7 @@ def test_culling_has_seen_a_frame_before_unless_none_is_asked_for(
 def test_the_first_example_shows_culling_at_work(capfd: pytest.CaptureFixture[str]) -> None:
     """Of each of the paper's kinds: culled in full shadow, dynamic objects only in non-shadow, traced in between."""
     (example,) = re.findall(r"shadowcull (explain \S+ --pixel \S+)  ", (ROOT / "README.md").read_text(encoding="utf-8"))
-    assert example in examples.EXPLAIN
+    assert example in EPILOG
     code, out, _ = run(capfd, *example.split())
     assert code == 0 and "method paper" in out
     (rays,) = (line for line in out.splitlines() if "shadow rays that are due" in line)

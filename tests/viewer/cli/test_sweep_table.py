@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from tracer.experiments.sweep_summary import Line
-from viewer.cli import sweep_table
+from viewer.cli import sweep
 
 METHODS = ("none", "paper", "lightcuts-stochastic", "certified+lightbuffer")
 STUDY = SimpleNamespace(title="Two rooms")
@@ -26,7 +26,7 @@ def lines() -> list[Line]:
 
 def printed(width: int | None) -> tuple[str, int]:
     """What is printed, and how many tables it is."""
-    tables, out = list(sweep_table.tables(STUDY, lines(), width)), io.StringIO()
+    tables, out = list(sweep.tables(STUDY, lines(), width)), io.StringIO()
     for table in tables:
         title, table.title = table.title, None
         print(title, file=out)
@@ -43,9 +43,7 @@ def test_nothing_is_cut_off(width: int | None, count: int):
         assert word in text, word
     words = " ".join(text.split())
     left_out = [
-        heading
-        for heading, _ in sweep_table.COLUMNS
-        if " ".join(heading.split()) in words.partition("a wider terminal")[2]
+        heading for heading, _ in sweep.COLUMNS if " ".join(heading.split()) in words.partition("a wider terminal")[2]
     ]
     assert bool(left_out) == (width in (80, 100)), left_out
     assert ("18.4 × as many" in text) == ("tests\nsaved" not in left_out)

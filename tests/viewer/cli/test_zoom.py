@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import subprocess
-import sys
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -130,7 +128,7 @@ def test_what_the_words_alone_tell_is_known_before_any_work(
     def work(*_: object) -> None:
         raise AssertionError("nothing may be read or traced")
 
-    monkeypatch.setattr("viewer.cli.zoom.load_visible_scene", work)
+    monkeypatch.setattr("viewer.cli.options.load_visible_scene", work)
     words = [a.replace("OUT", str(tmp_path)) for a in arguments]
     assert said in complaint(capfd, "zoom", "figure4", "--size", "32x32", *words)
     assert not list(tmp_path.iterdir())
@@ -142,14 +140,8 @@ def test_a_primitive_that_is_not_there_is_known_before_any_tracing(
     def work(*_: object) -> None:
         raise AssertionError("nothing may be compiled or traced")
 
-    monkeypatch.setattr("viewer.cli.zoom.prepare_kernels", work)
+    monkeypatch.setattr("viewer.cli.options.prepare_kernels", work)
     assert "there is no primitive 7; the scene's are 0 to 1" in complaint(capfd, "zoom", "figure4", "--primitive", "7")
-
-
-def test_factors_are_read_without_loading_the_tracer() -> None:
-    code = "import sys, viewer.cli.argument_types as a; a.factors('4,16'); print({'rich', 'numba'} & set(sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-    assert done.stdout == "set()\n", done.stderr
 
 
 def test_ctrl_c_keeps_the_steps_that_are_done(tmp_path: Path) -> None:

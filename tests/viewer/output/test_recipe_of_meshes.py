@@ -8,8 +8,8 @@ import pytest
 
 from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO, MeshOptions
 from tracer.settings import Settings
-from viewer.cli import parsers
-from viewer.cli.mesh_arguments import as_arguments, mesh_options
+from viewer.cli.main import viewer_parser
+from viewer.cli.options import mesh_arguments, mesh_options
 from viewer.output import recipe
 from viewer.output.recipe import Recipe
 from viewer.state.session import Session, Snapshot
@@ -20,16 +20,16 @@ def test_the_command_and_the_options_lead_back(meshes: MeshOptions) -> None:
     made = Recipe(Path("/a.ply"), 0.0, None, Settings(method="none"), meshes=meshes)
     words = recipe.arguments(made, None, "a.png")
     assert (
-        mesh_options(parsers.viewer().parse_args([w for w in words if w.startswith(("--up", "--crease", "--no-st"))]))
+        mesh_options(viewer_parser().parse_args([w for w in words if w.startswith(("--up", "--crease", "--no-st"))]))
         == meshes
     )
-    assert mesh_options(parsers.viewer().parse_args(["a.ply", *as_arguments(meshes)])) == meshes
+    assert mesh_options(viewer_parser().parse_args(["a.ply", *mesh_arguments(meshes)])) == meshes
     of_aff = recipe.arguments(Recipe(Path("/a.aff"), 0.0, None, Settings(method="none"), meshes=meshes), None, "a.png")
     assert not {"--no-studio", "--up=-z"} & set(of_aff)
 
 
 def test_a_dash_and_an_axis_are_a_value() -> None:
-    assert mesh_options(parsers.viewer().parse_args(["a.ply", "--up", "-z"])) == MeshOptions(True, "-z")
+    assert mesh_options(viewer_parser().parse_args(["a.ply", "--up", "-z"])) == MeshOptions(True, "-z")
 
 
 def test_a_state_keeps_them_and_one_without_had_no_studio(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 from tests.viewer.fakes import make_scene
 from tracer.scene.edits import NO_EDITS, Edits, edited
 from tracer.scene.lights import light_in_words, named_light, number_of
-from viewer.cli.edit_options import add_edits, edits_of, light_index
+from viewer.cli.options import add_edits, edits_of, light_index
 from viewer.state import edits as scene_edits
 from viewer.state.session import Session, Snapshot
 

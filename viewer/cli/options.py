@@ -1,0 +1,335 @@
+"""Options that several commands have, and what they mean: the scene, its edits, the moment, and how it is traced."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+from argparse import Namespace
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from tracer.compilation import compiled_before, make_ready, warm_up
+from tracer.geometry.accelerators import ACCELERATORS
+from tracer.kernel_cache import outlives_process
+from tracer.method import Method, additions, bases
+from tracer.scene.edits import Edits, edited
+from tracer.scene.lights import MAX_SAMPLES
+from tracer.scene.limits import LARGEST
+from tracer.scene.load import load_visible_scene
+from tracer.scene.mesh_options import MeshOptions
+from tracer.scene.model import Scene
+from tracer.scene.things import things
+from tracer.settings import MAX_NODES, Settings
+from viewer.cli.arguments import UPS, Parser, before, count, number, several, size, whole
+from viewer.cli.console import Work
+from viewer.output.pictures import lights_in_words
+from viewer.services import stills
+from viewer.util import resources
+
+CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
+MOST_PIXELS = 1 << 26  # 8192 × 8192; a frame's buffers then take some 4 GB
+_INDEX = count(0, 2**31 - 1)
+_LISTED = 8  # names that a message lists, at most
+
+# --- the scene -------------------------------------------------------------------------------------
+
+
+def add_scene(parser: Parser, more: str = "") -> None:
+    """Add the scene, and where its files may be."""
+    names = ", ".join(resources.embedded_scenes())
+    help_ = f"a file (.aff .nff .obj .ply .stl .gltf .glb) or a scene that comes with the program ({names}){more}"
+    parser.add_argument("scene", nargs="?", metavar="SCENE", help=help_)
+    add_folders(parser)
+
+
+def add_folders(parser: Parser) -> None:
+    """Add which files a scene may read, and whether it may take more memory than there is."""
+    help_ = "another folder than its own that the scene may read files from; may be given several times"
+    parser.add_argument("--folder", type=Path, action="append", default=[], metavar="DIR", help=help_)
+    help_ = "read a scene even if it needs more memory than there is, which may end this program or others"
+    parser.add_argument("--beyond-memory", action=_BeyondMemory, nargs=0, help=help_)
+
+
+class _BeyondMemory(argparse.Action):
+    """An option that all readers of scenes learn of by the environment, also those in other processes."""
+
+    def __call__(self, *_: object) -> None:
+        os.environ["SHADOWCULL_BEYOND_MEMORY"] = "1"
+
+
+def read_scene(path: Path, options: Namespace, work: Work) -> Scene:
+    """Read a scene, say its warnings, and edit it where the command has options for that.
+
+    Raises SceneError, ValueError and OSError in one line, and Cancelled."""
+    scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
+    for warning in scene.warnings:
+        work.note(f"warning: {warning}")
+    return _edited(scene, options) if hasattr(options, "hide") else scene
+
+
+def add_meshes(parser: Parser) -> None:
+    """Add how meshes are read; without these options a model that comes alone is set in a studio."""
+    add = parser.add_argument_group("meshes (OBJ, PLY, STL, glTF, GLB)").add_argument
+    help_ = "the axis that points up in a model without camera and lights: x, y, z, -x, -y or -z (default: a guess)"
+    add("--up", choices=UPS, metavar="AXIS", help=help_)
+    help_ = (
+        "where the file has no normals, round edges that are bent by up to DEG degrees; 0: none (default: 40 for a "
+        "model without camera and lights, else 0)"
+    )
+    add("--crease", type=number(0.0, 180.0), metavar="DEG", help=help_)
+    help_ = "no floor, lamps and upright view for a model without camera and lights, and no rounded edges"
+    add("--no-studio", action="store_true", help=help_)
+
+
+def mesh_options(options: Namespace) -> MeshOptions:
+    return MeshOptions(not options.no_studio, options.up, options.crease)
+
+
+def mesh_arguments(meshes: MeshOptions) -> list[str]:
+    """Return the words of a command line that ask for this."""
+    up = [f"--up={meshes.up}"] if meshes.up is not None else []
+    crease = [f"--crease={meshes.crease!r}"] if meshes.crease is not None else []
+    return [*up, *crease, *([] if meshes.studio else ["--no-studio"])]
+
+
+# --- edits -----------------------------------------------------------------------------------------
+
+
+def add_edits(parser: argparse.ArgumentParser) -> None:
+    """Add what edits the scene before it is traced; each may be given several times."""
+
+    def add(name: str, metavar: str, help_: str, kind: Any = str) -> None:
+        parser.add_argument(name, type=kind, action="append", default=[], metavar=metavar, help=help_)
+
+    add("--without-light", "N", "switch off this light; edits may be given several times", _INDEX)
+    add("--move-light", "N=X,Y,Z", "put this light elsewhere", _moved_light)
+    add("--hide", "NAME", "hide this object, by its name in the Inspector")
+    add("--hide-primitive", "N", "hide this primitive alone", _INDEX)
+    add("--make-static", "NAME=T", "freeze a moving object where it is at T seconds, as static geometry", _name_at)
+    add("--make-moving", "NAME", "treat a static object as one that could move; it stays where it is")
+
+
+def _moved_light(text: str) -> tuple[int, tuple[float, float, float]]:
+    light, _, place = text.partition("=")
+    try:
+        x, y, z = (float(part) for part in place.split(","))
+        index = _INDEX(light)
+    except ValueError:
+        raise ValueError(f"{text!r} is not a light and a place; give them like 2=1.5,3,-0.5") from None
+    if not max(abs(x), abs(y), abs(z)) <= LARGEST:
+        raise ValueError(f"{text!r}: a light is within {LARGEST:g} of the origin along each axis")
+    return index, (x, y, z)
+
+
+def _name_at(text: str) -> tuple[str, float]:
+    name, _, time = text.rpartition("=")
+    try:
+        found = float(time)
+    except ValueError:
+        found = math.nan
+    if not name or not math.isfinite(found):
+        raise ValueError(f"{text!r} is not an object and a time; give them like train=2.5")
+    return name, found
+
+
+def edits_of(options: Namespace) -> Edits:
+    return Edits(
+        frozenset(options.without_light),
+        tuple(sorted(dict(options.move_light).items())),
+        frozenset(options.hide),
+        frozenset(options.hide_primitive),
+        tuple(sorted(dict(options.make_static).items())),
+        frozenset(options.make_moving),
+    )
+
+
+def edits_as_options(edits: Edits) -> dict[str, Any]:
+    """Return edits, such as those of a saved picture, by the names of the options."""
+    return {
+        "without_light": sorted(edits.lights_off),
+        "move_light": list(edits.moved_lights),
+        "hide": sorted(edits.hidden),
+        "hide_primitive": sorted(edits.hidden_primitives),
+        "make_static": list(edits.static),
+        "make_moving": sorted(edits.moving),
+    }
+
+
+def _edited(scene: Scene, options: Namespace) -> Scene:
+    """Edit the scene; raises ValueError, in one line, for what the scene does not have."""
+    edits = edits_of(options)
+    moves = {thing.name: thing.moves for thing in things(scene)}
+    static, moving = ([name for name in moves if moves[name] is moved] for moved in (False, True))
+    for option, kind, names, known in (
+        ("--hide", "object", edits.hidden, list(moves)),
+        ("--make-moving", "static object", edits.moving, static),
+        ("--make-static", "moving object", (name for name, _ in edits.static), moving),
+    ):
+        for name in names:
+            if name not in known:
+                more = f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
+                there = f"; there is {', '.join(known[:_LISTED])}{more}" if known else ""
+                raise ValueError(f"{option} {name}: no {kind} of this name{there}")
+    for option, lights in (("--without-light", edits.lights_off), ("--move-light", dict(edits.moved_lights))):
+        for light in lights:
+            if light >= len(scene.lights):
+                raise ValueError(f"{option} {light}: {lights_in_words(len(scene.lights))}")
+    for primitive in edits.hidden_primitives:
+        if primitive >= scene.primitive_count:
+            last = scene.primitive_count - 1
+            raise ValueError(f"--hide-primitive {primitive}: the scene has the primitives 0 to {last}")
+    return edited(scene, edits).scene
+
+
+def light_index(options: Namespace, option: str, number: int, scene: Scene) -> int:
+    """Return which of the lights of the scene, as it is edited, has this number in its file.
+
+    Raises ValueError, in one line, where none has."""
+    edits = edits_of(options)
+    index = edits.light_index(number)
+    if index is None:
+        raise ValueError(f"{option}{number}: this light is switched off (--without-light {number})")
+    if index >= len(scene.lights):
+        raise ValueError(f"{option}{number}: {lights_in_words(len(scene.lights) + len(edits.lights_off))}")
+    return index
+
+
+# --- the moment ------------------------------------------------------------------------------------
+
+
+def add_moment(parser: Parser) -> None:
+    """Add two ways to name a moment of the animation, of which one may be given."""
+    moment = parser.add_mutually_exclusive_group()
+    moment.add_argument("--frame", type=whole, metavar="N", help="number of the frame in the animation (default: 0)")
+    moment.add_argument("--time", type=number(), metavar="T", help="time in seconds, instead of a frame")
+
+
+def moment(scene: Scene, options: Namespace) -> float:
+    """Return the time that is asked for, that of the first frame by default; raises ValueError in one line."""
+    start, end = scene.time_range
+    if options.time is not None:
+        if not (math.isfinite(options.time) and start <= options.time <= end):
+            raise ValueError(f"--time {options.time:g}: the scene's time runs from {start:g} to {end:g} seconds")
+        return float(options.time)
+    frame = options.frame or 0
+    if not 0 <= frame < scene.frames:
+        only = "is 0" if scene.frames == 1 else f"are 0 to {scene.frames - 1}"
+        raise ValueError(f"--frame {frame}: the scene's frame numbers {only}")
+    return scene.frame_time(frame)
+
+
+def add_history(parser: Parser) -> None:
+    """Add the frames from which modes are learnt: those before on the path, or any."""
+    help_ = "first trace the N frames before it"
+    parser.add_argument("--warmup", type=count(0, 100_000), default=0, metavar="N", help=help_)
+    help_ = "before these, trace the frames of this list of [time, camera], or of a JSON file of `hunt`"
+    parser.add_argument("--before", type=before, default=(), metavar="JSON", help=help_)
+
+
+def warmup_times(scene: Scene, time: float, warmup: int, work: Work) -> list[float]:
+    """Return the times of the frames of `--warmup`, with a note where there are not so many."""
+    times = stills.times_before(scene, time, warmup)
+    if len(times) < warmup:
+        come = {0: "no frame comes", 1: "only one frame comes"}.get(len(times), f"only {len(times)} frames come")
+        work.note(f"--warmup {warmup}: {come} before this one")
+    return times
+
+
+# --- tracing ---------------------------------------------------------------------------------------
+
+
+def add_size(parser: Parser) -> None:
+    help_ = "width and height in pixels (default: 512x512)"
+    parser.add_argument("--size", type=size, default=(512, 512), metavar="WxH", help=help_)
+
+
+def add_threads(parser: Parser) -> None:
+    parser.add_argument("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
+
+
+def add_verify(parser: Parser) -> None:
+    help_ = "trace every culled shadow ray as well, and count wrong answers"
+    parser.add_argument("--verify", action="store_true", help=help_)
+
+
+def add_tracing(parser: Parser, accelerator: str = "bvh8", many_lamps: bool = False, zoom_factor: bool = True) -> None:
+    """Add what all commands that trace have in common, with the structure that is theirs by default.
+
+    `many_lamps`: several kinds of lamps are taken; `zoom_factor`: it is an option."""
+    add = parser.add_argument
+    help_ = f"the tree that rays are traced through (default: {accelerator})"
+    add("--accelerator", choices=ACCELERATORS, default=accelerator, help=help_)
+    add_threads(parser)
+    add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
+    add("--symmetric", action="store_true", help="test occlusion in both directions between neighbouring pixels")
+    add_lamps(parser, many_lamps)
+    help_ = "the part of a point's light that a cluster of lights may be wrong by (default: 0.02; 0: no clusters)"
+    add("--lightcuts-error", type=number(0.0, 1e9), default=0.02, metavar="E", help=help_)
+    help_ = "clusters of lights for a point, at most (default: 1000)"
+    add("--lightcuts-nodes", type=count(1, MAX_NODES), default=1000, metavar="N", help=help_)
+    if zoom_factor:
+        help_ = "examine a primitive again once it covers F times its highest pixel count (default: 4)"
+        add("--zoom-factor", type=number(1.0, 1e9), default=4.0, metavar="F", help=help_)
+    add_meshes(parser)
+
+
+def add_lamps(parser: Parser, many: bool = False) -> None:
+    """Add what makes lamps of a scene's lights; without it, they are as the scene, or a saved picture, says."""
+    add = parser.add_argument
+    radius: Callable[[str], object] = number(0.0, 1e9)
+    samples: Callable[[str], object] = count(1, MAX_SAMPLES)
+    more = "; several, with commas, are measured one after another" if many else ""
+    if many:
+        radius, samples = several(radius), several(samples)
+    help_ = "make every point light and sphere a sphere of this radius, in the scene's units; 0 makes them points"
+    add("--lamp-radius", type=radius, metavar="R,..." if many else "R", help=help_ + more)
+    help_ = "points from which each lamp shines (default: as the scene says, and 16 for what --lamp-radius makes)"
+    add("--lamp-samples", type=samples, metavar="N,..." if many else "N", help=help_ + more)
+
+
+_OF_SETTINGS = (
+    "depth", "symmetric", "zoom_factor", "lamp_radius", "lamp_samples", "lightcuts_error", "lightcuts_nodes", "verify",
+    "threads", "accelerator", "samples", "method",
+)  # fmt: skip
+
+
+def tracing_settings(options: Namespace, **more: Any) -> Settings:
+    """Return what the options say of tracing, and `more`, which wins; raises ValueError in one line."""
+    width, height = options.size
+    if width * height > MOST_PIXELS:
+        raise ValueError(f"--size {width}x{height}: more than {MOST_PIXELS:,} pixels")
+    given = {name: getattr(options, name, None) for name in _OF_SETTINGS}
+    return Settings(
+        **{"width": width, "height": height} | {n: v for n, v in given.items() if v is not None} | more
+    ).validated()
+
+
+def prepare_kernels(work: Work, lights: int, accelerator: str, *methods: str) -> None:
+    """Compile or load every kernel that these methods need for so many lights.
+
+    The first time takes a while and says so."""
+    certificates = any(Method.parse(name).has_certificates for name in methods)
+    if not compiled_before(lights, accelerator, certificates):
+        always = "at every start, as the cache folder cannot be written to"
+        often = "once for this version" if outlives_process() else always
+        work.note(f"compiling the kernels, {often}; this takes a minute or less")
+    warm_up(work.progress, lights, accelerator, certificates)
+    for name in methods:
+        make_ready(name, lights, accelerator, work.progress)
+
+
+def method_names() -> str:
+    """Name the methods, and what can be added to them."""
+    names = [kind.name for kind in bases(measures=True)]
+    added = " or ".join(f"+{kind.name}" for kind in additions(measures=True))
+    return f"{', '.join(names[:-1])} or {names[-1]}, each with or without {added}, as in certified+cache"
+
+
+def method_summaries() -> str:
+    """Say in a line for each method what the registry says of it."""
+    lines = [(kind.name, kind.summary) for kind in bases(measures=True)]
+    lines += [(f"+{kind.name}", kind.summary) for kind in additions(measures=True)]
+    width = max(len(name) for name, _ in lines)
+    return "\nmethods:\n" + "".join(f"  {name:{width}}  {summary}\n" for name, summary in lines)

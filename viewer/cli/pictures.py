@@ -1,0 +1,253 @@
+"""What a picture is to be like: the options of `render`, `film` and `figure`, beside what a saved picture carries."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from tracer.geometry.accelerators import BVH8, LAZY
+from tracer.geometry.world import LARGE
+from tracer.method import DEFAULT_METHOD, Method
+from tracer.scene.model import Scene
+from tracer.settings import Settings
+from viewer.cli import arguments, options
+from viewer.cli.arguments import ChosenView, Parser, count, number
+from viewer.output import capture, recipe
+from viewer.output.recipe import Recipe, Style
+from viewer.services import stills
+from viewer.services.scene_files import find_scene, is_capture
+from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
+from viewer.state.slices import MIDDLE
+from viewer.state.tone import MOST_EXPOSURE, NEUTRAL, WHITES, Curve, Tone
+from viewer.state.views import BENEATH, View
+
+LOWER_LEFT = 0.0, 1.0
+OR_PICTURE = ", or a saved picture, for its scene, settings and view"
+
+
+def add_picture(parser: Parser) -> None:
+    """Add what one picture is to be like."""
+    add = parser.add_argument
+    options.add_size(parser)
+    add("--samples", type=count(1, 4096), default=1, metavar="N", help="rays per pixel, averaged (default: 1)")
+    help_ = (
+        f"how shadow rays are culled: {options.method_names()} (default: {DEFAULT_METHOD}, or the method that a view "
+        "belongs to: certified, lightcuts, voxels or lie-exact)"
+    )
+    add("--method", type=arguments.method, metavar="M", help=help_)
+    help_ = (
+        "what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, wipe:PART, "
+        "certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, tree, fate:LIGHT, "
+        "moving-shadow:LIGHT, saved or cost, as counts of rays or as shares like saved:share (default: color)"
+    )
+    add("--view", type=arguments.view, default="color", metavar="V", help=help_)
+    stops = number(-MOST_EXPOSURE, MOST_EXPOSURE)
+    add("--exposure", type=stops, default=0.0, metavar="STOPS", help="brighter by so many stops (default: 0)")
+    help_ = "the colour, once exposed, that becomes white (default: 1)"
+    add("--white", type=number(*WHITES), default=1.0, metavar="W", help=help_)
+    curves = ", ".join(Curve)
+    add("--tone", type=_curve, default=Curve.NONE, metavar="CURVE", help=f"the tone curve: {curves} (default: none)")
+    add("--mark-clipped", action="store_true", help="stripes over pixels that are too bright, or black")
+    help_ = "what has the first and the last colour in the views depth, saved, cost and lights (default: as they come)"
+    add("--range", type=arguments.value_range, metavar="LOW:HIGH", help=help_)
+    add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
+    add("--legend", action="store_true", help="draw the view's legend into the picture")
+    help_ = "where the legend is: 0,0 is the upper left (default: 0,1)"
+    add("--legend-at", type=arguments.place, metavar="X,Y", help=help_)
+    help_ = (
+        "above the picture, what culling saves: a sentence, with TEXT for what is known of steps and time, and a bar"
+    )
+    add("--savings", nargs="?", const="", metavar="TEXT", help=help_)
+    add("--caption", default="", metavar="TEXT", help="a line below the picture, like '{scene}, frame {frame}'")
+    add("--outlines", action="store_true", help="draw the borders between primitives")
+    help_ = "how much of the light shows under flat colours, 0 to 1 (default: 0.35)"
+    add("--shading", type=number(0.0, 1.0), default=0.35, metavar="S", help=help_)
+    help_ = "the slice of the views voxels and tree: across which axis, and where along it, 0 to 1 (default: y:0.25)"
+    add("--slice", type=arguments.slice_, default=MIDDLE, metavar="AXIS:PART", help=help_)
+    help_ = f"brightness of the picture beneath the difference, and behind a slice, 0 to 1 (default: {BENEATH:g})"
+    add("--beneath", type=number(0.0, 1.0), default=BENEATH, metavar="B", help=help_)
+    help_ = "draw rings for a picture that is shown N times as large (default: 1)"
+    add("--magnified", type=count(1, 100), default=1, metavar="N", help=help_)
+    add("--camera", type=arguments.camera, metavar="JSON", help=f"another camera: {options.CAMERA}")
+    options.add_edits(parser)
+
+
+def _curve(text: str) -> Curve:
+    try:
+        return Curve(text.strip().lower())
+    except ValueError:
+        raise ValueError(f"{text!r} is no tone; there is {', '.join(Curve)}") from None
+
+
+def picture_settings(given: Namespace) -> Settings:
+    """Return how the picture is traced; raises ValueError, in one line, where the options do not fit its view."""
+    settings = options.tracing_settings(given, method=given.method or default_for(given.view.view))
+    check_view(settings, given.view.view)
+    check_display(given)
+    return settings
+
+
+def recipe_of(scene: Scene, settings: Settings, given: Namespace) -> Recipe:
+    """Return what the options ask for, with a caption that may have fields.
+
+    Raises ValueError, in one line, for a moment or a light that the scene does not have."""
+    view, light, wipe, shares = given.view
+    edits = options.edits_of(given)
+    if view.of_light:
+        light = options.light_index(given, f"--view {view.value}:", light, scene)
+    style = Style(
+        shares=shares,
+        marked=not given.no_marks,
+        magnified=given.magnified,
+        shading=given.shading,
+        beneath=given.beneath,
+        outlines=given.outlines,
+        legend=(given.legend_at or LOWER_LEFT) if given.legend else None,
+        caption=given.caption,
+        tone=_tone(given),
+        clipping=given.mark_clipped,
+        span=given.range,
+        cut=given.slice,
+        savings=given.savings,
+    )
+    history = ""
+    if recipe.by_chance(settings, view, style.savings is not None):
+        history = f"what the method {settings.method} makes depends on time and threads"
+    return Recipe(
+        given.path, options.moment(scene, given), given.camera, settings, view,
+        light if view.of_light else edits.light_index(light) or 0, wipe, style, given.warmup, given.repeat, history,
+        folders=tuple(given.folder), before=given.before, meshes=options.mesh_options(given).of_file(given.path),
+        edits=edits,
+    )  # fmt: skip
+
+
+def _tone(given: Namespace) -> Tone:
+    return Tone(given.exposure, given.white, given.tone)
+
+
+def check_display(given: Namespace) -> None:
+    """Raise ValueError, in one line, for options that the view has no use for."""
+    view, shares = given.view.view, given.view.shares
+    if not view.shows_picture and not _tone(given).neutral:
+        raise ValueError(f"--exposure, --white and --tone are for pictures: --view {view.value} shows none")
+    if given.mark_clipped and not view.shows_clipped:
+        raise ValueError(f"--mark-clipped is for the views color and wipe, not {view.value}")
+    if given.slice != MIDDLE and not view.has_slice:
+        raise ValueError(f"--slice is for the views voxels and tree, not {view.value}")
+    if given.range is not None and (not view.has_range or shares):
+        names = ", ".join(one.value for one in View if one.has_range)
+        raise ValueError(f"--range is for views of numbers: {names}{' as counts' if shares else ''}")
+
+
+def check_view(settings: Settings, view: View, option: str = "--method") -> None:
+    """Raise ValueError, in one line, where the method has nothing for a view of what single methods have; `option` is
+    the one that names methods."""
+    method = Method.parse(settings.method)
+    shows = {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}.get(view)
+    why, instead = "", SHOWN_BY.get(view, BY_MODES)
+    if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
+        may = "may make" if method.adaptive else "makes"
+        why, instead = f"the method {settings.method} {may} none", CERTIFIED
+    elif view is View.CUTS and not method.clusters:
+        why = f"the method {settings.method} makes no clusters of lights"
+    elif view.needs_fates and method.clusters:
+        why, instead = (
+            f"the method {settings.method} shades by clusters of lights: single lights have no rays",
+            BY_MODES,
+        )
+    elif shows is not None and not any(name == method.base or method.has(name) for name in shows):
+        why = f"not with the method {settings.method}"
+    if why:
+        raise ValueError(f"--view {view.value}: {why}; give {option} {instead}")
+
+
+def check_tree(settings: Settings, view: View, scene: Scene) -> None:
+    """Raise ValueError, in one line, where a view of what rays have had built meets a tree that is built before."""
+    static = len(scene.objects[0].triangles) + len(scene.objects[0].quadrics)
+    waits = settings.accelerator == LAZY or (settings.accelerator == BVH8 and static > LARGE)
+    if view is View.TREE and not waits:
+        why = f"{settings.accelerator} builds all of its tree before rays come; give --accelerator {LAZY}"
+        raise ValueError(f"--view {view.value}: {why}")
+
+
+def check_lights(wanted: Recipe, scene: Scene) -> None:
+    """Raise ValueError, in one line, where memory has no room for what all lights send to each pixel."""
+    if not stills.lights_fit(wanted, scene):
+        raise ValueError(f"--view {wanted.view.value}: too many lights for pictures of this size")
+
+
+# --- saved pictures --------------------------------------------------------------------------------
+
+_SETTINGS = (
+    "method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples", "accelerator",
+    "lightcuts_error", "lightcuts_nodes",
+)  # fmt: skip
+_STYLE = ("magnified", "shading", "beneath", "outlines", "savings")
+
+
+def filled_in(parser: Parser, given: Namespace, words: list[str]) -> Namespace:
+    """Return the options beside what a saved picture carries where that stands for the scene; options win.
+
+    Raises CaptureError, in one line, for any other picture, and where its scene is gone."""
+    if not is_capture(given.path):
+        return given
+    saved, kept = _defaults(given.path)
+    parser.set_defaults(**kept)
+    given, picture = parser.parse_args(words), given.path
+    given.path = saved.scene
+    view, tone = given.view.view, saved.style.tone  # a view that has no use for something takes none of the picture's
+    if not view.shows_picture and _tone(given) == tone:
+        given.exposure, given.white, given.tone = NEUTRAL.exposure, NEUTRAL.white, NEUTRAL.curve
+    given.mark_clipped &= view.shows_clipped or not saved.style.clipping
+    if given.range == saved.style.span and (view is not saved.view or given.view.shares):
+        given.range = None
+    if given.frame is None and given.time is None:
+        given.time = saved.time
+    if "buffers" in given and not (given.output or given.buffers or given.to_tev or given.print_command):
+        given.output = _free_name(f"{picture.stem}-rendered")
+    return given
+
+
+def _defaults(path: Path) -> tuple[Recipe, dict[str, Any]]:
+    """Return the recipe of a saved picture, and what it carries by the names of the options; raises CaptureError."""
+    snapshot, size = capture.read_with_size(path)
+    try:
+        saved = recipe.from_json(snapshot, size, capture.read_data(path).get("picture"))
+    except ValueError as error:
+        raise capture.CaptureError(f"{path}: cannot be restored: {error}") from None
+    saved, style = replace(saved, scene=scene_of(path)), saved.style
+    kept: dict[str, Any] = {name: getattr(saved.settings, name) for name in _SETTINGS}
+    kept |= {name: getattr(style, name) for name in _STYLE}
+    kept |= {"before": saved.before, "warmup": saved.warmup, "repeat": saved.repeats}
+    kept |= {"no_marks": not style.marked, "legend": style.legend is not None, "legend_at": style.legend}
+    kept |= {"exposure": style.tone.exposure, "white": style.tone.white, "tone": style.tone.curve}
+    kept |= {"mark_clipped": style.clipping, "range": style.span, "slice": style.cut}
+    kept["caption"] = style.caption.replace("{", "{{").replace("}", "}}")
+    if size is not None:
+        kept["size"] = size
+    if saved.camera is not None:
+        kept["camera"] = saved.camera
+    kept["view"] = ChosenView(saved.view, saved.edits.light_number(saved.light), saved.wipe, style.shares)
+    kept |= {"no_studio": not saved.meshes.studio, "up": saved.meshes.up, "crease": saved.meshes.crease}
+    return saved, kept | options.edits_as_options(saved.edits)
+
+
+def scene_of(path: Path) -> Path:
+    """Return the file of a scene, or of a saved picture's scene; raises CaptureError, in one line, where it is gone."""
+    if not is_capture(path):
+        return path
+    named = capture.read(path).scene
+    scene = find_scene(named, path)
+    if scene is None:
+        raise capture.CaptureError(f"{path}: its scene is gone: {named}")
+    return scene
+
+
+def _free_name(stem: str) -> Path:
+    """Return a name of a PNG in this folder that is not taken."""
+    path, count = Path(f"{stem}.png"), 2
+    while path.exists():
+        path, count = Path(f"{stem}-{count}.png"), count + 1
+    return path
