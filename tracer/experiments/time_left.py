@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from bisect import bisect_left
 from collections.abc import Callable
+from itertools import pairwise
 from statistics import median
 
 
@@ -43,6 +44,6 @@ class TimeLeft:
 
     def _pace(self, marks: list[tuple[int, float]]) -> float:
         """Seconds for a step, between these marks."""
-        steps = [(done - before, at - then) for (before, then), (done, at) in zip(marks, marks[1:])]
+        steps = [(done - before, at - then) for (before, then), (done, at) in pairwise(marks)]
         longest = self.LONGEST * median(seconds / count for count, seconds in steps if count)
         return sum(min(seconds, longest * max(count, 1)) for count, seconds in steps) / sum(count for count, _ in steps)
