@@ -7,7 +7,7 @@ tests hold the committed files against that.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -34,24 +34,39 @@ TEXTURES: dict[str, Callable[[], Array]] = {
 }
 
 
-def make() -> dict[str, bytes]:
-    """Every generated file by its path under `assets`."""
-    files = {"scenes/default.aff": room.text("study").encode()}
+def study() -> Iterator[tuple[str, str]]:
+    yield "scenes/default.aff", room.text("study")
+    yield "scenes/study/tracks.aff", room.tracks()
     for name, model in room.study().files().items():
-        files[f"scenes/study/{name}.aff"] = model.text().encode()
-    files["scenes/study/tracks.aff"] = room.tracks().encode()
-    for name, root, model in (
-        ("office", office.text("office"), office.office()),
-        ("courtyard", courtyard.text("courtyard"), courtyard.courtyard()),
-    ):
-        files[f"scenes/{name}.aff"] = root.encode()
-        files |= {f"scenes/{name}/{part}.aff": held.text().encode() for part, held in model.files().items()}
-    files["scenes/figure3.aff"] = figures.figure3().encode()
-    files["scenes/figure4.aff"] = figures.figure4().encode()
+        yield f"scenes/study/{name}.aff", model.text()
+
+
+def many_lights() -> Iterator[tuple[str, str]]:
+    yield "scenes/office.aff", office.text("office")
+    yield "scenes/courtyard.aff", courtyard.text("courtyard")
+    for scene, model in (("office", office.office()), ("courtyard", courtyard.courtyard())):
+        for name, part in model.files().items():
+            yield f"scenes/{scene}/{name}.aff", part.text()
+
+
+def papers_figures() -> Iterator[tuple[str, str]]:
+    yield "scenes/figure3.aff", figures.figure3()
+    yield "scenes/figure4.aff", figures.figure4()
+
+
+def images() -> Iterator[tuple[str, bytes]]:
     for name, draw in TEXTURES.items():
-        files[f"scenes/textures/{name}.ppm"] = ppm(draw())
-    files["icon.png"] = png(icon.icon())
-    return files
+        yield f"scenes/textures/{name}.ppm", ppm(draw())
+    yield "icon.png", png(icon.icon())
+
+
+PARTS = (papers_figures, many_lights, images, study)
+
+
+def make(parts: Iterable[Callable[[], Iterator[tuple[str, str | bytes]]]] = PARTS) -> dict[str, bytes]:
+    """Every generated file of some parts, by its path under `assets`."""
+    files = (file for part in parts for file in part())
+    return {path: data if isinstance(data, bytes) else data.encode() for path, data in files}
 
 
 def main() -> None:

@@ -36,9 +36,10 @@ def study() -> tracer.Scene:
 
 @pytest.mark.slow
 def test_the_generator_writes_the_committed_files(make_scenes: ModuleType) -> None:
-    files = make_scenes.make()
+    """All by `make test-all`, the figures and the scenes of many lights in every run."""
+    files = make_scenes.make(cases(make_scenes.PARTS[:2], make_scenes.PARTS))
     committed = {p.relative_to(ASSETS).as_posix() for p in SCENES.rglob("*") if p.is_file()} | {"icon.png"}
-    assert committed == set(files)
+    assert committed >= set(files) and len(files) >= cases(10, len(committed))
     for path, data in files.items():
         held = (ASSETS / path).read_bytes()
         if path.endswith(".png"):  # zlib may pack the same pixels otherwise

@@ -11,11 +11,11 @@ from tracer.statistics import FrameStatistics
 
 @pytest.mark.parametrize("way", WAYS)
 def test_each_way_is_coarse_in_motion_alone(way: str):
-    governor = WAYS[way]()
-    governor.observe(FrameStatistics(seconds=2.0, phases={"primary": 0.5, "surfaces": 0.5, "shading": 1.0}), 400_000)
-    assert governor.plan(800, 500, 0.05).divisor > 1
-    assert governor.plan(800, 500, 0.05, False).divisor == 1
-    assert governor.plan(800, 500, 9.0).parts[-1] == 16
+    budget = WAYS[way]()
+    budget.observe(FrameStatistics(seconds=2.0, phases={"primary": 0.5, "surfaces": 0.5, "shading": 1.0}), 400_000)
+    assert budget.plan(800, 500, 0.05).divisor > 1
+    assert budget.plan(800, 500, 0.05, False).divisor == 1
+    assert budget.plan(800, 500, 9.0).parts[-1] == 16
 
 
 def test_a_coarse_picture_is_enlarged_smoothly():

@@ -90,13 +90,13 @@ def test_rays_that_find_another_surface_fail_growth(tmp_path: Path, monkeypatch:
 
 def test_memory_is_measured(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out" / "memory.json"
-    assert memory.main([DEFAULT, "--triangles", "100000", "--size", "256", "--json", str(out)]) == 0
+    assert memory.main([DEFAULT, "--triangles", "20000", "--size", "128", "--json", str(out)]) == 0
     scene, mesh = json.loads(out.read_text())["scenes"]
     for result in (scene, mesh):
         assert 50e6 < result["libraries"] < 500e6
-        assert result["peak"] >= result["resident"] > 256 * 256 * 32  # a frame's buffers at least
+        assert result["peak"] >= result["resident"] > 128 * 128 * 32  # a frame's buffers at least
         assert result["build_seconds"] > 0.0 and result["seen"] > 0.1
-    assert mesh["triangles"] == pytest.approx(100_000, rel=0.02)
+    assert mesh["triangles"] == pytest.approx(20_000, rel=0.05)
     assert 100 < mesh["peak"] / mesh["triangles"] < 3000  # bytes a triangle
     assert "mesh.stl" in capsys.readouterr().out
 

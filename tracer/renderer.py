@@ -316,7 +316,7 @@ class Renderer:
         """
         return Renderer(self.scene, self.settings, world=self.world)
 
-    def follow(self, other: Renderer) -> None:
+    def take_scene(self, other: Renderer) -> None:
         """Let the next picture that is refined be of the scene of another renderer, and begin with the same pixels.
 
         Parameters

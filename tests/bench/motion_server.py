@@ -28,7 +28,7 @@ from tracer.renderer import Renderer
 from tracer.shading.blocks import TURNS
 from tracer.statistics import FrameStatistics
 from viewer.output.pictures import picture
-from viewer.services.governor import AT_ONCE, LARGEST_DIVISOR, SPARE, Governor, Plan, divided
+from viewer.services.frame_budget import AT_ONCE, FINER_BELOW, LARGEST_DIVISOR, FrameBudget, Plan, divided
 from viewer.state import navigation
 from viewer.window.app import App
 
@@ -45,7 +45,7 @@ HAND = (
 )  # fmt: skip
 
 
-class CoarserInMotion(Governor):
+class CoarserInMotion(FrameBudget):
     """The way that frames were made quick before: whole ones, at the finest resolution that comes in time."""
 
     def forget(self) -> None:
@@ -69,13 +69,13 @@ class CoarserInMotion(Governor):
             return AT_ONCE
         for divisor in range(1, LARGEST_DIVISOR + 1):
             w, h = divided(width, height, divisor)
-            if self._each * w * h <= (SPARE * seconds if divisor < self._divided_by else seconds):
+            if self._each * w * h <= (FINER_BELOW * seconds if divisor < self._divided_by else seconds):
                 break
         self._divided_by = divisor
         return Plan(divisor, AT_ONCE.parts)
 
 
-WAYS = {"parts": Governor, "coarse": CoarserInMotion}
+WAYS = {"parts": FrameBudget, "coarse": CoarserInMotion}
 
 
 @dataclass
@@ -148,7 +148,7 @@ class Script:
         elif self.state == "whole":
             if self.burst is not None and self.burst.full == 0.0 and not c.active:
                 c.preferences.dynamic_resolution = False  # a whole frame, all at once
-                c.tracing.trace_again()
+                c.scheduler.trace_again()
             elif self.burst is not None and self.burst.full > 0.0 and not c.active:
                 c.preferences.dynamic_resolution = True
                 self.done.append(self.burst)
@@ -260,7 +260,7 @@ def on_screen(pixels: NDArray[np.uint8], size: tuple[int, int]) -> NDArray[np.ui
 def main() -> int:
     path, window, way, bursts, out = sys.argv[1:]
     app = App(Path(path))
-    app.controller.tracing.governor = WAYS[way]()
+    app.controller.scheduler.budget = WAYS[way]()
     app.controller.settings.change(samples=1, method="paper")
     app.ui.tour.end()
     width, height = (int(side) for side in window.split("x"))
@@ -268,7 +268,7 @@ def main() -> int:
     geometry.window_geometry.size, geometry.restore_previous_geometry = (width, height), False
     script = Script(app, int(bursts))
     code = app.run()
-    size, scene = app.controller.tracing.now.size, app.controller.session.scene
+    size, scene = app.controller.scheduler.inputs.size, app.controller.session.scene
     assert scene is not None
     renderer = Renderer(scene, app.controller.session.settings)
     told = []

@@ -44,7 +44,8 @@ from viewer.util.messages import say
 from viewer.util.screen import has_display, no_display_reason
 from viewer.window import app as viewer_app
 from viewer.window.app import FASTEST, FASTEST_BY_PROCESSOR, App
-from viewer.window.panels import find_rows
+from viewer.window.panels import find
+from viewer.window.view_commands import FindState
 
 CAMERA = Camera((0.6, 0.9, 2.6), (-0.2, -0.3, -0.93), angle=40.0)
 LIGHTS = [(1.6, 1.2, 0.4), (-2.0, 2.0, 1.5)]
@@ -74,7 +75,7 @@ class Watch:
         self.most_rows = 0
         self._awaited: tuple[str, Callable[[], bool], Callable[[], bool]] | None = None
         self._since: float | None = None
-        self._before, self._began, row = app.before_widgets, 0.0, find_rows._row
+        self._before, self._began, row = app.before_widgets, 0.0, find._row
         app.params.callbacks.pre_new_frame = self.before
         app.params.callbacks.after_swap = self.after
 
@@ -82,7 +83,7 @@ class Watch:
             self.rows.add(number)
             row(ui, table, listing, columns, number, selected)
 
-        find_rows._row = noted
+        find._row = noted
 
     def before(self) -> None:
         self._began = time.perf_counter()
@@ -160,7 +161,11 @@ class User:
     def _shown(self) -> bool:
         """Whether the rows are there that are asked for, and on the screen."""
         listing = self.table.listing
-        return listing is not None and listing.order == self.table.order and self.app.ui.find_order == listing.order
+        return (
+            listing is not None
+            and listing.order == self.table.order
+            and self.app.ui.state(FindState).order == listing.order
+        )
 
     def _wait(self) -> None:
         self.d.wait(lambda: not self.watch.waits, "an answer on the screen", 60.0)
@@ -212,7 +217,7 @@ class User:
             d.context.mouse_down(0)
 
             def seen(primitive: int = primitive) -> bool:
-                drawn = self.app.ui.display._drawn
+                drawn = self.app.ui.graphics.display._drawn
                 return drawn is not None and drawn[1].selected == primitive and primitive in self.watch.rows
 
             self.watch.doing = "clicking"
@@ -251,7 +256,7 @@ def measure(triangles: int, size: tuple[int, int], clicks: int) -> dict[str, Any
         raise RuntimeError(failed[0])
     return {
         "triangles": made.triangle_count,
-        "renderer": app.ui.renderer_name,
+        "renderer": app.ui.graphics.renderer_name,
         "frames": dict(watch.frames),
         "answers": dict(watch.answers),
         "most_rows": watch.most_rows,

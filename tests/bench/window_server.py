@@ -61,9 +61,13 @@ class Watch:
     def after(self) -> None:
         self.frames[self.state].append((time.perf_counter() - self._began, time.thread_time() - self._worked))
         self._saw("window")
-        if self.app.ui.preview is not None and self.app.ui.preview.texture_id is not None:
+        if self.app.ui.graphics.preview is not None and self.app.ui.graphics.preview.texture_id is not None:
             self._saw("preview")
-        if self.c.traced is not None and self.app.ui.display is not None and self.app.ui.display.texture_id is not None:
+        if (
+            self.c.traced is not None
+            and self.app.ui.graphics.display is not None
+            and self.app.ui.graphics.display.texture_id is not None
+        ):
             self._saw("first picture")
             if self.c.traced.request.divisor == 1 and self.c.traced.whole:
                 self._saw("full picture")
@@ -91,7 +95,7 @@ class Watch:
                 state, self.app.params.app_shall_exit = "closing", True
         elif state not in ("tracing", "moving", "closing"):
             state, c.preferences.keep_tracing = "tracing", True
-            c.tracing.trace_again()
+            c.scheduler.trace_again()
         if state != self.state:
             mark = self._now()
             passed, worked, own = (b - a for a, b in zip(self._mark, mark))
@@ -102,7 +106,7 @@ class Watch:
 
     def report(self) -> dict[str, Any]:
         return {
-            "renderer": self.app.ui.renderer_name,
+            "renderer": self.app.ui.graphics.renderer_name,
             "seen": self.seen,
             "worked": self.worked,
             "load": os.getloadavg()[0],

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from tracer.experiments.time_left import TimeLeft
@@ -59,3 +61,23 @@ def test_a_machine_that_slept_does_not_make_the_rest_long() -> None:
     """An hour in one step of two seconds: without it 20 s are left, and not much more with it."""
     left, _ = after([2.0] * 9 + [3602.0], 20)
     assert left.seconds() == pytest.approx(2.0 * 9 + 40.0)
+
+
+def test_it_may_be_asked_at_any_moment_of_a_mark() -> None:
+    """The window asks while a thread marks: here after each call that a mark makes."""
+    left = TimeLeft()
+    asked: list[float | None] = []
+
+    def ask(_frame: object, event: str, _what: object) -> None:
+        if event == "c_return":
+            sys.setprofile(None)
+            asked.append(left.seconds())
+            sys.setprofile(ask)
+
+    for done in range(3):
+        sys.setprofile(ask)
+        try:
+            left.mark(done, 10)
+        finally:
+            sys.setprofile(None)
+    assert len(asked) > 3

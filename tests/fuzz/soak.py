@@ -213,7 +213,7 @@ class Soak:
             self.c.go_to_bookmark(int(self.rng.integers(5)))
 
     def _reset_modes(self) -> None:
-        self.c.tracing.reset_modes()
+        self.c.reset_modes()
 
 
 def soak(scenes: list[Path], seconds: float, seed: int) -> tuple[Soak, list[Sample]]:

@@ -1,4 +1,4 @@
-"""A short run of the checks of bounds: `make bounds` goes on for longer."""
+"""A short run of the checks of bounds, a longer one by `make test-all`: `make bounds` goes on as long as one likes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 from tests.fuzz.bounds import CASES, SETTLED
 from tests.platforms import linux_only
-from tests.sweeps import examples
+from tests.sweeps import cases
 
 ROOT = Path(__file__).resolve().parents[2]
 PAST = """
@@ -46,7 +46,7 @@ def test_who_reads_past_an_array_by_address_is_stopped(side: tuple[str, str]) ->
 @linux_only
 def test_kernels_stay_inside_their_arrays() -> None:
     """Compiled as usual, on guarded arrays; a process of its own, which a fault ends."""
-    many = examples(4 * len(CASES))
+    many = cases(1, 32) * len(CASES)
     command = [sys.executable, "-m", "tests.fuzz.bounds", "--from", "0", "--until", str(time.time() + 500)]
     done = subprocess.run([*command, "--count", str(many)], cwd=ROOT, env=os.environ, capture_output=True, text=True)
     assert done.returncode == 0, (done.stdout[-1000:], done.stderr[-3000:])

@@ -7,15 +7,17 @@ from pathlib import Path
 import pytest
 
 from tests.fuzz.soak import SCENES, Sample, Soak, growing
+from tests.sweeps import cases
 
 
 def test_a_restless_user_meets_nothing_wrong(tmp_path: Path):
+    acts = cases(40, 400)
     user = Soak(list(SCENES[:2]), seed=1, folder=tmp_path)
-    for _ in range(60):
+    for _ in range(acts):
         user.act()
     user.rest()
     user.close()
-    assert not user.wrong and sum(user.done.values()) == 60
+    assert not user.wrong and sum(user.done.values()) == acts
     assert len(user.done) > 15 and user.compared > 0
 
 

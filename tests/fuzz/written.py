@@ -19,7 +19,7 @@ from viewer.output import capture, exports, exr, figures, png
 from viewer.output.movie import video
 from viewer.services.picture_controller import JPEG, write_picture
 from viewer.state.preferences import SETTINGS_FILE, Preferences, save_preferences
-from viewer.util.files import reserved, write_text, write_whole
+from viewer.util.files import write_new, write_text, write_whole
 from viewer.window import layout_file
 from viewer.window.layout_file import LayoutFile
 
@@ -81,8 +81,7 @@ def _numbered(folder: Path, number: int) -> None:
 
 
 def _jpeg(folder: Path, number: int) -> None:
-    with reserved(folder, "room", JPEG) as path:
-        write_picture(path, _pixels(number), "{}")
+    write_new(folder, "room", JPEG, lambda path: write_picture(path, _pixels(number), "{}"))
 
 
 def _table(folder: Path, number: int) -> None:

@@ -203,7 +203,7 @@ def test_a_renderer_beside_another_shows_the_same_edits():
     second.settings = replace(first.settings, method="none")
     second.render(0.0, ABOVE)
     first.scene = first.world.scene = edited(original, Edits(moved_lights=((0, (1.0, 1.0, 2.5)),))).scene
-    second.follow(first)
+    second.take_scene(first)
     assert np.array_equal(second.render(0.0, ABOVE).color, first.render(0.0, ABOVE).color)
 
 

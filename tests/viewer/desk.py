@@ -16,6 +16,7 @@ from tracer.scene.model import Camera
 from viewer.services.controller import Controller
 from viewer.services.runs import ExperimentPlan
 from viewer.state.preferences import Preferences
+from viewer.window.app import advance
 
 SIZE = (64, 48)
 ELSEWHERE = Camera((0.0, 2.0, 8.0), (0.0, -0.2, -1.0))
@@ -39,9 +40,10 @@ class Desk:
         self.rest()
 
     def tick(self) -> None:
-        frame = self.c.tick(SIZE)
-        if frame is not None:
-            self.came.append(frame)
+        before = self.c.frame
+        advance(self.c, SIZE)
+        if self.c.frame is not None and self.c.frame is not before:
+            self.came.append(self.c.frame)
         time.sleep(0.001)
 
     def until(self, happens: Callable[[], object]) -> None:

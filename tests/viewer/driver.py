@@ -33,7 +33,7 @@ class Driver:
         self.context, self.folder = context, folder
         self._in_frame: list[Callable[[], None]] = []
         self._of_window: list[Callable[[], None]] = []  # done when the window is drawn, pixels and all
-        stay_awake = app._stay_awake
+        stay_awake = app._set_frame_rate
 
         def with_errands() -> None:
             while self._in_frame:
@@ -42,7 +42,7 @@ class Driver:
             if not dozes:
                 app.params.fps_idling.enable_idling = False
 
-        app._stay_awake = with_errands  # type: ignore[method-assign]
+        app._set_frame_rate = with_errands  # type: ignore[method-assign]
         if not dozes:
             app.params.fps_idling.fps_max = FASTEST
         self._fill_only_what_is_seen()
@@ -59,11 +59,11 @@ class Driver:
             before_render()
             filled = bool(self._of_window) or app._capture_this_frame
             if not filled:
-                self.ui.display.context.enable_direct(RASTERIZER_DISCARD)
+                self.ui.graphics.display.context.enable_direct(RASTERIZER_DISCARD)
 
         def end() -> None:
             if not filled:
-                self.ui.display.context.disable_direct(RASTERIZER_DISCARD)
+                self.ui.graphics.display.context.disable_direct(RASTERIZER_DISCARD)
             before_swap()
             while filled and self._of_window:
                 self._of_window.pop()()
@@ -108,7 +108,7 @@ class Driver:
     def shown(self) -> np.ndarray:
         """The drawn view, read where GL work is done: scenarios run on a thread without the window's context."""
         got: list[np.ndarray] = []
-        self._in_frame.append(lambda: got.append(self.ui.display.read()))
+        self._in_frame.append(lambda: got.append(self.ui.graphics.display.read()))
         self.wait(lambda: bool(got), "the picture to be read")
         return got[0]
 
@@ -116,7 +116,7 @@ class Driver:
         """All of the window as it is drawn next."""
         got: list[np.ndarray] = []
         size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
-        self._of_window.append(lambda: got.append(self.ui.display.read_window(*size)))
+        self._of_window.append(lambda: got.append(self.ui.graphics.display.read_window(*size)))
         while not got:
             self.context.yield_()
         return got[0]

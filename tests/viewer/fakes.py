@@ -260,7 +260,7 @@ class FakeRenderer:
         self.other.go, self.other.turns = self.go, self.turns
         return self.other
 
-    def follow(self, other: FakeRenderer) -> None:
+    def take_scene(self, other: FakeRenderer) -> None:
         pass
 
     def take_turn(self, time: float) -> None:

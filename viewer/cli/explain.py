@@ -25,10 +25,9 @@ from tracer.why import why
 from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import working
-from viewer.output.ray_json import ray_data
+from viewer.output.explained import ray_data, why_data, why_lines
 from viewer.output.ray_rows import RayRows, Row, totals
-from viewer.output.why_lines import why_data, why_lines
-from viewer.services.teachers import Answers, Teacher, answers_at, can_be_asked, with_teachers
+from viewer.services.origin_pixels import Found, OriginPixels, can_trace_once_more, trace_once_more, with_origins
 from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
 
@@ -100,8 +99,8 @@ def run(given: Namespace) -> int:
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, given.camera, work.cancelled)
         found = why(renderer, frame, x, y, work.cancelled)
-        work.count("asking which frames have taught it", len(before), len(before) + 1)
-        found = _with_teachers(found, renderer, frame, origins, before)
+        work.count("looking for the frames that set its modes", len(before), len(before) + 1)
+        found = _with_origins(found, renderer, frame, origins, before)
     tree = found.tree
     assert tree is not None
     if given.json:
@@ -124,30 +123,30 @@ def _repeats(given: Namespace) -> int:
     return 0 if given.warmup or given.before else 1
 
 
-def _with_teachers(
-    found: Why, renderer: Renderer, frame: Frame, origins: ModeOrigins, before: Sequence[WarmupFrame]
+def _with_origins(
+    found: Why, renderer: Renderer, frame: Frame, modes: ModeOrigins, before: Sequence[WarmupFrame]
 ) -> Why:
     """Add the frames, and the pixels of these, that gave the primitive its modes."""
     unit = int(frame.cell[found.y, found.x])
-    taught = origins.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
-    if taught is None:
+    origins = modes.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
+    if origins is None:
         return found
 
     def name(number: int) -> str:
         return "the frame before" if len(before) == 1 else f"frame {number + 1} of the {len(before)} frames before this"
 
     @cache
-    def answers(number: int) -> Answers | None:
-        if not can_be_asked(frame.settings, frame.lights):
+    def pixels(number: int) -> Found | None:
+        if not can_trace_once_more(frame.settings, frame.lights):
             return None
         then, uses_cells = before[number], Method.parse(frame.settings.method).uses_cells
-        return answers_at(renderer, then.time, then.camera, frame.settings, unit, uses_cells)
+        return trace_once_more(renderer, then.time, then.camera, frame.settings, unit, uses_cells)
 
-    def teacher(number: int, light: int, lit: bool) -> Teacher | None:
-        known = answers(number)
-        return None if known is None else known.get((light, lit), Teacher(0, None))
+    def pixel(number: int, light: int, lit: bool) -> OriginPixels | None:
+        known = pixels(number)
+        return None if known is None else known.get((light, lit), OriginPixels(0, None))
 
-    return with_teachers(found, taught, teacher, name)
+    return with_origins(found, origins, pixel, name)
 
 
 def _print(found: Why, tree: RayTree, scene: Scene, shown: Filter, title: str) -> None:

@@ -29,7 +29,7 @@ from viewer.output import exr, figure1_svg, png, recipe, tev
 from viewer.output.buffers import buffers
 from viewer.output.recipe import Recipe
 from viewer.services import stills
-from viewer.services.lamps import LampSamples
+from viewer.services.refinement import has_lamps
 from viewer.state import terms, verified
 from viewer.state.readings import MOST_RECORDED
 from viewer.util.files import check_writable, write_whole
@@ -140,7 +140,7 @@ def run(given: Namespace) -> int:
         if given.to_tev is not None:
             tev.send(given.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
     title = f"{given.path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
-    by_beams = terms.asks_by_beams(frame, LampSamples().any(scene.lights, frame.settings))
+    by_beams = terms.asks_by_beams(frame, has_lamps(scene.lights, frame.settings))
     remarks = " ".join(filter(None, (terms.BY_BEAMS if by_beams else "", _first(wanted))))
     print_table(_statistics_table(frame.statistics, title, frame.settings, remarks))
     for written in (given.output, given.buffers, given.figure1):

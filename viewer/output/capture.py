@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import json
 import string
-import struct
 from collections.abc import Mapping
-from contextlib import ExitStack
 from datetime import datetime
 from io import BytesIO
 from pathlib import Path
@@ -25,7 +23,7 @@ from tracer.scene.files import read_regular
 from tracer.scene.model import SceneError
 from tracer.scene.textures import open_image
 from viewer.state.session import Snapshot
-from viewer.util.files import reserved, write_whole
+from viewer.util.files import write_new, write_whole
 
 CHUNK = "shadowcull"
 FORMAT = 1
@@ -101,31 +99,14 @@ def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
     info.add_itxt(CHUNK, text)
     info.add_text("Software", "Shadowcull")
     image = Image.fromarray(np.ascontiguousarray(pixels))
-    with ExitStack() as stack:
-        try:
-            path = stack.enter_context(reserved(folder, name.removesuffix(".png"), ".png"))
-        except OSError as error:
-            raise CaptureError(f"no picture saved: {error}") from None
-        try:
-            write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
-        except (OSError, ValueError) as error:
-            raise CaptureError(f"no picture saved: {error}") from None
-    return path
 
+    def write(path: Path) -> None:
+        write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
 
-def carries_state(path: Path) -> bool:
-    """Whether a file is a PNG with a text chunk of ours; its pixels are passed over.  Raises OSError."""
-    key = CHUNK.encode() + b"\0"
-    with path.open("rb") as file:
-        if file.read(8) != b"\x89PNG\r\n\x1a\n":
-            return False
-        while len(head := file.read(8)) == 8:
-            length, kind = struct.unpack(">I4s", head)
-            after = file.tell() + length + 4  # a checksum follows
-            if kind in (b"tEXt", b"zTXt", b"iTXt") and file.read(min(length, len(key))) == key:
-                return True
-            file.seek(after)
-    return False
+    try:
+        return write_new(folder, name.removesuffix(".png"), ".png", write)
+    except (OSError, ValueError) as error:
+        raise CaptureError(f"no picture saved: {error}") from None
 
 
 def read(path: Path) -> Snapshot:
@@ -146,8 +127,10 @@ def read_data(path: Path) -> dict[str, Any]:
     """All that a capture carries, as JSON has it; raises CaptureError."""
     try:
         with open_image(BytesIO(read_regular(path)), ("PNG",)) as image:
-            image.load()  # text chunks may follow the pixels
-            text = getattr(image, "text", {}).get(CHUNK)
+            text = image.info.get(CHUNK)
+            if text is None:  # another program may have put it after the pixels, which else need not be decoded
+                image.load()
+                text = getattr(image, "text", {}).get(CHUNK)
     except FileNotFoundError:
         raise CaptureError(f"{path}: no such file") from None
     except (SceneError, OSError, ValueError, SyntaxError) as error:

@@ -10,7 +10,6 @@ import json
 import threading
 from argparse import Namespace
 from collections.abc import Callable, Mapping
-from contextlib import ExitStack
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -19,7 +18,7 @@ from typing import TYPE_CHECKING, TypeVar
 from tracer.experiments import experiment, lamp_experiment, zoom
 from tracer.version import program_version
 from viewer.output import reports
-from viewer.util.files import check_outputs, reserved, write_each, write_text
+from viewer.util.files import check_outputs, write_each, write_new, write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -123,10 +122,7 @@ def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], no
     A name that is taken gets a number.  Raises OSError in one line, and what `write` raises; then no file is left.
     """
     stem = f"{name}-{now or datetime.now():%Y-%m-%d-%H-%M-%S}"
-    with ExitStack() as stack:
-        try:
-            path = stack.enter_context(reserved(folder, stem, ending))
-        except OSError as error:
-            raise OSError(f"nothing saved: {error}") from None
-        write(path)
-    return path
+    try:
+        return write_new(folder, stem, ending, write)
+    except OSError as error:
+        raise OSError(f"nothing saved: {error}") from None

@@ -135,17 +135,6 @@ def seen(cube: Cube) -> CubeSeen:
     return CubeSeen(list_lengths(cube), full_depths(cube))
 
 
-def cell_at(side: int, x: int, y: int) -> tuple[int, int, int] | None:
-    """(face, row, column) of the cell in a column and a row of the cross; None beside it."""
-    face = _CROSS.get((y // side, x // side))
-    if face is None:
-        return None
-    ways = _ways(face, side)[y % side, x % side]
-    axis = "xyz".index(face[1])
-    across, along = (int((ways[k] + 1.0) * (0.5 * side)) for k in range(3) if k != axis)
-    return 2 * axis + (face[0] == "-"), along, across
-
-
 def cross_of(colors: NDArray[np.float32], enlarged: int = 1) -> NDArray[np.uint8]:
     """(3 side, 4 side, 3) uint8, or so many times as large: colours of cells, unfolded."""
     cross = np.round(np.clip(unfolded(colors, np.array(BACKGROUND, np.float32)), 0.0, 1.0) * 255.0).astype(np.uint8)

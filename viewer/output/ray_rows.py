@@ -1,4 +1,4 @@
-"""A tree of rays as rows of text, as the window lists it and the command line prints it.
+"""A tree of rays in words: as rows, as the window lists it and the command line prints it.
 
 A row has rows below it: a ray that was sent on, the shadow rays of a point, by light, and where there are many, those
 that have the same fate together.  Rows below are made when somebody asks for them.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.why_in_words import primitive_in_words
 from viewer.state.verdicts import SAID, Filter, color_of, color_of_all
 from viewer.state.views import Color
-from viewer.util.numbers import count
+from viewer.util.numbers import count, several
 
 MOST_LIGHTS = 12
 """Lights of a point that have a row each; of more, those with the same fate have one together."""
@@ -29,6 +29,7 @@ MOST_NAMED = 3  # primitives that are named in a row
 PATH_COLOR: Color = (0.86, 0.88, 0.92)
 
 Key = tuple[int | str, ...]
+Places = NDArray[np.int64]
 Fate = tuple[int, int, str, int, str]  # verdict, lit, what blocks it, wrong, what was known
 
 
@@ -42,18 +43,13 @@ class Row:
     tip: str
     color: Color
     ray: int
-    places: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    places: Places = field(default_factory=lambda: np.empty(0, np.int64))
     below: Callable[[], list[Row]] | None = None
 
     @cached_property
     def rows(self) -> list[Row]:
         """What is below it."""
         return [] if self.below is None else self.below()
-
-    @property
-    def single(self) -> bool:
-        """Whether it stands for a single ray."""
-        return len(self.places) < 2
 
 
 class RayRows:
@@ -81,9 +77,9 @@ class RayRows:
 
     def _path_tip(self, ray: PathRay) -> str:
         parts = [
-            f"ray {ray.number}, bounce {ray.bounce}; counts with {ray.weight.max():.3g}; "
+            f"ray {ray.number}, bounce {ray.bounce}; weight {ray.weight.max():.3g}; "
             f"{count(ray.steps)} steps and {count(ray.tests)} tests, traced alone",
-            "brings the pixel ({:.3g}, {:.3g}, {:.3g}) by itself".format(*ray.light),
+            "adds ({:.3g}, {:.3g}, {:.3g}) to the pixel".format(*ray.light),
         ]
         if ray.shadows is not None:
             parts.append("shadow rays: " + self.summary(ray.shadows, np.arange(len(ray.shadows.light))))
@@ -100,48 +96,41 @@ class RayRows:
 
     # --- shadow rays -----------------------------------------------------------------------------
 
-    def _lights(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
+    def _lights(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
         """A row for each light: of a lamp with its samples below."""
         cuts = np.flatnonzero(np.diff(s.light[places])) + 1
         return [self._light(ray, s, own, above) for own in np.split(places, cuts) if len(own)]
 
-    def _light(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> Row:
+    def _light(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> Row:
         light = int(s.light[places[0]])
-        key, whole = (*above, "light", light), s.of_light(light)
+        key, name, whole = (*above, "light", light), self._name_of_light(light), s.of_light(light)
         if whole.stop - whole.start == 1:
-            return self._single(ray, s, int(places[0]), key, self._name_of_light(light))
-        name, fates = self._name_of_light(light), self._by_fate(s, places, True)
-        if len(fates) == 1:
-            (by,) = (fate[2] for fate in fates)
-            text = f"{name}: {count(len(places))} samples {self._shared_fate(s, places, by)}"
-            below = None if s.verdict[places[0]] == AWAY else lambda: self._samples(ray, s, places, key)
-            tip = MEANING[VERDICTS[s.verdict[places[0]]]]
-            return Row(key, text, tip, color_of(s, int(places[0])), ray.number, places, below)
-        text = f"{name}: {self.summary(s, places)}"
-        return Row(key, text, "", color_of_all(s, places), ray.number, places,
-                   lambda: self._fates(ray, s, places, key))  # fmt: skip
+            return self._single(ray, s, int(places[0]), key, name)
+        fates = self._by_fate(s, places, True)
+        if len(fates) > 1:
+            text, color = f"{name}: {self.summary(s, places)}", color_of_all(s, places)
+            return Row(key, text, "", color, ray.number, places, lambda: self._fates(ray, s, places, key))
+        ((_, _, by, _, _),) = fates
+        text, first = f"{name}: {count(len(places))} samples {self.fate(s, places, by)}", int(places[0])
+        below = None if s.verdict[first] == AWAY else lambda: self._samples(ray, s, places, key)
+        return Row(key, text, MEANING[VERDICTS[s.verdict[first]]], color_of(s, first), ray.number, places, below)
 
-    def _fates(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
+    def _fates(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
         """A row for those with each fate: the verdict, whether the light arrives, and of one light also the object that
         blocks it."""
-        one = len(np.unique(s.light[places])) == 1
-        fates, rows = self._by_fate(s, places, one), []
-        for fate in sorted(fates):
-            same = np.array(fates[fate])
-            key = (*above, "fate", *fate)
+        one, rows = len(np.unique(s.light[places])) == 1, []
+        for fate, numbers in sorted(self._by_fate(s, places, one).items()):
+            same, key, first = np.array(numbers), (*above, "fate", *fate), numbers[0]
             if len(same) == 1:
-                name = self._name_of_light(int(s.light[same[0]]))
-                rows.append(self._single(ray, s, int(same[0]), key, self._name_of_sample(s, int(same[0]), one, name)))
+                name = self._name_of_light(int(s.light[first]))
+                rows.append(self._single(ray, s, first, key, self._name_of_sample(s, first, one, name)))
                 continue
-            text = f"{count(len(same))} {'samples' if one else 'rays'} {self._shared_fate(s, same, fate[2])}"
-            below = self._samples if one else self._lights
-            rows.append(
-                Row(key, text, MEANING[VERDICTS[fate[0]]], color_of(s, int(same[0])), ray.number, same,
-                    lambda same=same, key=key, below=below: below(ray, s, same, key))  # type: ignore[misc]
-            )  # fmt: skip
+            text = f"{count(len(same))} {'samples' if one else 'rays'} {self.fate(s, same, fate[2])}"
+            below = partial(self._samples if one else self._lights, ray, s, same, key)
+            rows.append(Row(key, text, MEANING[VERDICTS[fate[0]]], color_of(s, first), ray.number, same, below))
         return rows
 
-    def _by_fate(self, s: ShadowRays, places: NDArray[np.int64], one: bool) -> dict[Fate, list[int]]:
+    def _by_fate(self, s: ShadowRays, places: Places, one: bool) -> dict[Fate, list[int]]:
         """The places with each fate; what blocks them counts where they are of one light."""
         fates: dict[Fate, list[int]] = {}
         for place in places.tolist():
@@ -150,48 +139,33 @@ class RayRows:
             fates.setdefault(fate, []).append(place)
         return fates
 
-    def _samples(self, ray: PathRay, s: ShadowRays, places: NDArray[np.int64], above: Key) -> list[Row]:
-        return [
-            self._single(ray, s, place, (*above, place), self._name_of_sample(s, place, True, ""))
-            for place in places.tolist()
-        ]
+    def _samples(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
+        names = ((place, self._name_of_sample(s, place, True, "")) for place in places.tolist())
+        return [self._single(ray, s, place, (*above, place), name) for place, name in names]
 
     def _single(self, ray: PathRay, s: ShadowRays, place: int, key: Key, name: str) -> Row:
-        text = f"{name}: {self.fate(s, place)}"
-        return Row(key, text, self._tip(s, place), color_of(s, place), ray.number, np.array([place]))
+        places = np.array([place])
+        return Row(key, f"{name}: {self.fate(s, places)}", self._tip(s, place), color_of(s, place), ray.number, places)
 
-    def fate(self, s: ShadowRays, place: int) -> str:
-        """What became of a shadow ray, in words."""
+    def fate(self, s: ShadowRays, places: Places, by: str = "") -> str:
+        """What became of a shadow ray in words, or of several with the same fate, `by` the object that blocks them."""
+        place, alike = int(places[0]), len(places) > 1
         verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
         if not verdict.due:
             return text
+        shared = f"blocked by {by}" if by else "in shadow"
         text += f" ({s.known[place]})" if place in s.known else ""
-        text += ", lit" if s.lit[place] else f", {self._blocked(s, place)}"
-        if s.wrong[place]:
-            text += " (wrong)"
+        text += ", lit" if s.lit[place] else f", {shared if alike else self._blocked(s, place)}"
+        text += " (wrong)" if s.wrong[place] else ""
         if verdict is Verdict.TRACED:
-            text += f"; {s.steps[place]} steps, {s.tests[place]} tests"
-        return text
-
-    def _shared_fate(self, s: ShadowRays, places: NDArray[np.int64], by: str) -> str:
-        """What became of several that have the same fate, blocked by an object of this name if that is known."""
-        place = int(places[0])
-        verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
-        if not verdict.due:
-            return text
-        text += f" ({s.known[place]})" if place in s.known else ""
-        text += ", lit" if s.lit[place] else f", blocked by {by}" if by else ", in shadow"
-        if s.wrong[place]:
-            text += " (wrong)"
-        if verdict is Verdict.TRACED:
-            text += f"; {count(s.steps[places].sum())} steps, {count(s.tests[places].sum())} tests"
+            text += f"; {several(s.steps[places].sum(), 'step')}, {several(s.tests[places].sum(), 'test')}"
         return text
 
     def _object(self, s: ShadowRays, place: int) -> str:
         return self._scene.name_of(int(s.blocker[place])) if s.blocker[place] >= 0 else ""
 
     def _blocked(self, s: ShadowRays, place: int) -> str:
-        return f"blocked by {self.name(int(s.blocker[place]))}" if s.blocker[place] >= 0 else "said to be in shadow"
+        return f"blocked by {self.name(int(s.blocker[place]))}" if s.blocker[place] >= 0 else "in shadow by its mode"
 
     def _tip(self, s: ShadowRays, place: int) -> str:
         verdict = VERDICTS[s.verdict[place]]
@@ -201,17 +175,17 @@ class RayRows:
         if place in s.named:
             names = [self.name(number) for number in s.named[place][:MOST_NAMED]]
             more = len(s.named[place]) - len(names)
-            parts.append("It names " + ", ".join(names) + (f" and {more} more." if more else "."))
+            parts.append("Named: " + ", ".join(names) + (f" and {more} more." if more else "."))
         if s.asked_moving[place]:
-            parts.append(f"Asking what moves took {s.steps[place]} steps and {s.tests[place]} tests.")
+            parts.append(f"Testing dynamic objects took {s.steps[place]} steps and {s.tests[place]} tests.")
         if verdict is Verdict.TRACED and s.met[place] not in (-1, s.blocker[place]):
-            parts.append(f"The search came upon {self.name(int(s.met[place]))} first.")
+            parts.append(f"Tracing hit {self.name(int(s.met[place]))} first.")
         if s.wrong[place]:
-            truth = f"it is {self._blocked(s, place)}" if s.blocker[place] >= 0 else "nothing is in its way"
+            truth = f"it is {self._blocked(s, place)}" if s.blocker[place] >= 0 else "nothing blocks the ray"
             parts.append(f"This answer is wrong: {truth}.")
         return "\n".join(parts)
 
-    def summary(self, s: ShadowRays, places: NDArray[np.int64]) -> str:
+    def summary(self, s: ShadowRays, places: Places) -> str:
         """How many of some shadow rays have each verdict, and how many of these are lit."""
         parts = []
         for number in np.unique(s.verdict[places]):

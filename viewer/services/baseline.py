@@ -11,17 +11,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 from tracer.frame import Settings
 from tracer.geometry.accelerators import LAZY
 from tracer.scene.model import Camera, Cancelled
 from tracer.statistics import FrameStatistics
 from viewer.services import refinement
-from viewer.services.render_request import Spare, Traced, Traces
+from viewer.services.render_request import Traced, Traces
+from viewer.services.render_thread import RenderThread
 from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import NO_CULLING
-from viewer.util.failures import one_line
+from viewer.util.messages import one_line
 
 STILL = 0.7
 """Seconds that the picture must have rested before anything is measured."""
@@ -151,17 +151,11 @@ def _is_narrow(speed: Spread | None) -> bool:
     return speed is not None and speed.margin <= max(NARROW, CLEAR * abs(speed.median - 1.0))
 
 
-class Spares(Protocol):
-    """The part of `RenderThread` that does spare work."""
-
-    def in_spare_time(self, work: Spare | None) -> None: ...
-
-
 class Baseline:
     """Follows what is shown.  `moving` says that nothing can be measured, as pictures keep coming."""
 
-    def __init__(self, renderer: Spares, clock: Callable[[], float] = time.monotonic) -> None:
-        self._renderer, self._clock = renderer, clock
+    def __init__(self, thread: RenderThread, clock: Callable[[], float] = time.monotonic) -> None:
+        self._thread, self._clock = thread, clock
         self._known: dict[Subject, Rounds] = {}  # of the picture that is shown, by whichever methods
         self._subject: Subject | None = None
         self._at_work: Rounds | None = None
@@ -174,9 +168,9 @@ class Baseline:
         self._known, self._subject = {}, None
         self._stop()
 
-    def follow(self, traced: Traced | None, second: str, moving: bool, busy: bool) -> None:
-        """Once per frame of the window: measure the picture that is shown, and compared with one by a `second` method,
-        unless anything is `moving`, or the thread is `busy` with what is wanted more."""
+    def update(self, traced: Traced | None, second: str, moving: bool, busy: bool) -> None:
+        """Measure the picture that is shown, and compared with one by a `second` method, in each frame of the window;
+        not while anything is `moving`, or the thread is `busy` with what is wanted more."""
         self.moving = moving
         whole = traced is not None and traced.whole and traced.request.divisor == 1
         if moving or not whole:
@@ -201,7 +195,7 @@ class Baseline:
         rounds = self._known.setdefault(subject, Rounds(subject))
         if rounds is not self._at_work and not rounds.ended:
             self._at_work = rounds
-            self._renderer.in_spare_time(rounds)
+            self._thread.in_spare_time(rounds)
 
     def _leave(self) -> None:
         """The picture is another: what was measured of the last stays known, without the renderers that did so."""
@@ -216,7 +210,7 @@ class Baseline:
         """Leave the thread to others; what was measured of a picture is taken up again."""
         if self._at_work is not None:
             self._at_work = None
-            self._renderer.in_spare_time(None)
+            self._thread.in_spare_time(None)
 
     @property
     def measured(self) -> InTurn | None:

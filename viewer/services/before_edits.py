@@ -35,7 +35,7 @@ class BeforeEdits:
         self._edits = NO_EDITS  # those that are put aside
         self._found: tuple[Frame, Frame, Effects] | None = None
 
-    def follow(self, whole: Frame | None, settled: bool) -> None:
+    def take(self, whole: Frame | None, settled: bool) -> None:
         """Take up the newest whole frame, None where that is not of the scene as it is edited now; `settled` says that
         no better one is to come."""
         session, editing, edited = self._session, self._editing, self._session.edited

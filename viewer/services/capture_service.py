@@ -40,7 +40,7 @@ class CaptureService:
     def busy(self) -> bool:
         return bool(self.saving)
 
-    def follow(self) -> None:
+    def report_saved(self) -> None:
         """Report the files that have been written, or could not be."""
         for job in [job for job in self.saving if job.done]:
             self.saving.remove(job)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.method import Method, bases
+from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.settings_controller import SettingsController
-from viewer.services.tracing import Tracing
 from viewer.state.comparison import (
     ENDLESS,
     Apart,
@@ -55,8 +55,10 @@ class Difference:
 class Comparing:
     """`state` is what was chosen; panels and commands may change it by the methods here."""
 
-    def __init__(self, session: Session, tracing: Tracing, settings: SettingsController, notices: Notices) -> None:
-        self._session, self._tracing, self._settings, self._notices = session, tracing, settings, notices
+    def __init__(
+        self, session: Session, scheduler: FrameScheduler, settings: SettingsController, notices: Notices
+    ) -> None:
+        self._session, self._scheduler, self._settings, self._notices = session, scheduler, settings, notices
         self.state = session.comparison
         self._difference: tuple[Side, Side, Slice, Difference | None] | None = None
         self._span: tuple[Frame, Frame, dict[View, tuple[float, float]]] | None = None
@@ -66,22 +68,22 @@ class Comparing:
     @property
     def b(self) -> Side | None:
         """The live picture."""
-        frame = self._tracing.frame
-        return None if frame is None else self._side(frame, self._tracing.drawn_view)
+        frame = self._scheduler.frame
+        return None if frame is None else self._side(frame, self._scheduler.drawn_view)
 
     @property
     def a(self) -> Side | None:
         """What it is compared with, as far as it is there."""
         state, session = self.state, self._session
         if state.source is Source.METHOD:
-            second = self._tracing.traced.second if self._tracing.traced is not None else None
+            second = self._scheduler.traced.second if self._scheduler.traced is not None else None
             if second is None:
                 return None
-            view = self._tracing.drawn_view
+            view = self._scheduler.drawn_view
             return self._side(second, view if can_draw(second, view, session.light) else View.COLOR)
         kept = state.kept
         if kept is not None and state.same_view and can_draw(kept.frame, session.view, session.light):
-            view, light = self._tracing.drawn_view, session.light
+            view, light = self._scheduler.drawn_view, session.light
             return replace(kept, view=view, light=light, light_number=session.light_number)
         if kept is not None and not can_draw(kept.frame, kept.view, kept.light):
             return replace(kept, view=View.COLOR)  # what it showed is gone, as a tree is with its world
@@ -116,7 +118,7 @@ class Comparing:
             return f"A has nothing for the view {b.view.label}: choose another view, or keep A in this one."
         if state.on and state.source is Source.METHOD and a.view is not b.view:
             return f"The frame by {a.method} has nothing for the view {b.view.label}: its picture is shown."
-        coarse = self._tracing.traced is not None and self._tracing.traced.request.divisor > 1
+        coarse = self._scheduler.traced is not None and self._scheduler.traced.request.divisor > 1
         return "" if coarse and state.source is Source.KEPT else sizes_in_words(a.frame, b.frame)
 
     def difference(self, a: Side, b: Side) -> Difference | None:
@@ -161,13 +163,12 @@ class Comparing:
             self._notices.say("there is no picture to keep yet", error=True)
             return
         self.state.kept, self.state.source = b, Source.KEPT
-        self._follow_second()
         part = b.frame.statistics.part
         coarse = f", of which {whole_percent(part)} of the pixels are shaded yet" if part < 1.0 else ""
         self._notices.say(f"kept as A: {b.method}, {b.view.label.lower()}, frame {b.number}{coarse}")
 
     def forget(self) -> None:
-        """Let go of what was kept."""
+        """Clear A: forget what was kept."""
         self.state.kept = self._difference = None
         if self.state.source is Source.KEPT:
             self.end()
@@ -177,7 +178,6 @@ class Comparing:
         self.state.on, self.state.way = True, way
         if self._session.view is View.WIPE:  # one line is enough
             self._settings.set_view(View.COLOR)
-        self._follow_second()
         if self.state.source is Source.KEPT and self.state.kept is None:
             self._notices.say(self.remark)
 
@@ -197,12 +197,10 @@ class Comparing:
     def end(self) -> None:
         self.state.on = self.state.held = False
         self._difference = self._span = None
-        self._follow_second()
 
     def use(self, source: Source) -> None:
         """Take A from here."""
         self.state.source = source
-        self._follow_second()
 
     def trace_by(self, method: str) -> None:
         """Let this be the second method, and compare with it."""
@@ -227,23 +225,19 @@ class Comparing:
 
     # --- one frame -------------------------------------------------------------------------------
 
-    def follow(self) -> None:
-        """Once per frame: where the wipe against the right picture is chosen, it takes the place of the comparison."""
+    def end_beside_wipe(self) -> None:
+        """End the comparison where the wipe against the right picture is chosen: one line is enough."""
         if self.state.on and self._session.view is View.WIPE:
             self.end()
             self._notices.say("the comparison with A has ended: this wipe compares with the right picture")
-        if self.state.source is Source.METHOD and not self.state.second:
-            self.state.second = self._other_method()
-        self._follow_second()
 
     @property
-    def measures(self) -> str:
-        """The second method, while frames are traced by it as well."""
-        return self.state.second if self.state.on and self.state.source is Source.METHOD else ""
-
-    def _follow_second(self) -> None:
-        """Have frames traced by a second method while that is to be seen."""
-        self._tracing.second = self.measures
+    def second_method(self) -> str:
+        """The method by which frames are traced as well, while that is to be seen; else ""."""
+        if not self.state.on or self.state.source is not Source.METHOD:
+            return ""
+        self.state.second = self.state.second or self._other_method()
+        return self.state.second
 
     def blinks(self) -> bool:
         """Whether the window must be drawn again and again."""

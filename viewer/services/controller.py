@@ -1,13 +1,12 @@
-"""Wires the session, the threads and the helpers together, and takes them one step further in each frame.
+"""Constructs all services of the window, and does what concerns several of them.
 
-Panels and commands call the helpers; the window calls `tick` once per frame.  Nothing here knows widgets or GL, so that
-tests can drive all of it without a window.
+Panels and commands call the services.  `viewer.window.app` calls what must happen in each frame of the window, in its
+order.  Nothing here knows widgets or GL, so that tests can drive all of it without a window.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,14 +20,16 @@ from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
-from viewer.services.cut_inspector import CutInspector
 from viewer.services.editing import Editing
 from viewer.services.film_controller import FilmController
 from viewer.services.frame_history import FrameHistory, FrameNavigator
+from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.hunt_controller import HuntController
-from viewer.services.light_recorder import LightRecorder
+from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
+from viewer.services.origin_pixels import OriginFinder
 from viewer.services.picture_controller import PictureController
+from viewer.services.pixel_inspector import PixelInspector
 from viewer.services.presets import Presets
 from viewer.services.preview import Preview
 from viewer.services.questions import Questions
@@ -42,9 +43,6 @@ from viewer.services.scene_table import SceneTable
 from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
-from viewer.services.shadow_inspector import ShadowInspector
-from viewer.services.teachers import Teachers
-from viewer.services.tracing import Conditions, Tracing
 from viewer.services.undo import Undo
 from viewer.state.arriving import fitting_view
 from viewer.state.notices import Notices
@@ -54,64 +52,53 @@ from viewer.state.views import View
 
 
 class Controller:
-    """See the module.  `wake` makes the window draw a frame soon, and may be called from any thread; `info` is what
-    `scene_info` says of the scene, `drawn_seconds` what the window's last frame took; `reloaded` says that the scene
-    has been read again, and no frame of it has come yet."""
+    """The services of the window.  `wake` makes the window draw a frame soon, and may be called from any thread; `info`
+    is what `scene_info` says of the scene, `drawn_seconds` what the window's last frame took; `reloaded` says that the
+    scene has been read again, and no frame of it has come yet."""
 
-    def __init__(self, preferences: Preferences, wake: Callable[[], None] = lambda: None) -> None:
-        self.wake = wake
-
-        def awaken() -> None:
-            self.wake()
-
+    def __init__(self, preferences: Preferences) -> None:
+        self.wake = wake = Wake()
         self.preferences = preferences
         self.session = session = Session(settings=preferences.settings(), view=preferences.chosen_view())
-        self.notices = notices = Notices(awaken)
-        self.renderer = renderer = RenderThread(awaken)
+        self.notices = notices = Notices(wake)
+        self.renderer = renderer = RenderThread(wake)
+        self.scheduler = scheduler = FrameScheduler(session, preferences, renderer, wake)
         self.history = FrameHistory(session)
-        self.selection = Selection(session, lambda: self.frame)
-        self.captures = CaptureService(session, preferences, notices, awaken)
-        self.runs = RunController(
-            session, self.selection, renderer, preferences, notices, self.captures, awaken,
-            lambda: self.editing.under_way,
-        )  # fmt: skip
-        self.tracing = Tracing(session, preferences, renderer, self.runs.refuses, awaken, forgotten=self._forget_modes)
+        self.selection = selection = Selection(session, lambda: self.frame)
+        self.captures = captures = CaptureService(session, preferences, notices, wake)
+        self.runs = runs = RunController(
+            session, selection, renderer, preferences, notices, captures, wake, lambda: self.editing.under_way
+        )
         self.baseline = Baseline(renderer)
-        self.settings = SettingsController(session, preferences, notices, self.runs.refuses)
-        self.motion = Motion(session, preferences, notices, self.runs.refuses)
-        self.comparing = Comparing(session, self.tracing, self.settings, notices)
-        self.bookmarks = Bookmarks(session, preferences, self.settings, notices)
-        self.undo = Undo(
-            session, preferences, self.motion, notices, self.runs.refuses,
+        self.settings = settings = SettingsController(session, preferences, notices, runs.refuses)
+        self.motion = motion = Motion(session, preferences, notices, runs.refuses)
+        self.comparing = Comparing(session, scheduler, settings, notices)
+        self.bookmarks = bookmarks = Bookmarks(session, preferences, settings, notices)
+        self.undo = undo = Undo(
+            session, preferences, motion, notices, runs.refuses,
             lambda meshes: self.loader.read_as(meshes), lambda: self.loader.load_job is not None,
         )  # fmt: skip
-        self.presets = Presets(
-            session, preferences, notices, self.runs.refuses, self.settings.save, self.undo.call_next
-        )
-        self.inspector = ShadowInspector(self.selection, renderer)
-        self.rays = RayInspector(session, self.selection, renderer)
-        self.cuts = CutInspector(self.selection, renderer)
-        self.teachers = Teachers(session, self.selection, self.history, renderer)
-        self.navigator = FrameNavigator(
-            session, preferences, self.history, self.tracing, self.runs, self.undo, self.selection, notices,
-            self.restore,
+        self.presets = Presets(session, preferences, notices, runs.refuses, settings.save, undo.call_next)
+        self.inspector = PixelInspector(selection, renderer.query)
+        self.rays = RayInspector(session, selection, self.inspector)
+        self.origins = OriginFinder(selection, self.history, renderer.query)
+        self.navigator = navigator = FrameNavigator(
+            session, preferences, self.history, scheduler, runs, undo, selection, notices, self.restore,
+            self.reset_modes,
         )  # fmt: skip
-        self.recorder = LightRecorder(session, renderer, self.tracing)
-        refuses, overlook = self.runs.refuses, self.undo.overlook
-        self.editing = Editing(session, renderer, notices, refuses, self._show_edited, overlook, self.tracing.again)
-        self.table = SceneTable(session, self.selection, preferences, notices, self.captures, self.editing, awaken)
-        self.before_edits = BeforeEdits(session, self.editing)
-        self.questions = Questions(self.runs, self.captures, awaken)
-        self.loader = SceneLoader(session, preferences, notices, self.questions.before_opening, awaken)
-        self.preview = Preview(session, self.loader, self.motion, notices, awaken)
-        self.recipes = Recipes(session, preferences, self.tracing, self.loader, notices)
-        films = FilmController(session, preferences, self.runs, self.recipes, self.bookmarks, notices, awaken)
-        self.films = films
-        self.pictures = PictureController(session, preferences, self.runs, self.recipes, notices, awaken)
-        self.hunts = HuntController(session, preferences, self.runs, self.navigator, self.recipes, notices, awaken)
-        self.watcher = SceneWatcher(
-            preferences, lambda: self.loader.files, self._may_reload, self.loader.follow_change, awaken
+        self.editing = editing = Editing(
+            session, renderer, notices, runs.refuses, self._show_edited, undo.overlook, scheduler.trace_once_more
         )
+        self.table = SceneTable(session, selection, preferences, notices, captures, editing, wake)
+        self.before_edits = BeforeEdits(session, editing)
+        self.questions = questions = Questions(runs, captures, wake)
+        self.loader = loader = SceneLoader(session, preferences, notices, questions.before_opening, wake)
+        self.preview = Preview(session, loader, motion, notices, wake)
+        self.recipes = recipes = Recipes(session, preferences, scheduler, loader, notices)
+        self.films = FilmController(session, preferences, runs, recipes, bookmarks, notices, wake)
+        self.pictures = PictureController(session, preferences, runs, recipes, notices, wake)
+        self.hunts = HuntController(session, preferences, runs, navigator, recipes, notices, wake)
+        self.watcher = SceneWatcher(preferences, lambda: loader.files, self._may_reload, loader.reload_changed, wake)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}
@@ -120,12 +107,17 @@ class Controller:
     @property
     def frame(self) -> Frame | None:
         """The newest traced frame."""
-        return self.tracing.frame
+        return self.scheduler.frame
 
     @property
     def traced(self) -> Traced | None:
         """The newest traced frame with the request it answers."""
-        return self.tracing.traced
+        return self.scheduler.traced
+
+    @property
+    def own_traced(self) -> Traced | None:
+        """The same, None while it is that of a run."""
+        return self.scheduler.traced if self.runs.current is None else None
 
     @property
     def active(self) -> bool:
@@ -134,76 +126,11 @@ class Controller:
         working = working or bool(self.pictures.jobs)
         return working or self.motion.lively
 
-    # --- the frame -------------------------------------------------------------------------------
+    # --- what happens in each frame of the window (see `viewer.window.app.advance`) ---------------
 
-    def tick(self, size: tuple[int, int]) -> Frame | None:
-        """Take everything one step further; `size` is what the picture's window has room for, in pixels (0 if hidden).
-
-        Returns the frame that has just come, if one has."""
-        self._take_scene()
-        self.watcher.follow()
-        self.captures.follow()
-        self.pictures.follow()
-        self.questions.follow()
-        frame = self._take_frame()
-        self.preview.follow(traced=self.frame is not None)
-        self.comparing.follow()
-        traced, motion, run = self.traced, self.motion, self.runs.current
-        motion.follow(traced.request.time if traced is not None and traced.whole else None)
-        self.undo.follow()
-        self.editing.follow(run is not None, self.tracing.shows_edits or not self.renderer.busy)
-        traced = self.traced if run is None else None  # edits may have left the newest frame behind
-        # Before the next frame is asked for:
-        self.inspector.follow(self.frame if run is None else None, not motion.lively)
-        known = self.inspector.answer.why if self.inspector.answer is not None else None
-        self.rays.follow(traced, None if known is None else known.tree)
-        self.table.follow(traced, motion.lively)
-        edits, focus = self.editing.at_work, self.selection.hovered
-        scene, settings = self.session.scene, self.session.settings
-        if scene is not None:
-            self.loader.prepare(settings.method, len(scene.lights), settings.accelerator)
-        self.tracing.ask(Conditions(size, motion.under_way, run, edits, self.loader.ready, focus))
-        if run is None:
-            self.recorder.follow()
-            self._follow_before_edits()
-            if self.traced is not None and self.traced.whole:
-                self.bookmarks.follow(self.traced.frame, self.traced.request.divisor == 1)
-        whole = run is None and self.traced is not None and self.traced.whole
-        wanted = whole and self.tracing.drawn_view is View.CUTS
-        self.cuts.follow(self.frame if wanted else None, not motion.lively)
-        self.navigator.select_when_shown(self.traced)
-        if not motion.lively:
-            self._keep_preferences()
-        self.teachers.follow(self.traced if run is None and not motion.lively else None)
-        self._follow_baseline()
-        return frame
-
-    def _follow_baseline(self) -> None:
-        """Measure in spare time what the picture that is shown takes, while that is to be seen."""
-        tracing, compared = self.tracing, self.comparing.measures
-        wanted = self.preferences.savings or bool(compared)
-        busy = self.renderer.busy or tracing.awaits or tracing.adds_samples or tracing.refines_lamps
-        busy = busy or self.loader.busy or self.runs.current is not None or self.editing.at_work or not wanted
-        self.baseline.follow(self.traced, compared, self.motion.lively, busy)
-
-    def _forget_modes(self) -> None:
-        self.editing.forget_modes()
-        self.baseline.forget()
-
-    def _keep_preferences(self) -> None:
-        """Save them soon after a change."""
-        if self.preferences.start_where_left and self.session.scene is not None:
-            self.preferences.last = self.session.snapshot().to_json()
-        self.settings.follow()
-
-    def _follow_before_edits(self) -> None:
-        traced, tracing = self.traced, self.tracing
-        now = traced is not None and traced.whole and traced.request.divisor == 1 and not self.motion.lively
-        frame = traced.frame if traced is not None and now and tracing.shows_edits else None
-        self.before_edits.follow(frame, not (tracing.awaits or tracing.adds_samples or self.renderer.busy))
-
-    def _take_scene(self) -> None:
-        arrival, flown = self.loader.follow(), self.preview.flown
+    def take_scene(self) -> None:
+        """Show the scene that has been read, if one has."""
+        arrival, flown = self.loader.take_finished(), self.preview.flown
         if arrival is None:
             return
         said = ""
@@ -218,6 +145,107 @@ class Controller:
         if flown is not None:  # while the scene was waiting for its kernels
             self.session.move(flown)
         self.notices.say(f"{arrival.text}. {said}" if said else arrival.text)
+
+    def take_frame(self) -> Frame | None:
+        """Take the newest frame, of a run that is under way or else as it was asked for; returns it, once."""
+        for complaint in self.renderer.take_complaints():
+            self.notices.report(complaint)
+        failed = self.renderer.take_failure()
+        if failed is not None:
+            self.notices.report(failed)
+            self.session.playing = False
+            self.scheduler.give_up()
+        run = self.runs.take_progress()
+        if run.ended:
+            self.scheduler.trace_once_more()  # else the world might stay where the run has put it
+        if run.picture is not None:
+            self.scheduler.show(run.picture)
+            frame = run.picture.frame
+        else:
+            newest, learnt = self.scheduler.take(), self.renderer.take_learnt()
+            for traced in learnt:
+                self.scheduler.learnt.add(traced.frame)
+            self.history.take(learnt, newest, self.drawn_seconds)
+            if newest is None:
+                return None
+            frame = newest.frame
+        self.reloaded = False
+        self.motion.look_around(frame)
+        self.selection.refresh(frame)
+        return frame
+
+    def move(self) -> None:
+        """Bring time and camera to where they should be now."""
+        traced = self.traced
+        self.motion.follow(traced.request.time if traced is not None and traced.whole else None)
+
+    def apply_edits(self) -> None:
+        """Have the scene edited as is wanted, once what was edited last has been seen."""
+        seen = self.scheduler.shows_edits or not self.renderer.busy
+        self.editing.apply(self.runs.current is not None, seen)
+
+    def inspect_pixel(self) -> None:
+        """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
+        traced, moving = self.own_traced, self.motion.lively
+        frame = traced.frame if traced is not None else None
+        cuts = traced is not None and traced.whole and self.scheduler.drawn_view is View.CUTS
+        self.inspector.update(frame, not moving, cuts)
+        self.rays.update(frame)
+        self.origins.update(self.session.scene, None if moving else traced)
+
+    def list_scene(self) -> None:
+        """Fill the table of what is in the scene, while it is seen."""
+        self.table.update(self.own_traced, self.motion.lively)
+
+    def record_light(self) -> None:
+        """Have the chosen light recorded where the view needs it, unless a run has the render thread."""
+        if self.runs.current is None:
+            self.scheduler.record_light()
+
+    def compile_method(self) -> None:
+        """Compile what the chosen method has of its own, the first time that it is chosen."""
+        settings, scene = self.session.settings, self.session.scene
+        if scene is not None:
+            self.loader.prepare(settings.method, len(scene.lights), settings.accelerator)
+
+    def frame_inputs(self, size: tuple[int, int]) -> FrameInputs:
+        """Return what decides how the next frame is traced, in a window that has room for so many pixels."""
+        return FrameInputs(
+            size,
+            moving=self.motion.under_way,
+            run=self.runs.current,
+            edited=self.editing.at_work,
+            ready=self.loader.ready,
+            second=self.comparing.second_method,
+            focus=self.selection.hovered,
+        )
+
+    def keep_frame(self) -> None:
+        """Keep the newest frame where somebody waits for such a one: bookmarks, and the comparison with an edit."""
+        traced, scheduler = self.own_traced, self.scheduler
+        fine = traced is not None and traced.whole and traced.request.divisor == 1
+        if traced is not None and traced.whole:
+            self.bookmarks.follow(traced.frame, fine)
+        if self.runs.current is None:
+            of_edits = fine and not self.motion.lively and scheduler.shows_edits
+            more_comes = scheduler.awaits or scheduler.adds_samples or self.renderer.busy
+            self.before_edits.take(traced.frame if traced is not None and of_edits else None, not more_comes)
+
+    def measure(self) -> None:
+        """Measure in spare time how fast the picture is traced by the method and by none, while that is to be seen."""
+        scheduler, second = self.scheduler, self.comparing.second_method
+        wanted = self.preferences.savings or bool(second)
+        busy = self.renderer.busy or scheduler.awaits or scheduler.adds_samples or scheduler.refines_lamps
+        busy = busy or self.loader.busy or self.runs.current is not None or self.editing.at_work or not wanted
+        self.baseline.update(self.traced, second, self.motion.lively, busy)
+
+    def keep_preferences(self) -> None:
+        """Save them soon after a change, while nothing moves."""
+        if self.motion.lively:
+            return
+        if self.preferences.start_where_left and self.session.scene is not None:
+            self.preferences.last = self.session.snapshot().to_json()
+        self.settings.follow()
 
     def _fit_view(self) -> str:
         """Show the picture where the view has nothing to show in the scene that has just been opened; returns what is
@@ -243,36 +271,15 @@ class Controller:
         """Whether a scene that has changed may be read now: not while a run goes on, or another is being read."""
         return self.runs.current is None and self.loader.load_job is None
 
-    def _take_frame(self) -> Frame | None:
-        """The newest frame, of a run that is under way or else as it was asked for."""
-        for complaint in self.renderer.take_complaints():
-            self.notices.report(complaint)
-        failed = self.renderer.take_failure()
-        if failed is not None:
-            self.notices.report(failed)
-            self.session.playing = False
-            self.tracing.give_up()
-        run = self.runs.follow()
-        if run.ended:
-            self.tracing.again()  # else the world might stay where the run has put it
-        if run.picture is not None:
-            self.tracing.show(run.picture)
-            frame = run.picture.frame
-        else:
-            newest = self.tracing.take()
-            learnt = self.renderer.take_learnt()
-            for traced in learnt:
-                self.tracing.learnt.add(traced.frame)
-            self.history.take(learnt, newest, self.drawn_seconds)
-            if newest is None:
-                return None
-            frame = newest.frame
-        self.reloaded = False
-        self.motion.look_around(frame)
-        self.selection.refresh(frame)
-        return frame
-
     # --- going elsewhere -------------------------------------------------------------------------
+
+    def reset_modes(self) -> None:
+        """Forget all that is known about shadows, and trace the frame anew."""
+        if not self.runs.refuses():
+            self.renderer.reset_modes()
+            self.scheduler.forget_modes()
+            self.editing.forget_modes()
+            self.baseline.forget()
 
     def show(self, scene: Scene, renderer: Renderer, info: dict[str, Any]) -> None:
         """Show another scene: what was known and drawn of the old one is gone, settings and view stay."""
@@ -285,7 +292,7 @@ class Controller:
         self.editing.enter(renderer)
         self.before_edits.forget()
         self.history.clear()
-        self.tracing.forget()
+        self.scheduler.forget()
         self.baseline.forget()
         self.selection.clear()
         self.motion.enter(info.get("bounds"))
@@ -299,10 +306,10 @@ class Controller:
         self.undo.overlook(lambda: self.session.take(now))
         self.renderer.use(renderer, fresh=False)
         self.history.forget_modes(blank=False)
-        self.tracing.follow_edits(same)
+        self.scheduler.take_edits(same)
         self.baseline.forget()
         if not same:
-            self.selection.follow_edits(before, now)
+            self.selection.update_for_edits(before, now)
             self.reloaded = True
 
     def restore(self, snapshot: Snapshot) -> None:

@@ -1,6 +1,6 @@
 """What if: lights off or elsewhere, objects hidden, static or moving, without another file.
 
-`Session.edits` says what is wanted; `follow` brings it about on the render thread, which alone may touch the world.
+`Session.edits` says what is wanted; `apply` brings it about on the render thread, which alone may touch the world.
 Lights that move and dynamic objects that are hidden only change the scene of a renderer, which drops what no longer
 holds (`Renderer.scene`).  All else takes another renderer, with trees of its own where geometry is another.  The
 renderer of the scene as it was read is kept, with all that it knows, and so are those used last.
@@ -23,7 +23,7 @@ from viewer.services.render_request import Traces
 from viewer.services.render_thread import RenderThread
 from viewer.state.notices import Notices
 from viewer.state.session import Session
-from viewer.util.failures import KNOWN, Failure, failure
+from viewer.util.messages import KNOWN, Failure, failure
 
 KEPT = 2
 """Renderers that are kept besides that of the scene as it was read."""
@@ -210,7 +210,7 @@ class Editing:
         if self._session.edited is not None:
             self._session.edits, self._session.light_to_come = self._session.edited.edits, None
 
-    def follow(self, running: bool, seen: bool) -> None:
+    def apply(self, running: bool, seen: bool) -> None:
         """Take up what has been made, and have made what is wanted now: not while a run has the render thread, and once
         some of what was made last has been `seen`."""
         session, task = self._session, self._task

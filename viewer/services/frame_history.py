@@ -16,15 +16,15 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.method import Method
-from tracer.mode_origins import ModeOrigins, Taught
+from tracer.mode_origins import ModeOrigins, Origins
 from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Camera
 from viewer.output.recipe import BUILT
+from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.run_controller import RunController
 from viewer.services.runs import Experiment
 from viewer.services.selection import Point, Selection
-from viewer.services.tracing import Tracing
 from viewer.services.undo import Undo
 from viewer.state.history import FrameRate, FrameRecord, FrameRecords, History
 from viewer.state.notices import Notices
@@ -126,7 +126,7 @@ class FrameHistory(History):
         self._lights[key] = lights
         self._worker.submit(origins.add, number, frame.modes, moved)
 
-    def taught(self, pick: Pick) -> Taught | None:
+    def origins_of(self, pick: Pick) -> Origins | None:
         """Return which frames set what is known of the unit that was picked; None where that is not known."""
         origins = self._origins.get(self._shown) if self._shown is not None else None
         if origins is None or self._shown is None or self._shown[2] != pick.in_cells:
@@ -164,16 +164,17 @@ class FrameNavigator:
         session: Session,
         preferences: Preferences,
         history: FrameHistory,
-        tracing: Tracing,
+        tracing: FrameScheduler,
         runs: RunController,
         undo: Undo,
         selection: Selection,
         notices: Notices,
         restore: Callable[[Snapshot], None],
+        reset_modes: Callable[[], None],
     ) -> None:
-        self._session, self._preferences, self._history, self._tracing = session, preferences, history, tracing
+        self._session, self._preferences, self._history, self._scheduler = session, preferences, history, tracing
         self._runs, self._undo, self._selection, self._notices = runs, undo, selection, notices
-        self._restore = restore
+        self._restore, self._reset_modes = restore, reset_modes
         self._wanted: tuple[float, Camera, Point] | None = None
 
     def go(self, number: int, point: Point | None = None) -> None:
@@ -216,13 +217,13 @@ class FrameNavigator:
         if target.zoom is not None:
             self._session.zoom = target.zoom
         self._selection.clear()
-        if self._depends_on_modes:
-            self._tracing.reset_modes()
+        if target.warmup is not None or self._depends_on_modes:
+            self._reset_modes()
         if target.warmup is not None:
             p, (width, height) = self._preferences, target.size
-            if target.size != self._tracing.full_size:
+            if target.size != self._scheduler.full_size:
                 p.fixed_resolution, p.fixed_width, p.fixed_height = True, width, height
-            self._tracing.freeze(target.warmup)
+            self._scheduler.freeze(target.warmup)
         camera = self._session.camera
         self._wanted = (self._session.time, camera, target.point) if target.point is not None else None
 
@@ -242,7 +243,7 @@ class FrameNavigator:
     def _edits_are_shown(self) -> bool:
         """Whether the newest picture is of the scene that is wanted."""
         edited = self._session.edited
-        return self._tracing.shows_edits and edited is not None and edited.edits == self._session.edits
+        return self._scheduler.shows_edits and edited is not None and edited.edits == self._session.edits
 
     def name_of(self, number: int) -> str:
         """Return what a frame is called: by its number in the plots, and in the scene's path, where it is another."""
@@ -261,7 +262,7 @@ class FrameNavigator:
 
     def _may_differ(self, record: FrameRecord) -> str:
         """Return what else its picture depends on, in words."""
-        if record.size != self._tracing.full_size:
+        if record.size != self._scheduler.full_size:
             width, height = record.size
             return f", though its picture had {width} x {height} pixels"
         if record.view is View.TREE:

@@ -16,11 +16,31 @@ from contextlib import suppress
 from typing import Generic, TypeVar
 
 from tracer.scene.model import Cancelled, Progress
-from viewer.util.failures import KNOWN, Failure, failure
+from viewer.util.messages import KNOWN, Failure, failure
 
 Result = TypeVar("Result")
 
 JOB, TRACER = 2, 5  # niceness: what a window waits for, and what takes all cores for as long as it is open
+
+
+class Wake:
+    """Call it from any thread to make the window draw a frame soon; it does nothing while there is no window.
+
+    The lock keeps a window from going while a thread is just waking it."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._refresh: Callable[[], None] | None = None
+
+    def __call__(self) -> None:
+        with self._lock:
+            if self._refresh is not None:
+                self._refresh()
+
+    def connect(self, refresh: Callable[[], None] | None) -> None:
+        """Let a window be woken by this from now on; None as the window goes."""
+        with self._lock:
+            self._refresh = refresh
 
 
 class Job(Generic[Result]):

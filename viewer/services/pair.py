@@ -6,77 +6,39 @@ is placed again whenever the turn changes, as methods differ in what they count 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable
 from contextlib import closing
-from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from dataclasses import replace
 
-from tracer.renderer import Frame, Settings
-from tracer.scene.model import Camera
-
-
-class Paired(Protocol):
-    """The part of `tracer.Renderer` that is used here."""
-
-    settings: Settings
-
-    def refine(
-        self,
-        time: float,
-        camera: Camera | None = None,
-        cancel: Callable[[], bool] | None = None,
-        parts: Sequence[float] = ...,
-        samples: int = ...,
-        focus: tuple[float, float] | None = None,
-    ) -> Generator[Frame, None, None]: ...
-
-    def beside(self) -> Any: ...
-
-    def follow(self, other: Any) -> None: ...
-
-    def take_turn(self, time: float) -> None: ...
-
-
-@dataclass(frozen=True)
-class Asked:
-    """What `Renderer.refine` is given."""
-
-    time: float
-    camera: Camera
-    cancel: Callable[[], bool]
-    parts: Sequence[float]
-    samples: int
-    focus: tuple[float, float] | None
-
-    def of(self, renderer: Paired) -> Generator[Frame, None, None]:
-        return renderer.refine(self.time, self.camera, self.cancel, self.parts, self.samples, self.focus)
+from viewer.services.render_request import Parts, RenderRequest, Traces
 
 
 class Pair:
     """A renderer and another beside it, which lives as long as the pair."""
 
-    def __init__(self, first: Paired) -> None:
+    def __init__(self, first: Traces) -> None:
         self._first, self._second = first, first.beside()
         self._world = getattr(first, "world", None)
 
-    def is_of(self, renderer: Paired) -> bool:
-        """Whether it is the pair of this renderer, in the world that this one has now."""
+    def is_of(self, renderer: Traces) -> bool:
+        """Return whether it is the pair of this renderer, in the world that this one has now."""
         return renderer is self._first and getattr(renderer, "world", None) is self._world
 
-    def refine(self, asked: Asked, method: str) -> Generator[tuple[Frame, Frame], None, None]:
-        """Each part of the picture by the first renderer, and the same by the second with another method.
+    def refine(self, request: RenderRequest, cancel: Callable[[], bool]) -> Parts:
+        """Yield each part of the picture by the first renderer, and the same by the second with the other method.
 
-        The world is always left as the first has placed it: questions may be asked of it between two parts."""
-        self._second.settings = replace(self._first.settings, method=method)
-        self._second.follow(self._first)
-        with closing(asked.of(self._first)) as ours, closing(asked.of(self._second)) as theirs:
+        The world is always left as the first has placed it: queries may be answered between two parts."""
+        self._second.settings = replace(self._first.settings, method=request.second)
+        self._second.take_scene(self._first)
+        first, second = request.refine(self._first, cancel), request.refine(self._second, cancel)
+        with closing(first) as ours, closing(second) as theirs:
             begun = False
-            for frame in ours:
+            for frame, _ in ours:
                 try:
                     if begun:
-                        self._second.take_turn(asked.time)
+                        self._second.take_turn(request.time)
                     begun = True
-                    other = next(theirs)
+                    other, _ = next(theirs)
                 finally:
-                    self._first.take_turn(asked.time)
+                    self._first.take_turn(request.time)
                 yield frame, other

@@ -29,7 +29,7 @@ from viewer.state.plans import MOST_MULTIPLE, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.util.files import reserved
+from viewer.util.files import write_new
 
 MOST_PIXELS = 1 << 26
 JPEG = ".jpg"
@@ -74,11 +74,14 @@ class PictureRun(Run[Path]):
         pixels, _ = (frame.pixels, "") if as_exr else stills.draw(frame, scene, self.recipe)
         text = stills.text(pixels, frame, scene, self.recipe)
         stem = f"{scene.path.stem}-{self.recipe.view.value}-{width}x{height}"
-        with reserved(self.folder, stem, self.ending) as path:
+
+        def write(path: Path) -> None:
             if as_exr:
                 exr.write(path, frame, text)
             else:
                 write_picture(path, pixels, text)
+
+        path = write_new(self.folder, stem, self.ending, write)
         self.traced = self.frames
         yield path
 
@@ -200,7 +203,7 @@ class PictureController:
     def _begin(self, title: str, work: Callable[[], str]) -> None:
         self.jobs.append((Job(title, lambda _: work(), self._wake), title))
 
-    def follow(self) -> None:
+    def report_done(self) -> None:
         """Report what has been done, or could not be."""
         for entry in [entry for entry in self.jobs if entry[0].done]:
             self.jobs.remove(entry)

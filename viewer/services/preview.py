@@ -39,7 +39,7 @@ class Preview:
         seen = self._scene is not None and self._session.free_camera not in (None, self._start)
         return self._session.free_camera if seen else None
 
-    def follow(self, traced: bool) -> None:
+    def update(self, traced: bool) -> None:
         """Begin or end; `traced` says that a traced picture is there."""
         session, waiting = self._session, self._loader.waiting
         if self._scene is not None and (traced or (waiting is None and session.scene is not self._scene)):

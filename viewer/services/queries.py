@@ -12,10 +12,11 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from tracer.frame import Frame
 from tracer.scene.model import Cancelled
+from viewer.util.messages import one_line
 
 MOST_ANSWERS = 16
 """Answers of one function about one frame that are kept."""
@@ -104,3 +105,45 @@ class Queries:
 def is_same_picture(one: Frame, other: Frame) -> bool:
     """Return whether two frames are one picture with more or fewer samples, and both of them whole or neither."""
     return one.primitive is other.primitive and (one.statistics.part < 1.0) == (other.statistics.part < 1.0)
+
+
+class Ask(Protocol):
+    """`RenderThread.query`."""
+
+    def __call__(self, function: Function, frame: Frame, *arguments: Hashable) -> Future[Any]: ...
+
+
+class Newest:
+    """What a function answered last, for those who look in each frame of the window.
+
+    `answer` stays while the next is on its way; `problem` says in one line why there is none."""
+
+    def __init__(self, query: Ask, function: Function) -> None:
+        self._query, self._function = query, function
+        self._future: Future[Any] | None = None
+        self.answer: Any = None
+        self.problem = ""
+
+    @property
+    def pending(self) -> bool:
+        """Whether an answer is to come."""
+        return self._future is not None and not self._future.done()
+
+    def ask(self, frame: Frame, *arguments: Hashable) -> None:
+        """Take up what has been answered, and ask this, which may have been answered already."""
+        self._take()
+        self._future = self._query(self._function, frame, *arguments)
+        self._take()
+
+    def forget(self) -> None:
+        """Drop the answer, and cancel what has been asked."""
+        if self._future is not None:
+            self._future.cancel()
+        self._future, self.answer, self.problem = None, None, ""
+
+    def _take(self) -> None:
+        future = self._future
+        if future is not None and future.done() and not future.cancelled():
+            problem = future.exception()
+            self.problem = "" if problem is None else one_line(problem)
+            self.answer = self.answer if problem is not None else future.result()

@@ -14,9 +14,9 @@ from viewer.services.jobs import Job
 from viewer.services.run_controller import RunController
 from viewer.services.runs import Run
 
-_KEPT = "These are kept, and can still be saved from its panel."
+_KEPT = "They are kept, and can still be saved from its panel."
 _SAVED = "Their figures, table and plot can be saved beside the pictures."
-_WRITTEN = "These are written, and stay."
+_WRITTEN = "They are written already, and stay."
 
 
 @dataclass(frozen=True)
@@ -103,13 +103,13 @@ class Questions:
 
         self.question = Question(
             "Reset all settings?",
-            "View, culling, quality, keys, theme, sizes and the folder of pictures return to their defaults.",
+            "View, culling, quality, keys, theme, sizes and the picture folder go back to their defaults.",
             (("Keep them", _nothing), ("Reset", agree)),
             tuple(fields),
             ticked,
         )
 
-    def follow(self) -> None:
+    def leave_when_saved(self) -> None:
         """Quit when the results have been written that were to be saved; stay if they could not be."""
         run = self._run
         if self._leave is None or run is None or not run.done:

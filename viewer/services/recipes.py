@@ -10,8 +10,8 @@ from tracer.frame import Frame, Settings
 from tracer.scene.edits import NO_EDITS
 from viewer.output import recipe
 from viewer.output.recipe import BUILT, Recipe, Style
+from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.scene_loader import SceneLoader
-from viewer.services.tracing import Tracing
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -26,9 +26,9 @@ class Recipes:
     """See the module."""
 
     def __init__(
-        self, session: Session, preferences: Preferences, tracing: Tracing, loader: SceneLoader, notices: Notices
+        self, session: Session, preferences: Preferences, tracing: FrameScheduler, loader: SceneLoader, notices: Notices
     ) -> None:
-        self._session, self._preferences, self._tracing = session, preferences, tracing
+        self._session, self._preferences, self._scheduler = session, preferences, tracing
         self._loader, self._notices = loader, notices
 
     def of(self, frame: Frame, view: View, legend: bool | None = None) -> Recipe | None:
@@ -38,7 +38,7 @@ class Recipes:
             return None
         follow = session.follow and frame.camera == scene.camera_at(frame.time)
         settings = replace(frame.settings, verify=session.settings.verify, modes=False)
-        magnified = self._tracing.magnified if view.needs_verify else 1
+        magnified = self._scheduler.magnified if view.needs_verify else 1
         style = self._style(view, magnified, self._preferences.legend_in_pictures if legend is None else legend)
         found = Recipe(
             scene=Path(scene.path).absolute(),
@@ -81,7 +81,7 @@ class Recipes:
         why = recipe.cannot_come_back(frame.settings, found.view, found.tells_counters)
         if why:
             return replace(found, history=why)
-        repeats = self._tracing.learnt.repeats(frame)
+        repeats = self._scheduler.learnt.repeats(frame)
         return replace(found, history=UNKNOWN) if repeats is None else replace(found, repeats=repeats)
 
     @property
@@ -91,12 +91,12 @@ class Recipes:
 
     def now(self) -> Recipe | None:
         """What makes the picture that the window shows, or will show when it has all its samples; None before one."""
-        session, frame = self._session, self._tracing.frame
+        session, frame = self._session, self._scheduler.frame
         if session.scene is None or frame is None:
             return None
-        width, height = self._tracing.full_size
+        width, height = self._scheduler.full_size
         settings: Settings = replace(
-            self._tracing.settings, width=width, height=height, samples=session.settings.samples
+            self._scheduler.settings, width=width, height=height, samples=session.settings.samples
         )
         as_wanted = replace(frame, time=session.time, camera=session.camera, settings=settings)
         return self.of(as_wanted, session.view)

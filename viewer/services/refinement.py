@@ -1,18 +1,26 @@
-"""Frames that follow a whole picture at idle, because each of them knows more about shadows than the one before.
+"""What follows a whole picture at rest: more samples of lamps, and further frames that know more about shadows.
 
-The first whole picture of a view sets modes; more follow until one changes none, so that what is shown is what culling
-saves from then on: what is examined anew takes one more picture.  Certificates are made within a
-budget: where the user has chosen them, as the method or as the view, more frames follow, until none are left to make.
-Elsewhere the time goes into samples.
+The first whole frame of a view sets modes; more follow until one changes none, so that what is shown is what culling
+saves from then on: what is examined anew takes one more frame.  Certificates are made within a budget: where the user
+has chosen them, as the method or as the view, more frames follow, until none are left to make.  Elsewhere the time goes
+into samples.
+
+Shadow modes are those of a lamp as it is sampled, and are dropped when the number of its samples changes.  So all
+frames of a motion have the same number, with which the frame that follows at rest begins as well; and each step takes
+four times as many samples as the one before, so that there are few of them.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 
+from tracer.frame import Settings
 from tracer.method import Method
+from tracer.scene.lights import Light, as_lamps
 from tracer.statistics import FrameStatistics
+from viewer.services.frame_budget import FrameBudget
 from viewer.services.render_request import RenderRequest, Traced
+from viewer.state.session import Session
 from viewer.state.views import View
 
 MOST_LEARNING = 4
@@ -21,6 +29,13 @@ MOST_FRAMES = 40
 """Frames at idle, at most, in which certificates are made."""
 SECONDS = 0.4
 """That each of these may spend on certificates: the picture is there already, and a movement ends them at once."""
+FEWEST_LAMP_SAMPLES = 4
+"""Samples of a lamp in the first frame at rest, and in motion where there is time for them."""
+LAMP_SAMPLES_GROWTH = 4
+MOST_RADII = 16
+"""Radii of lamps whose samples are known at once."""
+OFFERED = (1, 4, 16, 64, 256)
+"""Samples of lamps to choose from; the scene may say any other number."""
 
 
 class Refinement:
@@ -95,3 +110,69 @@ def _is_about_certificates(request: RenderRequest, view: View) -> bool:
     """Whether the user has chosen certificates, as the method or as the view."""
     method = Method.parse(request.settings.method)
     return method.has_certificates and (not method.adaptive or view is View.CERTIFICATE)
+
+
+def has_lamps(lights: tuple[Light, ...], settings: Settings) -> bool:
+    """Return whether any light is no point, by these settings."""
+    return any(light.kind != "point" for light in as_lamps(lights, settings.lamp_radius, None))
+
+
+def first(most: int) -> int:
+    """Return the samples of the first frame at rest, of so many in the end."""
+    return most if most < 2 * FEWEST_LAMP_SAMPLES else FEWEST_LAMP_SAMPLES
+
+
+def after(samples: int, most: int) -> int:
+    """Return the samples of the frame after one with so many: the last step is skipped where it adds little."""
+    more = FEWEST_LAMP_SAMPLES
+    while more <= samples:
+        more *= LAMP_SAMPLES_GROWTH
+    return most if 2 * more > most else more
+
+
+class LampSamples:
+    """How many samples the lamps of the session's scene have in the next frame, and in the last at rest."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._lights: tuple[Light, ...] = ()
+        self._by_scene: dict[float | None, int] = {}  # samples that the scene says, by radius; 0 without lamps
+        self._moving: int | None = None  # samples while anything moves
+
+    def most(self, settings: Settings) -> int:
+        """Return the samples of the lamp that has the most; 1 where all lights are points, or there are none."""
+        lights, radius = self._session.scene.lights if self._session.scene is not None else (), settings.lamp_radius
+        if lights is not self._lights or len(self._by_scene) > MOST_RADII:
+            self._lights, self._by_scene = lights, {}
+        if radius not in self._by_scene:  # there may be thousands of lights, and it is asked for many times a frame
+            lamps = (light for light in as_lamps(lights, radius, None) if light.kind != "point")
+            self._by_scene[radius] = max((lamp.samples for lamp in lamps), default=0)
+        by_scene = self._by_scene[radius]
+        return max(by_scene, 1) if settings.lamp_samples is None or by_scene == 0 else settings.lamp_samples
+
+    @property
+    def wanted(self) -> int:
+        """How many there should be at rest."""
+        return self.most(self._session.settings)
+
+    @property
+    def any(self) -> bool:
+        """Whether any light is no point, by the settings."""
+        return self.most(self._session.settings) > 0 and self._by_scene[self._session.settings.lamp_radius] > 0
+
+    def in_motion(self, budget: FrameBudget, size: tuple[int, int], seconds: float) -> int:
+        """Return the samples of the next frame of this size, which there are so many seconds for; the same until
+        `at_rest`, so that modes are of use."""
+        if self._moving is None:
+            self._moving = budget.moving_samples(*size, seconds)
+        return min(self._moving, self.wanted)
+
+    def at_rest(self, last: Settings | None, come: bool) -> int:
+        """Return the samples of the next frame; `last` are the settings of the frame of the same view that was asked
+        for last, and `come` says whether it is there, whole."""
+        self._moving = None
+        most = self.wanted
+        if last is None:
+            return first(most)
+        has = self.most(last)
+        return min(max(first(most), after(has, most) if come else has), most)

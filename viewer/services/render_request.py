@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from tracer.renderer import Frame, Settings
 from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
-from viewer.services.pair import Paired
 
 Warmup = tuple[tuple[float, Camera], ...]
 """Frames by time and camera."""
+Parts = Generator[tuple[Frame, Frame | None], None, None]
+"""Frames of a picture, each with the same by a second method, if any."""
 
 
-class Traces(Paired, Protocol):
+class Traces(Protocol):
     """The part of `tracer.Renderer` that is used here."""
+
+    settings: Settings
 
     def reset_modes(self) -> None: ...
 
@@ -24,7 +28,21 @@ class Traces(Paired, Protocol):
         self, time: float = ..., camera: Camera | None = ..., cancel: Callable[[], bool] | None = ...
     ) -> Frame: ...
 
+    def refine(
+        self,
+        time: float,
+        camera: Camera | None = None,
+        cancel: Callable[[], bool] | None = None,
+        parts: Sequence[float] = ...,
+        samples: int = ...,
+        focus: tuple[float, float] | None = None,
+    ) -> Generator[Frame, None, None]: ...
+
     def beside(self) -> Traces: ...
+
+    def take_scene(self, other: Any) -> None: ...
+
+    def take_turn(self, time: float) -> None: ...
 
     def take_modes(self, other: Any) -> None: ...
 
@@ -53,6 +71,13 @@ class RenderRequest:
     final: bool = field(default=False, compare=False)
     focus: tuple[float, float] | None = field(default=None, compare=False)
     warmup: Warmup | None = None
+
+    def refine(self, renderer: Traces, cancel: Callable[[], bool]) -> Parts:
+        """Yield its parts and samples, each of them a frame, by the renderer's settings."""
+        refining = renderer.refine(self.time, self.camera, cancel, self.parts, self.samples, self.focus)
+        with closing(refining):
+            for frame in refining:
+                yield frame, None
 
     def supersedes(self, running: RenderRequest, shown: bool = False) -> bool:
         """Whether a trace of `running`, part of which has been shown or not, is no longer worth going on with now that
@@ -97,27 +122,3 @@ class Spare(Protocol):
     same step is then asked for again."""
 
     def step(self, renderer: Traces, cancelled: Callable[[], bool]) -> bool: ...
-
-
-class Question(Protocol):
-    """A moment's work with the renderer as the frame of this time left it."""
-
-    @property
-    def time(self) -> float: ...
-
-    def answer(self, renderer: Traces) -> None: ...
-
-
-class Pictures(Protocol):
-    """The part of `RenderThread` that decides what is seen."""
-
-    @property
-    def busy(self) -> bool: ...
-
-    def submit(self, request: RenderRequest) -> None: ...
-
-    def hurry(self, request: RenderRequest) -> None: ...
-
-    def take(self) -> Traced | None: ...
-
-    def reset_modes(self) -> None: ...

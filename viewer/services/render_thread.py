@@ -8,29 +8,29 @@ settings, a picture that has been shown), but the first part of one is let finis
 moves, the next request comes before the last picture is ready, and cancelling each would show none at all.
 
 An experiment is a `Task`: it has the thread, and with it the scene's world, to itself until it is
-done; the newest request of that time waits for its end.  A `Question` takes a moment: it is answered
-between two frames, while the world still stands as it did in the frame that it is about.  `Spare` work is done a step
-at a time while nothing else is wanted, and anything that is wanted ends a step.
+done; the newest request of that time waits for its end.  A query (`viewer.services.queries`) takes a moment: it is
+answered between two frames, while the world still stands as it did in the frame that it is about.  `Spare` work is done
+a step at a time while nothing else is wanted, and anything that is wanted ends a step.
 """
 
 from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Generator, Hashable
+from collections.abc import Callable, Hashable
 from concurrent.futures import Future
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from tracer.renderer import Frame
+from tracer.frame import Frame
 from tracer.scene.model import Cancelled
 from viewer.services.jobs import TRACER, step_back
-from viewer.services.pair import Asked, Pair
+from viewer.services.pair import Pair
 from viewer.services.queries import Function, Queries, Query
-from viewer.services.render_request import Question, RenderRequest, Spare, Task, Traced, Traces
-from viewer.util.failures import Failure, failure
+from viewer.services.render_request import Parts, RenderRequest, Spare, Task, Traced, Traces
+from viewer.util.messages import Failure, failure
 
 QUERY_SECONDS = 0.25
 """That a picture waits at most for the answer to a query; a longer one is cancelled, and may be asked for anew."""
@@ -49,7 +49,6 @@ class RenderThread:
         self._running: RenderRequest | None = None
         self._shown = self._whole = False  # whether a part of what is running, or all of it, has been
         self._task: tuple[Traces, Task] | None = None
-        self._questions: dict[type[Question], Question] = {}  # the newest of each kind
         self._queries = Queries()
         self._spare: Spare | None = None
         self._placed_at: float | None = None  # the time of what was traced last
@@ -74,7 +73,6 @@ class RenderThread:
             self._waiting = self._finished = self._failure = self._placed_at = None
             self._learnt.clear()
             self._fresh = fresh
-            self._questions.clear()
             self._queries.cancel()
             self._spare = None
             self._cancel = True
@@ -110,12 +108,6 @@ class RenderThread:
                 raise RuntimeError("there is no scene to work on")
             self._task, self._waiting = (self._renderer, task), None
             self._cancel = True
-            self._changed.notify_all()
-
-    def ask(self, question: Question) -> None:
-        """Answer this before the next frame; of each kind the newest only, and none about a time that was left."""
-        with self._changed:
-            self._questions[type(question)] = question
             self._changed.notify_all()
 
     def query(self, function: Function, frame: Frame, *arguments: Hashable) -> Future[Any]:
@@ -199,7 +191,7 @@ class RenderThread:
                 self._wake()
 
     def _next(self) -> Callable[[], None] | None:
-        """What to do now, once there is something: a task before all, then a question, then a frame."""
+        """What to do now, once there is something: a task before all, then a query, then a frame."""
         with self._changed:
             while not self._closing:
                 if self._task is not None:
@@ -209,15 +201,11 @@ class RenderThread:
                     reset = self._reset and renderer is self._renderer
                     self._reset = self._reset and not reset
                     return partial(self._perform, renderer, task, reset)
-                if self._renderer is not None and self._questions:
-                    _, question = self._questions.popitem()
-                    if question.time == self._placed_at:
-                        return partial(self._answer, self._renderer, question)
-                elif self._renderer is not None and self._placed_at is not None and (query := self._queries.take()):
+                if self._renderer is not None and self._placed_at is not None and (query := self._queries.take()):
                     moved = query.frame.time != self._placed_at  # a later frame has failed, or has not been taken yet
                     if not moved or self._waiting is None:
                         self._placed_at = query.frame.time
-                        return partial(self._answer_query, self._renderer, query, moved)
+                        return partial(self._answer, self._renderer, query, moved)
                     query.future.cancel()
                 elif self._renderer is not None and self._waiting is not None:
                     request, reset = self._waiting, self._reset
@@ -258,7 +246,7 @@ class RenderThread:
         """One step of spare work; the world stands as it did before when it ends."""
 
         def wanted() -> bool:
-            others = self._task, self._waiting, self._questions or None, self._queries or None
+            others = self._task, self._waiting, self._queries or None
             return self._closing or self._reset or self._spare is not work or any(one is not None for one in others)
 
         more = False
@@ -275,7 +263,7 @@ class RenderThread:
                 self._spare = None if self._spare is work else self._spare
             self._wake()
 
-    def _answer_query(self, renderer: Traces, query: Query, moved: bool = False) -> None:
+    def _answer(self, renderer: Traces, query: Query, moved: bool = False) -> None:
         """Answer a query; `moved` says that the world stands as in another frame than the query's."""
         began = time.monotonic()
 
@@ -291,42 +279,29 @@ class RenderThread:
             self._complain(problem, "no answer")
         self._wake()
 
-    def _answer(self, renderer: Traces, question: Question) -> None:
-        try:
-            question.answer(renderer)
-        except Exception as problem:
-            self._complain(problem, "no answer")
-        self._wake()
-
     def _answer_meanwhile(self, renderer: Traces, moment: float) -> None:
         """Answer what was asked about the picture that is being refined."""
         with self._changed:
             if renderer is not self._renderer:
                 return
-            questions = list(self._questions.values())
-            self._questions.clear()
             queries = list(iter(self._queries.take, None))
         for query in queries:
             if query.frame.time == moment:
-                self._answer_query(renderer, query)
+                self._answer(renderer, query)
             else:
                 query.future.cancel()
-        for question in questions:
-            if question.time == moment:
-                self._answer(renderer, question)
 
     def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
         failed = first = shown = None
         try:
-            if reset:
+            if reset or request.warmup is not None:
                 self._forget(renderer)
             seconds = max(request.settings.certificate_seconds, request.refinement_seconds)
             patient = request.refinement_seconds > 0.0
             renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
-            if request.warmup is not None:
-                self._warm_up(renderer, request)
-            with closing(self._refining(renderer, request)) as refining:
-                for frame, second in refining:
+            self._warm_up(renderer, request)
+            with closing(self._parts_of(renderer, request)) as parts:
+                for frame, second in parts:
                     first = first or frame.statistics
                     shown = Traced(request, frame, first, second)
                     self._answer_meanwhile(renderer, request.time)  # a newer picture makes the window ask anew
@@ -346,8 +321,7 @@ class RenderThread:
         self._wake()
 
     def _warm_up(self, renderer: Traces, request: RenderRequest) -> None:
-        """Forget all modes, and trace frames that set them."""
-        self._forget(renderer)
+        """Trace the frames that set the modes of a picture."""
         as_wanted = renderer.settings
         renderer.settings = replace(as_wanted, verify=False)
         for moment, camera in request.warmup or ():
@@ -357,16 +331,14 @@ class RenderThread:
                 self._learnt.append(self._first_to_learn(traced))
         renderer.settings = as_wanted
 
-    def _refining(self, renderer: Traces, request: RenderRequest) -> Generator[tuple[Frame, Frame | None], None, None]:
-        """The pictures that a request asks for, each with that by the second method where there is one."""
-        asked = Asked(request.time, request.camera, lambda: self._cancel, request.parts, request.samples, request.focus)
+    def _parts_of(self, renderer: Traces, request: RenderRequest) -> Parts:
+        """Return the parts and samples of a picture, each with that by the second method where there is one."""
         if not request.second:
             self._pair = None  # nor is what it has learnt kept in memory
-            yield from ((frame, None) for frame in asked.of(renderer))
-            return
+            return request.refine(renderer, lambda: self._cancel)
         if self._pair is None or not self._pair.is_of(renderer):
             self._pair = Pair(renderer)
-        yield from self._pair.refine(asked, request.second)
+        return self._pair.refine(request, lambda: self._cancel)
 
     def _first_to_learn(self, traced: Traced) -> Traced:
         """The frame, which has set modes, and whether it is the first since these were forgotten."""

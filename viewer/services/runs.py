@@ -35,7 +35,7 @@ from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.util.failures import failure
+from viewer.util.messages import failure
 from viewer.util.files import write_text
 from viewer.util.numbers import several
 
@@ -195,7 +195,7 @@ class Runs:
         if self.current is not None:
             self.current.stop()
 
-    def take(self) -> Progress:
+    def take_progress(self) -> Progress:
         """Take what has become of the run since the last time, and report one that has ended."""
         run = self.current
         if run is None:

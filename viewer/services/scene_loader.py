@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -41,8 +41,23 @@ class Arrival:
     again: bool = False
 
 
+@dataclass
+class _Load:
+    """What is being read: the place to go to then, whether it is the scene that is open, and what of that had `changed`
+    where this is why; how meshes are read; the files that were come to, and the scene once it waits for kernels."""
+
+    job: Job[scene_files.Opened]
+    meshes: MeshOptions
+    place: Snapshot | None = None
+    again: bool = False
+    changed: str = ""
+    files: dict[Path, Stamp] = field(default_factory=dict)
+    seen: list[Scene] = field(default_factory=list)
+    cancelled_at: float = 0.0
+
+
 class SceneLoader:
-    """Runs `scene_files.open_scene` on threads; `follow` hands out what has arrived."""
+    """Runs `scene_files.open_scene` on threads; `take_finished` hands out what has come."""
 
     def __init__(
         self,
@@ -58,42 +73,34 @@ class SceneLoader:
         self.warm_up_job: Job[None] | None = None
         self.method_job: Job[None] | None = None
         self.compiles = False  # whether this is a first start, whose kernels are to be compiled
-        self.load_job: Job[scene_files.Opened] | None = None
-        self._seen: list[Scene] = []  # by the load that is under way: what waits for kernels
-        self._cancelled_at = 0.0
-        self._folders: tuple[Path, ...] = ()
+        self.folders: tuple[Path, ...] = ()  # besides a scene's own, that it may read files from
         self.meshes = IN_STUDIO  # how the next mesh is read
-        self._reading_meshes = IN_STUDIO  # how the one that is being read is
-        self._abandoned: list[Job] = []
-        self._place: Snapshot | None = None  # where to go once the scene is loaded
-        self._restored: Arrival | None = None
-        self._again = False  # whether the scene that is open is being read again
-        self._changed = ""  # what of it had changed, where that is why
         self.files: dict[Path, Stamp] = {}  # that the newest scene was read from, or that were missed
-        self._reading: dict[Path, Stamp] = {}
+        self._load: _Load | None = None
+        self._abandoned: list[Job] = []
+        self._restored: Arrival | None = None
         self._from_shell = False  # whether what is being opened was named on the command line
         self._given: dict[str, Any] = {}  # settings from there, for what is opened first
 
     @property
-    def folders(self) -> tuple[Path, ...]:
-        """Folders besides a scene's own that it may read files from."""
-        return self._folders
+    def load_job(self) -> Job[scene_files.Opened] | None:
+        """The load that is under way."""
+        return self._load.job if self._load is not None else None
 
     @property
     def busy(self) -> bool:
-        loading = self.load_job is not None or self._restored is not None
-        return loading or self.warm_up_job is not None
+        return self._load is not None or self._restored is not None or self.warm_up_job is not None
 
     @property
     def waiting(self) -> tuple[Scene, float | None, Camera | None] | None:
         """The scene that has been read and waits for kernels to be compiled, with the time and the camera that it is to
         be seen at, where these are not its own."""
-        if not self._seen or self.load_job is None:
+        if self._load is None or not self._load.seen:
             return None
-        place = self._place
+        place = self._load.place
         if place is None:
-            return self._seen[0], None, None
-        return self._seen[0], place.time, None if place.follow else place.camera
+            return self._load.seen[0], None, None
+        return self._load.seen[0], place.time, None if place.follow else place.camera
 
     @property
     def ready(self) -> bool:
@@ -111,7 +118,7 @@ class SceneLoader:
 
         `settings` hold for what is opened first, also where a saved place in it has others.  All scenes may read files
         from `folders` besides their own. `meshes` says how meshes are read; which way is up holds for the first."""
-        self._folders, self.meshes = tuple(folders), meshes
+        self.folders, self.meshes = tuple(folders), meshes
         self._given = dict(settings or {})
         self._session.settings = replace(self._session.settings, **self._given)
         self.compiles = not compiled_before()
@@ -131,32 +138,36 @@ class SceneLoader:
             compile_it = partial(make_ready, method, lights, accelerator)
             self.method_job = Job(f"compiling the kernels of {method}", compile_it, self._wake)
 
-    def follow(self) -> Arrival | None:
+    def take_finished(self) -> Arrival | None:
         """Take up what the jobs have finished; returns what has been opened, once."""
         if self.warm_up_job is not None and self.warm_up_job.done:
             job, self.warm_up_job = self.warm_up_job, None
             if job.failure is not None:
                 self._notices.report(replace(job.failure, text=f"the tracer could not be compiled: {job.failure.text}"))
-        if self.load_job is not None and self.load_job.done:
-            load, self.load_job, self._seen = self.load_job, None, []
-            self._restored = self._loaded(load)
-        self._let_go()
+        load, arrival = self._load, self._restored
+        self._restored = None
+        if load is not None and load.job.done:
+            self._load = None
+            arrival = self._loaded(load)
+        elif load is not None and load.job.stopping and time.monotonic() - load.cancelled_at > PATIENCE:
+            # It cannot stop at once, as within a library that reads a mesh: it ends by itself, and nothing comes of it.
+            self._abandoned.append(load.job)
+            self._load = None
+            self._say_cancelled()
         self._abandoned = [job for job in self._abandoned if not job.done]
-        arrival, self._restored = self._restored, None
         return arrival
 
     def take(self, scene: Scene) -> None:
         """Show a scene that a script has loaded, or made."""
-        settings = self._session.settings
+        settings, seen = self._session.settings, list[Scene]()
         self._given = {}
         up = up_in_studio(scene)
-        self._reading_meshes = MeshOptions(up is not None, up)  # as far as it shows
-        seen = self._seen = []
-        self.load_job = Job(
+        job = Job(
             f"Opening {scene.path.name}",
             lambda progress: scene_files.open_loaded(scene, settings, self._kernels_ready, progress, seen.append),
             self._wake,
         )
+        self._load = _Load(job, MeshOptions(up is not None, up), seen=seen)  # as far as it shows how it was read
 
     def open(self, path: Path) -> None:
         """Open a scene, or restore what a captured picture shows; anything else is one line."""
@@ -170,7 +181,7 @@ class SceneLoader:
         elif scene_files.is_capture(path):
             self._ask_first(path.name, lambda: self._restore_capture(path))
         else:
-            self._ask_first(path.name, lambda: self._load(path, None))
+            self._ask_first(path.name, lambda: self._begin(path, None))
 
     def go_on(self) -> bool:
         """Open what was open when the window was last closed, as it was seen; where it has gone, only say so."""
@@ -186,7 +197,7 @@ class SceneLoader:
         if found is None:
             self._notices.say(f"cannot start where you left off: the scene is gone: {snapshot.scene}", error=True)
             return False
-        self._load(found, snapshot)
+        self._begin(found, snapshot)
         return True
 
     def reload(self) -> None:
@@ -194,14 +205,13 @@ class SceneLoader:
         session = self._session
         if session.scene is not None:
             path = Path(session.scene.path)
-            self._ask_first(f"{path.name} again", lambda: self._load(path, None, again=True))
+            self._ask_first(f"{path.name} again", lambda: self._begin(path, None, again=True))
 
-    def follow_change(self, changed: str) -> None:
+    def reload_changed(self, changed: str) -> None:
         """The same for a scene that has changed on the disk, where nothing is to be asked first."""
         if self._session.scene is not None:
             self._from_shell = False
-            self._load(Path(self._session.scene.path), None, again=True)
-            self._changed = changed
+            self._begin(Path(self._session.scene.path), None, again=True, changed=changed)
 
     def read_as(self, meshes: MeshOptions) -> None:
         """Read the mesh that is open in another way, and look at it from its first camera.
@@ -212,25 +222,15 @@ class SceneLoader:
 
             def go_on() -> None:
                 self.meshes = replace(self.meshes, studio=meshes.studio)
-                self._load(path, None, meshes=meshes)
+                self._begin(path, None, meshes=meshes)
 
             self._ask_first(f"{path.name} again", go_on)
 
     def cancel(self) -> None:
         """Give up the load that is under way; the scene that is open stays."""
-        if self.load_job is not None and not self.load_job.stopping:
-            self.load_job.cancel()
-            self._cancelled_at = time.monotonic()
-
-    def _let_go(self) -> None:
-        """Wait no longer for a load that was cancelled and cannot stop at once, as within a library that reads a mesh:
-        it ends by itself, and nothing comes of it."""
-        job = self.load_job
-        if job is not None and job.stopping and time.monotonic() - self._cancelled_at > PATIENCE:
-            self._abandoned.append(job)
-            self.load_job = self._place = None
-            self._seen = []
-            self._say_cancelled()
+        if self._load is not None and not self._load.job.stopping:
+            self._load.job.cancel()
+            self._load.cancelled_at = time.monotonic()
 
     def _say_cancelled(self) -> None:
         stays = ": the scene that was open stays" if self._session.scene is not None else ""
@@ -256,14 +256,14 @@ class SceneLoader:
             self._refuse(f"{path.name}: its scene was not found: {snapshot.scene}")
         elif (
             scene is not None
-            and self.load_job is None
+            and self._load is None
             and _same_file(found, scene)
             and snapshot.meshes == self._session.meshes
         ):
             self._restored = Arrival(None, snapshot, f"restored {path.name}")
             self._wake()
         else:
-            self._load(found, snapshot)
+            self._begin(found, snapshot)
 
     def _refuse(self, why: str) -> None:
         self._tell_shell(why)
@@ -274,43 +274,48 @@ class SceneLoader:
         if self._from_shell:
             say(why, ERROR)
 
-    def _load(self, path: Path, then: Snapshot | None, again: bool = False, meshes: MeshOptions | None = None) -> None:
-        if self.load_job is not None:
-            self.load_job.cancel()
-            self._abandoned.append(self.load_job)
-        if then is not None:
-            then = replace(then, settings=then.settings | self._given)
+    def _begin(
+        self,
+        path: Path,
+        place: Snapshot | None,
+        again: bool = False,
+        meshes: MeshOptions | None = None,
+        changed: str = "",
+    ) -> None:
+        """Read a scene in the place of what is being read now."""
+        if self._load is not None:
+            self._load.job.cancel()
+            self._abandoned.append(self._load.job)
+        if place is not None:
+            place = replace(place, settings=place.settings | self._given)
         self._given = {}
-        self._place, self._again, self._changed = then, again, ""
-        files = self._reading = {}
-        seen = self._seen = []
-        if meshes is None and then is not None:
-            meshes = then.meshes
+        if meshes is None and place is not None:
+            meshes = place.meshes
         elif meshes is None and again:
             meshes = self._session.meshes
         elif meshes is None:
             meshes, self.meshes = self.meshes, replace(self.meshes, up=None)
-        meshes = self._reading_meshes = meshes.of_file(path)
-        settings = self._session.settings
-        self.load_job = Job(
+        meshes = meshes.of_file(path)
+        settings, files, seen = self._session.settings, dict[Path, Stamp](), list[Scene]()
+        job = Job(
             f"Loading {path.name}",
             lambda progress: scene_files.open_scene(
-                path, settings, self._kernels_ready, progress, self._folders, files, meshes, seen.append
+                path, settings, self._kernels_ready, progress, self.folders, files, meshes, seen.append
             ),
             self._wake,
         )
+        self._load = _Load(job, meshes, place, again, changed, files, seen)
 
     def _kernels_ready(self) -> bool:
         job = self.warm_up_job
         return job is None or job.done or can_draw()
 
-    def _loaded(self, job: Job[scene_files.Opened]) -> Arrival | None:
-        place, self._place = self._place, None
-        again = self._again
+    def _loaded(self, load: _Load) -> Arrival | None:
+        job, again = load.job, load.again
         if again and job.result is None and not job.cancelled:
-            self.files = self.files | self._reading  # what was not come to may be mended too
+            self.files = self.files | load.files  # what was not come to may be mended too
         elif job.result is not None:
-            self.files = self._reading
+            self.files = load.files
         if job.cancelled:
             self._say_cancelled()
         elif job.failure is not None:
@@ -319,14 +324,14 @@ class SceneLoader:
             self._notices.report(replace(job.failure, text=f"{job.failure.text}{stays}"))
         elif job.result is not None:
             opened = job.result
-            self._session.meshes = self._reading_meshes
+            self._session.meshes = load.meshes
             up = up_in_studio(opened.scene)
             standing = f", with {up} up" if up else ""
             count = len(opened.scene.warnings)
             warned = f", {count} warning{'s' * (count > 1)}" if count else ""
-            name = opened.scene.path.name
-            said = f"{name} {'reloaded' if again else 'opened'} in {opened.seconds:.1f} s{standing}{warned}"
-            return Arrival(opened, place, f"{said}: {self._changed} changed" if self._changed else said, again)
+            name, done = opened.scene.path.name, "reloaded" if again else "opened"
+            said = f"{name} {done} in {opened.seconds:.1f} s{standing}{warned}"
+            return Arrival(opened, load.place, f"{said}: {load.changed} changed" if load.changed else said, again)
         return None
 
 

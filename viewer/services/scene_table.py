@@ -8,7 +8,7 @@ places while the pointer is on them or something moves, and those that stand equ
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -22,65 +22,37 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.jobs import Job
 from viewer.services.render_request import Traced
 from viewer.services.selection import Selection
-from viewer.state.listing import Listing, Order, listed
 from viewer.state.notices import Notices
 from viewer.state.parts import parts_of
 from viewer.state.preferences import Preferences
-from viewer.state.row_filter import quoted
+from viewer.state.row_filter import Listing, Order, listed, quoted
 from viewer.state.scene_rows import Level, Table, tables_of
 from viewer.state.session import Session
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Source:
-    """What tables are made of."""
+    """What tables are made of; with `light` None, shadow modes are those for all lights together."""
 
     now: Edited
     frame: Frame
     light: int | None
 
-    def is_like(self, other: _Source | None) -> bool:
+    def is_like(self, other: _Source) -> bool:
         """Whether the tables of another would be the same: further samples of a picture count nothing."""
-        if other is None or other.now is not self.now or other.light != self.light:
-            return False
         names = ("primitive", "modes", "cells", "saved", "due_rays", "wrong")
-        return all(getattr(self.frame, name) is getattr(other.frame, name) for name in names)
+        same = all(getattr(self.frame, name) is getattr(other.frame, name) for name in names)
+        return same and (self.now is other.now and self.light == other.light)
 
 
 @dataclass(frozen=True)
 class _Made:
-    """What a job has made."""
+    """Both tables of a source, and one of them as it is listed; `in_order` says that its rows have been sorted anew."""
 
     source: _Source
     tables: dict[Level, Table]
-    level: Level
     listing: Listing
     in_order: bool
-
-
-@dataclass(frozen=True)
-class _Asked:
-    """What a job is to make."""
-
-    source: _Source
-    level: Level
-    order: Order
-
-    def is_like(self, other: _Asked | None) -> bool:
-        """Whether the same would come of another."""
-        if other is None or (other.level, other.order) != (self.level, self.order):
-            return False
-        return self.source.is_like(other.source)
-
-
-@dataclass
-class _Shown:
-    """What is there to be seen; `current` says for which levels the order is that of the newest tables."""
-
-    source: _Source | None = None
-    tables: dict[Level, Table] = field(default_factory=dict)
-    listings: dict[Level, Listing] = field(default_factory=dict)
-    current: set[Level] = field(default_factory=set)
 
 
 class Hides(Protocol):
@@ -114,19 +86,21 @@ class SceneTable:
             Level.OBJECTS: Order(column="pixels", descending=True),
             Level.PRIMITIVES: Order(column="pixels", descending=True),
         }
-        self.all_lights = self.visible = self.held = self._seen = False
+        self.all_lights = self.visible = self.held = self._watched = False
         self._saves = False  # whether the table is to be saved as soon as it is that of the edited scene
         self.chosen = 0  # the serial of the selection that was made here last, or has been shown
-        self._shown = _Shown()
+        self._source: _Source | None = None  # the newest
+        self._made: dict[Level, _Made] = {}
         self._job: Job[_Made] | None = None
-        self._asked: _Asked | None = None  # what the newest job was started for
-        self._failed: _Asked | None = None  # what could not be made last, and is not tried again
+        self._asked: tuple[_Source, Level, Order] | None = None  # what the newest job was started for
+        self._failed: tuple[_Source, Level, Order] | None = None  # what could not be made, and is not tried again
         self._told = ""  # and why
 
     @property
     def listing(self) -> Listing | None:
         """What is known of the level that is looked at; None while nothing is."""
-        return self._shown.listings.get(self.level)
+        made = self._made.get(self.level)
+        return None if made is None else made.listing
 
     @property
     def order(self) -> Order:
@@ -159,7 +133,7 @@ class SceneTable:
         selection = self._selection
         done = selection.select_part(row) if self.level is Level.OBJECTS else selection.select_primitive(row)
         if not done:
-            self._notices.say("it is hidden" if self.is_hidden(row) else "it is nowhere in the world at this moment")
+            self._notices.say("it is hidden" if self.is_hidden(row) else "it is not in the scene at this time")
         self.chosen = selection.serial
 
     @property
@@ -210,21 +184,20 @@ class SceneTable:
         """Write the rows that are seen as CSV into the folder of the pictures, once they are those of the scene as it
         is edited."""
         if self.listing is None or self._session.scene is None:
-            self._notices.say("there is no table to save yet: open the panel Find")
+            self._notices.say("there is no table yet: open the panel Find")
         elif self._is_stale:
             self._saves = True
-            self._notices.say("the table is saved when the picture shows the scene as it is edited")
+            self._notices.say("the table will be saved when the picture shows the edited scene")
         else:
             self._write()
 
     @property
     def _is_stale(self) -> bool:
         """Whether rows are of the scene before it was edited, or not in the order that is asked for."""
-        shown, listing = self._shown, self.listing
-        if shown.source is None or listing is None or self._session.edited is not shown.source.now:
+        made, edited = self._made.get(self.level), self._session.edited
+        if made is None or edited is not made.source.now or self._session.edits != made.source.now.edits:
             return True
-        edits_wait = self._session.edits != shown.source.now.edits
-        return edits_wait or listing.order != self.order or self.level not in shown.current
+        return made.listing.order != self.order or not made.in_order
 
     def _write(self) -> None:
         self._saves = False
@@ -240,52 +213,51 @@ class SceneTable:
 
     def watch(self) -> None:
         """Somebody looks at the table in this frame of the window."""
-        self._seen = True
+        self._watched = True
 
-    def follow(self, traced: Traced | None, moving: bool) -> None:
+    def update(self, traced: Traced | None, moving: bool) -> None:
         """Take up what has been made, and have made what is missing; `traced` is the newest picture, None where it is
         none of the session's, and `moving` says that another follows soon."""
-        self.visible, self._seen = self._seen, False
+        self.visible, self._watched = self._watched, False
         self._session.counting = self.visible
+        now = self._session.edited
+        if self._source is not None and (now is None or self._source.now.original is not now.original):
+            self._source, self._made = None, {}
         if self._job is not None and self._job.done:
             self._take(self._job)
             self._job = None
-        now = self._session.edited
         if self._saves and (not self.visible or not self._is_stale):
             self._write()
-        if self._shown.source is not None and (now is None or self._shown.source.now.original is not now.original):
-            self._shown = _Shown()
         if not self.visible or now is None or self._job is not None:
             return
-        source = self._shown.source
         if traced is not None and traced.whole and traced.request.divisor == 1:
             newest = _Source(now, traced.frame, None if self.all_lights else self._session.light)
-            source = source if source is not None and newest.is_like(source) else newest
-        if source is None or not self._lacks(source, moving):
-            return
-        asked = _Asked(source, self.level, self.order)
-        if not asked.is_like(self._failed):
-            self._start(asked, moving)
+            if self._source is None or not newest.is_like(self._source):
+                self._source = newest
+        asked = None if self._source is None else (self._source, self.level, self.order)
+        if asked is not None and asked != self._failed and self._lacks(asked[0], self.held or moving):
+            self._start(*asked, self.held or moving)
 
-    def _lacks(self, source: _Source, moving: bool) -> bool:
-        listing, shown = self.listing, self._shown
-        if source is not shown.source or listing is None or listing.order != self.order:
+    def _lacks(self, source: _Source, stays: bool) -> bool:
+        """Whether the listing is not that of the newest picture, or not in order though its rows need not stay."""
+        made = self._made.get(self.level)
+        if made is None or made.source is not source or made.listing.order != self.order:
             return True
-        return self.level not in shown.current and not self.held and not moving
+        return not made.in_order and not stays
 
-    def _start(self, asked: _Asked, moving: bool) -> None:
-        shown, before = self._shown, self.listing
-        source, level, order = asked.source, asked.level, asked.order
-        kept = before is not None and before.order == order and (self.held or moving)
+    def _start(self, source: _Source, level: Level, order: Order, stays: bool) -> None:
+        before = self.listing
+        known = next((made.tables for made in self._made.values() if made.source is source), None)
 
         def work(_: Progress) -> _Made:
-            made = shown.tables if source is shown.source else tables_of(source.now, source.frame, source.light)
-            table = made[level]
-            if kept and before is not None and len(before.rows) and before.table.rows == table.rows:
-                return _Made(source, made, level, Listing(table, before.rows, order, before.problem), False)
-            return _Made(source, made, level, listed(table, order, before), True)
+            tables = known or tables_of(source.now, source.frame, source.light)
+            table = tables[level]
+            if stays and before is not None and before.order == order and before.table.rows == table.rows:
+                if len(before.rows):
+                    return _Made(source, tables, Listing(table, before.rows, order, before.problem), False)
+            return _Made(source, tables, listed(table, order, before), True)
 
-        self._asked, self._job = asked, Job("The table", work, self._wake)
+        self._asked, self._job = (source, level, order), Job("The table", work, self._wake)
 
     def _take(self, job: Job[_Made]) -> None:
         if job.failure is not None:
@@ -294,15 +266,6 @@ class SceneTable:
                 self._notices.report(job.failure)
             self._told = job.failure.text
         made = job.result
-        if made is None or made.source.now.original is not self._session.original:
-            return
-        self._failed, self._told = None, ""
-        shown = self._shown
-        if made.source is not shown.source:
-            shown.current = set()
-            for level, listing in shown.listings.items():  # their numbers are those of the newest picture, too
-                shown.listings[level] = Listing(made.tables[level], listing.rows, listing.order, listing.problem)
-        shown.source, shown.tables = made.source, made.tables
-        shown.listings[made.level] = made.listing
-        if made.in_order:
-            shown.current.add(made.level)
+        if made is not None and self._source is not None and made.source.now.original is self._source.now.original:
+            self._failed, self._told = None, ""
+            self._made[made.listing.table.level] = made

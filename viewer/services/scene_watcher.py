@@ -17,7 +17,7 @@ EVERY = 0.35
 
 
 class SceneWatcher:
-    """`reload(names)` is called by `follow` when files have changed, of which the names are given."""
+    """`reload(names)` is called by `reload_changed` when files have changed, of which the names are given."""
 
     def __init__(
         self,
@@ -39,7 +39,7 @@ class SceneWatcher:
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
 
-    def follow(self) -> None:
+    def reload_changed(self) -> None:
         """Take up what the scene was read from, and have it read again where that has changed."""
         files = self._files()
         with self._lock:

@@ -8,8 +8,8 @@ from dataclasses import replace
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from viewer.state.picking import Pick, pick, pixel_of, refreshed
+from viewer.state.selection_lookup import pick_part, pick_primitive
 from viewer.state.session import Session
-from viewer.state.whereabouts import pick_part, pick_primitive
 
 Point = tuple[float, float]
 """Of the picture, 0 to 1 from left and top."""
@@ -79,7 +79,7 @@ class Selection:
     def clear(self) -> None:
         self.picked = None
 
-    def follow_edits(self, before: Edited | None, now: Edited) -> None:
+    def update_for_edits(self, before: Edited | None, now: Edited) -> None:
         """The same primitive has another number now; one that is hidden is selected no more."""
         kept = self.picked
         if kept is not None and before is not None:

@@ -98,7 +98,7 @@ class Tour:
         if self.step is not None:
             self._script, self._resumes_at = self.step.show(self._c, self._show_panel), 0.0
 
-    def follow(self) -> None:
+    def update(self) -> None:
         """Once per frame: see whether the step is done, and go on with what is being shown."""
         if self.at is None or self._c.frame is None:
             return
@@ -200,7 +200,7 @@ def _how_to_toggle(c: Controller, key: Key) -> str:
         )
     if not method.culls:
         return f"Press {toggle} once more to cull again. {seen}"
-    if c.frame is not None and not _culls(c) and (c.active or c.tracing.awaits):
+    if c.frame is not None and not _culls(c) and (c.active or c.scheduler.awaits):
         return f"The method {method.base} has culled nothing in this picture, but another one is on its way."
     if c.frame is not None and not _culls(c):
         again = key("Trace again")
@@ -280,7 +280,7 @@ def _run_a_zoom_test(c: Controller, show_panel: Callable[[str], None]) -> Iterat
     """Towards a small primitive that is fully rendered, if the picture has one: what is not has no count to grow
     from, and what is large cannot become so many times as large."""
     show_panel("Zoom test")
-    yield from _until(lambda: not c.tracing.awaits)
+    yield from _until(lambda: not c.scheduler.awaits)
     small = _small_primitive(c.frame, c) if c.frame is not None else None
     if small is not None:
         c.selection.select_primitive(small)

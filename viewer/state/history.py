@@ -6,7 +6,7 @@ contiguous slice, which is what ImPlot reads without a copy.
 
 from __future__ import annotations
 
-from collections import deque
+from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,31 +25,6 @@ MOST_RECORDS = 10_000
 RATE_SECONDS = 1.0
 """Seconds back that frames count for their rate, or as far as the last two reach."""
 
-SERIES = (
-    "due",
-    "culled",
-    "dynamic_only",
-    "candidates_only",
-    "cache_hits",
-    "traced",
-    "steps",
-    "tests",
-    "shadow_steps",
-    "shadow_tests",
-    "samples_due",
-    "samples_reached",
-    "penumbra",
-    "pixels",
-    "all_pixels",
-    "steps_of_all",
-    "tests_of_all",
-    "certificate_steps",
-    "certificate_tests",
-    "built",
-    "traced_ms",
-    "drawn_ms",
-)
-
 _OF_ALL = {
     "steps": "steps_of_all",
     "tests": "tests_of_all",
@@ -59,49 +34,58 @@ _OF_ALL = {
 """What is part of a series, and done for all pixels, however many of them are shaded: primary rays and proofs."""
 
 
+def counters(frame: Frame, drawn_seconds: float) -> dict[str, float]:
+    """Return a frame's numbers by the names of their series; `drawn_seconds` is what the window needed for its last own
+    frame.
+
+    Steps and tests are all that were made for the frame, those of its certificates too.  Samples of lights are those of
+    primary hits, 0 where they were not recorded.  `pixels` are those that are shaded, of `all_pixels`.  `built` is the
+    part of the tree that is built, in per cent; 0 where that is not told."""
+    s = frame.statistics
+    samples = s.samples or SampleCounts()
+    return {
+        "due": s.shadow.due,
+        "culled": s.shadow.culled,
+        "dynamic_only": s.shadow.dynamic_only,
+        "candidates_only": s.shadow.candidates_only,
+        "cache_hits": s.shadow.cache_hits,
+        "traced": s.shadow.traced,
+        "steps": s.traversal_steps + s.certificate_steps,
+        "tests": s.intersection_tests + s.certificate_tests,
+        "shadow_steps": s.shadow.traversal_steps + s.certificate_steps,
+        "shadow_tests": s.shadow.intersection_tests + s.certificate_tests,
+        "samples_due": samples.due,
+        "samples_reached": samples.reached,
+        "penumbra": samples.penumbra,
+        "pixels": frame.width * frame.height * s.part,
+        "all_pixels": frame.width * frame.height,
+        "steps_of_all": s.primary.traversal_steps + s.certificate_steps,
+        "tests_of_all": s.primary.intersection_tests + s.certificate_tests,
+        "certificate_steps": s.certificate_steps,
+        "certificate_tests": s.certificate_tests,
+        "built": 100.0 * s.built.share if s.built is not None else 0.0,
+        "traced_ms": 1e3 * s.seconds,
+        "drawn_ms": 1e3 * drawn_seconds,
+    }
+
+
 class History:
-    """Ring buffers of float64, one per name of `SERIES`; `frames` counts all that were ever added."""
+    """Ring buffers of float64, one for each of the `counters`; `frames` counts all that were ever added."""
 
     def __init__(self, capacity: int = CAPACITY) -> None:
         self.capacity = capacity
         self.frames = self._hidden = 0
-        self._values = {name: np.zeros(2 * capacity) for name in SERIES}
+        self._values: dict[str, NDArray[np.float64]] = defaultdict(lambda: np.zeros(2 * capacity))
 
     def add(self, frame: Frame, drawn_seconds: float, again: bool = False) -> None:
         """Append one traced frame's numbers, or put them in the place of the last where it is that frame `again`, with
-        more of its pixels shaded; `drawn_seconds` is what the window needed for its last own frame.
-
-        Steps and tests are all that were made for the frame, those of its certificates too.  Samples of lights are
-        those of primary hits, 0 where they were not recorded.  `pixels` are those that are shaded, of `all_pixels`.
-        `built` is the part of the tree that is built, in per cent; 0 where that is not told."""
+        more of its pixels shaded."""
         if again and self.frames > 0:
             self.frames -= 1
-        s = frame.statistics
-        samples = s.samples or SampleCounts()
-        self._put(
-            due=s.shadow.due,
-            culled=s.shadow.culled,
-            dynamic_only=s.shadow.dynamic_only,
-            candidates_only=s.shadow.candidates_only,
-            cache_hits=s.shadow.cache_hits,
-            traced=s.shadow.traced,
-            steps=s.traversal_steps + s.certificate_steps,
-            tests=s.intersection_tests + s.certificate_tests,
-            shadow_steps=s.shadow.traversal_steps + s.certificate_steps,
-            shadow_tests=s.shadow.intersection_tests + s.certificate_tests,
-            samples_due=samples.due,
-            samples_reached=samples.reached,
-            penumbra=samples.penumbra,
-            pixels=frame.width * frame.height * s.part,
-            all_pixels=frame.width * frame.height,
-            steps_of_all=s.primary.traversal_steps + s.certificate_steps,
-            tests_of_all=s.primary.intersection_tests + s.certificate_tests,
-            certificate_steps=s.certificate_steps,
-            certificate_tests=s.certificate_tests,
-            built=100.0 * s.built.share if s.built is not None else 0.0,
-            traced_ms=1e3 * s.seconds,
-            drawn_ms=1e3 * drawn_seconds,
-        )
+        at = self.frames % self.capacity
+        for name, value in counters(frame, drawn_seconds).items():
+            self._values[name][at] = self._values[name][at + self.capacity] = value
+        self.frames += 1
 
     def clear(self) -> None:
         """Begin to count anew."""
@@ -139,12 +123,6 @@ class History:
         """That part of one frame by its number; 1 for one that is no longer kept."""
         place = number - self.first
         return float(self.shaded()[place]) if 0 <= place < len(self) else 1.0
-
-    def _put(self, **numbers: float) -> None:
-        at = self.frames % self.capacity
-        for name, value in numbers.items():
-            self._values[name][at] = self._values[name][at + self.capacity] = value
-        self.frames += 1
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import Enum
 
-from viewer.util.failures import Failure
-from viewer.util.messages import in_one_line
+from viewer.util.messages import Failure, in_one_line
 
 INFO_SECONDS = 6.0
 MOST_ENTRIES = 500

@@ -115,6 +115,8 @@ def pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
 
     At another size, or from elsewhere, the point lies between pixels: the nearest within `NEARBY` counts that shows its
     primitive, or else, as that may be smaller than a pixel, a surface at the point's distance."""
+    if kept.seen == _seen(frame) and frame.primitive[kept.y, kept.x] == kept.primitive:
+        return kept.x, kept.y
     at = place(frame, kept.point) if kept.point is not None else None
     if kept.point is None or at is None or not (0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0):
         return None

@@ -57,7 +57,7 @@ class Pixels:
     region: Region | None = None
     path: Path | None = None
 
-    def follow(self, path: Path) -> None:
+    def enter(self, path: Path) -> None:
         """Let go of the pixels and the region of another scene."""
         if path != self.path:
             self.watched.clear()

@@ -23,9 +23,8 @@ from tracer.scene.lights import MAX_SAMPLES
 from viewer.state.merging import merged
 from viewer.state.methods import ADAPTIVE, NO_CULLING, is_method, with_base
 from viewer.state.views import BENEATH, View
-from viewer.util.files import write_text
+from viewer.util.files import file_lock, write_text
 from viewer.util.json_numbers import finite
-from viewer.util.part_files import claimed
 
 SETTINGS_FILE = "settings.json"
 FORMAT = 2
@@ -193,7 +192,7 @@ def save_preferences(
     path, mine = folder / SETTINGS_FILE, asdict(preferences)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with claimed(path, PATIENCE):
+        with file_lock(path, PATIENCE):
             if base is not None:
                 stored, _ = _read(path)
                 mine = merged(base, mine, {**base, **(stored or {})})

@@ -1,4 +1,4 @@
-"""Which rows of a table are to be seen, by what is typed above it.
+"""Which rows of a table are to be seen, by what is typed above it, and in which order.
 
 All that is typed must hold.  A word finds rows that have it in a name, a number alone the primitive of that number.
 `pixels>100`, `share<=50` and `number:10-20` compare; `object:wall`, `mode:full_shadow` and `is:dynamic` look into one
@@ -10,6 +10,7 @@ from __future__ import annotations
 import operator
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from difflib import get_close_matches
 
 import numpy as np
@@ -71,7 +72,7 @@ def _holds(table: Table, token: str) -> NDArray[np.bool_]:
         return _anywhere(table, token.replace('"', ""))
     name, comparing, wanted = comparison[1].lower(), comparison[2], comparison[3].replace('"', "")
     if not wanted:
-        raise FilterError(f"{name}{comparing} what? Type what it is compared with")
+        raise FilterError(f"{name}{comparing} needs a value")
     if name == "is":
         return _state(table, wanted.lower())
     if name == "mode" and table.level is Level.PRIMITIVES:
@@ -89,7 +90,7 @@ def _column(table: Table, name: str) -> Values:
         raise FilterError(f"no column is called {name}: {hint}")
     values = table.columns.get(name)
     if values is None:
-        raise FilterError(_WHEN_KNOWN.get(name, "the rays at its pixels are not counted yet"))
+        raise FilterError(_WHEN_KNOWN.get(name, "shadow rays are not counted yet"))
     return values
 
 
@@ -165,18 +166,70 @@ def _as_number(text: str) -> float:
         raise FilterError(f"{text} is no number") from None
 
 
+_STATES: dict[str, tuple[str, Callable[[NDArray], NDArray]]] = {  # a column, and which of its numbers
+    "seen": ("pixels", lambda pixels: pixels > 0),
+    "unseen": ("pixels", lambda pixels: pixels == 0),
+    "wrong": ("wrong", lambda wrong: wrong > 0),
+    "dynamic": ("motion", lambda motion: motion == 1),
+    "static": ("motion", lambda motion: motion == 0),
+    "hidden": ("hidden", lambda hidden: hidden == 1),
+    "shown": ("hidden", lambda hidden: hidden == 0),
+}
+
+
 def _state(table: Table, wanted: str) -> NDArray[np.bool_]:
     """Rows of which something is true."""
-    if wanted in ("seen", "unseen"):
-        return np.asarray((_column(table, "pixels").numbers > 0) == (wanted == "seen"))
-    if wanted == "wrong":
-        return np.asarray(_column(table, "wrong").numbers > 0)
-    if wanted in ("dynamic", "static"):
-        motion = table.columns["motion"]
-        assert motion is not None
-        return np.asarray(motion.numbers == (wanted == "dynamic"))
-    if wanted in ("hidden", "shown"):
-        hidden = table.columns["hidden"]
-        assert hidden is not None
-        return np.asarray(hidden.numbers == (wanted == "hidden"))
-    raise FilterError(f"is:{wanted} is not known: there are seen, unseen, dynamic, static, wrong, hidden and shown")
+    if wanted not in _STATES:
+        raise FilterError(f"is:{wanted} is not known: there are {', '.join(_STATES)}")
+    name, holds = _STATES[wanted]
+    values = table.columns[name] if name in ("motion", "hidden") else _column(table, name)
+    assert values is not None
+    return np.asarray(holds(values.numbers), np.bool_)
+
+
+# --- the rows that are seen, in their order ---------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is asked of a level: the text of its filter, and the column that its rows are sorted by."""
+
+    text: str = ""
+    column: str = ""
+    descending: bool = False
+
+
+@dataclass(frozen=True)
+class Listing:
+    """A table, and the numbers of its rows that are seen, in their order, (rows,) int32; `problem` says why the filter
+    is not understood, "" where it is."""
+
+    table: Table
+    rows: NDArray[np.int32]
+    order: Order
+    problem: str = ""
+
+
+def listed(table: Table, order: Order, before: Listing | None) -> Listing:
+    """The rows of a table in this order.  Those that stand equal keep the order that they had before; where the filter
+    is not understood, those are seen that were before."""
+    try:
+        found, problem = matching(table, order.text), ""
+    except FilterError as error:
+        found, problem = np.ones(table.rows, np.bool_), str(error)
+        if before is not None and before.table.rows == table.rows:
+            found = np.zeros(table.rows, np.bool_)
+            found[before.rows] = True
+    rows = np.flatnonzero(found).astype(np.int32)
+    values = table.columns.get(order.column)
+    same = before is not None and before.order.column == order.column and before.order.descending == order.descending
+    if same and before is not None and len(before.rows) == len(rows) and found[before.rows].all():
+        rows = before.rows
+    if values is None:
+        return Listing(table, rows, order, problem)
+    keys = values.keys[rows]
+    if order.descending:
+        keys = -keys.astype(np.int64) if keys.dtype.kind in "iu" else -keys  # NaN stays last
+        if values.words is not None:
+            keys[values.numbers[rows] < 0] = len(values.words)
+    return Listing(table, rows[np.argsort(keys, kind="stable")], order, problem)

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,16 +49,16 @@ _LIGHT = "for the chosen light, or for all of them together"
 _AT_PIXELS = "at the pixels that show it, of all bounces"
 _DUE = Column("due", "Due", f"shadow rays that are due {_AT_PIXELS}")
 _SAVED = Column("saved", "Untraced", f"shadow rays {_AT_PIXELS} that were not traced through the whole scene")
-_SHARE = Column("share", "Share", "part of the shadow rays that are due which is untraced, in per cent")
+_SHARE = Column("share", "Share", "share of the due shadow rays that is untraced, in per cent")
 _WRONG = Column("wrong", "Wrong", "wrong shadow answers at its pixels; known while frames are verified")
-_PIXELS = Column("pixels", "Pixels", "pixels that show it now")
+_PIXELS = Column("pixels", "Pixels", "pixels that it covers now")
 COLUMNS: dict[Level, tuple[Column, ...]] = {
     Level.PRIMITIVES: (
-        Column("number", "Number", "the primitive's number, which pictures and messages refer to"),
+        Column("number", "Number", "the primitive's number in the scene"),
         Column("object", "Object", "the object, or the part of the static geometry, that it belongs to", False),
         _PIXELS,
-        Column("occlusion", "Occlusion", "its occlusion mode; of cells, that of all cells that are seen", False),
-        Column("shadow", "Shadow", f"its shadow mode {_LIGHT}; of cells, that of all cells that are seen", False),
+        Column("occlusion", "Occlusion", "its occlusion mode; of cells, that of all visible cells", False),
+        Column("shadow", "Shadow", f"its shadow mode {_LIGHT}; of cells, that of all visible cells", False),
         _DUE, _SAVED, _SHARE, _WRONG,
         Column("kind", "Kind", "triangle, sphere or cone", False),
         Column("material", "Material", "its material", False),
@@ -65,12 +66,12 @@ COLUMNS: dict[Level, tuple[Column, ...]] = {
     ),
     Level.OBJECTS: (
         Column("object", "Object", "its name in the scene", False),
-        Column("primitives", "Primitives", "how many it has"),
-        Column("seen", "Seen", "how many of these have a pixel"),
+        Column("primitives", "Primitives", "number of its primitives"),
+        Column("seen", "Seen", "number of its primitives that are visible"),
         _PIXELS,
-        Column("rendered", "Rendered", "how many of its primitives are fully rendered, so that their rays are saved"),
-        Column("full_shadow", "In shadow", f"how many of its primitives have full shadow {_LIGHT}"),
-        Column("non_shadow", "Lit", f"how many of its primitives have non-shadow {_LIGHT}"),
+        Column("rendered", "Rendered", "number of its primitives that are fully rendered, so that rays can be culled"),
+        Column("full_shadow", "In shadow", f"number of its primitives with full shadow {_LIGHT}"),
+        Column("non_shadow", "Lit", f"number of its primitives with non-shadow {_LIGHT}"),
         _DUE, _SAVED, _SHARE, _WRONG,
         Column("motion", "Motion", "whether it is static or dynamic", False),
     ),
@@ -127,11 +128,22 @@ _MOTION, _HIDDEN = ("static", "dynamic"), ("shown", "hidden")
 _OCCLUSION, _SHADOW = mode_words(OcclusionMode), mode_words(ShadowMode)
 
 
+class _Known(NamedTuple):
+    """(primitives,) what a frame knows of each, None for what it does not record."""
+
+    pixels: NDArray
+    due: NDArray | None
+    saved: NDArray | None
+    wrong: NDArray | None
+    occlusion: NDArray | None
+    shadow: NDArray | None
+
+
 def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table]:
     """Both tables as a frame of the edited scene knows them, with shadow modes for a light, or None for all.
 
     Their rows are the parts and primitives of the scene as it was read, in its order."""
-    parts, total, here = parts_of(now.original), now.original.primitive_count, len(now.primitives)
+    total, here = now.original.primitive_count, len(now.primitives)
     shown = frame.primitive.reshape(-1)
     hit = (shown >= 0) & (shown < here)
     at = now.primitives[shown[hit]]
@@ -142,28 +154,23 @@ def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table
         rays = buffer if frame.shaded is None else np.where(frame.shaded, buffer, 0)  # the others have the nearest's
         return np.bincount(at, rays.reshape(-1)[hit], minlength=total).astype(np.int64)
 
+    def by_original(codes: NDArray | None) -> NDArray | None:
+        if codes is None or now.scene is now.original:
+            return codes
+        found = np.full(total, UNKNOWN, np.int8)
+        found[now.primitives] = codes
+        return found
+
+    occlusion, shadow = (by_original(codes) for codes in modes_of(frame, here, light))
     pixels = np.bincount(at, minlength=total).astype(np.int32)
-    due, saved, wrong = summed(frame.due_rays), summed(frame.saved), summed(frame.wrong)
-    occlusion, shadow = (_by_original(now, codes) for codes in modes_of(frame, here, light))
-    of_primitives = _primitives(now, parts, pixels, due, saved, wrong, occlusion, shadow)
-    of_objects = _objects(now, parts, pixels, due, saved, wrong, occlusion, shadow)
-    return {Level.PRIMITIVES: of_primitives, Level.OBJECTS: of_objects}
-
-
-def _by_original(now: Edited, codes: NDArray[np.int8] | None) -> NDArray[np.int8] | None:
-    """Modes by the numbers of the scene as it was read."""
-    if codes is None or now.scene is now.original:
-        return codes
-    found = np.full(now.original.primitive_count, UNKNOWN, np.int8)
-    found[now.primitives] = codes
-    return found
+    work = summed(frame.due_rays), summed(frame.saved), summed(frame.wrong)
+    known, parts = _Known(pixels, *work, occlusion, shadow), parts_of(now.original)
+    return {Level.PRIMITIVES: _primitives(now, parts, known), Level.OBJECTS: _objects(now, parts, known)}
 
 
 def moving_parts(now: Edited) -> NDArray[np.bool_]:
     """(parts,) which can move, as the scene is edited."""
     parts, resting = parts_of(now.original), dict(now.edits.static)
-    if not resting and not now.edits.moving:
-        return parts.moving
     moving, named = now.edits.moving, zip(parts.names, parts.moving.tolist(), strict=True)
     return np.array([name in moving or (moves and name not in resting) for name, moves in named], np.bool_)
 
@@ -173,67 +180,48 @@ def hidden_parts(now: Edited) -> NDArray[np.bool_]:
     return np.array([name in now.edits.hidden for name in parts_of(now.original).names], np.bool_)
 
 
-def _primitives(
-    now: Edited,
-    parts: Parts,
-    pixels: NDArray,
-    due: NDArray | None,
-    saved: NDArray | None,
-    wrong: NDArray | None,
-    occlusion: NDArray | None,
-    shadow: NDArray | None,
-) -> Table:
-    scene = now.original
-    textures = tuple(texture.name for texture in scene.textures)
-    hidden = hidden_parts(now)[parts.part_of]
+def _primitives(now: Edited, parts: Parts, known: _Known) -> Table:
+    scene, hidden = now.original, hidden_parts(now)[parts.part_of]
     hidden[list(now.edits.hidden_primitives)] = True
     columns = {
-        "number": Values(np.arange(len(pixels), dtype=np.int32)),
+        "number": Values(np.arange(len(known.pixels), dtype=np.int32)),
         "object": Values(parts.part_of, parts.names),
         "kind": Values(parts.kind, KINDS),
         "material": Values(parts.material, tuple(material.name for material in scene.materials)),
-        "texture": Values(parts.texture, textures),
+        "texture": Values(parts.texture, tuple(texture.name for texture in scene.textures)),
         "motion": Values(moving_parts(now)[parts.part_of].astype(np.int8), _MOTION),
         "hidden": Values(hidden.astype(np.int8), _HIDDEN),
-        "pixels": Values(pixels),
-        "occlusion": None if occlusion is None else Values(occlusion, _OCCLUSION),
-        "shadow": None if shadow is None else Values(shadow, _SHADOW),
-        **_work(due, saved, wrong),
+        "pixels": Values(known.pixels),
+        "occlusion": None if known.occlusion is None else Values(known.occlusion, _OCCLUSION),
+        "shadow": None if known.shadow is None else Values(known.shadow, _SHADOW),
+        **_work(known.due, known.saved, known.wrong),
     }
-    return Table(Level.PRIMITIVES, len(pixels), columns)
+    return Table(Level.PRIMITIVES, len(known.pixels), columns)
 
 
-def _objects(
-    now: Edited,
-    parts: Parts,
-    pixels: NDArray,
-    due: NDArray | None,
-    saved: NDArray | None,
-    wrong: NDArray | None,
-    occlusion: NDArray | None,
-    shadow: NDArray | None,
-) -> Table:
+def _objects(now: Edited, parts: Parts, known: _Known) -> Table:
     number = len(parts.names)
 
     def summed(values: NDArray | None) -> NDArray | None:
         return None if values is None else np.bincount(parts.part_of, values, minlength=number).astype(np.int64)
 
+    def count_of(which: NDArray) -> Values:
+        return Values(np.bincount(parts.part_of[which], minlength=number).astype(np.int32))
+
     def having(codes: NDArray | None, mode: int) -> Values | None:
-        if codes is None:
-            return None
-        return Values(np.bincount(parts.part_of[codes == mode], minlength=number).astype(np.int32))
+        return None if codes is None else count_of(codes == mode)
 
     columns = {
         "object": Values(np.arange(number, dtype=np.int32), parts.names),
         "motion": Values(moving_parts(now).astype(np.int8), _MOTION),
         "hidden": Values(hidden_parts(now).astype(np.int8), _HIDDEN),
         "primitives": Values(parts.sizes),
-        "seen": Values(np.bincount(parts.part_of[pixels > 0], minlength=number).astype(np.int32)),
-        "pixels": Values(np.bincount(parts.part_of, pixels, minlength=number).astype(np.int64)),
-        "rendered": having(occlusion, OcclusionMode.FULLY_RENDERED),
-        "full_shadow": having(shadow, ShadowMode.FULL_SHADOW),
-        "non_shadow": having(shadow, ShadowMode.NON_SHADOW),
-        **_work(summed(due), summed(saved), summed(wrong)),
+        "seen": count_of(known.pixels > 0),
+        "pixels": Values(np.bincount(parts.part_of, known.pixels, minlength=number).astype(np.int64)),
+        "rendered": having(known.occlusion, OcclusionMode.FULLY_RENDERED),
+        "full_shadow": having(known.shadow, ShadowMode.FULL_SHADOW),
+        "non_shadow": having(known.shadow, ShadowMode.NON_SHADOW),
+        **_work(summed(known.due), summed(known.saved), summed(known.wrong)),
     }
     return Table(Level.OBJECTS, number, columns)
 
@@ -253,7 +241,8 @@ def modes_of(frame: Frame, total: int, light: int | None) -> tuple[NDArray | Non
     they differ and `UNKNOWN` where there are none.  None for what the frame has not."""
     if not frame.settings.keeps_modes:
         return None, None
-    lights = [one for one in (range(frame.lights) if light is None else (light,)) if _covered(frame, one)]
+    asked = range(frame.lights) if light is None else (light,)
+    lights = [one for one in asked if one < frame.lights and modes.has_shadow_mode(frame.modes, one)]
     occlusion = [modes.occlusion_mode(frame.modes)]
     shadow = [modes.shadow_mode(frame.modes, one) for one in lights]
     if has_modes_of_cells(frame):
@@ -261,10 +250,6 @@ def modes_of(frame: Frame, total: int, light: int | None) -> tuple[NDArray | Non
     if len(frame.modes) < total:
         return None, None
     return occlusion[0][:total].astype(np.int8), _together(shadow, total) if lights else None
-
-
-def _covered(frame: Frame, light: int) -> bool:
-    return light < frame.lights and modes.has_shadow_mode(frame.modes, light)
 
 
 def _together(planes: Sequence[NDArray], total: int) -> NDArray[np.int8]:

@@ -13,8 +13,8 @@ from tracer.told_rays import AWAY, TRACED, ShadowRays
 from viewer.state.views import Color
 
 SAID: dict[Verdict, str] = {
-    Verdict.AWAY: "not asked: faces away",
-    Verdict.PASSED_OVER: "passed over",
+    Verdict.AWAY: "surface faces away",
+    Verdict.PASSED_OVER: "light hidden from the region",
     Verdict.FULL_SHADOW: "culled by FULL_SHADOW",
     Verdict.NON_SHADOW: "dynamic only by NON_SHADOW",
     Verdict.CERTIFIED_FULL: "culled by certificate full",

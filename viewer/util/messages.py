@@ -1,8 +1,12 @@
-"""Messages to people, each in one line."""
+"""Messages to people, each in one line, and exceptions as such."""
 
 from __future__ import annotations
 
 import sys
+import traceback
+from dataclasses import dataclass
+
+from tracer.scene.model import SceneError
 
 ERROR = "error: "
 
@@ -19,3 +23,35 @@ def in_one_line(text: object) -> str:
 def say(message: object, kind: str = "") -> None:
     """One line on standard error, of a kind such as "error: "."""
     print(f"shadowcull: {kind}{in_one_line(message)}", file=sys.stderr, flush=True)
+
+
+# --- exceptions -------------------------------------------------------------------------------------
+
+KNOWN = (SceneError, ValueError, OSError, MemoryError)
+"""Kinds of errors whose one line speaks of a file, a value, a disk or memory."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """`expected` says that the line is all there is to know: nothing in the program is wrong."""
+
+    text: str
+    details: str
+    expected: bool
+
+
+def failure(error: BaseException, what: str = "", known: tuple[type[BaseException], ...] = KNOWN) -> Failure:
+    """An exception, with what failed by it in front; of a kind that is `known` to happen, it is expected."""
+    line = one_line(error)
+    details = "" if isinstance(error, SceneError) else "".join(traceback.format_exception(error))
+    return Failure(f"{what}: {line}" if what else line, details, isinstance(error, known))
+
+
+def one_line(error: BaseException) -> str:
+    """An exception as one line for the status bar; the kind is named unless the message speaks for itself."""
+    text = in_one_line(error)
+    if isinstance(error, MemoryError):
+        return "out of memory" + (f": {text}" if text else "")
+    if isinstance(error, SceneError | ValueError | OSError) and text:
+        return text
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__

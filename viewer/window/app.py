@@ -1,11 +1,10 @@
-"""The window, and one frame of it.
+"""The window's life, and what happens in each of its frames, in order.
 
-Hello ImGui owns the window, its GL context, the docking and the screen's density; this module
-says what happens in which order.  A frame is two lists of calls: `before_widgets`, where all GL
-work is done, and the panels, which never touch GL.
+Hello ImGui owns the window, its GL context, the docking and the screen's density.  It calls a frame in three parts:
 
-    files that were dropped -> keys -> camera -> controller (time, threads, requests)
-    -> newest frame to the GPU -> view drawn -> panels -> pictures of the window saved
+    before_widgets   input -> state -> scheduler -> newest frame -> picture, with all GL work
+    widgets          panels (drawn by Hello ImGui from `panels.catalogue`), keys, and what lies over the panels
+    after_widgets    pictures of the window
 """
 
 from __future__ import annotations
@@ -25,20 +24,21 @@ from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Scene
 from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
-from viewer.util.failures import failure
+from viewer.util.messages import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, graphics, menus, palette, style
+from viewer.window import commands, comparing, graphics, menus, style
 from viewer.window.full_screen import Rect
 from viewer.window.gl_window import PATIENCE, ContextLoss, closing_by_signals, open_window
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
-from viewer.window.layout import Layout
+from viewer.window.layout import Layout, show_strip
 from viewer.window.layout_file import LayoutFile
-from viewer.window.panels import dialogs, loading, log, picture, status, strip, tour
+from viewer.window.panels import dialogs, loading, log, picture, presets, status, tour
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
+Step = Callable[[str, Callable[[], object]], object]
 Runner = Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None]
 WINDOW_SIZE = (1440, 900)
 SMALLEST_SIZE = (240, 160)
@@ -51,6 +51,37 @@ SETTLED = 4  # frames of a new window until it and its panels have taken their p
 ACTIVE = 0.25  # seconds after an event until nothing happens
 TOO_MANY_LOSSES = "the window is closed, as {cause}, again and again; settings are saved"
 DRAWN_BY_PROCESSOR = ("llvmpipe", "softpipe", "swrast", "software")
+
+
+def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, work: work()) -> None:
+    """Bring all that has no widgets one frame of the window further, in this order.
+
+    `size` is what there is room for in the picture's window, in pixels (0 if hidden); `step` does a piece of work of
+    this name, so that a mistake in one ends no other."""
+    # What threads have finished.
+    step("Showing a scene that was read", c.take_scene)
+    step("Reloading what has changed", c.watcher.reload_changed)
+    step("Saving files", c.captures.report_saved)
+    step("Saving pictures", c.pictures.report_done)
+    step("Quitting once all is saved", c.questions.leave_when_saved)
+    step("Taking the newest frame", c.take_frame)
+    step("Previewing the scene", lambda: c.preview.update(traced=c.frame is not None))
+    # The state: time, camera, edits, and the steps of undo.
+    step("Moving", c.move)
+    step("Noting what can be undone", c.undo.follow)
+    step("Editing the scene", c.apply_edits)
+    step("Comparing", c.comparing.end_beside_wipe)
+    # The scheduler: queries about the newest frame are answered before the next.
+    step("Inspecting the pixel", c.inspect_pixel)
+    step("Listing the scene", c.list_scene)
+    step("Compiling the method", c.compile_method)
+    step("Asking for the next frame", lambda: c.scheduler.request(c.frame_inputs(size)))
+    step("Recording the light", c.record_light)
+    # What the newest frame is kept for.
+    step("Keeping the frame", c.keep_frame)
+    step("Selecting where one went", lambda: c.navigator.select_when_shown(c.traced))
+    step("Measuring speed", c.measure)
+    step("Saving preferences", c.keep_preferences)
 
 
 class App:
@@ -72,7 +103,7 @@ class App:
         self.ui = Ui(self.controller)
         self.ui.guard = Guard(self.controller.notices, lambda name, fault: log.instead_of_part(self.ui, name, fault))
         self.ui.take_commands(commands.build(self.ui))
-        self.ui.paste_from, self.ui.copy_to = imgui.get_clipboard_text, imgui.set_clipboard_text
+        self.ui.desktop.paste, self.ui.desktop.copy = imgui.get_clipboard_text, imgui.set_clipboard_text
         self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
         self.meshes = meshes
         self.scene, self.on_frame = scene, on_frame
@@ -80,13 +111,14 @@ class App:
         self.layout_file = LayoutFile(config_folder())
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
-        self.ui.request_exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
-        self.ui.restart_graphics = lambda: setattr(self.context_loss, "cause", "graphics were restarted")
+        self.ui.desktop.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
+        self.ui.desktop.restart_graphics = lambda: setattr(self.context_loss, "cause", "graphics were restarted")
         if preferences.tour:
             preferences.tour = False  # on the first start only; the menu Help has it again
             self.ui.tour.start()
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
+        self._dropped_files: list[Path] = []
         self.drawn_by_processor = self.iconified = self.was_open = self._opened = self._ended = False
         self.context_loss = ContextLoss()
         self._room = (0, 0)
@@ -139,68 +171,68 @@ class App:
     # --- one frame -------------------------------------------------------------------------------
 
     def before_widgets(self) -> None:
-        """Everything but the widgets: input of the last frame, threads, GL."""
+        """Bring the state forward by the input of the last frame, ask for frames, and draw the newest."""
         self._frame_began = time.perf_counter()
         if self.context_loss.is_lost():
             self.params.app_shall_exit = True  # another window is opened then
             return
-        self._follow_style()
-        style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
-        step = self.ui.guard.step
-        step("Full screen", self.ui.full_screen.apply)
+        ui, step, draws = self.ui, self.ui.guard.step, self._draws
+        step("Setting the theme", self._set_theme)
+        step("Full screen", ui.full_screen.apply)
         step("Opening dropped files", self._open_dropped)
-        step("Following the scene", lambda: self.controller.tick(self._room_for_picture()))
-        step("The script's function", self._tell)
-        self._draws("Drawing the picture", lambda: graphics.draw(self.ui))
-        self._draws("Drawing the preview", lambda: graphics.draw_preview(self.ui))
-        self._draws("Drawing recorded pictures", self._bring_shots)
-        self._draws("Saving the picture", self._capture_picture)
-        self._stay_awake()
+        advance(self.controller, self._room_for_picture(), step)
+        step("The script's function", self._call_script)
+        draws("Drawing the picture", lambda: graphics.draw(ui))
+        draws("Drawing the preview", lambda: graphics.draw_preview(ui))
+        draws("Drawing recorded pictures", lambda: ui.graphics.shots.bring() if ui.graphics.shots is not None else None)
+        draws("Saving the picture", self._capture_picture)
+        self._set_frame_rate()
 
     def widgets(self) -> None:
-        """What is not a docked panel: keys, and what lies over the panels."""
+        """Draw what is no docked panel, and read the keys."""
+        ui, step, overlay = self.ui, self.ui.guard.step, self.ui.guard.overlay
         style.fill_windows(True)
-        step, overlay = self.ui.guard.step, self.ui.guard.overlay
-        step("The layout", self.layout.follow)
-        overlay("The strip of folded panels", lambda: strip.show(self.ui), lambda: setattr(self.ui.fold, "drawer", ""))
-        step("Reading the keys", lambda: menus.handle_keys(self.ui))
-        step("Flying", lambda: picture.fly(self.ui))
-        step("Comparing", lambda: comparing.follow_key(self.ui))
-        overlay("The progress of loading", lambda: loading.show(self.ui))
-        dialogs.show(self.ui)
-        overlay("The tour", lambda: tour.show(self.ui), self.ui.tour.end)
-        overlay("The notice", lambda: log.show_fault(self.ui), self.controller.notices.dismiss_faults)
+        step("The layout", self.layout.update)
+        overlay("The strip of folded panels", lambda: show_strip(ui), lambda: setattr(ui.fold, "drawer", ""))
+        step("Reading the keys", lambda: menus.handle_keys(ui))
+        step("Flying", lambda: picture.fly(ui))
+        step("Comparing", lambda: comparing.read_key(ui))
+        overlay("The progress of loading", lambda: loading.show(ui))
+        dialogs.show(ui)
+        overlay("The tour", lambda: tour.show(ui), ui.tour.end)
+        overlay("The notice", lambda: log.show_fault(ui), self.controller.notices.dismiss_faults)
 
     def after_widgets(self) -> None:
-        """The window is drawn but not yet shown."""
+        """Finish a frame that is drawn but not yet shown."""
         self._draws("Saving the window", self._capture_window)
         self.controller.undo.held = imgui.is_any_item_active()
         self.controller.drawn_seconds = time.perf_counter() - self._frame_began
 
-    # --- the steps -------------------------------------------------------------------------------
+    # --- its steps --------------------------------------------------------------------------------
+
+    def _set_theme(self) -> None:
+        p = self.controller.preferences
+        if style.update(p.theme, p.ui_scale):
+            self.params.imgui_window_params.background_color = style.BACKGROUND
+        style.fill_windows(False)  # not the one that panels are docked in, which begins before `widgets`
 
     def _open_dropped(self) -> None:
-        dropped, self.ui.dropped = self.ui.dropped, []
+        dropped, self._dropped_files = self._dropped_files, []
         if len(dropped) > 1:
             self.controller.notices.say(f"{len(dropped)} files were dropped; only {dropped[0].name} is opened")
         if dropped:
             self.controller.loader.open(dropped[0])
-
-    def _follow_style(self) -> None:
-        p = self.controller.preferences
-        if style.follow(p.theme, p.ui_scale):
-            self.params.imgui_window_params.background_color = palette.BACKGROUND
 
     def _room_for_picture(self) -> tuple[int, int]:
         size = imgui.get_io().display_size
         if self.iconified or min(size.x, size.y) < 1:
             return 0, 0
         if imgui.get_frame_count() >= SETTLED:
-            self._room = self.ui.picture_area
+            self._room = self.ui.picture.area
         return self._room
 
     def _draws(self, name: str, work: Callable[[], None]) -> None:
-        """A step that uses GL: what fails as the context is lost is no fault, as another window comes."""
+        """Do a step that uses GL: what fails as the context is lost is no fault, as another window comes."""
 
         def unless_lost() -> None:
             try:
@@ -211,7 +243,7 @@ class App:
 
         self.ui.guard.step(name, unless_lost)
 
-    def _tell(self) -> None:
+    def _call_script(self) -> None:
         """Hand a whole picture to the script that opened the window, once; it closes the window by returning False."""
         traced = self.controller.traced
         if self.on_frame is None or traced is None or not traced.whole or traced.frame is self._told:
@@ -220,10 +252,6 @@ class App:
         if self.on_frame(traced.frame) is False:
             self._exit()
 
-    def _bring_shots(self) -> None:
-        if self.ui.shots is not None:
-            self.ui.shots.bring()
-
     def _capture_picture(self) -> None:
         graphics.capture(self.ui)
         if self.ui.capture_wanted is CaptureKind.WINDOW:
@@ -231,12 +259,12 @@ class App:
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
 
     def _capture_window(self) -> None:
-        if self._capture_this_frame and self.ui.display is not None:
+        if self._capture_this_frame and self.ui.graphics.display is not None:
             self._capture_this_frame = False
             size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
-            self.controller.captures.capture(self.controller.frame, self.ui.display.read_window(*size))
+            self.controller.captures.capture(self.controller.frame, self.ui.graphics.display.read_window(*size))
 
-    def _stay_awake(self) -> None:
+    def _set_frame_rate(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
         idling = self.params.fps_idling
         lively = self.controller.motion.lively or self.controller.comparing.blinks()
@@ -257,7 +285,7 @@ class App:
         window.show_menu_bar = window.show_status_bar = True
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
         window.remember_theme = window.remember_status_bar_settings = False
-        window.background_color = palette.BACKGROUND
+        window.background_color = style.BACKGROUND
         params.renderer_backend_options.open_gl_options = hello_imgui.OpenGlOptions(
             glsl_version="330", major_version=3, minor_version=3, use_core_profile=True, use_forward_compat=True,
             anti_aliasing_samples=0,  # text and widgets are smooth by themselves
@@ -280,17 +308,17 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(self.ui, {menus.PANELS_MENU: self.layout.menu})
+        menus.show(self.ui, {menus.PANELS_MENU: self.layout.menu}, {"Edit/Presets": lambda: presets.menu(self.ui)})
 
     def _ready(self) -> None:
         """The window and its GL context exist."""
         self.was_open, self.iconified = True, False
         self.context_loss.watch()
         graphics.make(self.ui)
-        self.drawn_by_processor = any(name in self.ui.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
+        self.drawn_by_processor = any(name in self.ui.graphics.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
             self.params.fps_idling.fps_max = FASTEST_BY_PROCESSOR
-        self.controller.wake = hello_imgui.request_refresh
+        self.controller.wake.connect(hello_imgui.request_refresh)
         window = glfw_utils.glfw_window_hello_imgui()
         # While a window of few pixels grows, ImGui can take its growth for density, and has no room for such letters.
         glfw.set_window_size_limits(window, *SMALLEST_SIZE, glfw.DONT_CARE, glfw.DONT_CARE)
@@ -314,18 +342,18 @@ class App:
     def _close_wanted(self, window: Any) -> None:
         """The window's close button, or the desktop: the same as the command."""
         glfw.set_window_should_close(window, False)
-        self.ui.guard.step("Quitting", self.ui.request_exit)
+        self.ui.guard.step("Quitting", self.ui.desktop.exit)
 
     def _iconify(self, _window: Any, iconified: int) -> None:
         self.iconified = bool(iconified)
 
     def _dropped(self, _window: Any, paths: list[str]) -> None:
-        self.ui.dropped = [Path(p) for p in paths]
+        self._dropped_files = [Path(p) for p in paths]
         hello_imgui.request_refresh()
 
     def _release(self) -> None:
         self._place = self.ui.full_screen.end()
-        self.controller.wake = lambda: None  # threads may still be at work when the window is gone
+        self.controller.wake.connect(None)  # threads may still be at work when the window is gone
         graphics.release(self.ui)
 
     def _exit(self) -> None:

@@ -6,13 +6,11 @@ reads them.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
-from imgui_bundle import imgui
-
-from viewer.state.keymap import MODIFIERS
+from viewer.services.controller import Controller
 
 MENUS = ("File", "Edit", "View", "Picture", "Compare", "Camera", "Time", "Culling", "Run", "Help")
 
@@ -69,39 +67,14 @@ class Command:
         return (self.key, *self.other_keys) if self.key else ()
 
 
-def chord(key: str) -> int:
-    """ImGui's number of a key as it is shown, e.g. "Shift+F12"; raises ValueError for an unknown one."""
-    *modifiers, name = key.split("+")
-    number = 0
-    for modifier in modifiers:
-        number |= int(getattr(imgui.Key, f"mod_{modifier.lower()}"))
-    spelled = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
-    found = getattr(imgui.Key, f"_{name}" if name.isdigit() else spelled, None)
-    if found is None:
-        raise ValueError(f"no key is called {key!r}")
-    return number | int(found)
+def switch(name: str, menu: str, holder: Any, attribute: str, key: str = "", **more: Any) -> Command:
+    """A command that turns an attribute of an object on and off."""
+    return Command(
+        name, menu, lambda: setattr(holder, attribute, not getattr(holder, attribute)), key,
+        checked=lambda: bool(getattr(holder, attribute)), **more,
+    )  # fmt: skip
 
 
-def is_key(key: str) -> bool:
-    """Whether a key of this name exists, with modifiers that exist."""
-    *modifiers, name = key.split("+")
-    try:
-        chord(name)
-    except (ValueError, AttributeError, TypeError):
-        return False
-    return set(modifiers) <= set(MODIFIERS)
-
-
-def key_label(key: str) -> str:
-    """A key as the user reads it."""
-    *modifiers, name = key.split("+")
-    return "+".join([*modifiers, _SHOWN.get(name) or re.sub(r"^Keypad", "Keypad ", name)])
-
-
-_SHOWN = {
-    "RightArrow": "Right", "LeftArrow": "Left", "UpArrow": "Up", "DownArrow": "Down", "Equal": "+", "Minus": "-",
-    "Comma": ",", "Period": ".", "Slash": "/", "Semicolon": ";", "Apostrophe": "'", "LeftBracket": "[",
-    "RightBracket": "]", "Backslash": "\\", "GraveAccent": "`", "PageUp": "Page up", "PageDown": "Page down",
-    "KeypadAdd": "Keypad +", "KeypadSubtract": "Keypad -", "KeypadMultiply": "Keypad *", "KeypadDivide": "Keypad /",
-    "KeypadDecimal": "Keypad .", "KeypadEnter": "Keypad Enter", "Oem102": "<",
-}  # fmt: skip
+def scene_open(c: Controller) -> Condition:
+    """That there is a scene."""
+    return Condition(lambda: c.session.scene is not None, "no scene is open")

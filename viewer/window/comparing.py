@@ -31,7 +31,7 @@ Words = tuple[Frame, Callable[[int, int], tuple[str, ...]]]
 Seen = tuple[Side, Side, Way]
 
 
-def follow_key(ui: Ui) -> None:
+def read_key(ui: Ui) -> None:
     """While the key is held, A is seen."""
     io, state = imgui.get_io(), ui.controller.comparing.state
     free = not (io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or io.key_shift)
@@ -40,7 +40,7 @@ def follow_key(ui: Ui) -> None:
 
 def draw(ui: Ui, look: Look) -> None:
     """Bring to the GPU what is to be seen besides the live picture, which is drawn with this look."""
-    c, compared = ui.controller, ui.compared
+    c, compared = ui.controller, ui.graphics.compared
     if compared is None:
         return
     sides = c.comparing.sides
@@ -63,7 +63,7 @@ def _look_of_a(ui: Ui, look: Look, a: Side, b: Side) -> Look:
 
 def shown(ui: Ui) -> Seen | None:
     """A, B and the way in which both are seen now; None where only B is."""
-    c, compared = ui.controller, ui.compared
+    c, compared = ui.controller, ui.graphics.compared
     sides = c.comparing.sides
     if sides is None or compared is None:
         return None
@@ -92,31 +92,34 @@ def marked(ui: Ui) -> tuple[Spot, ...]:
 
 def shows_a(ui: Ui) -> bool:
     """Whether it is A alone that is seen, of the ways that show one at a time or while the key is held."""
-    state, compared = ui.controller.comparing.state, ui.compared
+    state, compared = ui.controller.comparing.state, ui.graphics.compared
     there = compared is not None and compared.a_texture is not None and shown(ui) is not None
     return there and state.shows_a(time.monotonic()) and state.way is not Way.SIDE
 
 
 def filling(ui: Ui) -> Display | SignedDifference | None:
     """What fills the picture: B, or A, or their difference; A's part of a wipe is drawn over it."""
-    seen, compared = shown(ui), ui.compared
+    seen, compared = shown(ui), ui.graphics.compared
     if seen is None or compared is None:
-        return ui.display
+        return ui.graphics.display
     if shows_a(ui):
         return compared.a
-    return compared.difference if seen[2] is Way.DIFFERENCE else ui.display
+    return compared.difference if seen[2] is Way.DIFFERENCE else ui.graphics.display
 
 
 def magnify(ui: Ui, look: Look) -> None:
     """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
-    magnifier, size = ui.magnifier, ui.picture_size
+    magnifier, size = ui.graphics.magnifier, ui.picture.size
     if magnifier is None or min(size) < 1:
         return
     seen = shown(ui)
     beside = seen is not None and seen[2] in (Way.SIDE, Way.WIPE) and not shows_a(ui)
-    for name, drawn in ((PICTURE, filling(ui)), (OF_A, ui.compared.a if beside and ui.compared is not None else None)):
+    for name, drawn in (
+        (PICTURE, filling(ui)),
+        (OF_A, ui.graphics.compared.a if beside and ui.graphics.compared is not None else None),
+    ):
         picture = drawn.picture if drawn is not None else None
-        of_a = seen is not None and ui.compared is not None and drawn is ui.compared.a
+        of_a = seen is not None and ui.graphics.compared is not None and drawn is ui.graphics.compared.a
         view = seen[0].view if seen is not None and of_a else look.view
         smooth = look.smooth and view.is_smooth and not isinstance(drawn, SignedDifference)
         enlarged = picture is not None and (size[0] > picture.size[0] or not ui.controller.session.zoom.fits)
@@ -163,7 +166,7 @@ def words(ui: Ui, side: Side | None = None) -> Words | None:
 
 def composed(ui: Ui, b: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """The picture to save: B as it was drawn, (h, w, 3) uint8, and what is compared with it."""
-    seen, compared = shown(ui), ui.compared
+    seen, compared = shown(ui), ui.graphics.compared
     if seen is None or compared is None:
         return b
     alone = shows_a(ui)

@@ -1,16 +1,18 @@
-"""The command palette's mind: what can be found, what was typed, and what of it is meant."""
+"""The command palette without a window: what can be found, what was typed, and what of it is meant."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
-from viewer.state.fuzzy import match, nearly
+from rapidfuzz import fuzz
 
 RECENT_BONUS = 15.0
 """For what was run last; less for what was run before."""
 _OTHER_KINDS = 4.0  # which a command goes before, where both fit alike
+_EXACT, _WHOLE, _PREFIX, _INITIALS, _INSIDE, _ELSEWHERE = 25.0, 100.0, 80.0, 60.0, 50.0, 30.0
+_MISTYPED, _ALIKE = -1000.0, 75.0  # to which is added how alike the words are, of 100, and that is at least so much
 
 
 class Kind(Enum):
@@ -45,69 +47,73 @@ class Item:
     hint: str = ""
 
 
-@dataclass(frozen=True)
-class Found:
-    """An item, and the places of the letters in its label that were typed."""
+def match(typed: str, label: str, also: str = "") -> float | None:
+    """How well a label fits what was typed; words may also be found in `also`, for less.  None if one is in neither.
 
-    item: Item
-    places: tuple[int, ...] = ()
+    Words count as they stand, by their beginnings, as initials of the label's words, or, much less, mistyped."""
+    label, also = label.lower(), also.lower()
+    starts = [i for i, letter in enumerate(label) if letter.isalnum() and (i == 0 or not label[i - 1].isalnum())]
+    initials, words, score = "".join(label[i] for i in starts), typed.lower().split(), -0.1 * len(label)
+    for word in words:
+        at = label.find(word)
+        start = next((i for i in starts if label.startswith(word, i)), -1)
+        if start >= 0:
+            whole = not label[start + len(word) : start + len(word) + 1].isalnum()
+            score += (_WHOLE if whole else _PREFIX) - 0.05 * start
+        elif len(word) > 1 and initials.startswith(word):
+            score += _INITIALS
+        elif at >= 0:
+            score += _INSIDE - 0.05 * at
+        elif word in also:
+            score += _ELSEWHERE
+        else:
+            alike = fuzz.partial_ratio(word, label, score_cutoff=_ALIKE) if len(word) > 3 else 0.0
+            if not alike:
+                return None
+            score += _MISTYPED + alike
+    return score + (_EXACT if " ".join(words) == label else 0.0)
 
 
-def find(typed: str, items: Sequence[Item], used: Sequence[str]) -> list[Found]:
-    """What fits, best first; without a word typed all, what was used last first.  Where nothing fits, what is nearly
-    called so."""
+def find(typed: str, items: Sequence[Item], used: Sequence[str]) -> list[Item]:
+    """What fits, best first, or else what is nearly called so; without a word all, what was used last first."""
     rank = {name: place for place, name in enumerate(used)}
     if not typed.strip():
-        recent = sorted((item for item in items if item.name in rank), key=lambda item: rank[item.name])
-        return [Found(item) for item in (*recent, *(item for item in items if item.name not in rank))]
+        return sorted(items, key=lambda item: rank.get(item.name, len(rank)))
     scored = []
     for number, item in enumerate(items):
-        fits = match(typed, item.label, f"{item.path} {item.kind.value} {item.also}")
-        if fits is not None:
-            score = fits.score - (_OTHER_KINDS if item.kind is not Kind.COMMAND else 0.0)
+        score = match(typed, item.label, f"{item.path} {item.kind.value} {item.also}")
+        if score is not None:
+            score -= _OTHER_KINDS if item.kind is not Kind.COMMAND else 0.0
             score += RECENT_BONUS / (1.0 + rank[item.name]) if item.name in rank else 0.0
-            scored.append((-score, number, Found(item, fits.places)))
-    if not scored:
-        like = [(-nearly(typed, item.label), number, Found(item)) for number, item in enumerate(items)]
-        scored = [entry for entry in like if entry[0] < 0.0]
-    return [found for *_, found in sorted(scored, key=lambda entry: entry[:2])]
+            scored.append((-score, number))
+    as_typed = [entry for entry in scored if entry[0] < -0.5 * _MISTYPED]
+    return [items[number] for _, number in sorted(as_typed or scored)]
 
 
+@dataclass
 class Finder:
-    """`wanted` says that it is to be opened; `typed` is what is typed, `marked` the place of the line that Enter runs,
-    `setting` the setting whose value is being typed, `problem` what is wrong with that."""
+    """`typed` is what is typed, `marked` the place of the line that Enter runs, which the list scrolls to where it has
+    `moved`, `setting` the setting whose value is being typed, `problem` what is wrong with that; a `fresh` line takes
+    the keyboard."""
 
-    def __init__(self) -> None:
-        self.wanted = False
-        self.items: list[Item] = []
-        self.found: list[Found] = []
-        self.typed = ""
-        self.marked = 0
-        self.setting: Item | None = None
-        self.problem = ""
-        self.moved = True
-        self.fresh = True
-        self._sought: tuple[str, tuple[str, ...]] | None = None
+    found: list[Item] = field(default_factory=list)
+    typed: str = ""
+    marked: int = 0
+    setting: Item | None = None
+    problem: str = ""
+    moved: bool = True
+    fresh: bool = True
 
     def begin(self) -> None:
         """Open it, empty."""
-        self.wanted, self.typed, self.marked, self.setting, self.problem = True, "", 0, None, ""
+        self.typed, self.marked, self.setting, self.problem = "", 0, None, ""
         self.moved = self.fresh = True
-        self._sought = None
 
-    def follow(self, items: list[Item], used: Sequence[str]) -> None:
-        """Take up how all items are now; they are searched again only where something else is typed."""
-        self.items = items
-        names = (self.typed, tuple(item.name for item in items))
-        if self.setting is not None:
-            return
-        if names != self._sought:
-            self._sought = names
+    def update(self, items: Sequence[Item], used: Sequence[str]) -> None:
+        """Find what is typed among all items, as they are now."""
+        if self.setting is None:
             self.found = find(self.typed, items, used)
             self.marked = min(self.marked, max(0, len(self.found) - 1))
-        else:
-            now = {item.name: item for item in items}
-            self.found = [Found(now[f.item.name], f.places) for f in self.found]
 
     def type(self, text: str) -> None:
         """Another text stands in the line."""
@@ -124,15 +130,14 @@ class Finder:
     @property
     def aimed(self) -> Item | None:
         """What Enter would run."""
-        return self.found[self.marked].item if self.setting is None and self.marked < len(self.found) else None
+        return self.found[self.marked] if self.setting is None and self.marked < len(self.found) else None
 
     def enter(self, item: Item | None) -> Callable[[], None] | None:
         """Take an item, or the value that was typed for one; returns what is to be run now that it closes, None while
         it stays open."""
         if self.setting is not None:
-            taking = self.setting
-            self.problem = taking.take(self.typed) if taking.take is not None else ""
-            return None if self.problem else _nothing
+            self.problem = self.setting.take(self.typed) if self.setting.take is not None else ""
+            return None if self.problem else lambda: None
         if item is None:
             return None
         if not item.enabled:
@@ -142,7 +147,3 @@ class Finder:
             self.setting, self.typed, self.problem, self.fresh = item, item.value, "", True
             return None
         return item.run
-
-
-def _nothing() -> None:
-    pass

@@ -27,33 +27,26 @@ PREVIEW_UPLOAD_SECONDS = 0.01
 
 def make(ui: Ui) -> None:
     """Make all that a new context needs."""
-    ui.display = Display()
-    ui.shots = Shots(ui.display.context)
-    ui.compared = Compared(ui.display.passes)
-    ui.magnifier = Magnifier(ui.display.passes)
-    ui.renderer_name = ui.display.context.info["GL_RENDERER"]
+    ui.graphics.display = Display()
+    ui.graphics.shots = Shots(ui.graphics.display.context)
+    ui.graphics.compared = Compared(ui.graphics.display.passes)
+    ui.graphics.magnifier = Magnifier(ui.graphics.display.passes)
+    ui.graphics.renderer_name = ui.graphics.display.context.info["GL_RENDERER"]
 
 
 def release(ui: Ui) -> None:
     """Free all of it, before the context goes."""
-    if ui.compared is not None:
-        ui.compared.release()
-        ui.compared = None
-    if ui.magnifier is not None:
-        ui.magnifier.release()
-        ui.magnifier = None
     release_preview(ui)
-    if ui.display is not None:
-        ui.display.release()
-        ui.display = None
-    if ui.shots is not None:
-        ui.shots.release()
-        ui.shots = None
+    gl = ui.graphics
+    for part in (gl.compared, gl.magnifier, gl.display, gl.shots):
+        if part is not None:
+            part.release()
+    gl.compared = gl.magnifier = gl.display = gl.shots = None
 
 
 def draw(ui: Ui) -> None:
     """Bring a new frame to the GPU, and draw the view if anything about it has changed."""
-    display, c = ui.display, ui.controller
+    display, c = ui.graphics.display, ui.controller
     if display is None:
         return
     display.show(c.frame)
@@ -73,39 +66,39 @@ def draw_preview(ui: Ui) -> None:
 
     A geometry that failed to be drawn is not tried again in this window."""
     geometry = ui.controller.preview.geometry
-    if ui.display is None or geometry is None:
+    if ui.graphics.display is None or geometry is None:
         release_preview(ui)
-    elif ui.not_previewed is not geometry:
+    elif ui.graphics.not_previewed is not geometry:
         try:
-            _draw_preview(ui, ui.display, geometry)
+            _draw_preview(ui, ui.graphics.display, geometry)
         except Exception:
             release_preview(ui)
-            ui.not_previewed = geometry
+            ui.graphics.not_previewed = geometry
             raise
 
 
 def release_preview(ui: Ui) -> None:
     """Free what the preview took; whatever comes next is tried."""
-    if ui.preview is not None:
-        ui.preview.release()
-    ui.preview = ui.not_previewed = None
+    if ui.graphics.preview is not None:
+        ui.graphics.preview.release()
+    ui.graphics.preview = ui.graphics.not_previewed = None
 
 
 def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
     c = ui.controller
-    if ui.preview is None or ui.preview.geometry is not geometry:
+    if ui.graphics.preview is None or ui.graphics.preview.geometry is not geometry:
         release_preview(ui)
-        ui.preview = PreviewDisplay(display.context, geometry)
-    width, height = ui.picture_area
+        ui.graphics.preview = PreviewDisplay(display.context, geometry)
+    width, height = ui.picture.area
     if min(width, height) < 1:
         return
     window = display.context.detect_framebuffer()
     try:
         until = time.perf_counter() + PREVIEW_UPLOAD_SECONDS
-        while ui.preview.bring() and time.perf_counter() < until:
+        while ui.graphics.preview.bring() and time.perf_counter() < until:
             pass
-        if ui.preview.whole:
-            ui.preview.draw(c.session.camera, (width, height), hurried=c.motion.under_way)
+        if ui.graphics.preview.whole:
+            ui.graphics.preview.draw(c.session.camera, (width, height), hurried=c.motion.under_way)
         else:
             c.wake()
     finally:
@@ -117,21 +110,21 @@ def look_of(ui: Ui, selected: int = -1) -> Look:
     """How the view is to be drawn, with an outline around a primitive unless it is -1."""
     c, p = ui.controller, ui.controller.preferences
     return Look(
-        view=c.tracing.drawn_view,
+        view=c.scheduler.drawn_view,
         light=c.session.light,
         shading=p.shading,
         outlines=p.outlines,
         selected=selected,
         smooth=p.smooth_upscaling and c.session.zoom.fits,
         marked=p.mark_wrong,
-        magnified=c.tracing.magnified,
+        magnified=c.scheduler.magnified,
         wipe=c.session.wipe,
-        line=not c.tracing.becoming_finer,
+        line=not c.scheduler.becoming_finer,
         shares=p.work_shares,
         beneath=p.beneath,
         tone=c.session.tone,
         clipping=c.session.clipping,
-        span=c.comparing.span(c.tracing.drawn_view),
+        span=c.comparing.span(c.scheduler.drawn_view),
         cut=c.session.cut,
     )
 
@@ -140,21 +133,21 @@ def capture(ui: Ui) -> None:
     """Save the picture, or copy it, if that was asked for and it has come; where it will not come, say why."""
     c, wanted = ui.controller, ui.capture_wanted
     if wanted not in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD):
-        ui.capture_view = None
+        ui.graphics.capture_view = None
         return
-    view = ui.capture_view = ui.capture_view or c.session.view
+    view = ui.graphics.capture_view = ui.graphics.capture_view or c.session.view
     why = _why_none(c) if view is c.session.view else "another view was chosen before it came"
     if why:
-        ui.capture_wanted = ui.capture_view = None
+        ui.capture_wanted = ui.graphics.capture_view = None
         c.notices.say(f"no picture of the view {view.label}: {why}", error=True)
         return
-    shown = c.tracing.drawn_view is c.session.view
-    ready = shown and not c.tracing.becoming_finer  # else the picture is saved when it has come
-    if ui.display is not None and ready:
-        ui.capture_wanted = ui.capture_view = None
+    shown = c.scheduler.drawn_view is c.session.view
+    ready = shown and not c.scheduler.becoming_finer  # else the picture is saved when it has come
+    if ui.graphics.display is not None and ready:
+        ui.capture_wanted = ui.graphics.capture_view = None
         look = look_of(ui, selected=-1)  # the mark is for the user, not for the picture
-        ui.display.draw(look)
-        pixels = ui.display.read() if ui.display.drawn(look) else None
+        ui.graphics.display.draw(look)
+        pixels = ui.graphics.display.read() if ui.graphics.display.drawn(look) else None
         compared = pixels is not None and comparing.shown(ui) is not None
         if pixels is not None and compared:
             pixels = comparing.composed(ui, pixels)
@@ -172,11 +165,11 @@ def capture(ui: Ui) -> None:
 def _why_none(c: Controller) -> str:
     """Why there is no picture in the chosen view, and none is on its way; nothing where there is, or may be."""
     frame, view, run = c.frame, c.session.view, c.runs.current
-    if frame is None or c.tracing.drawn_view is view:
+    if frame is None or c.scheduler.drawn_view is view:
         return ""
     if run is not None and (lacks := run.lacks(view)):
         return f"the {run.name} {lacks}"
-    if run is None and (c.tracing.awaits or c.renderer.busy):
+    if run is None and (c.scheduler.awaits or c.renderer.busy):
         return ""
     found = missing(view, frame, c.preferences.work_shares)
     return found.text if found is not None else ""

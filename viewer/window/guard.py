@@ -12,7 +12,7 @@ from collections.abc import Callable
 from imgui_bundle import imgui, implot
 
 from viewer.state.notices import Entry, Notices
-from viewer.util.failures import failure
+from viewer.util.messages import failure
 
 
 class Guard:

@@ -6,6 +6,7 @@ ImGui knows a letter by what is printed on its key.  A key without Ctrl, Alt or 
 
 from __future__ import annotations
 
+import re
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable
@@ -14,8 +15,7 @@ from imgui_bundle import glfw_utils, imgui
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
-from viewer.state.keymap import is_place
-from viewer.window.command import chord, key_label
+from viewer.state.keymap import HELD, MODIFIERS, Keymap, is_place
 
 EVERY = 1.0
 """Seconds after which a keyboard may have got another layout."""
@@ -31,11 +31,50 @@ PLACES = {
 """GLFW's number of each place where something is printed."""
 _MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Alt": imgui.Key.mod_alt, "Super": imgui.Key.mod_super,
               "Shift": imgui.Key.mod_shift}  # fmt: skip
+_CHORD = int(imgui.Key.mod_ctrl) | int(imgui.Key.mod_alt) | int(imgui.Key.mod_super)
 _OTHERS = (
     *(f"F{n}" for n in range(1, 25)), *(f"Keypad{n}" for n in range(10)), "KeypadAdd", "KeypadSubtract",
     "KeypadMultiply", "KeypadDivide", "KeypadDecimal", "KeypadEnter", "Space", "Tab", "Enter", "Backspace", "Delete",
     "Insert", "Home", "End", "PageUp", "PageDown", "LeftArrow", "RightArrow", "UpArrow", "DownArrow", "Oem102",
 )  # fmt: skip
+
+
+def chord(key: str) -> int:
+    """ImGui's number of a key as it is shown, e.g. "Shift+F12"; raises ValueError for an unknown one."""
+    *modifiers, name = key.split("+")
+    number = 0
+    for modifier in modifiers:
+        number |= int(getattr(imgui.Key, f"mod_{modifier.lower()}"))
+    spelled = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+    found = getattr(imgui.Key, f"_{name}" if name.isdigit() else spelled, None)
+    if found is None:
+        raise ValueError(f"no key is called {key!r}")
+    return number | int(found)
+
+
+def is_key(key: str) -> bool:
+    """Whether a key of this name exists, with modifiers that exist."""
+    *modifiers, name = key.split("+")
+    try:
+        chord(name)
+    except (ValueError, AttributeError, TypeError):
+        return False
+    return set(modifiers) <= set(MODIFIERS)
+
+
+def key_label(key: str) -> str:
+    """A key as the user reads it."""
+    *modifiers, name = key.split("+")
+    return "+".join([*modifiers, _SHOWN.get(name) or re.sub(r"^Keypad", "Keypad ", name)])
+
+
+_SHOWN = {
+    "RightArrow": "Right", "LeftArrow": "Left", "UpArrow": "Up", "DownArrow": "Down", "Equal": "+", "Minus": "-",
+    "Comma": ",", "Period": ".", "Slash": "/", "Semicolon": ";", "Apostrophe": "'", "LeftBracket": "[",
+    "RightBracket": "]", "Backslash": "\\", "GraveAccent": "`", "PageUp": "Page up", "PageDown": "Page down",
+    "KeypadAdd": "Keypad +", "KeypadSubtract": "Keypad -", "KeypadMultiply": "Keypad *", "KeypadDivide": "Keypad /",
+    "KeypadDecimal": "Keypad .", "KeypadEnter": "Keypad Enter", "Oem102": "<",
+}  # fmt: skip
 
 
 def printed_there(key: int) -> str | None:
@@ -49,7 +88,8 @@ def held_there(key: int) -> bool:
 
 
 class Keyboard:
-    """As a US keyboard until `follow` is called."""
+    """As a US keyboard until `update` is called.  `wanted_for` is the command that waits for a key to be pressed,
+    `modifiers` are those that are held, `chorded` the names in HELD whose keys are down as part of a chord."""
 
     def __init__(
         self, printed: Callable[[int], str | None] = printed_there, held: Callable[[int], bool] = held_there
@@ -59,8 +99,11 @@ class Keyboard:
         self._letters: dict[str, str] = {}
         self._chords: dict[str, int] = {}
         self._shared: set[int] = set()
+        self.wanted_for = ""
+        self.modifiers = 0
+        self.chorded: set[str] = set()
 
-    def follow(self) -> None:
+    def update(self) -> None:
         """Look what is printed where, now and then."""
         now = time.monotonic()
         if now - self._looked < EVERY:
@@ -117,6 +160,18 @@ class Keyboard:
             if imgui.is_key_pressed(imgui.Key(number), repeat=False) and self.is_meant(prefix + name):
                 return prefix + name
         return None
+
+    def update_modifiers(self, keymap: Keymap) -> int:
+        """Take up which modifiers are held, once a frame; returns those that were held until now, or else are now.
+
+        A chord that is quickly pressed and let go may be spread over two frames: first Ctrl goes down, then the letter
+        goes down and Ctrl up.  So a modifier counts for one frame longer than it is held, and a key that steers and
+        went down with one steers only once it was let go."""
+        held, before = int(imgui.get_io().key_mods), self.modifiers
+        self.modifiers = held
+        down = {name for name in HELD if self.is_down(keymap.of(name))}
+        self.chorded = down if (held | before) & _CHORD else self.chorded & down
+        return held or before
 
     def _asked_for(self, name: str) -> str:
         """The name under which ImGui knows the key at a place: by what is printed there, as its GLFW backend says."""

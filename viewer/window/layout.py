@@ -8,21 +8,93 @@ keep their place in the docking, so that they come back as they were.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.window.panels import strip
-from viewer.window.panels.catalogue import PANELS, PICTURE, Panel
+from viewer.output.figure1 import TITLE
+from viewer.window.panels import (
+    camera,
+    compare,
+    culling,
+    experiment,
+    figure1,
+    filming,
+    find,
+    hunt,
+    inspector,
+    log,
+    picture,
+    pixels,
+    plots,
+    rendering,
+    saving,
+    scene,
+    statistics,
+    view,
+    what_if,
+    zoom,
+)
 from viewer.window.ui import Ui
-from viewer.window.widgets import em
+from viewer.window.widgets import clipped, em, tooltip
 
-SMALLEST = (
-    66.0,
-    38.0,
-)  # width and height in ems that leave room for docked panels, and their words, beside the picture
+PICTURE = "Picture"
+
+
+@dataclass(frozen=True)
+class Panel:
+    """`space` names a part of the docking; `wide` says that the panel is meant to be wider than high."""
+
+    label: str
+    space: str
+    icon: str
+    show: Callable[[Ui], None]
+    wide: bool = False
+
+
+PANELS = {
+    panel.label: panel
+    for panel in (
+        Panel(PICTURE, "MainDockSpace", icons.ICON_FA_IMAGE, picture.show),
+        Panel("Scene", "Left", icons.ICON_FA_CUBES, scene.show),
+        Panel("Camera", "Left", icons.ICON_FA_VIDEO, camera.show),
+        Panel("Statistics", "LeftBottom", icons.ICON_FA_CHART_COLUMN, statistics.show),
+        Panel("View", "Right", icons.ICON_FA_EYE, view.show),
+        Panel("Rendering", "Right", icons.ICON_FA_SLIDERS, rendering.show),
+        Panel("Saving", "Right", icons.ICON_FA_CAMERA, saving.show),
+        Panel("Culling", "RightMiddle", icons.ICON_FA_SCISSORS, culling.show),
+        Panel("Inspector", "RightBottom", icons.ICON_FA_MAGNIFYING_GLASS, inspector.show),
+        Panel("What if", "LeftBottom", icons.ICON_FA_WAND_MAGIC_SPARKLES, what_if.show),
+        Panel(TITLE, "Bottom", icons.ICON_FA_DIAGRAM_PROJECT, figure1.show, wide=True),
+        Panel("Plots", "Bottom", icons.ICON_FA_CHART_LINE, plots.show, wide=True),
+        Panel("Compare", "Bottom", icons.ICON_FA_CODE_COMPARE, compare.show, wide=True),
+        Panel("Pixels", "Bottom", icons.ICON_FA_BORDER_ALL, pixels.show, wide=True),
+        Panel("Find", "Bottom", icons.ICON_FA_TABLE_LIST, find.show, wide=True),
+        Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
+        Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),
+        Panel("Hunt", "Bottom", icons.ICON_FA_CROSSHAIRS, hunt.show, wide=True),
+        Panel("Film", "Bottom", icons.ICON_FA_FILM, filming.show, wide=True),
+        Panel("Log", "Bottom", icons.ICON_FA_LIST, log.show, wide=True),
+    )
+}
+
+SMALLEST = (66.0, 38.0)
+"""Width and height in ems that leave room for docked panels, and their words, beside the picture."""
 _NOTICED = 1.5  # pixels by which a panel's size must differ from its share to have been changed by the user
 _TABS_AFTER = 3  # frames that ImGui needs to make the tabs of panels that come back
+STRIP = 2.4
+"""Of the strip, in ems."""
+_DRAWER, _WIDE = 21.0, 44.0  # width of an open panel in ems; it leaves some of the picture to be seen
+_SHARE = 0.86  # of the room beside the strip, which an open panel takes at most
+_FLAGS = int(
+    imgui.WindowFlags_.no_title_bar
+    | imgui.WindowFlags_.no_resize
+    | imgui.WindowFlags_.no_move
+    | imgui.WindowFlags_.no_docking
+    | imgui.WindowFlags_.no_saved_settings
+)
 _KEY_OWNER = 0x5C011  # any number that no widget has
 
 
@@ -43,7 +115,7 @@ class Layout:
         docking.main_dock_space_node_flags = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button)
         docking.docking_splits = _splits()
         docking.dockable_windows = [self._window(panel) for panel in PANELS.values()]
-        ui.show_panel, ui.reset_layout = self.show, self.reset
+        ui.show_panel, ui.desktop.reset_layout = self.show, self.reset
         ui.panel_labels = tuple(label for label in PANELS if label != PICTURE)
 
     def go_on_from(self, other: Layout) -> None:
@@ -84,14 +156,14 @@ class Layout:
 
     # --- one frame -------------------------------------------------------------------------------
 
-    def follow(self) -> None:
+    def update(self) -> None:
         """Before the panels are drawn: fold them or unfold them, and keep their shares of the window."""
         fold = self._ui.fold
         room = imgui.get_main_viewport().work_size
         fold.folded = room.x < em(SMALLEST[0]) or room.y < em(SMALLEST[1])
         if not fold.folded:
             fold.drawer = ""
-        margin = ImVec2(strip.WIDTH if fold.folded and not fold.hidden else 0.0, 0.0)
+        margin = ImVec2(STRIP if fold.folded and not fold.hidden else 0.0, 0.0)
         self._params.imgui_window_params.full_screen_window_margin_bottom_right = margin
         self._keep_shares()
         self._keep_tabs()
@@ -228,3 +300,64 @@ def _in_main_window(label: str) -> bool:
     window = imgui.internal.find_window_by_name(label)
     root = window.root_window_dock_tree if window is not None else None
     return root is not None and root.name.startswith("MainDockSpace")
+
+
+def show_strip(ui: Ui) -> None:
+    """The strip, and beside it, over the picture, the panel that was opened by it; only where panels are folded."""
+    fold = ui.fold
+    if not fold.folded or fold.hidden:
+        return
+    area = imgui.get_main_viewport()
+    status = imgui.get_frame_height() + imgui.get_style().window_padding.y  # what the status bar takes
+    bottom = min(area.work_pos.y + area.work_size.y, area.pos.y + area.size.y - status)
+    top, right, height = area.work_pos.y, area.work_pos.x + area.work_size.x, bottom - area.work_pos.y
+    _strip(ui, ImVec2(right - em(STRIP), top), height)
+    panel = PANELS.get(fold.drawer)
+    if panel is None:
+        return
+    room = area.work_size.x - em(STRIP)
+    width = min(em(_WIDE if panel.wide else _DRAWER), _SHARE * room)
+    _drawer(ui, panel, ImVec2(right - em(STRIP) - width, top), ImVec2(width, height))
+
+
+def _strip(ui: Ui, at: ImVec2, height: float) -> None:
+    imgui.set_next_window_pos(at)
+    imgui.set_next_window_size(ImVec2(em(STRIP), height))
+    imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(em(0.25), em(0.25)))
+    imgui.begin("##strip", None, _FLAGS | int(imgui.WindowFlags_.no_scrollbar))
+    imgui.pop_style_var()
+    panels = [panel for panel in PANELS.values() if panel.label != PICTURE]
+    gap = em(0.15)
+    side = min(em(STRIP - 0.5), imgui.get_content_region_avail().y / len(panels) - gap)
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(gap, gap))
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.0, 0.0))
+    for panel in panels:
+        is_open = ui.fold.drawer == panel.label
+        slot = imgui.Col_.button_active if is_open else imgui.Col_.window_bg
+        imgui.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(slot))
+        if imgui.button(f"{panel.icon}##{panel.label}", ImVec2(em(STRIP - 0.5), side)):
+            ui.fold.drawer = "" if is_open else panel.label
+        imgui.pop_style_color()
+        tooltip(panel.label)
+    imgui.pop_style_var(2)
+    imgui.end()
+
+
+def _drawer(ui: Ui, panel: Panel, at: ImVec2, size: ImVec2) -> None:
+    imgui.set_next_window_pos(at)
+    imgui.set_next_window_size(size)
+    imgui.begin("##drawer", None, _FLAGS)
+    side = imgui.get_frame_height()
+    imgui.align_text_to_frame_padding()
+    imgui.text_unformatted(panel.icon)
+    imgui.same_line()
+    clipped(panel.label)
+    imgui.same_line(imgui.get_window_width() - side - em(0.55))
+    if imgui.button(icons.ICON_FA_XMARK, ImVec2(side, side)):
+        ui.fold.drawer = ""
+    tooltip("close (Escape)")
+    imgui.separator()
+    if imgui.begin_child(f"{panel.label}##in drawer"):
+        ui.guard.panel(f"The panel {panel.label}", lambda: panel.show(ui))
+    imgui.end_child()
+    imgui.end()

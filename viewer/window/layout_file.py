@@ -8,7 +8,7 @@ import re
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
-from viewer.util.part_files import part_file, part_name
+from viewer.util.files import part_file, part_name
 
 LAYOUT_FILE = "layout.ini"
 END = ";;;<<<SplitIds>>>;;;"
@@ -20,7 +20,7 @@ class LayoutFile:
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / LAYOUT_FILE
-        self.working_copy = part_name(self.path, "0" * 16)  # where none can be made: nobody reads or writes it
+        self.working_copy = part_name(self.path)  # where none can be made: nobody reads or writes it
         self._file = ExitStack()
         with suppress(OSError):  # then the layout is not remembered; saving the settings says why
             folder.mkdir(parents=True, exist_ok=True)

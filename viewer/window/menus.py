@@ -1,4 +1,4 @@
-"""Menus and keys, both made from the one list of commands, so that they cannot disagree."""
+"""Menus and keys, both made from the one list of commands, so that they cannot disagree; and what Escape closes."""
 
 from __future__ import annotations
 
@@ -7,40 +7,28 @@ from functools import partial
 
 from imgui_bundle import imgui
 
-from viewer.state.keymap import HELD
-from viewer.window import escape
 from viewer.window.command import MENUS, Command
 from viewer.window.ui import Ui
 from viewer.window.widgets import tooltip
 
 PANELS_MENU, ALL_MENUS = "Panels", "Menu"
-_CHORD = int(imgui.Key.mod_ctrl) | int(imgui.Key.mod_alt) | int(imgui.Key.mod_super)
+ANY_POPUP = int(imgui.PopupFlags_.any_popup_id) | int(imgui.PopupFlags_.any_popup_level)
 
 
 def handle_keys(ui: Ui) -> None:
     """Run the commands whose keys were just pressed, unless the user is typing or a dialog is up."""
-    # A chord that is quickly pressed and let go may be spread over two frames: first Ctrl goes down, then the
-    # letter goes down and Ctrl up. So a modifier counts for one frame longer than it is held.
-    ui.keyboard.follow()
-    held, before = int(imgui.get_io().key_mods), ui.modifiers
-    ui.modifiers = held
-    _follow_chords(ui, held | before)
-    if imgui.get_io().want_text_input or ui.key_wanted:
+    ui.keyboard.update()
+    modifiers = ui.keyboard.update_modifiers(ui.keymap)
+    if imgui.get_io().want_text_input or ui.keyboard.wanted_for:
         return
-    if imgui.is_key_pressed(imgui.Key.escape, repeat=False) and escape.close_newest(ui):
+    if imgui.is_key_pressed(imgui.Key.escape, repeat=False) and close_newest(ui):
         return
-    if imgui.is_popup_open("", escape.ANY_POPUP):
+    if imgui.is_popup_open("", ANY_POPUP):
         return
     for command in ui.commands:
         keys = ui.keymap.of(command.name)
-        if any(_pressed(ui, command, key, held or before) for key in keys) and command.enabled():
+        if any(_pressed(ui, command, key, modifiers) for key in keys) and command.enabled():
             run(ui, command)
-
-
-def _follow_chords(ui: Ui, modifiers: int) -> None:
-    """Remember which keys that steer are down as part of a chord: such a key steers only once it was let go."""
-    down = {name for name in HELD if ui.keyboard.is_down(ui.keymap.of(name))}
-    ui.chorded = down if modifiers & _CHORD else ui.chorded & down
 
 
 def run(ui: Ui, command: Command) -> None:
@@ -48,10 +36,13 @@ def run(ui: Ui, command: Command) -> None:
     ui.guard.step(f"The command {command.name}", command.run)
 
 
-def show(ui: Ui, others: Mapping[str, Callable[[], None]]) -> None:
-    """All menus of the menu bar, and `others` after them; within a single one where there is no room for their
-    names."""
-    contents: dict[str, Callable[[], None]] = {name: partial(_menu, ui, name) for name in MENUS}
+Contents = Mapping[str, Callable[[], None]]
+
+
+def show(ui: Ui, others: Contents, more: Contents) -> None:
+    """All menus of the menu bar, and `others` after them; within a single one where there is no room for their names.
+    Some menus, by their paths, have `more` after their commands."""
+    contents: dict[str, Callable[[], None]] = {name: partial(_menu, ui, name, more) for name in MENUS}
     contents |= others
     gap = imgui.get_style().item_spacing.x
     needed = sum(imgui.calc_text_size(name).x + 2.0 * gap for name in contents)
@@ -62,14 +53,14 @@ def show(ui: Ui, others: Mapping[str, Callable[[], None]]) -> None:
         imgui.end_menu()
 
 
-def _menus(contents: Mapping[str, Callable[[], None]]) -> None:
+def _menus(contents: Contents) -> None:
     for name, show_content in contents.items():
         if imgui.begin_menu(name):
             show_content()
             imgui.end_menu()
 
 
-def _menu(ui: Ui, path: str) -> None:
+def _menu(ui: Ui, path: str, more: Contents) -> None:
     """The commands of a menu, and the menus within it where the first of their commands stands."""
     inner: list[str] = []
     first = True
@@ -84,10 +75,9 @@ def _menu(ui: Ui, path: str) -> None:
                 imgui.separator()
             first = False
             if imgui.begin_menu(command.menu.removeprefix(f"{path}/")):
-                _menu(ui, command.menu)
-                more: Callable[[], None] | None = ui.more_in_menus.get(command.menu)
-                if more is not None:
-                    more()
+                _menu(ui, command.menu, more)
+                if command.menu in more:
+                    more[command.menu]()
                 imgui.end_menu()
 
 
@@ -111,3 +101,32 @@ def _menu_item(ui: Ui, command: Command, separated: bool) -> None:
         tooltip(command.tip)
     if clicked:
         run(ui, command)
+
+
+def close_newest(ui: Ui) -> bool:
+    """Close one menu, list, dialog or folded panel; returns whether there was one.
+
+    A dialog that has the keyboard to itself closes itself."""
+    if imgui.is_popup_open("", ANY_POPUP):
+        _close_list()
+    elif ui.tour.step is not None and ui.controller.frame is None:  # a window until there is a picture
+        ui.tour.end()
+    elif ui.dialogs:
+        ui.dialogs.pop()
+    elif ui.fold.drawer:
+        ui.fold.drawer = ""
+    elif ui.screening is not None:
+        ui.screening = None
+    elif ui.controller.notices.newest_fault is not None:
+        ui.controller.notices.dismiss_faults()
+    else:
+        return False
+    return True
+
+
+def _close_list() -> None:
+    """Close the menu or list that was opened last; ImGui does so itself only where it steers the keyboard."""
+    opened = imgui.get_current_context().open_popup_stack
+    newest = opened[len(opened) - 1].window
+    if newest is not None and not newest.flags & int(imgui.WindowFlags_.modal):
+        imgui.internal.close_popup_to_level(len(opened) - 1, True)

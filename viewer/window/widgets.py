@@ -11,10 +11,10 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.util.numbers import count as count
 from viewer.util.numbers import percent as percent
-from viewer.window.palette import ERROR as ERROR
-from viewer.window.palette import GOOD as GOOD
-from viewer.window.palette import QUIET as QUIET
-from viewer.window.palette import WARNING as WARNING
+from viewer.window.style import ERROR as ERROR
+from viewer.window.style import GOOD as GOOD
+from viewer.window.style import QUIET as QUIET
+from viewer.window.style import WARNING as WARNING
 
 _PALE = 0.85  # least channel of colours that need a border on a light panel
 _LABELS = 0.45  # of a panel's width, at most, is for the names of what is in it

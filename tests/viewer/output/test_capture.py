@@ -38,6 +38,13 @@ def test_a_picture_brings_back_its_state_and_its_pixels(tmp_path: Path):
         assert '"statistics"' in image.text["shadowcull"]
 
 
+def test_a_state_is_read_without_decoding_the_pixels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """The window waits for it, and a picture may be large."""
+    path = capture.save(PIXELS, tmp_path, "a.png", text())
+    monkeypatch.setattr(PngImagePlugin.PngImageFile, "load", lambda self: pytest.fail("its pixels are decoded"))
+    assert capture.read_data(path)["frame"] == 7
+
+
 def test_nothing_is_overwritten(tmp_path: Path):
     first, second, third = (capture.save(PIXELS + i, tmp_path, "a.png", text()) for i in range(3))
     assert [p.name for p in (first, second, third)] == ["a.png", "a-2.png", "a-3.png"]
@@ -85,7 +92,7 @@ def test_a_read_only_folder_is_one_line(tmp_path: Path, monkeypatch: pytest.Monk
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "open", denied)
-    with pytest.raises(capture.CaptureError, match=r"cannot write to .*Permission denied") as caught:
+    with pytest.raises(capture.CaptureError, match=r"not written: Permission denied") as caught:
         capture.save(PIXELS, tmp_path, "a.png", text())
     assert "\n" not in str(caught.value)
 

@@ -15,10 +15,10 @@ from tests.tracing.worlds import scene, wall
 from tracer.culling.lightbuffer.tell import listed
 from tracer.methods.lightbuffer import LightBuffer
 from tracer.scene.lights import Light, as_lamps
+from viewer.output import light_cube
 from viewer.output.light_cube import (
     COVERED,
     NOTHING_THERE,
-    cell_at,
     depths_legend,
     described,
     lists_legend,
@@ -28,6 +28,17 @@ from viewer.output.light_cube import (
 )
 from viewer.state.views import BACKGROUND, GREY, color_map
 from viewer.util import resources
+
+
+def cell_at(side: int, x: int, y: int) -> tuple[int, int, int] | None:
+    """(face, row, column) of the cell in a column and a row of the cross; None beside it."""
+    face = light_cube._CROSS.get((y // side, x // side))
+    if face is None:
+        return None
+    ways = light_cube._ways(face, side)[y % side, x % side]
+    axis = "xyz".index(face[1])
+    across, along = (int((ways[k] + 1.0) * (0.5 * side)) for k in range(3) if k != axis)
+    return 2 * axis + (face[0] == "-"), along, across
 
 
 def test_neighbours_on_the_cube_are_neighbours_on_the_cross():

@@ -10,7 +10,9 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from viewer.state.views import View
-from viewer.window.escape import ANY_POPUP
+from viewer.window.finder import Finder
+from viewer.window.menus import ANY_POPUP
+from viewer.window.panels.names import NameField
 
 KEY = imgui.Key
 SMALL = (1000, 640)  # still with docked panels, and soon drawn
@@ -44,15 +46,15 @@ def _palette(d: Driver) -> None:
         assert imgui.is_popup_open("", ANY_POPUP) == (typed == "500")
     find(d, "redo")
     d.press(KEY.enter)
-    assert imgui.is_popup_open("", ANY_POPUP) and "nothing to redo" in d.ui.finder.problem
+    assert imgui.is_popup_open("", ANY_POPUP) and "nothing to redo" in d.ui.state(Finder).problem
     d.press(KEY.escape)
     assert not imgui.is_popup_open("", ANY_POPUP)
     d.press(CTRL | SHIFT | int(KEY.p))
-    assert [found.item.name for found in d.ui.finder.found[:2]] == ["setting Bounces", "Occlusion mode"]
+    assert [item.name for item in d.ui.state(Finder).found[:2]] == ["setting Bounces", "Occlusion mode"]
     d.press(KEY.down_arrow)
     d.press(KEY.up_arrow)
     d.press(KEY.down_arrow)
-    assert d.ui.finder.aimed.name == "Occlusion mode"
+    assert d.ui.state(Finder).aimed.name == "Occlusion mode"
     d.press(KEY.escape)
 
 
@@ -115,9 +117,9 @@ def _presets(d: Driver) -> None:
     d.frames(2)
     d.context.key_chars("ours")
     d.press(KEY.enter)
-    assert d.c.presets.own[0]["name"] == "ours" and d.ui.editing is None
+    assert d.c.presets.own[0]["name"] == "ours" and d.ui.state(NameField).place is None
     d.press(KEY.escape)
-    assert not d.ui.presets_open
+    assert not d.ui.dialogs
     d.context.menu_click("//##MainMenuBar/Edit/Presets/ours##preset 5")
     d.settle()
     assert d.c.session.settings == kept and d.c.undo.undoes == "preset ours"
@@ -148,7 +150,7 @@ def _reloading(d: Driver) -> None:
     good = path.read_text()
     _write(path, good.replace("l 3 5 4", "l -6 5 4"))
     d.wait(lambda: d.c.session.scene is not scene, "the scene that has changed", 30.0)
-    assert d.ui.display.texture_id is not None
+    assert d.ui.graphics.display.texture_id is not None
     d.settle()
     assert d.c.session.snapshot() == here and d.c.notices.message.text.endswith("tiny.aff changed")
     assert np.abs(d.shown().astype(int) - picture).max() > 20, "another picture"

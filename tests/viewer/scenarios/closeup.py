@@ -153,7 +153,7 @@ def _watched(d: Driver) -> None:
         assert d.context.item_exists("//Pixels/**/1"), "the first pixel is not in the list"
     d.c.settings.set_view(View.COLOR)
     d.settle()
-    d.context.menu_click("//##MainMenuBar/Picture/Let go of watched pixels")
+    d.context.menu_click("//##MainMenuBar/Picture/Unwatch all pixels")
     d.frames(2)
     assert not d.ui.pixels.watched
 

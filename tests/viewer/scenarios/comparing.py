@@ -32,7 +32,7 @@ def comparing(d: Driver) -> None:
     d.settle()
     state = d.c.comparing.state
     d.press(int(KEY.z) | SHIFT)
-    assert "Ctrl+A" in d.c.notices.message.text and seen.shown(d.ui) is None, "nothing is kept yet"
+    assert "choose Keep as A" in d.c.notices.message.text and seen.shown(d.ui) is None, "nothing is kept yet"
     d.press(int(KEY.a) | CTRL | SHIFT)
     d.press(int(KEY.a) | CTRL)
     kept = d.c.frame
@@ -71,11 +71,11 @@ def comparing(d: Driver) -> None:
             d.ui.pixels.watched.clear()
     d.context.key_down(KEY.z)
     d.frames(3)
-    assert seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.compared.a
+    assert seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.graphics.compared.a
     assert np.array_equal(_saved(d, "held.png"), a)
     d.context.key_up(KEY.z)
     d.frames(3)
-    assert not seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.display
+    assert not seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.graphics.display
     _line(d, a, b)
     d.c.session.tone = Tone(-1.0, 1.0, Curve.SRGB)
     d.frames(2)
@@ -85,7 +85,7 @@ def comparing(d: Driver) -> None:
     assert np.abs(_saved(d, "toned.png").astype(int) - expected).max() <= 1, "both have the tone"
     d.press(KEY._9)
     d.settle()
-    assert not state.on and d.ui.compared.a is None, "one line at a time"
+    assert not state.on and d.ui.graphics.compared.a is None, "one line at a time"
     d.press(KEY._1)
     d.c.session.tone = Tone()
     p.fixed_width, p.fixed_height = 80, 60
@@ -190,4 +190,6 @@ def _two_methods(d: Driver) -> None:
     d.settle()
     d.press(int(KEY.c) | SHIFT)
     d.settle()
-    assert not state.on and d.c.traced.second is None and d.ui.compared.a is None, "what is not seen takes no memory"
+    assert not state.on and d.c.traced.second is None and d.ui.graphics.compared.a is None, (
+        "what is not seen takes no memory"
+    )

@@ -13,12 +13,13 @@ from tracer.method import additions, bases
 from tracer.renderer import Renderer
 from viewer.output.legend_counts import occlusion_legend
 from viewer.output.pictures import picture
-from viewer.services.shadow_inspector import Part
 from viewer.state.slices import slice_seen
 from viewer.state.tree_slice import layer_of
 from viewer.state.views import View
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
+from viewer.window.panels.links import Pointed
+from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
 
 KEY = imgui.Key
 
@@ -59,7 +60,7 @@ def certifying(d: Driver) -> None:
         traced = d.c.history.frames
         for key, view in ((KEY._2, View.OCCLUSION), (KEY._3, View.SHADOW), (KEY._7, View.PIXEL_COUNT)):
             d.press(key)
-            assert d.c.tracing.drawn_view is view and d.c.history.frames == traced
+            assert d.c.scheduler.drawn_view is view and d.c.history.frames == traced
             assert np.abs(d.shown().astype(int) - picture(d.c.frame, view, d.c.session.light)).max() <= 2
         seen = [row.name for row in occlusion_legend(d.c.frame) if row.pixels]
         assert "FULLY_RENDERED" in seen, seen
@@ -72,11 +73,11 @@ def certifying(d: Driver) -> None:
         assert d.c.frame.settings.method == "paper"
     d.press(KEY._0)
     assert d.c.session.view is View.CERTIFICATE and d.c.frame.certificates is None
-    assert d.c.tracing.drawn_view is View.COLOR
+    assert d.c.scheduler.drawn_view is View.COLOR
     d.certify()
     d.context.item_click("//Picture/**/Use certified##instead")
     d.settle()
-    assert d.c.frame.settings.method == "certified" and d.c.tracing.drawn_view is View.CERTIFICATE
+    assert d.c.frame.settings.method == "certified" and d.c.scheduler.drawn_view is View.CERTIFICATE
     d.context.menu_click("//##MainMenuBar/Culling/Method certified")
     d.context.item_click("//Culling/method/##method")
     names = [*(kind.name for kind in bases()), *(f"+{kind.name}" for kind in additions("certified"))]
@@ -97,7 +98,7 @@ def certifying(d: Driver) -> None:
     for key in ("H", "Shift+H"):
         d.press(chord(key))
         d.settle()
-        assert d.c.tracing.drawn_view is d.c.session.view and not d.c.tracing.outdated
+        assert d.c.scheduler.drawn_view is d.c.session.view and not d.c.scheduler.outdated
     _clusters(d)
     _space(d)
 
@@ -109,7 +110,7 @@ def _clusters(d: Driver) -> None:
     d.context.item_click("//Picture/**/Use lightcuts##instead")
     d.c.settings.change(lamp_radius=0.3, lamp_samples=16)
     d.settle()
-    assert d.c.frame.settings.method.startswith("lightcuts") and d.c.tracing.drawn_view is View.CUTS
+    assert d.c.frame.settings.method.startswith("lightcuts") and d.c.scheduler.drawn_view is View.CUTS
     assert d.c.frame.statistics.cuts.most > 3
     expected = picture(d.c.frame, View.CUTS)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
@@ -122,31 +123,21 @@ def _clusters(d: Driver) -> None:
 
 
 def _space(d: Driver) -> None:
-    """What methods keep of space: a slice through voxels, which keys and a slider move; cells by the lights that they
-    ask; and a light's cube in a panel, whose cells say what they list."""
+    """What methods keep of space: a slice through voxels, which keys and a slider move; and cells by the lights that
+    they ask."""
     d.c.settings.change(lamp_radius=None, lamp_samples=None)
     for view, name in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact")):
         d.press(chord(view.key))
         d.settle()
-        assert d.c.tracing.drawn_view is View.COLOR, "the method has nothing to show"
+        assert d.c.scheduler.drawn_view is View.COLOR, "the method has nothing to show"
         d.context.item_click(f"//Picture/**/Use {name}##instead")
         d.settle()
-        assert d.c.frame.settings.method.startswith(name) and d.c.tracing.drawn_view is view
+        assert d.c.frame.settings.method.startswith(name) and d.c.scheduler.drawn_view is view
         expected = picture(d.c.frame, view, beneath=d.c.preferences.beneath, cut=d.c.session.cut)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
         if view is View.VOXELS:
             _slice(d)
     _tree(d)
-    d.ui.show_panel("Light buffer")
-    d.frames(3)
-    d.context.item_click("//Light buffer/Use lightbuffer##instead")
-    d.settle()
-    assert "light cubes" in d.c.frame.structures
-    d.frames(3)
-    panel, cube = imgui.internal.find_window_by_name("Light buffer"), d.c.frame.structures["light cubes"][0].cube
-    assert cube is not None and panel.draw_list.vtx_buffer.size() > 0
-    d.context.item_click("//Light buffer/**/full shadow##cube")
-    assert d.ui.cube_shows == 1
 
 
 def _tree(d: Driver) -> None:
@@ -155,7 +146,7 @@ def _tree(d: Driver) -> None:
     d.settle()
     d.context.item_click("//Picture/**/Use kdtree-lazy##instead")
     d.settle()
-    assert d.c.frame.settings.accelerator == "kdtree-lazy" and d.c.tracing.drawn_view is View.TREE
+    assert d.c.frame.settings.accelerator == "kdtree-lazy" and d.c.scheduler.drawn_view is View.TREE
     d.c.settings.change(method="none")
     d.settle()
     at = d.c.session.cut
@@ -169,7 +160,7 @@ def _tree(d: Driver) -> None:
     x, y, z = home.direction
     d.c.motion.move(replace(home, direction=(-x, -y, -z)))
     d.settle()
-    assert (d.c.frame.primitive < 0).all() and d.c.tracing.drawn_view is View.TREE
+    assert (d.c.frame.primitive < 0).all() and d.c.scheduler.drawn_view is View.TREE
     assert d.c.frame.statistics.built.primitives == 3, "what was built stays"
     d.c.motion.move(home)
     d.c.settings.change(accelerator="bvh8")
@@ -217,12 +208,12 @@ def explaining(d: Driver) -> None:
     d.press(KEY.i)
     assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
     d.press(KEY.i)
-    lines = explaining.lines(d.c.frame)
-    assert {line.part for line in lines} >= {Part.BLOCKER, Part.REACHING, Part.STOPPED}
+    colors = {color for color, *_ in shadow_lines(explaining.answer, d.c.frame)}
+    assert colors >= {BLOCKER, LIT, STOPPED}
     d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
     d.wait(lambda: all(one.lit for one in explaining.answer.lights if one.due), "an answer about another pixel", 20.0)
-    parts = {line.part for line in explaining.lines(d.c.frame)}
-    assert Part.REACHING in parts and not parts & {Part.STOPPED, Part.BLOCKER}  # candidates there may be
+    colors = {color for color, *_ in shadow_lines(explaining.answer, d.c.frame)}
+    assert LIT in colors and not colors & {STOPPED, BLOCKER}  # candidates there may be
     d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
     d.context.mouse_click(0)
     d.frames(3)
@@ -237,7 +228,7 @@ def explaining(d: Driver) -> None:
     assert explaining.answer is not None and math.dist(explaining.answer.lights[0].point, point) < 0.2
     d.context.mouse_move(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
     d.frames(3)
-    assert d.ui.pointed_light == 0
+    assert d.ui.state(Pointed).light == 0
     d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
     d.frames(3)
     drawn = _lines_drawn(d)

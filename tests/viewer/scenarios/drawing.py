@@ -12,7 +12,7 @@ from tests.viewer.scenarios.steps import figure4
 from viewer.output.pictures import picture
 from viewer.state.marks import wipe_column
 from viewer.state.views import WRONG, View
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 
 KEY = imgui.Key
 
@@ -113,13 +113,13 @@ def wiping(d: Driver) -> None:
     frame = d.c.frame
     assert (frame.color != frame.reference).any()
     left, top, right, bottom = d.picture_edges()
-    camera, pivot, middle = d.c.session.camera, d.ui.pivot, (top + bottom) / 2.0
+    camera, pivot, middle = d.c.session.camera, d.ui.picture.pivot, (top + bottom) / 2.0
 
     def drag_line(start: float, end: float, height: float) -> None:
         x = left + start * (right - left)
         d.drag((x, height), ((end - start) * (right - left), 7.0))
         assert abs(d.c.session.wipe - end) < 0.02
-        assert d.c.session.camera == camera and d.ui.pivot is pivot and d.c.selection.picked is None
+        assert d.c.session.camera == camera and d.ui.picture.pivot is pivot and d.c.selection.picked is None
 
     drag_line(0.5, 0.3, middle)
     assert np.abs(d.shown().astype(int) - picture(frame, View.WIPE, marked=False, wipe=d.c.session.wipe)).max() <= 1

@@ -16,7 +16,7 @@ from viewer.state.notices import QUIET_AFTER
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 from viewer.window import menus
-from viewer.window.panels import browser, plots, statistics, status
+from viewer.window.panels import open_file, plots, statistics, status
 
 KEY = imgui.Key
 
@@ -24,7 +24,7 @@ KEY = imgui.Key
 def failing(d: Driver) -> None:
     """Whatever fails, in drawing, a panel, a menu, a command or a thread, is a notice; the window lives on."""
     d.settle()
-    notices, log, guard, display = d.c.notices, d.c.notices.log, d.ui.guard, d.ui.display
+    notices, log, guard, display = d.c.notices, d.c.notices.log, d.ui.guard, d.ui.graphics.display
     again = f"{icons.ICON_FA_ROTATE_RIGHT}  Try again"
 
     def fail(*_: object) -> None:
@@ -94,11 +94,11 @@ def failing(d: Driver) -> None:
         guard.again(part)
         d.frames(3)
         assert not guard.broken
-    good, browser._listing = browser._listing, fail
+    good, open_file._names = open_file._names, fail
     d.press(int(KEY.o) | int(KEY.mod_ctrl))
-    noticed("The dialog that opens a file")
-    assert not d.ui.browser.open
-    browser._listing = good
+    noticed(open_file.TITLE)
+    assert not d.ui.dialogs
+    open_file._names = good
     d.ui.commands = [replace(c, run=fail) if c.name == "Depth" else c for c in d.ui.commands]
     d.press(KEY._5)
     noticed("The command Depth")

@@ -11,7 +11,7 @@ from viewer.output.legend_counts import fate_legend, occlusion_legend
 from viewer.output.pictures import picture
 from viewer.state.views import OCCLUSION_COLORS, View
 from viewer.util.resources import embedded_scenes
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 
 SOME = 12  # pictures in motion that are looked at
 
@@ -26,7 +26,7 @@ def fates(d: Driver) -> None:
     d.press(chord(View.FATE.key))
     d.settle()
     frame, traced = d.c.frame, d.c.history.frames
-    assert d.c.tracing.drawn_view is View.FATE and frame.fates is not None
+    assert d.c.scheduler.drawn_view is View.FATE and frame.fates is not None
     drawn = []
     for light in range(3):
         _shows_what_is_drawn(d, View.FATE, light)
@@ -41,12 +41,12 @@ def fates(d: Driver) -> None:
     d.wait(lambda: d.c.frame.shaded is not None, "a picture of which a part is shaded")
     for view in (View.FATE, View.MOVING_SHADOW, View.OCCLUSION):
         d.press(chord(view.key))
-        d.wait(lambda view=view: d.c.tracing.drawn_view is view, f"the view {view.label}")
+        d.wait(lambda view=view: d.c.scheduler.drawn_view is view, f"the view {view.label}")
         seen: list[Frame] = []
         while len(seen) < SOME:
             frame = d.c.frame
             seen += [frame] if not seen or frame is not seen[-1] else []
-            assert d.c.tracing.drawn_view is view, "no other view flashes up"
+            assert d.c.scheduler.drawn_view is view, "no other view flashes up"
             if view is View.OCCLUSION:
                 _legend_counts_what_is_drawn(frame)
             d.frames(1)

@@ -20,7 +20,7 @@ def figure1(d: Driver) -> None:
     d.c.settings.change(method="paper")
     d.settle()
     for _ in range(2):
-        d.c.tracing.trace_again()
+        d.c.scheduler.trace_again()
         d.settle()
     for _ in d.sizes():
         d.ui.show_panel("Figure 1")

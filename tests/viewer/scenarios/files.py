@@ -15,8 +15,9 @@ from tests.viewer.scenarios.studios import standing
 from viewer.output.pictures import picture
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.window.command import chord
-from viewer.window.panels import browser
+from viewer.window.keyboard import chord
+from viewer.window.panels import open_file
+from viewer.window.panels.open_file import OpenFileState
 
 KEY = imgui.Key
 
@@ -140,7 +141,7 @@ def reopening(d: Driver) -> None:
         d.c.notices.say("what could not be saved has been told")
         d.c.renderer.take = take
         d.settle()
-        assert d.c.tracing.drawn_view is view
+        assert d.c.scheduler.drawn_view is view
         expected = picture(d.c.frame, view, shading=d.c.preferences.shading)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
 
@@ -168,54 +169,43 @@ def browsing(d: Driver) -> None:
         (box / name).write_text(scene)
     (box / "wheel.aff").write_text("f 1 0 0 1 0 1 0 1\ns 0 0 0 1\n")
     Image.new("RGB", (8, 8)).save(box / "plot.png")
-    b = d.ui.browser
-    b.folder = d.folder
-
-    def keys(text: str) -> None:
-        d.context.key_chars(text)
-        d.frames(2)
-        d.wait(lambda: not b.reading, "the folder to be read")
+    state = d.ui.state(OpenFileState)
+    state.folder = d.folder
 
     d.press(int(KEY.o) | int(KEY.mod_ctrl))
     d.frames(2)
-    keys("bo")
+    d.context.key_chars("bo")
+    d.frames(2)
     d.press(KEY.tab)
-    assert b.typed == "box/", b.typed
-    d.wait(lambda: not b.reading, "the folder to be read")
-    assert [e.name for e in b.shown()] == ["inner/", "whole.aff", "wheel.aff"]
-    keys("WH")
-    assert [e.name for e in b.shown()] == ["whole.aff", "wheel.aff"] and b.aimed() is None
-    d.press(KEY.down_arrow, 2)
-    assert b.marked == "wheel.aff"
-    d.press(KEY.up_arrow)
-    assert b.marked == "whole.aff" and b.typed == "box/WH"
+    assert state.typed == "box/" and state.names() == ["inner/", "plot.png", "wheel.aff", "whole.aff"]
+    d.context.key_chars("WHO")
+    d.frames(2)
+    assert state.names() == ["whole.aff"]
+    d.press(KEY.tab)
     d.press(KEY.enter)
-    assert not b.open and b.folder == box
-    d.wait(lambda: d.c.session.scene.path.name == "whole.aff", "the scene that was chosen")
+    assert not d.ui.dialogs and state.folder == box
+    d.wait(lambda: d.c.session.scene.path.name == "whole.aff", "the scene that was typed")
     d.settle()
 
     # What cannot be opened is refused where it was asked for.
     d.press(int(KEY.o) | int(KEY.mod_ctrl))
     d.frames(2)
-    keys("plot.png")
+    d.context.key_chars("gone.aff")
     d.press(KEY.enter)
-    assert b.open and "not one captured" in b.problem
+    assert d.ui.dialogs and "no such file" in state.problem
     d.frames(2)
     d.press(int(KEY.a) | int(KEY.mod_ctrl))
-    keys("inn")
-    assert not b.problem
+    d.context.key_chars("inner")
+    d.frames(2)
+    assert not state.problem
     d.press(KEY.enter)
-    d.wait(lambda: not b.reading, "the folder to be read")
-    assert b.open and b.folder == box / "inner" and b.typed == ""
+    assert d.ui.dialogs and state.folder == box / "inner" and state.typed == ""
+    d.frames(2)
 
-    # A click marks, and the line to type in keeps the keyboard; a double click opens.
-    d.context.set_ref(d.context.window_info(f"//{browser.TITLE}/files").window)
-    row = "deep.aff/##row"
-    d.context.item_click(row)
+    # A click on a file opens it.
+    d.context.set_ref(d.context.window_info(f"//{open_file.TITLE}/names").window)
+    d.context.item_click("deep.aff##deep.aff")
     d.frames(3)
-    assert b.open and b.marked == "deep.aff"
-    d.context.item_double_click(row)
-    d.frames(3)
-    assert not b.open
+    assert not d.ui.dialogs
     d.wait(lambda: d.c.session.scene.path.name == "deep.aff", "the scene in the folder")
     d.settle()

@@ -43,7 +43,7 @@ def filming(d: Driver) -> None:
     assert films.count == 3000
     d.context.item_click(start)
     d.wait(lambda: films.film.traced > 3, "frames of the flight")
-    assert d.c.tracing.drawn_view is View.OCCLUSION
+    assert d.c.scheduler.drawn_view is View.OCCLUSION
     d.press(KEY.escape)
     d.wait(lambda: runs.current is None, "the film to stop", 20.0)
     d.settle()

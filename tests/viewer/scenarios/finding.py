@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.services.scene_table import Listing
 from viewer.state.scene_rows import Level
+from viewer.window.view_commands import FindState
 
 KEY = imgui.Key
 ROWS_SEEN = 60  # at most, in a window of these sizes
@@ -32,7 +33,7 @@ def finding(d: Driver) -> None:
     d.context.item_click("//Find/Primitives")
     listing = _known(d)
     assert listing.table.rows == len(listing.rows) == c.session.scene.primitive_count
-    assert 2 < d.ui.find_drawn < ROWS_SEEN, "only rows that are seen are drawn"
+    assert 2 < d.ui.state(FindState).drawn < ROWS_SEEN, "only rows that are seen are drawn"
     d.press(int(KEY.f) | int(KEY.mod_ctrl))
     d.context.key_chars("pixels>0")
     listing = _known(d)
@@ -59,7 +60,7 @@ def finding(d: Driver) -> None:
     clicked = int(frame.primitive[y, x])
     assert c.selection.picked.primitive == clicked == table.selected
     d.context.mouse_move(f"//Find/**/{_id(clicked)}/##row")
-    assert 2 < d.ui.find_drawn < ROWS_SEEN
+    assert 2 < d.ui.state(FindState).drawn < ROWS_SEEN
     last = int(listing.rows[-1])
     c.selection.select_primitive(last)
     d.frames(4)

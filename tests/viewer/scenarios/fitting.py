@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from tests.sweeps import cases
 from tests.viewer.driver import Driver
-from viewer.window.panels.catalogue import PANELS, PICTURE
+from viewer.window.layout import PANELS, PICTURE
 
 KEY = imgui.Key
 SIDES = [label for label in PANELS if label != PICTURE]

@@ -8,6 +8,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
 from tests.viewer.marbles import LAST, STEP, write_marbles
+from viewer.window.panels.plots import PlotsState
 
 KEY = imgui.Key
 CTRL = int(KEY.mod_ctrl)
@@ -53,7 +54,7 @@ def _point_at_sample(d: Driver, number: int) -> None:
     for place in np.linspace(0.02, 0.98, 97):  # the plot says itself which frame the pointer is on
         d.context.mouse_move_to_pos((window.pos.x + place * window.size.x, window.pos.y + 0.6 * window.size.y))
         d.frames(2)
-        if d.ui.plot_pointed == number:
+        if d.ui.state(PlotsState).pointed == number:
             return
     raise AssertionError(f"frame {number} is not found in the plot of frames {history.first} to {history.frames - 1}")
 
@@ -69,12 +70,12 @@ def _from_the_inspector(d: Driver) -> None:
     d.frames(3)
     picked = c.selection.picked
     assert picked is not None
-    taught = c.history.taught(picked)
+    taught = c.history.origins_of(picked)
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
-    d.wait(lambda: c.teachers.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
+    d.wait(lambda: c.origins.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
     moment = c.history.records.get(lesson.lit)
     d.scroll_down("Inspector")
-    d.context.item_click(f"//Inspector/**/picture {lesson.lit}##taught {light} lit")
+    d.context.item_click(f"//Inspector/**/{light} lit/picture {lesson.lit}##0")
     d.settle()
     assert (c.session.time, c.session.camera) == (moment.time, moment.camera)
 

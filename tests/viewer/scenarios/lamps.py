@@ -13,6 +13,7 @@ from viewer.output.pictures import picture
 from viewer.state import readings
 from viewer.state.readings import arrivals
 from viewer.state.views import View
+from viewer.window.panels.lights import LightFilters
 from viewer.window.panels.status import doing
 
 KEY = imgui.Key
@@ -30,16 +31,16 @@ def lamps(d: Driver) -> None:
     middle = (area.min.x + 0.8 * (area.max.x - area.min.x), 0.5 * (area.min.y + area.max.y))
     d.drag((area.min.x + 4.0, middle[1]), (middle[0] - area.min.x - 4.0, 0.0))
     radius = d.c.session.settings.lamp_radius
-    assert 0.1 < radius < 2.0 and d.c.tracing.lamps.wanted == 16
+    assert 0.1 < radius < 2.0 and d.c.scheduler.lamps.wanted == 16
     d.settle()
     d.c.settings.change(lamp_samples=64, lamp_radius=0.5)
     seen, said = [], set()
 
     def refined() -> bool:
-        if d.c.tracing.traced.whole and d.c.frame.settings.lamp_radius == 0.5:
+        if d.c.scheduler.traced.whole and d.c.frame.settings.lamp_radius == 0.5:
             seen.append(d.c.frame.settings.lamp_samples)
         said.add(doing(d.c))
-        return d.c.frame.settings.lamp_samples == 64 and not d.c.tracing.refines_lamps
+        return d.c.frame.settings.lamp_samples == 64 and not d.c.scheduler.refines_lamps
 
     d.wait(refined, "all samples of the lamps")
     assert set(seen) <= {1, 4, 16, 64} and seen == sorted(seen), f"{seen}"
@@ -61,7 +62,7 @@ def lamps(d: Driver) -> None:
     assert np.abs(shown - picture(frame, View.PENUMBRA, d.c.session.light).astype(int)).max() <= 2
     shift = int(KEY.mod_shift)
     d.press(int(KEY.j) | shift)
-    assert d.c.tracing.drawn_view is View.LIGHTS and d.c.frame is frame, "nothing is traced for it"
+    assert d.c.scheduler.drawn_view is View.LIGHTS and d.c.frame is frame, "nothing is traced for it"
     assert np.abs(d.shown().astype(int) - picture(frame, View.LIGHTS).astype(int)).max() <= 2
     d.press(KEY.j)
     d.press(KEY.l)
@@ -83,7 +84,7 @@ def lamps(d: Driver) -> None:
     d.press(KEY._1)
     d.context.item_click("//Rendering/**/x##lamp-radius")
     d.settle()
-    assert d.c.frame.settings.lamp_radius is None and d.c.tracing.lamp_samples_shown == 1
+    assert d.c.frame.settings.lamp_radius is None and d.c.scheduler.lamp_samples_shown == 1
 
     d.c.loader.open(_many_lights(d))
     d.wait(lambda: d.c.session.scene is not None and len(d.c.session.scene.lights) == 40, "the scene of many lights")
@@ -91,9 +92,9 @@ def lamps(d: Driver) -> None:
     _one_of_too_many(d)
     d.ui.show_panel("Scene")
     d.frames(4)
-    d.ui.light_filters["table"] = "light 3"
+    d.ui.state(LightFilters).texts["table"] = "light 3"
     d.frames(4)
-    d.ui.light_filters["table"] = ""
+    d.ui.state(LightFilters).texts["table"] = ""
     d.frames(4)
 
 
@@ -109,14 +110,14 @@ def _one_of_too_many(d: Driver) -> None:
         for _ in range(2):
             d.press(KEY.l)
             light = d.c.session.light
-            d.wait(lambda: d.c.tracing.drawn_view is View.PENUMBRA, "one light", 20.0)
+            d.wait(lambda: d.c.scheduler.drawn_view is View.PENUMBRA, "one light", 20.0)
             assert d.c.frame.only_light == light and d.c.history.frames == traced
             assert np.array_equal(arrivals(d.c.frame, light), arrivals(expected, light))
             drawn = picture(d.c.frame, View.PENUMBRA, light).astype(int)
             assert np.abs(d.shown().astype(int) - drawn).max() <= 2
         d.press(int(KEY.j) | int(KEY.mod_shift))
         d.settle()
-        assert d.c.tracing.drawn_view is View.COLOR, "there is no memory for all"
+        assert d.c.scheduler.drawn_view is View.COLOR, "there is no memory for all"
     finally:
         readings.MOST_RECORDED = most
     d.press(KEY._1)

@@ -11,6 +11,7 @@ from viewer.output import capture
 from viewer.state.preferences import load_preferences
 from viewer.state.readings import can_draw
 from viewer.state.views import View
+from viewer.window.panels.legend import LegendState
 
 KEY = imgui.Key
 
@@ -23,8 +24,10 @@ def legends(d: Driver) -> None:
         for view in View:
             d.c.settings.set_view(view)
             d.settle()
-            assert d.ui.legend_shown == (view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.light)), view
-            if d.ui.legend_shown:
+            assert d.ui.state(LegendState).shown == (
+                view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.light)
+            ), view
+            if d.ui.state(LegendState).shown:
                 _legend(d)
         _dragged(d)
     d.resize(1024, 700)
@@ -82,10 +85,10 @@ def _off_and_on(d: Driver) -> None:
 
     with_legend = panel()
     d.press(KEY.n)
-    assert not d.c.preferences.legend and not d.ui.legend_shown
+    assert not d.c.preferences.legend and not d.ui.state(LegendState).shown
     assert panel() > with_legend + 60.0
     d.press(KEY.n)
-    assert d.ui.legend_shown and panel() == with_legend
+    assert d.ui.state(LegendState).shown and panel() == with_legend
 
 
 def _in_saved_pictures(d: Driver) -> None:

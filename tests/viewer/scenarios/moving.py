@@ -9,6 +9,7 @@ import numpy as np
 from imgui_bundle import glfw_utils, imgui
 
 from tests.viewer.driver import Driver
+from viewer.window.panels.bookmarks import BookmarksState
 
 KEY = imgui.Key
 
@@ -22,7 +23,7 @@ def flying(d: Driver) -> None:
     assert np.dot(np.subtract(ahead.position, home.position), home.basis()[2]) > 0.0
     assert ahead.basis()[2] @ home.basis()[2] > 0.999
     d.settle()
-    assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size, "at idle the resolution is the window's"
+    assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size, "at idle the resolution is the window's"
     assert d.c.traced.request.divisor == 1 and d.c.traced.whole
 
     before = d.c.session.camera
@@ -50,7 +51,7 @@ def flying(d: Driver) -> None:
     d.context.item_click("//Camera/##bookmark")
     d.context.key_chars("wasd")
     d.frames(3)
-    assert d.ui.new_bookmark == "wasd"
+    assert d.ui.state(BookmarksState).new == "wasd"
     assert d.c.session.camera == before, "typing moved the camera"
     d.context.key_press(KEY.enter)
     d.frames(2)
@@ -75,7 +76,7 @@ def orbiting(d: Driver) -> None:
     d.press(KEY.o)
     assert d.c.preferences.navigation == "orbit"
     d.drag(d.picture_centre(), (90.0, 40.0))
-    pivot, camera = d.ui.pivot, d.c.session.camera
+    pivot, camera = d.ui.picture.pivot, d.c.session.camera
     assert pivot is not None and not d.c.session.follow
     d.settle()
     d.drag(d.picture_centre(), (0.0, 0.0))
@@ -84,12 +85,12 @@ def orbiting(d: Driver) -> None:
     d.frames(2)
     d.context.mouse_wheel_y(3.0)
     d.frames(3)
-    assert math.dist(d.c.session.camera.position, d.ui.pivot) < distance
+    assert math.dist(d.c.session.camera.position, d.ui.picture.pivot) < distance
     d.settle()
     d.press(KEY.f)
     d.wait(lambda: not d.c.motion.under_way, "the glide of the focus")
     view = d.c.session.camera.basis()[2]
-    to_pivot = np.subtract(d.ui.pivot, d.c.session.camera.position)
+    to_pivot = np.subtract(d.ui.picture.pivot, d.c.session.camera.position)
     assert view @ to_pivot / np.linalg.norm(to_pivot) > 0.9999
     d.settle()
 
@@ -130,8 +131,8 @@ def resizing(d: Driver) -> None:
         glfw.set_window_size(window, *size)
         d.frames(4)
         d.settle()
-        if min(d.c.tracing.now.size) > 0:
-            assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size
+        if min(d.c.scheduler.inputs.size) > 0:
+            assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size
     d.fix_resolution(120, 90)
     d.settle()
     assert (d.c.frame.width, d.c.frame.height) == (120, 90)

@@ -61,7 +61,7 @@ def _bookmarks(d: Driver) -> None:
 
 def _texts(d: Driver) -> None:
     clipboard: list[str] = []
-    d.ui.copy_to, d.ui.paste_from = clipboard.append, lambda: clipboard[-1]
+    d.ui.desktop.copy, d.ui.desktop.paste = clipboard.append, lambda: clipboard[-1]
     camera = d.c.session.camera
     d.press(CTRL | SHIFT | int(KEY.c))
     assert json.loads(clipboard[-1]) == camera.to_json()
@@ -92,15 +92,15 @@ def _drags(d: Driver) -> None:
     d.c.preferences.navigation = "orbit"
     before = d.c.session.camera
     d.drag(d.picture_centre(), (80.0, 0.0))
-    pivot, after = d.ui.pivot, d.c.session.camera
+    pivot, after = d.ui.picture.pivot, d.c.session.camera
     assert math.isclose(math.dist(after.position, pivot), math.dist(before.position, pivot), rel_tol=1e-6)
     assert math.dist(after.position, before.position) > 0.1, "the left button orbits"
     d.drag(d.picture_centre(), (40.0, 0.0), 2)
     assert np.allclose(d.c.session.camera.direction, after.direction) and d.c.session.camera != after, "pans"
-    near = math.dist(d.c.session.camera.position, d.ui.pivot)
+    near = math.dist(d.c.session.camera.position, d.ui.picture.pivot)
     d.context.mouse_wheel_y(2.0)
     d.frames(3)
-    assert math.dist(d.c.session.camera.position, d.ui.pivot) < near
+    assert math.dist(d.c.session.camera.position, d.ui.picture.pivot) < near
     d.c.preferences.navigation = "fly"
     d.ui.keymap.choose("Turn right", ["J"])
     heading = d.c.session.camera.basis()
@@ -115,7 +115,7 @@ def _keys(d: Driver) -> None:
     d.frames(3)
     d.context.item_click("//Keyboard and mouse/**/Fly forward/W##key")
     d.frames(2)
-    assert d.ui.key_wanted == "Fly forward"
+    assert d.ui.keyboard.wanted_for == "Fly forward"
     before = d.c.session.camera
     d.press(KEY.x)
     d.frames(2)

@@ -8,7 +8,8 @@ from imgui_bundle import glfw_utils, imgui
 from tests.sweeps import cases
 from tests.viewer.driver import Driver
 from viewer.state.views import View
-from viewer.window.panels.catalogue import PANELS, PICTURE
+from viewer.window.layout import PANELS, PICTURE
+from viewer.window.ui import Dialog
 
 KEY = imgui.Key
 SIDES = [label for label in PANELS if label != PICTURE]
@@ -22,30 +23,29 @@ def panels(d: Driver) -> None:
         d.app.params.docking_params.focus_dockable_window(label)
         d.frames(3)
     d.press(KEY.f1)
-    assert d.ui.shortcuts_open
+    assert Dialog.KEYS in d.ui.dialogs
     d.frames(3)
     d.press(KEY.f1)
     d.context.menu_click("//##MainMenuBar/Help/About Shadowcull")
     d.frames(3)
-    assert d.ui.about_open
-    d.ui.about_open = False
+    assert Dialog.ABOUT in d.ui.dialogs
+    d.ui.close(Dialog.ABOUT)
     d.press(int(KEY.o) | int(KEY.mod_ctrl))
     d.frames(4)
-    assert d.ui.browser.open
-    d.ui.browser.folder = d.folder
+    assert d.ui.dialogs == [Dialog.OPEN_FILE]
     d.frames(2)
     before = d.c.session.view
     d.context.key_press(KEY._5)
     d.frames(2)
     assert d.c.session.view is before, "a key reached the window behind a dialog"
     d.press(KEY.escape)
-    assert not d.ui.browser.open
+    assert not d.ui.dialogs
     d.context.menu_click("//##MainMenuBar/View/Depth")
     d.frames(2)
     assert d.c.session.view is View.DEPTH
     d.c.preferences.keep_tracing = True
     traced = d.c.history.frames
-    d.c.tracing.trace_again()
+    d.c.scheduler.trace_again()
     d.wait(lambda: d.c.history.frames >= traced + 3, "frames at idle")
     d.c.preferences.keep_tracing = False
 
@@ -144,7 +144,7 @@ def hiding(d: Driver) -> None:
     d.frames(3)
     assert set(_places_of_panels()) == {PICTURE} and _picture_share() > 0.9
     d.settle()
-    assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size and d.c.tracing.now.size[0] > 1200
+    assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.scheduler.inputs.size[0] > 1200
     d.hold(KEY.d, 0.1)
     assert not d.c.session.follow, "keys fly while the panels are hidden"
     d.press(KEY.tab)

@@ -50,7 +50,7 @@ def first_start() -> Iterator[None]:
 
 def previewing(d: Driver) -> None:
     """The scene is there, and can be flown through; then the traced picture takes its place, from there."""
-    d.wait(lambda: d.ui.preview is not None and d.ui.preview.whole, "the preview", 30.0)
+    d.wait(lambda: d.ui.graphics.preview is not None and d.ui.graphics.preview.whole, "the preview", 30.0)
     assert d.c.frame is None and d.c.session.scene is None and d.c.loader.warm_up_job is not None
     d.frames(3)
     first = _read(d)
@@ -69,7 +69,7 @@ def previewing(d: Driver) -> None:
     _tour_fits(d)
     _compiled.set()
     d.settle()
-    assert d.ui.preview is None and d.c.preview.geometry is None and d.c.session.previewed is None
+    assert d.ui.graphics.preview is None and d.c.preview.geometry is None and d.c.session.previewed is None
     assert d.c.frame is not None and d.c.frame.camera == flown == d.c.session.camera
     assert d.context.item_exists("//Picture/picture") and not d.context.item_exists("//Picture/preview")
 
@@ -86,10 +86,10 @@ def _leaves_the_preview(d: Driver) -> None:
 def _tour_fits(d: Driver) -> None:
     """Until there is a preview, all steps of the tour are listed, above the status bar; with what to do in each only
     where there is room for that."""
-    made = d.ui.preview
+    made = d.ui.graphics.preview
     with mock.patch.object(graphics, "draw_preview"):
         d.ui.tour.start()
-        d.ui.preview = None
+        d.ui.graphics.preview = None
         heights = []
         for height in (680, 1100):
             d.resize(1280, height)
@@ -98,12 +98,12 @@ def _tour_fits(d: Driver) -> None:
             heights.append(steps.size.y)
         assert heights[1] > 1.5 * heights[0]
         d.resize(1280, 800)
-        d.ui.preview = made
+        d.ui.graphics.preview = made
         d.ui.tour.end()
 
 
 def _read(d: Driver) -> np.ndarray:
     got: list[np.ndarray] = []
-    d._in_frame.append(lambda: got.append(colors_of(d.ui.preview)))
+    d._in_frame.append(lambda: got.append(colors_of(d.ui.graphics.preview)))
     d.wait(lambda: bool(got), "the preview to be read")
     return got[0]

@@ -1,4 +1,4 @@
-"""The tree of a pixel's rays: unfolded, filtered, picked out in the picture, and stepped through."""
+"""The tree of a pixel's rays: unfolded, filtered, and picked out in the picture."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ KEY = imgui.Key
 
 
 def rays(d: Driver) -> None:
-    """A click on a pixel lists its rays; rows and keys go through them."""
+    """A click on a pixel lists its rays."""
     d.c.preferences.savings = False  # its words come and go while lines are counted
     d.settle()
     c = d.c
@@ -20,7 +20,7 @@ def rays(d: Driver) -> None:
     c.settings.change(method="paper")
     d.settle()
     for _ in range(2):
-        c.tracing.trace_again()
+        c.scheduler.trace_again()
         d.settle()
     d.press(KEY.x)
     d.frames(4)
@@ -34,7 +34,6 @@ def rays(d: Driver) -> None:
     assert c.history.frames == traced, "asking has traced a frame"
     tree = c.rays.tree
     assert (tree.x, tree.y) == c.selection.pixel and tree.due > 0
-    assert len(c.rays.lines(c.frame)) >= tree.due
     d.frames(3)
     drawn = _lines_drawn(d)
 
@@ -47,30 +46,14 @@ def rays(d: Driver) -> None:
     d.frames(3)
     assert len(c.rays.seen) == everything
 
-    # A row that the pointer is on is picked out; a click selects it, and its steps are listed.
+    # A row that the pointer is on is picked out; a click selects it.
     row = next(row for _, row in c.rays.seen if len(row.places) == 1 and "traced" in row.text)
     d.context.mouse_move(f"//Inspector/**/{row.key}/##row")
     d.frames(3)
     assert c.rays.pointed is not None and c.rays.pointed.key == row.key
-    places = _tops(d, "//Inspector/wrong", f"//Inspector/**/{row.key}/##row")
     d.context.item_click(f"//Inspector/**/{row.key}/##row")
-    d.wait(lambda: c.rays.walked, "the nodes that the ray enters", 20.0)
-    assert _tops(d, "//Inspector/wrong", f"//Inspector/**/{row.key}/##row") == places, "rows move when the steps come"
-    assert c.rays.selected.key == row.key and c.rays.structure == "bvh8"
-    shadows = tree.rays[row.ray].shadows
-    place = int(row.places[0])
-    assert any(visit.hits for visit in c.rays.visits) != shadows.lit[place]
-    steps = len(c.rays.visits)
-    assert steps >= 1 and c.rays.step == 0
-    d.press(KEY.period)
-    assert c.rays.step == min(1, steps - 1)
-    d.press(KEY.comma)
-    assert c.rays.step == 0
-    d.context.item_click("//Inspector/**/kdtree")
-    d.wait(lambda: c.rays.walked and c.rays.structure == "kdtree", "the same in the other structure", 30.0)
-    assert any(visit.hits for visit in c.rays.visits) != shadows.lit[place]
-    d.press(int(KEY.period) | int(KEY.mod_shift))
-    d.wait(lambda: c.rays.step + 1 == len(c.rays.visits) and not c.rays.playing, "the end of the steps", 30.0)
+    d.frames(3)
+    assert c.rays.selected.key == row.key
 
     # The path ray folds; the tree goes with the selection.
     top_row = c.rays.seen[0][1]
@@ -92,12 +75,6 @@ def _shaded(d: Driver) -> tuple[float, float]:
         here &= (np.roll(primitive, shift, 0) == primitive) & (np.roll(primitive, shift, 1) == primitive)
     y, x = np.argwhere(here)[here.sum() // 2]
     return (x + 0.5) / d.c.frame.width, (y + 0.5) / d.c.frame.height
-
-
-def _tops(d: Driver, *items: str) -> list[float]:
-    """How far down the window these begin."""
-    d.frames(2)
-    return [d.context.item_info(item).rect_full.min.y for item in items]
 
 
 def _lines_drawn(d: Driver) -> int:

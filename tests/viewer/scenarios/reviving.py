@@ -14,7 +14,8 @@ import glfw  # after imgui_bundle, which brings the library that both must share
 from tests.viewer.driver import Driver
 from tracer.frame import Frame
 from viewer.state.views import View
-from viewer.window import density
+from viewer.window import graphics
+from viewer.window import style as window_style
 
 KEY = imgui.Key
 SMALL = (1100, 700)
@@ -35,15 +36,15 @@ def reviving(d: Driver) -> Callable[[Driver], Any]:
     d.settle()
     d.frames(4)
     before = _state(d), d.shown(), d.c.frame
-    bring = d.app._bring_shots
+    draw = graphics.draw
 
-    def lose() -> None:
+    def lose(_ui: object) -> None:
         """In the middle of a frame, as something else than the picture is drawn: that is no fault."""
-        d.app._bring_shots = bring  # type: ignore[method-assign]
+        graphics.draw = draw
         d.app.context_loss.status = lambda: UNKNOWN_RESET
         raise RuntimeError("made to fail")
 
-    d.app._bring_shots = lose  # type: ignore[method-assign]
+    graphics.draw = lose
     d.wait(lambda: bool(d.app.context_loss.cause), "the loss to be seen", 20.0)
     return lambda d: _revived(d, *before)
 
@@ -68,7 +69,7 @@ def _denser_screen(d: Driver) -> None:
     style = imgui.get_style()
     before = _lengths()
     for scale in (2.0, 1.5, 1.0):
-        with mock.patch.object(density, "content_scale", lambda scale=scale: scale):
+        with mock.patch.object(window_style, "content_scale", lambda scale=scale: scale):
             d.frames(3)
             assert style.font_scale_dpi == scale and d.ui.fold.folded == (scale > 1.0)
             assert np.allclose(_lengths(), np.multiply(before, scale), atol=1.0)

@@ -14,6 +14,7 @@ from tests.viewer.scenarios.steps import saved_results
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 from viewer.window.panels import experiment_table
+from viewer.window.ui import Dialog
 
 KEY = imgui.Key
 
@@ -32,7 +33,7 @@ def experimenting(d: Driver) -> None:
     for _ in range(3):
         before = run.traced
         d.wait(lambda: run.traced > before + 3, "frames of the experiment")  # noqa: B023
-        assert (d.c.frame.width, d.c.frame.height) == (64, 48) == d.ui.display.size, "they are not the picture"
+        assert (d.c.frame.width, d.c.frame.height) == (64, 48) == d.ui.graphics.display.size, "they are not the picture"
     d.hold(KEY.w, 0.1)
     assert d.c.session.camera == home and "stop it first" in d.c.notices.message.text
     d.press(KEY.c)
@@ -43,7 +44,7 @@ def experimenting(d: Driver) -> None:
     d.wait(lambda: runs.current is None, "the experiment to stop", 20.0)
     assert 3 <= len(run.results.frames) < 3000 and "what was done is kept" in d.c.notices.message.text
     d.settle()
-    assert (d.c.frame.width, d.c.frame.height) == d.c.tracing.now.size and d.c.frame.camera == home
+    assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.frame.camera == home
 
     runs.experiment_plan.frames = 6
     d.context.menu_click("//##MainMenuBar/Run/Experiment")
@@ -161,20 +162,20 @@ def asking(d: Driver) -> None:
 
     # Escape closes what lies over the panels, one by one, and stops the run only when nothing does.
     under_way()
-    d.context.menu_click("//##MainMenuBar/Help/About Shadowcull")
     d.press(KEY.f1)
-    assert d.ui.about_open and d.ui.shortcuts_open
+    d.context.menu_click("//##MainMenuBar/Help/About Shadowcull")
+    assert d.ui.dialogs == [Dialog.KEYS, Dialog.ABOUT]
     popups = lambda: len(imgui.get_current_context().open_popup_stack)  # noqa: E731
     for there in ("//##MainMenuBar/##MenuBar/File", f"//Scene/{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Recent"):
         d.context.item_click(there)
         d.frames(2)
         assert popups() == 1
         d.press(KEY.escape)
-        assert popups() == 0 and d.ui.about_open and d.ui.shortcuts_open
+        assert popups() == 0 and d.ui.dialogs == [Dialog.KEYS, Dialog.ABOUT]
     d.press(KEY.escape)
-    assert not d.ui.about_open and d.ui.shortcuts_open
+    assert d.ui.dialogs == [Dialog.KEYS]
     d.press(KEY.escape)
-    assert not d.ui.shortcuts_open and not runs.current.stopping
+    assert not d.ui.dialogs and not runs.current.stopping
     d.press(KEY.escape)
     d.wait(lambda: runs.current is None, "the experiment to stop", 20.0)
     d.settle()

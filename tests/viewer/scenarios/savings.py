@@ -12,7 +12,7 @@ from viewer.state.savings import bar_of, in_words, sentence
 from viewer.state.views import View
 from viewer.util.numbers import percent
 from viewer.util.resources import default_scene
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 from viewer.window.panels.savings import standing
 
 KEY = imgui.Key
@@ -98,7 +98,7 @@ def _pixels(d: Driver) -> None:
     """A click on a part of the bar shows its pixels, another one those of all parts again."""
     d.context.item_click("//Picture/traced##savings")
     d.settle()
-    assert d.c.tracing.drawn_view is View.FATE
+    assert d.c.scheduler.drawn_view is View.FATE
     d.context.item_click("//Picture/traced##savings")
     d.frames(2)
     assert d.ui.fate_shown is None

@@ -7,7 +7,7 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from tracer.scene.studio import up_in_studio
-from viewer.window.command import chord
+from viewer.window.keyboard import chord
 
 KEY = imgui.Key
 

@@ -18,7 +18,7 @@ from viewer.state.comparison import Way
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 from viewer.window.panels import save_as
-from viewer.window.ui import CaptureKind
+from viewer.window.ui import CaptureKind, Dialog
 
 KEY = imgui.Key
 CTRL, ALT = int(KEY.mod_ctrl), int(KEY.mod_alt)
@@ -55,7 +55,7 @@ def _nothing_to_save(d: Driver) -> None:
     for keys in (KEY.f12, int(KEY.c) | CTRL):
         d.press(KEY._0)
         d.settle()
-        assert d.c.tracing.drawn_view is not View.CERTIFICATE
+        assert d.c.scheduler.drawn_view is not View.CERTIFICATE
         d.press(keys)
         d.frames(2)
         assert d.ui.capture_wanted is None
@@ -71,9 +71,12 @@ def _nothing_to_save(d: Driver) -> None:
     d.c.settings.set_view(View.COLOR)
     d.settle()
     assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1, "one that comes is waited for"
-    d.ui.capture_wanted, d.ui.capture_view = CaptureKind.PICTURE, View.DIFFERENCE
+    d.ui.capture_wanted, d.ui.graphics.capture_view = CaptureKind.PICTURE, View.DIFFERENCE
     d.frames(3)
-    assert d.ui.capture_wanted is d.ui.capture_view is None and "another view was chosen" in d.c.notices.message.text
+    assert (
+        d.ui.capture_wanted is d.ui.graphics.capture_view is None
+        and "another view was chosen" in d.c.notices.message.text
+    )
     assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1
 
 
@@ -92,7 +95,7 @@ def _save_as(d: Driver) -> None:
     d.context.item_click(f"//{save_as.TITLE}/Save")
     d.wait(lambda: d.c.runs.current is None, "the picture")
     d.settle()
-    assert not d.ui.save_as_open
+    assert Dialog.SAVE_AS not in d.ui.dialogs
     (path,) = (d.folder / "pictures").glob("tiny-occlusion-288x192*")
     assert str(path) in d.c.notices.message.text
     with Image.open(path) as image:

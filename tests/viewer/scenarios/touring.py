@@ -14,6 +14,7 @@ from viewer.services.tour import STEPS
 from viewer.state.preferences import load_preferences
 from viewer.state.views import View
 from viewer.window.panels.status import doing
+from viewer.window.panels.tour import TourState
 
 KEY = imgui.Key
 
@@ -77,7 +78,7 @@ def _tour(d: Driver) -> None:
     d.settle()
     d.context.item_click("//###tour/Close")
     d.frames(2)
-    assert not tour.last_word and d.ui.tour_height == 0.0
+    assert not tour.last_word and d.ui.state(TourState).height == 0.0
 
     d.context.menu_click("//##MainMenuBar/Help/Tour")
     d.frames(3)

@@ -29,7 +29,7 @@ def why(d: Driver) -> None:
     d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path == ROOM, "the room")
     d.settle()
     for _ in range(3):
-        d.c.tracing.trace_again()
+        d.c.scheduler.trace_again()
         d.settle()
     _culled(d)
     _occluded(d)
@@ -94,9 +94,9 @@ def _taught(d: Driver) -> None:
     """Who taught a shadow mode is named, and the link leads back to that picture."""
     one = _click(d, _of(d, FULLY, ShadowMode.PARTIAL_SHADOW), lambda one: one.rule is Rule.PARTIAL_SHADOW)
     d.c.settings.set_light(one.light)
-    d.wait(lambda: d.c.teachers.answered > 0, "the pixels that taught", 30.0)
+    d.wait(lambda: d.c.origins.answered > 0, "the pixels that taught", 30.0)
     d.frames(3)
-    taught = d.c.history.taught(d.c.selection.picked)
+    taught = d.c.history.origins_of(d.c.selection.picked)
     number = max(taught.lights[one.light])
     assert d.context.item_exists(f"//Inspector/reason/picture {number}##0")
     d.press(KEY.x)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from threading import Event
 
 import numpy as np
 import pytest
@@ -164,7 +163,7 @@ def test_it_begins_at_rest_stops_at_once_and_goes_on_where_it_stopped():
     baseline = Baseline(thread, lambda: now[0])
 
     def follow(newest=paper, moving=False, busy=False):
-        baseline.follow(newest, "", moving, busy)
+        baseline.update(newest, "", moving, busy)
 
     follow()
     assert not thread.works and baseline.measured is None
@@ -210,7 +209,7 @@ def test_no_tree_is_built_for_a_figure():
     thread = Thread()
     baseline = Baseline(thread, lambda: 1e9)
     for _ in range(2):
-        baseline.follow(traced(accelerator="kdtree-lazy"), "", False, False)
+        baseline.update(traced(accelerator="kdtree-lazy"), "", False, False)
     assert not thread.works and "built" in baseline.why_not
 
 
@@ -221,7 +220,7 @@ def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
     def rest(newest: Traced) -> None:
         for _ in range(2):
             now[0] += 2.0 * STILL
-            baseline.follow(newest, "", False, False)
+            baseline.update(newest, "", False, False)
 
     rest(traced())
     begun, renderer = thread.works[-1], Timed({"none": [0.1], "paper": [0.1]})
@@ -231,7 +230,7 @@ def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
     assert not begun.step(renderer, lambda: False)
     rest(traced())
     assert "out of memory" in baseline.why_not
-    baseline.follow(traced(), "", True, False)
+    baseline.update(traced(), "", True, False)
     given = len([work for work in thread.works if work is not None])
     rest(traced())
     assert "out of memory" in baseline.why_not
@@ -277,15 +276,10 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
         until(lambda number=number: work.begun == number + 1)
         assert not thread.busy and len(renderer.turns) == number, "put back after a step"
 
-    class Asked:
-        time, answered = 2.0, Event()
+    def column(renderer, frame, cancelled) -> float:
+        return frame.time
 
-        def answer(self, renderer) -> None:
-            self.answered.set()
-
-    asked = Asked()
-    thread.ask(asked)
-    assert asked.answered.wait(5.0)
+    assert thread.query(column, came[-1].frame).result(5.0) == 2.0
     until(lambda: work.begun == 3)
     thread.in_spare_time(None)
     until(lambda: work.ended == 3 and len(renderer.turns) == 3)

@@ -144,11 +144,11 @@ def test_a_second_method_is_traced_while_it_is_seen(desk: Desk) -> None:
     desk.c.settings.change(method="certified")
     comparing.end()
     desk.rest()
-    assert desk.c.traced.second is None and desk.c.tracing.second == ""
+    assert desk.c.traced.second is None and desk.c.comparing.second_method == ""
     comparing.toggle_methods()
     assert comparing.state.second == "none", "a method is not compared with itself"
     keep(desk)
-    assert comparing.state.source is Source.KEPT and desk.c.tracing.second == ""
+    assert comparing.state.source is Source.KEPT and desk.c.comparing.second_method == ""
 
 
 def test_a_run_shows_its_frames_beside_what_was_kept(desk: Desk) -> None:

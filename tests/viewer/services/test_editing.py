@@ -140,11 +140,11 @@ def test_a_hidden_occluder_changes_modes_to_unshadowed(desk: Desk):
     c.settings.change(method="paper")
     desk.rest()
     for _ in range(3):
-        c.tracing.trace_again()
+        c.scheduler.trace_again()
         desk.rest()
     edit(desk, lambda: c.editing.hide("ball"))
     for _ in range(3):
-        c.tracing.trace_again()
+        c.scheduler.trace_again()
         desk.rest()
     changes = {(a, b) for one in c.before_edits.effects.shadows for a, b, _ in one.pairs()}
     assert ("partial shadow", "non shadow") in changes
@@ -193,14 +193,14 @@ def test_what_follows_the_newest_picture_gets_none_of_another_scene(desk: Desk):
     c, given = desk.c, []
     c.settings.change(method="paper")
     desk.rest()
-    follow = c.table.follow
+    follow = c.table.update
 
     def watched(traced, moving):
         if traced is not None:
             given.append((len(traced.frame.modes), c.session.scene.primitive_count))
         follow(traced, moving)
 
-    c.table.follow = watched
+    c.table.update = watched
     edit(desk, lambda: c.editing.hide("ball"))
     edit(desk, c.editing.clear)
     assert given and all(modes == primitives for modes, primitives in given)
@@ -228,15 +228,15 @@ def test_what_is_forgotten_is_forgotten_of_all_scenes(desk: Desk):
     c, first = desk.c, desk.c.renderer._renderer
     c.settings.change(method="paper")
     desk.rest()
-    ask = c.tracing.ask
+    ask = c.scheduler.request
 
     def known() -> int:
         """Histories of the scene as it was read, once it is back and before a frame of it is traced."""
-        c.tracing.ask = lambda now: None
+        c.scheduler.request = lambda now: None
         c.editing.clear()
         desk.until(lambda: not c.editing.under_way)
         assert c.renderer._renderer is first
-        c.tracing.ask = ask
+        c.scheduler.request = ask
         found = len(first.state.histories)
         desk.rest()
         return found
@@ -244,10 +244,10 @@ def test_what_is_forgotten_is_forgotten_of_all_scenes(desk: Desk):
     edit(desk, lambda: c.editing.hide("ball"))
     assert known() > 0, "it is kept"
     edit(desk, lambda: c.editing.hide("ball"))
-    c.tracing.reset_modes()
+    c.reset_modes()
     desk.rest()
     assert known() == 0
-    c.tracing.reset_modes()
+    c.reset_modes()
     edit(desk, lambda: c.editing.hide("ball"))  # before a picture
     assert known() == 0
 
@@ -315,10 +315,10 @@ def test_the_command_makes_the_edited_picture_again(
 @pytest.mark.parametrize(
     ("option", "said"),
     [
-        ("--without-light=7", "the scene has the lights 0 to 1"),
+        ("--without-light=7", "the scene's lights are 0 to 1"),
         ("--hide=sofa", "no object of this name; there is parts, ball, car"),
         ("--hide-primitive=99", "the primitives 0 to"),
-        ("--make-static=ball=1", "no object that moves of this name; there is car"),
+        ("--make-static=ball=1", "no moving object of this name; there is car"),
         ("--make-static=car", "give them like train=2.5"),
         ("--make-moving=car", "no static object of this name"),
         ("--move-light=0", "give them like 2=1.5,3,-0.5"),
@@ -361,7 +361,7 @@ def test_an_answer_that_fails_is_told_of_and_stops_nothing(desk: Desk, monkeypat
     def fail(*_: object) -> None:
         raise MemoryError("made to fail")
 
-    monkeypatch.setattr("viewer.services.shadow_inspector.explain", fail)
+    monkeypatch.setattr("viewer.services.pixel_inspector.explain", fail)
     c.selection.select((0.5, 0.5))
     desk.until(lambda: c.notices.message is not None and "made to fail" in desk.said)
     assert c.session.playing
@@ -369,7 +369,7 @@ def test_an_answer_that_fails_is_told_of_and_stops_nothing(desk: Desk, monkeypat
     desk.until(lambda: len(desk.came) > count + 2)
     c.session.playing = False
     desk.rest()
-    assert not c.tracing.awaits and c.tracing._failed is None
+    assert not c.scheduler.awaits and c.scheduler._failed is None
 
 
 def test_a_frame_that_fails_stops_what_plays(desk: Desk, monkeypatch: pytest.MonkeyPatch):

@@ -15,7 +15,9 @@ from tracer.culling import modes
 from tracer.frame import Frame
 from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.scene.edits import NO_EDITS, Edits
+from tracer.scene.model import Cancelled
 from viewer.services.frame_history import JumpTarget
+from viewer.services.origin_pixels import trace_once_more
 from viewer.state.views import View
 
 
@@ -24,7 +26,7 @@ def flown(desk: Desk, method: str) -> dict[int, Frame]:
     c = desk.c
     c.settings.change(method=method, depth=3)
     desk.rest()
-    c.tracing.reset_modes()
+    c.reset_modes()
     desk.rest()
     seen = {c.history.frames - 1: c.frame}
 
@@ -135,7 +137,7 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
     c.settings.change(method="paper", depth=2)
     desk.rest()
     before = c.history.frames
-    c.tracing.reset_modes()
+    c.reset_modes()
     desk.rest()
     for number in (0, 4, 9):
         c.session.go_to_frame(number)
@@ -150,9 +152,9 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
     c.selection.select((0.5, 0.75))
     picked = c.selection.picked
     assert picked is not None and picked.primitive >= 0
-    taught = c.history.taught(picked)
+    taught = c.history.origins_of(picked)
     assert taught is not None
-    desk.until(lambda: all(c.teachers._known.get(n) is not None for one in taught.lights for n in one if n != NEVER))
+    desk.until(lambda: all(c.origins.of(n, 0, True) is not None for one in taught.lights for n in one if n != NEVER))
     met = 0
     world = tracer.World(c.session.scene)
     again = tracer.Renderer(c.session.scene, replace(words[learnt[0]].settings, verify=False), world=world)
@@ -170,7 +172,7 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
             assert first.get((light, lit), NEVER) == n
             if n == NEVER:
                 continue
-            found, moment = c.teachers.of(n, light, lit), words[n]
+            found, moment = c.origins.of(n, light, lit), words[n]
             assert found is not None
             exact = replace(moment.settings, method="none", record_lights=True, verify=False)
             frame = tracer.Renderer(c.session.scene, exact, world=world).render(moment.time, moment.camera)
@@ -208,3 +210,9 @@ def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
         picked = c.selection.picked
         assert (picked is None) == (here.primitive < 0) == bool(edits)
         assert picked is None or (picked.primitive == here.primitive and picked.seen)
+
+
+def test_tracing_a_frame_once_more_for_who_set_a_mode_can_be_cancelled(desk: Desk) -> None:
+    scene, settings = desk.c.session.scene, replace(desk.c.session.settings, width=64, height=48)
+    with pytest.raises(Cancelled):
+        trace_once_more(tracer.Renderer(scene, settings), 0.0, scene.camera_at(0.0), settings, 0, False, lambda: True)

@@ -47,7 +47,7 @@ def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
         assert c.session.follow == find.own_camera and c.session.light == find.light
         assert c.session.settings.method == "paper" and c.session.settings.verify
         if find.bounces == 0:
-            taught = c.history.taught(picked)
+            taught = c.history.origins_of(picked)
             assert taught is not None
             lesson = taught.lights[find.light]
             assert (lesson.lit if find.lit else lesson.blocked) >= 0, "nobody has taught what is wrong"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
 from dataclasses import replace
 
 import pytest
@@ -11,17 +12,16 @@ from tracer.frame import Settings
 from tracer.scene.lights import Light, as_lamps
 from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
-from viewer.services.governor import Governor
-from viewer.services.lamps import LampSamples, after, first
-from viewer.services.light_recorder import LightQuestion, LightRecorder
+from viewer.services.frame_budget import FrameBudget
+from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
+from viewer.services.refinement import LampSamples, after, first, has_lamps
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
 from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER
 from viewer.state.session import Session
 from viewer.state.views import View
 
-HERE = Conditions(size=(16, 8))
+HERE = FrameInputs(size=(16, 8))
 MOVING = replace(HERE, moving=True)
 
 
@@ -46,13 +46,15 @@ def test_samples_are_those_of_the_lamp_that_has_the_most(kinds: str, radius: flo
         "r": Light("c", (0, 0, 0), kind="rectangle", edges=((1, 0, 0), (0, 1, 0)), samples=16),
         "d": Light("d", (0, 0, 0), kind="dome", radius=1.0, edges=((0, 1, 0),), samples=25),
     }
-    lights, table = tuple(known[kind] for kind in kinds), LampSamples()
-    lamps = as_lamps(lights, radius, samples)
-    settings = Settings(lamp_radius=radius, lamp_samples=samples)
+    lights, session = tuple(known[kind] for kind in kinds), Session(settings=Settings(lamp_radius=radius))
+    lamps, table = as_lamps(lights, radius, samples), LampSamples(session)
+    session.open(replace(make_scene(), lights=lights))
+    session.settings = settings = Settings(lamp_radius=radius, lamp_samples=samples)
     for _ in range(2):
-        assert table.most(lights, settings) == max((len(lamp.offsets()) for lamp in lamps), default=1)
-        assert table.any(lights, settings) == any(lamp.kind != "point" for lamp in lamps)
-    assert table.most((), settings) == 1, "the lights of another scene"
+        assert table.most(settings) == max((len(lamp.offsets()) for lamp in lamps), default=1)
+        assert table.any == has_lamps(lights, settings) == any(lamp.kind != "point" for lamp in lamps)
+    session.open(replace(make_scene(), lights=()))
+    assert table.most(settings) == 1, "the lights of another scene"
 
 
 class Renders:
@@ -85,14 +87,14 @@ class Window:
     def __init__(self, scene: Scene | None = None, **settings: int | float) -> None:
         self.session, self.renders = Session(settings=Settings(method="none", samples=2, **settings)), Renders()
         self.session.open(scene or make_scene())
-        self.tracing = Tracing(self.session, Preferences(), self.renders)
+        self.scheduler = FrameScheduler(self.session, Preferences(), self.renders)
 
-    def rest(self, now: Conditions = HERE, frames: int = 12) -> list[tuple[int | None, int]]:
+    def rest(self, now: FrameInputs = HERE, frames: int = 12) -> list[tuple[int | None, int]]:
         """Samples of lamps, and of pixels, that are asked for in so many frames of the window."""
         before = len(self.renders.asked)
         for _ in range(frames):
-            self.tracing.take()
-            self.tracing.ask(now)
+            self.scheduler.take()
+            self.scheduler.request(now)
         return [(one.settings.lamp_samples, one.samples) for one in self.renders.asked[before:]]
 
     def move(self) -> None:
@@ -105,9 +107,9 @@ def test_at_idle_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_fo
     window = Window(lamp_radius=0.5, lamp_samples=64)
     assert window.rest() == [(4, 1), (16, 1), (64, 2), (64, 2)], "the last knows more about shadows"
     assert window.rest() == []
-    assert not window.tracing.refines_lamps and window.tracing.lamp_samples_shown == 64
+    assert not window.scheduler.refines_lamps and window.scheduler.lamp_samples_shown == 64
     window.session.settings = replace(window.session.settings, lamp_samples=256)
-    assert window.tracing.refines_lamps
+    assert window.scheduler.refines_lamps
     assert window.rest() == [(256, 2), (256, 2)], "what there is goes on"
     window.session.settings = replace(window.session.settings, lamp_samples=1)
     assert window.rest() == [(1, 2), (1, 2)]
@@ -130,13 +132,13 @@ def test_a_motion_that_has_no_time_takes_one_sample_to_its_end():
     window = Window(lamp_radius=0.5, lamp_samples=64)
     window.rest()
     slow = FrameStatistics(phases={"primary": 1e-3, "shading": 1.0})
-    governor = window.tracing.governor
+    budget = window.scheduler.budget
     for _ in range(5):
-        governor.observe(slow, 128, 4)
+        budget.observe(slow, 128, 4)
     window.move()
     assert window.rest(MOVING, 2)[0] == (1, 1)
     for _ in range(40):
-        governor.observe(FrameStatistics(phases={"primary": 1e-4, "shading": 1e-4}), 128, 4)
+        budget.observe(FrameStatistics(phases={"primary": 1e-4, "shading": 1e-4}), 128, 4)
     window.move()
     assert window.rest(MOVING, 2) == [(1, 1)], "modes would be lost"
     assert window.rest()[:3] == [(4, 1), (16, 1), (64, 2)]
@@ -146,34 +148,34 @@ def test_a_motion_that_has_no_time_takes_one_sample_to_its_end():
 
 def test_points_have_one_sample_and_whole_pictures_all_of_them():
     window = Window(lamp_samples=64)
-    assert window.tracing.lamps.wanted == 1 and not window.tracing.lamps.any
+    assert window.scheduler.lamps.wanted == 1 and not window.scheduler.lamps.any
     assert set(window.rest()) == {(64, 2)}, "which changes nothing"
     sphere = Light("lamp", (0.0, 5.0, 0.0), kind="sphere", radius=1.0, samples=16)
     window = Window(replace(make_scene(), lights=(sphere,)))
     assert window.rest() == [(4, 1), (None, 2), (None, 2)], "as the scene says"
-    window.tracing._preferences.dynamic_resolution = False
+    window.scheduler._preferences.dynamic_resolution = False
     window.move()
     assert set(window.rest(MOVING, 3)) == {(None, 2)}
 
 
 def test_pixels_cost_by_the_samples_of_lamps():
-    governor = Governor()
+    budget = FrameBudget()
     pixels, points = 400_000, FrameStatistics(phases={"primary": 1e-3, "shading": 0.1})
     for _ in range(5):
-        governor.observe(points, pixels)
-    costs = [governor.seconds(pixels, 16, samples) for samples in (1, 4, 16, 64)]
+        budget.observe(points, pixels)
+    costs = [budget.seconds(pixels, 16, samples) for samples in (1, 4, 16, 64)]
     assert costs[0] == pytest.approx(0.1, rel=0.1)
     assert 2.0 < costs[1] / costs[0] < 4.0 < costs[2] / costs[1] * costs[3] / costs[2]
     for _ in range(5):
-        governor.observe(replace(points, phases={"primary": 1e-3, "shading": 0.15}), pixels, 4)
-    assert governor.seconds(pixels, 16, 4) == pytest.approx(0.15, rel=0.1)
-    assert governor.seconds(pixels, 16, 1) == pytest.approx(costs[0], rel=0.1), "each number for itself"
-    assert governor.plan(800, 500, 0.05, lamp_samples=64).parts[0] < governor.plan(800, 500, 0.05).parts[0]
-    assert governor.moving_samples(800, 500, 0.1) == 4
-    assert governor.moving_samples(800, 500, 0.03) == 4, "there is little time, and a change loses modes"
-    assert governor.moving_samples(800, 500, 0.02) == 1
-    assert governor.moving_samples(800, 500, 0.035) == 1
-    assert governor.moving_samples(800, 500, 0.1) == 4
+        budget.observe(replace(points, phases={"primary": 1e-3, "shading": 0.15}), pixels, 4)
+    assert budget.seconds(pixels, 16, 4) == pytest.approx(0.15, rel=0.1)
+    assert budget.seconds(pixels, 16, 1) == pytest.approx(costs[0], rel=0.1), "each number for itself"
+    assert budget.plan(800, 500, 0.05, lamp_samples=64).parts[0] < budget.plan(800, 500, 0.05).parts[0]
+    assert budget.moving_samples(800, 500, 0.1) == 4
+    assert budget.moving_samples(800, 500, 0.03) == 4, "there is little time, and a change loses modes"
+    assert budget.moving_samples(800, 500, 0.02) == 1
+    assert budget.moving_samples(800, 500, 0.035) == 1
+    assert budget.moving_samples(800, 500, 0.1) == 4
 
 
 def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it():
@@ -194,90 +196,84 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
         window.rest()
         asked = window.renders.asked[-1].settings
         assert not asked.record_lights and not asked.record_fates
-        assert window.tracing.title == title
-
-
-class Questions:
-    """Takes down what the recorder asks the render thread."""
-
-    def __init__(self) -> None:
-        self.asked: list[LightQuestion] = []
-
-    def ask(self, question: LightQuestion) -> None:
-        self.asked.append(question)
+        assert window.scheduler.title == title
 
 
 def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
     window = Window(make_scene(lights=MOST_TOGETHER + 1))
-    questions = Questions()
-    recorder = LightRecorder(window.session, questions, window.tracing)
+    scheduler, asked = window.scheduler, []
+
+    def query(_function, frame, light):
+        if not asked or (asked[-1][0], asked[-1][1]) != (frame, light):
+            asked.append((frame, light, Future()))
+        return asked[-1][2]
+
+    window.renders.query = query
     window.rest()
-    recorder.follow()
-    assert not questions.asked, "the picture needs none"
+    scheduler.record_light()
+    assert not asked, "the picture needs none"
     window.session.view = View.PENUMBRA
     for _ in range(3):
-        recorder.follow()
-    (question,) = questions.asked
-    assert (question.frame, question.light) == (window.tracing.frame, 0)
+        scheduler.record_light()
+    ((frame, light, _),) = asked
+    assert (frame, light) == (scheduler.frame, 0)
     window.session.light = 1
-    recorder.follow()
-    (_, question) = questions.asked
-    first = with_lamps(question.frame)
-    question.found = replace(first, asked=first.asked[..., 1:2], reached=first.reached[..., 1:2], only_light=1)
-    recorder.follow()
-    assert window.tracing.frame is question.found and window.tracing.drawn_view is View.PENUMBRA
-    recorder.follow()
-    assert len(questions.asked) == 2
+    scheduler.record_light()
+    *_, (frame, _, future) = asked
+    first = with_lamps(frame)
+    found = replace(first, asked=first.asked[..., 1:2], reached=first.reached[..., 1:2], only_light=1)
+    future.set_result(found)
+    scheduler.record_light()
+    assert scheduler.frame.only_light == 1 and scheduler.drawn_view is View.PENUMBRA
+    scheduler.record_light()
+    assert len(asked) == 2
     window.session.light = 2
-    recorder.follow()
-    assert window.tracing.drawn_view is View.COLOR and len(questions.asked) == 3, "another light"
-    window.move()
-    window.rest()
-    newest = window.tracing.frame
-    questions.asked[-1].found = first
-    recorder.follow()
-    assert window.tracing.frame is newest and questions.asked[-1].frame is newest, "it is about an older frame"
+    scheduler.record_light()
+    assert scheduler.drawn_view is View.COLOR and len(asked) == 3, "another light"
+    asked[-1][2].set_exception(ValueError("no memory"))
+    scheduler.record_light()
+    assert scheduler.frame.only_light == 1, "what fails is reported by the render thread"
 
 
 def test_between_steps_it_is_known_that_more_is_to_come():
     """Whatever the thread is at: it may be between two pictures."""
     window = Window(lamp_radius=0.5, lamp_samples=64)
-    tracing, seen = window.tracing, []
-    assert not tracing.awaits and not tracing.adds_samples
+    scheduler, seen = window.scheduler, []
+    assert not scheduler.awaits and not scheduler.adds_samples
     for _ in range(12):
-        tracing.ask(HERE)
-        seen.append((tracing.lamp_samples_shown, tracing.awaits, tracing.refines_lamps))
-        tracing.take()
+        scheduler.request(HERE)
+        seen.append((scheduler.lamp_samples_shown, scheduler.awaits, scheduler.refines_lamps))
+        scheduler.take()
     assert seen[:4] == [(0, True, False), (4, True, True), (16, True, True), (64, True, False)], "the last knows more"
     assert seen[-1] == (64, False, False)
     window.move()
-    tracing.ask(HERE)
-    assert tracing.awaits
-    tracing.give_up()
-    assert not tracing.awaits and not tracing.adds_samples, "it has failed"
+    scheduler.request(HERE)
+    assert scheduler.awaits
+    scheduler.give_up()
+    assert not scheduler.awaits and not scheduler.adds_samples, "it has failed"
 
 
 def test_samples_of_pixels_come_after_certificates():
     window = Window()
     window.session.settings = replace(window.session.settings, method="certified", samples=4)
-    tracing = window.tracing
-    tracing.ask(HERE)
-    assert tracing.awaits and not tracing.certifies, "there is no picture yet"
-    tracing.take()
-    tracing.ask(HERE)
-    assert tracing.certifies and not tracing.adds_samples
+    scheduler = window.scheduler
+    scheduler.request(HERE)
+    assert scheduler.awaits and not scheduler.certifies, "there is no picture yet"
+    scheduler.take()
+    scheduler.request(HERE)
+    assert scheduler.certifies and not scheduler.adds_samples
     for _ in range(3):
-        tracing.take()
-        tracing.ask(HERE)
-    assert not tracing.certifies and not tracing.awaits and not tracing.adds_samples, "all samples are there"
-    part = replace(tracing.traced.frame, settings=replace(tracing.traced.frame.settings, samples=2))
-    tracing.traced = replace(tracing.traced, frame=part)
-    assert tracing.adds_samples and not tracing.awaits
-    tracing.traced = None
-    assert tracing.awaits
+        scheduler.take()
+        scheduler.request(HERE)
+    assert not scheduler.certifies and not scheduler.awaits and not scheduler.adds_samples, "all samples are there"
+    part = replace(scheduler.traced.frame, settings=replace(scheduler.traced.frame.settings, samples=2))
+    scheduler.traced = replace(scheduler.traced, frame=part)
+    assert scheduler.adds_samples and not scheduler.awaits
+    scheduler.traced = None
+    assert scheduler.awaits
     window = Window()
     window.session.settings = replace(window.session.settings, method="auto")
-    window.tracing.ask(HERE)
-    window.tracing.take()
-    window.tracing.ask(HERE)
-    assert window.tracing.awaits and not window.tracing.certifies, "where it chooses by itself, what follows learns"
+    window.scheduler.request(HERE)
+    window.scheduler.take()
+    window.scheduler.request(HERE)
+    assert window.scheduler.awaits and not window.scheduler.certifies, "where it chooses by itself, what follows learns"

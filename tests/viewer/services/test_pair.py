@@ -13,11 +13,15 @@ from tracer.frame import Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Camera
-from viewer.services.pair import Asked, Pair
+from viewer.services.pair import Pair
 from viewer.services.render_request import RenderRequest
 from viewer.services.render_thread import RenderThread
 
 CAMERA = Camera((0.0, 1.0, 4.0), (0.0, -0.25, -1.0))
+
+
+def never() -> bool:
+    return False
 
 
 @pytest.mark.parametrize("keeps_modes", [True, False])
@@ -31,9 +35,9 @@ def test_neither_knows_what_the_other_has_found_out(tmp_path, keeps_modes):
     first = Renderer(scene, replace(settings, method=methods[0]))
     pair = Pair(first)
     for moment in (1.0, 2.0, 2.0, 2.0, 4.0):
-        asked = Asked(moment, CAMERA, lambda: False, (1, 8, 16), 2, None)
-        steps = list(pair.refine(asked, methods[1]))
-        expected = [list(asked.of(renderer)) for renderer in alone]
+        asked = RenderRequest(moment, CAMERA, settings, samples=2, second=methods[1], parts=(1, 8, 16))
+        steps = list(pair.refine(asked, never))
+        expected = [[frame for frame, _ in asked.refine(renderer, never)] for renderer in alone]
         assert len(steps) == len(expected[0]) == 4
         for both, *each in zip(steps, *expected, strict=True):
             assert [frame.settings.method for frame in both] == list(methods)
@@ -47,17 +51,17 @@ def test_neither_knows_what_the_other_has_found_out(tmp_path, keeps_modes):
 def test_the_world_is_left_to_the_first_whatever_becomes_of_the_picture():
     first = FakeRenderer()
     pair = Pair(first)
-    asked = Asked(3.0, CAMERA, lambda: False, (1, 16), 1, None)
-    pictures = pair.refine(asked, "none")
+    asked = RenderRequest(3.0, CAMERA, Settings(), second="none", parts=(1, 16))
+    pictures = pair.refine(asked, never)
     one, other = next(pictures)
     assert (one.settings.method, other.settings.method, one.time, other.time) == ("paper", "none", 3.0, 3.0)
     pictures.close()
     assert first.turns == ["paper"], "a picture that nobody wants any more"
-    list(pair.refine(asked, "none"))
+    list(pair.refine(asked, never))
     assert first.turns == ["paper", "paper", "none", "paper"], "and between its parts, when questions are answered"
     first.other.failing = ValueError("no")
     with pytest.raises(ValueError, match="no"):
-        list(pair.refine(asked, "none"))
+        list(pair.refine(asked, never))
     assert first.turns[-1] == "paper"
 
 

@@ -31,11 +31,11 @@ class FirstStart:
         loader = SimpleNamespace(waiting=(scene, None, None))
         self.preview = Preview(self.session, loader, self.motion, notices, lambda: None)
         end = time.monotonic() + 20.0
-        self.preview.follow(traced=False)
+        self.preview.update(traced=False)
         while self.preview._job is not None:
             assert time.monotonic() < end, "in vain"
             time.sleep(0.002)
-            self.preview.follow(traced=False)
+            self.preview.update(traced=False)
         assert notices.current is None, notices.current
 
 

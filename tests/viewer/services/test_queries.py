@@ -161,3 +161,45 @@ def test_a_query_that_takes_long_gives_way_to_a_picture_and_to_a_newer_query(thr
     assert first.cancelled() and not second.done()
     shown(thread, 2.0)
     assert second.cancelled()
+
+
+def test_a_picture_is_asked_about_before_its_next_sample(thread):
+    renderer, answered, sampled = FakeRenderer(), Event(), Event()
+    thread.use(renderer)
+    render = renderer.render
+
+    def slowly(time, camera, cancel):
+        if len(renderer.asked) == 3:
+            sampled.set()
+            answered.wait(0.5)
+        return render(time, camera, cancel)
+
+    renderer.render = slowly
+    frame = shown(thread, 1.0, samples=50)
+    assert sampled.wait(5.0)
+    assert not thread.busy, "more samples are nothing to wait for"
+    thread.query(column, frame, 1).add_done_callback(lambda _: answered.set())
+    assert answered.wait(5.0) and len(renderer.asked) < 50
+
+
+def test_a_query_is_answered_though_the_next_picture_makes_the_window_ask_anew(thread, monkeypatch):
+    """Where a sample takes seconds and the window milliseconds, nothing would be answered before the last sample."""
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    frame = shown(thread, 1.0)
+    renderer.go.clear()
+    renderer.started.clear()
+    thread.submit(request(1.0, serial=1))
+    assert renderer.started.wait(5.0)
+    asked, anew, deliver = thread.query(column, frame, 1), [], thread._deliver
+
+    def seen_at_once(renderer, traced) -> bool:
+        on = deliver(renderer, traced)
+        anew.append(thread.query(column, traced.frame, 1))
+        return on
+
+    monkeypatch.setattr(thread, "_deliver", seen_at_once)
+    renderer.go.set()
+    assert asked.result(5.0)[1] is frame
+    shown(thread, 1.0)
+    assert anew[0].result(5.0)[1] is not frame

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from tests.viewer.desk import Desk
-from tracer.renderer import Renderer
-from viewer.services.ray_inspector import RayInspector, StepsQuestion
+from viewer.services.ray_inspector import RayInspector
 from viewer.state import navigation
 from viewer.state.verdicts import Filter, Shown
+from viewer.window.panels.ray_overlay import RayLine, ray_lines
 
 
 def looked_at(desk: Desk) -> RayInspector:
@@ -35,6 +35,11 @@ def middle(desk: Desk) -> tuple[float, float]:
     return (x + 0.5) / frame.width, (y + 0.5) / frame.height
 
 
+def lines(rays: RayInspector) -> list[RayLine]:
+    """What is drawn of the rays on their own frame."""
+    return ray_lines(rays.tree.frame, rays.tree, rays.shown)
+
+
 def test_nothing_is_listed_unless_it_is_seen(desk: Desk) -> None:
     desk.c.selection.select(middle(desk))
     desk.rest()
@@ -53,7 +58,6 @@ def test_the_tree_is_of_the_newest_picture_and_keeps_what_is_selected(desk: Desk
     desk.until(lambda: rays.tree is not None)
     first, row = rays.tree, rays.seen[1][1]
     rays.select(row)
-    desk.until(lambda: rays.walked)
     desk.c.motion.move(navigation.look(desk.c.session.camera, 0.02, 0.0, desk.c.motion.world_up))
     desk.until(lambda: rays.tree is not first and rays.tree.frame.primitive is desk.c.frame.primitive)
     assert rays.selected is not None and rays.selected.key == row.key
@@ -62,52 +66,30 @@ def test_the_tree_is_of_the_newest_picture_and_keeps_what_is_selected(desk: Desk
     assert rays.tree is not None, "out of sight it is what it was"
 
 
-def test_rays_and_steps_follow_an_edit_of_the_scene(desk: Desk) -> None:
+def test_rays_follow_an_edit_of_the_scene(desk: Desk) -> None:
     """The picture before and the one after are of the same time, camera and settings."""
     rays, c = looked_at(desk), desk.c
     c.selection.select(middle(desk))
     desk.until(lambda: rays.tree is not None)
     rays.select(rays.seen[1][1])
-    desk.until(lambda: rays.walked)
-    first, drawn = rays.tree, rays.lines(c.frame)
-    assert drawn and rays.lines(c.frame) is drawn
+    first, drawn = rays.tree, lines(rays)
+    assert drawn
     c.editing.switch(0, False)
     desk.until(lambda: rays.tree is not None and rays.tree is not first)
     desk.rest()
-    assert len(rays.lines(c.frame)) < len(drawn), "a light less shines on it"
+    assert len(lines(rays)) < len(drawn), "a light less shines on it"
     c.undo.undo()
     desk.rest()
-    assert len(rays.lines(c.frame)) == len(drawn)
+    assert len(lines(rays)) == len(drawn)
     again = replace(first, frame=replace(first.frame, color=first.frame.color.copy()))
     assert (again, again.frame) != (first, first.frame), "arrays alone cannot be compared as one"
-
-
-def test_steps_lead_through_both_structures(desk: Desk) -> None:
-    rays = looked_at(desk)
-    desk.c.selection.select(middle(desk))
-    desk.until(lambda: rays.tree is not None)
-    row = next(row for _, row in rays.seen if len(row.places) == 1)
-    rays.select(row)
-    for accelerator in ("bvh8", "kdtree"):
-        rays.accelerator = accelerator
-        desk.until(lambda name=accelerator: rays.walked and rays.structure == name)
-        assert rays.visits and rays.step == 0
-        rays.go(1000)
-        assert rays.step == len(rays.visits) - 1
-        rays.play()
-        assert rays.step == 0 and rays.playing == (len(rays.visits) > 0)
-        desk.until(lambda: not rays.playing or len(rays.visits) == 1)
-        rays.playing = False
-        rays.go(-1000)
-    rays.select(None)
-    assert not rays.visits
 
 
 def test_frame_after_frame_is_looked_into(desk: Desk) -> None:
     rays = looked_at(desk)
     desk.c.selection.select(middle(desk))
     desk.c.preferences.keep_tracing = True
-    desk.c.tracing.trace_again()
+    desk.c.scheduler.trace_again()
     seen = []
 
     def others() -> bool:
@@ -138,7 +120,7 @@ def test_filters_and_folds(desk: Desk) -> None:
     rays.toggle(rays.seen[0][1])
     assert len(rays.seen) == 1
     rays.toggle(rays.seen[0][1])
-    assert len(rays.seen) == whole and len(rays.lines(desk.c.frame)) > 0
+    assert len(rays.seen) == whole and len(lines(rays)) > 0
 
 
 def test_a_run_has_the_world_to_itself(desk: Desk) -> None:
@@ -151,15 +133,3 @@ def test_a_run_has_the_world_to_itself(desk: Desk) -> None:
     desk.c.runs.stop()
     desk.until(lambda: desk.c.runs.current is None)
     desk.until(lambda: rays.tree is not None)
-
-
-def test_what_is_dropped_is_left(desk: Desk) -> None:
-    rays = looked_at(desk)
-    desk.c.selection.select(middle(desk))
-    desk.until(lambda: rays.tree is not None)
-    question = StepsQuestion(rays.tree, rays.seen[0][1], "kdtree", rays._worlds)
-    question.dropped = True
-    renderer = desk.c.renderer._renderer
-    assert isinstance(renderer, Renderer)
-    question.answer(renderer)
-    assert question.found is None

@@ -36,7 +36,7 @@ def odd(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Desk:
 
 def fresh(desk: Desk) -> None:
     """What is known is forgotten, and learnt again from what is seen now."""
-    desk.c.tracing.reset_modes()
+    desk.c.reset_modes()
     desk.rest()
 
 

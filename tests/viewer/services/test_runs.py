@@ -54,8 +54,8 @@ def test_a_view_of_what_is_wrong_says_whether_the_run_verifies(desk: Desk, verif
     desk.runs.start_experiment()
     desk.until(lambda: desk.came)
     assert desk.runs.current.verifies is verify
-    assert ("this run does not verify" in desk.c.tracing.title) is not verify
-    assert desk.c.tracing.drawn_view is (View.WIPE if verify else View.COLOR)
+    assert ("this run does not verify" in desk.c.scheduler.title) is not verify
+    assert desk.c.scheduler.drawn_view is (View.WIPE if verify else View.COLOR)
 
 
 def test_the_frames_of_the_chosen_method_are_shown(desk: Desk) -> None:
@@ -97,18 +97,18 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
         lambda: desk.c.motion.step(3),
         lambda: desk.c.settings.change(depth=2),
         lambda: desk.c.settings.toggle_culling(),
-        lambda: desk.c.tracing.reset_modes(),
+        lambda: desk.c.reset_modes(),
     ):
         desk.c.notices.message = None
         disturb()
-        assert desk.said == "the experiment is still under way; stop it first (Escape)"
+        assert desk.said == "the experiment is still under way; stop it first"
         desk.tick()
         assert (session.camera, session.time, session.settings, session.playing, session.follow) == before
     desk.runs.start_experiment()
     assert desk.said == "the experiment is still under way"
     desk.runs.start_zoom_test()
     assert desk.said == "the experiment is still under way" and desk.runs.zoom_test is None
-    desk.c.tracing.trace_again()
+    desk.c.scheduler.trace_again()
     many = desk.runs.experiment.traced + 10
     desk.until(lambda: desk.runs.experiment.traced > many)
     assert not asked, "a frame was traced beside the run"

@@ -23,6 +23,7 @@ from viewer.services.controller import Controller
 from viewer.services.render_request import Traced
 from viewer.state.preferences import Preferences
 from viewer.util.resources import embedded_scenes
+from viewer.window.app import advance
 
 
 def test_another_scene_ends_a_run_and_its_results_stay(desk: Desk) -> None:
@@ -93,7 +94,7 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
     end = time.monotonic() + 20.0
     while controller.runs.current is not None or controller.frame is None:
         assert time.monotonic() < end
-        controller.tick(SIZE)
+        advance(controller, SIZE)
     assert controller.notices.newest_fault.text == "the experiment failed: AttributeError: no world"
     assert "no world" in controller.notices.newest_fault.details
     assert controller.close()
@@ -129,7 +130,7 @@ def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_sho
         raise Cancelled()
 
     renderer.refine = never
-    desk.c.tracing.trace_again()
+    desk.c.scheduler.trace_again()
     desk.tick()
     assert begun.wait(20.0)
     desk.came.clear()
@@ -144,13 +145,13 @@ def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_sho
 
 def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> None:
     scene, frames = weakref.ref(desk.c.session.scene), []
-    show = desk.c.tracing.show
+    show = desk.c.scheduler.show
 
     def showing(traced: Traced) -> None:
         frames.append(weakref.ref(traced.frame))
         show(traced)
 
-    desk.c.tracing.show = showing
+    desk.c.scheduler.show = showing
     desk.runs.start_experiment()
     desk.run_to_its_end()
     desk.came.clear()

@@ -42,7 +42,7 @@ class Door:
         """What comes of the load that is under way."""
         end = time.monotonic() + 300.0  # kernels may be compiled first
         while True:
-            arrival = self.loader.follow()
+            arrival = self.loader.take_finished()
             if arrival is not None or not self.loader.busy:
                 return arrival
             assert time.monotonic() < end, "in vain"
@@ -63,7 +63,7 @@ def test_a_scene_arrives_with_a_renderer_and_what_it_holds(door: Door, tiny_scen
     arrival = door.arrival()
     assert arrival.opened.scene.path == tiny_scene_file and arrival.place is None
     assert arrival.opened.renderer.scene is arrival.opened.scene and arrival.opened.info["lights"] == 2
-    assert arrival.text.startswith("tiny.aff opened in ") and door.loader.follow() is None, "once"
+    assert arrival.text.startswith("tiny.aff opened in ") and door.loader.take_finished() is None, "once"
 
 
 def test_what_cannot_be_opened_is_one_line_and_nothing_arrives(door: Door, tmp_path: Path):
@@ -102,7 +102,7 @@ def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(door: Door, tiny_sce
     door.captures.capture(frame, np.zeros((8, 16, 3), np.uint8))
     (job,) = door.captures.saving
     assert job.join(20.0)
-    door.captures.follow()
+    door.captures.report_saved()
     (picture,) = (tmp_path / "pictures").iterdir()
     assert door.said == f"saved {picture}" and not door.captures.busy
     door.loader.open(picture)
@@ -148,7 +148,7 @@ def test_a_load_that_cannot_stop_is_left_to_itself_when_it_is_cancelled(
     deaf.set()
     (job,) = door.loader._abandoned or [None]
     assert job is None or job.join(20.0)
-    assert door.loader.follow() is None
+    assert door.loader.take_finished() is None
 
 
 @pytest.mark.parametrize("end", ["cancelled", "abandoned", "failed"])
@@ -179,6 +179,6 @@ def test_a_scene_that_waited_in_vain_is_let_go(door: Door, tiny_scene_file: Path
     assert door.arrival() is None and door.loader.waiting is None
     go_on.set()
     assert all([job.join(20.0) for job in door.loader._abandoned])
-    door.loader.follow()
+    door.loader.take_finished()
     gc.collect()
     assert read[0]() is None

@@ -226,7 +226,7 @@ def test_what_is_saved_at_once_after_hiding_knows_of_it(desk: Desk, table: Scene
     assert sphere in known(desk).rows
     table.hide(sphere)
     table.save()
-    assert "when the picture shows the scene as it is edited" in desk.said
+    assert "when the picture shows the edited scene" in desk.said
     desk.until(lambda: any((tmp_path / "pictures").glob("*.csv")) and not desk.c.captures.busy)
     (path,) = (tmp_path / "pictures").glob("*.csv")
     with path.open(newline="") as file:

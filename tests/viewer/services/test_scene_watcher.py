@@ -26,11 +26,11 @@ class Looking:
         self.may, self.reloads = True, []
         self.watcher = SceneWatcher(self.preferences, lambda: self.files, lambda: self.may, self.reloads.append)
         self.watcher._thread = self  # type: ignore[assignment]  # else one of its own would look as well
-        self.watcher.follow()
+        self.watcher.reload_changed()
 
     def look(self) -> list[str]:
         self.watcher.look()
-        self.watcher.follow()
+        self.watcher.reload_changed()
         return self.reloads
 
 

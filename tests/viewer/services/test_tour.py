@@ -20,7 +20,7 @@ def test_the_way_to_see_culling_can_be_gone_in_order_from_every_method():
     """With `auto`, which may cull nothing, `paper` comes first, whether there is a picture already or not."""
     for frame in (None, make_frame(Settings(16, 8, method="auto"))):
         c = SimpleNamespace(frame=frame, session=SimpleNamespace(settings=Settings(16, 8, method="auto")))
-        c.active, c.tracing = False, SimpleNamespace(awaits=False)
+        c.active, c.scheduler = False, SimpleNamespace(awaits=False)
         text = CULLING.text(c, KEYS.__getitem__)
         assert text.index("Choose paper") < text.index("press Q twice")
         for method, said in (("paper", "Press Q twice."), ("none", "Press Q once more")):
@@ -29,9 +29,9 @@ def test_the_way_to_see_culling_can_be_gone_in_order_from_every_method():
     shadow = c.frame.statistics.shadow
     shadow.culled = shadow.candidates_only = shadow.dynamic_only = shadow.cache_hits = 0
     c.session.settings = Settings(16, 8, method="paper")
-    for c.active, c.tracing.awaits in ((True, False), (False, True)):
+    for c.active, c.scheduler.awaits in ((True, False), (False, True)):
         assert "is on its way" in CULLING.text(c, KEYS.__getitem__)
-    c.tracing.awaits = False
+    c.scheduler.awaits = False
     assert "has culled nothing here yet. Press T" in CULLING.text(c, KEYS.__getitem__)
 
 

@@ -17,6 +17,7 @@ from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.preferences import Preferences
 from viewer.state.session import Snapshot
 from viewer.state.views import View
+from viewer.window.app import advance
 
 SIZE = (16, 8)
 
@@ -34,7 +35,7 @@ class Desk:
         before, quiet, end = len(self.renderer.asked), 0, time.monotonic() + 20.0
         while quiet < 10:
             assert time.monotonic() < end, "it does not come to rest"
-            self.c.tick(SIZE)
+            advance(self.c, SIZE)
             quiet = 0 if self.c.active else quiet + 1
             time.sleep(0.002)
         return [settings.verify for _, settings in self.renderer.asked[before:]]
@@ -50,13 +51,13 @@ def desk():
 @pytest.mark.parametrize("view", [View.SAVED, View.COST])
 def test_a_view_of_work_has_it_counted_once_and_other_views_trace_nothing(desk: Desk, view: View):
     desk.c.settings.set_view(view)
-    assert desk.c.tracing.drawn_view is View.COLOR and desk.c.tracing.outdated, "nothing has been counted yet"
-    assert "counting" in desk.c.tracing.title
+    assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "nothing has been counted yet"
+    assert "counting" in desk.c.scheduler.title
     assert desk.rest() == [False]
-    assert desk.c.frame.settings.record_work and desk.c.tracing.drawn_view is view and not desk.c.tracing.outdated
+    assert desk.c.frame.settings.record_work and desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
     for other in (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE):
         desk.c.settings.set_view(other)
-        assert not desk.c.tracing.outdated
+        assert not desk.c.scheduler.outdated
         assert desk.rest() == []
     desk.c.motion.step(1)
     desk.rest()
@@ -76,13 +77,13 @@ def test_what_was_verified_is_counted_and_verified_again_when_both_are_wanted(de
 @pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
 def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(desk: Desk, view: View):
     desk.c.settings.set_view(view)
-    assert desk.c.tracing.drawn_view is View.COLOR and desk.c.tracing.outdated, "nothing has been verified yet"
-    assert "verifying" in desk.c.tracing.title
+    assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "nothing has been verified yet"
+    assert "verifying" in desk.c.scheduler.title
     assert desk.rest() == [True]
-    assert desk.c.frame.wrong is not None and desk.c.tracing.drawn_view is view and not desk.c.tracing.outdated
+    assert desk.c.frame.wrong is not None and desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
     for other in (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH):
         desk.c.settings.set_view(other)
-        assert not desk.c.tracing.outdated
+        assert not desk.c.scheduler.outdated
         assert desk.rest() == []
     assert not desk.c.session.settings.verify and not desk.c.preferences.verify
 
@@ -107,7 +108,7 @@ def test_the_users_own_setting_counts_in_every_view(desk: Desk):
     desk.c.settings.set_view(View.COLOR)
     desk.c.settings.change(verify=True)
     desk.c.settings.change(verify=False)
-    desk.c.tracing.trace_again()
+    desk.c.scheduler.trace_again()
     assert desk.rest() == [False]
 
 
@@ -125,14 +126,14 @@ def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk:
     monkeypatch.setattr(experiment, "run", fail)
     desk.renderer.go.clear()
     desk.renderer.started.clear()
-    desk.c.tracing.trace_again()
-    desk.c.tick(SIZE)
+    desk.c.scheduler.trace_again()
+    advance(desk.c, SIZE)
     assert desk.renderer.started.wait(10.0)
     desk.c.runs.start_experiment()
     end = time.monotonic() + 10.0
     while desk.c.runs.current is not None:
         assert time.monotonic() < end
-        desk.c.tick(SIZE)
+        advance(desk.c, SIZE)
     assert desk.c.notices.newest_fault is not None, "the run fails at once"
     assert desk.renderer.cancelled, "the run came before the frame"
     desk.renderer.go.set()
@@ -146,7 +147,7 @@ def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: 
     desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "{frame:04d}.png"
     for camera, follow in ((elsewhere, False), (own, True)):
         frame = make_frame(time=7.0, camera=camera)
-        desk.c.tracing.show(Traced(RenderRequest(7.0, camera, frame.settings), frame, frame.statistics))
+        desk.c.scheduler.show(Traced(RenderRequest(7.0, camera, frame.settings), frame, frame.statistics))
         desk.c.captures.capture(desk.c.frame, np.zeros((8, 16, 3), np.uint8))
         name = "0007.png" if camera == elsewhere else "0007-2.png"
         assert desk.c.captures.saving.pop().join(10.0)

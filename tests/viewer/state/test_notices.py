@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from viewer.state.notices import Notices
-from viewer.util.failures import failure
+from viewer.util.messages import failure
 
 
 def test_errors_and_faults_are_unread_until_the_log_is_read():

@@ -9,10 +9,10 @@ from viewer.state.pixels import Pixels, Region
 
 def test_another_scene_is_not_watched_where_the_last_one_was() -> None:
     pixels = Pixels()
-    pixels.follow(Path("kitchen.aff"))
+    pixels.enter(Path("kitchen.aff"))
     pixels.watched.append((0.25, 0.5))
     pixels.region = Region(0.0, 0.0, 0.5, 0.5)
-    pixels.follow(Path("kitchen.aff"))  # as when its file has changed
+    pixels.enter(Path("kitchen.aff"))  # as when its file has changed
     assert pixels.watched and pixels.region is not None
-    pixels.follow(Path("robot.aff"))
+    pixels.enter(Path("robot.aff"))
     assert not pixels.watched and pixels.region is None

@@ -167,7 +167,7 @@ def test_filters_find_rows(tables: dict[Level, Table], text: str, rows: list[int
         ("pixel>3", "do you mean pixels?"),
         ("weight>3", "there are number, object"),
         ("pixels>many", "many is no number"),
-        ("pixels>", "what?"),
+        ("pixels>", "needs a value"),
         ("object>3", "object:3"),
         ("mode:lit", "full shadow"),
         ("shadow:fully", "no mode is called fully"),

@@ -17,7 +17,7 @@ from tracer.frame import Settings
 from tracer.statistics import SampleCounts
 from viewer.output import legend_counts
 from viewer.state import marks, readings, views
-from viewer.state.history import SERIES, History
+from viewer.state.history import History, counters
 from viewer.state.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
 from viewer.util.resources import shader_source
 from viewer.window.widgets import in_window_style, percent
@@ -247,7 +247,7 @@ def test_history_keeps_the_newest_in_order_and_contiguous():
         due = history.values("due")
         assert list(due) == list(range(max(0, i - 4), i + 1))
         assert due.flags.c_contiguous and due.dtype == np.float64
-    assert history.first == 8 and all(len(history.values(name)) == 5 for name in SERIES)
+    assert history.first == 8 and all(len(history.values(name)) == 5 for name in counters(frame, 0.0))
     history.clear()
     assert len(history) == 0 and len(history.values("due")) == 0
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 from datetime import datetime
 from pathlib import Path
@@ -12,7 +13,19 @@ import pytest
 
 from tests.platforms import linux_only, posix_only
 from viewer.output import exports
-from viewer.util.files import check_outputs, check_writable, write_each, write_text, write_whole
+from viewer.util import files
+from viewer.util.files import (
+    BackgroundWriter,
+    check_outputs,
+    check_writable,
+    file_lock,
+    part_file,
+    part_name,
+    write_each,
+    write_new,
+    write_text,
+    write_whole,
+)
 
 
 def test_two_writers_of_one_file_do_not_disturb_each_other(tmp_path: Path) -> None:
@@ -54,13 +67,13 @@ def test_others_may_read_what_was_written_as_any_file(tmp_path: Path) -> None:
 
 
 def test_files_saved_in_one_second_each_have_a_name(tmp_path: Path) -> None:
-    """Each is written only after all have chosen their names."""
+    """All are being written before the first has its name."""
     now, many = datetime(2024, 5, 31, 14, 5, 9), 4
-    chosen = threading.Barrier(many, timeout=30.0)
+    begun = threading.Barrier(many, timeout=30.0)
 
     def save(number: int) -> Path:
         def write(path: Path) -> None:
-            chosen.wait()
+            begun.wait()
             write_text(path, str(number))
 
         return exports.save(tmp_path, "room", ".csv", write, now)
@@ -86,7 +99,7 @@ def test_a_folder_that_takes_no_files_is_one_line(tmp_path: Path, monkeypatch: p
         raise PermissionError(13, os.strerror(13))
 
     monkeypatch.setattr(Path, "open", denied)
-    with pytest.raises(OSError, match=r"^nothing saved: cannot write to .*: Permission denied$"):
+    with pytest.raises(OSError, match=r"^nothing saved: .*room.*: Permission denied$"):
         exports.save(tmp_path, "room", ".csv", lambda path: write_text(path, ""))
 
 
@@ -155,3 +168,83 @@ def test_what_cannot_be_written_is_said_in_one_line(
     with pytest.raises(OSError, match=said) as error:
         check_writable(Path(path))
     assert "\n" not in str(error.value)
+
+
+# --- files on their way ------------------------------------------------------------------------------
+
+
+@posix_only
+def test_what_killed_writers_have_left_is_removed_and_nothing_else(tmp_path: Path) -> None:
+    child = os.fork()
+    if child == 0:
+        part_name(tmp_path / "a.png").write_bytes(b"half")
+        os._exit(9)
+    os.waitpid(child, 0)
+    (dead,) = tmp_path.iterdir()
+    others = [tmp_path / name for name in (".a.png.part", "a.00000000-1-00000000.part", ".a.00000000-1-00000000.part")]
+    for other in others:
+        other.touch()
+    with part_file(tmp_path / "b.png") as (living, _):
+        files._cleared.discard(str(tmp_path))
+        write_text(tmp_path / "c.txt", "whole")
+        assert living.exists() and not dead.exists()
+    assert sorted(tmp_path.iterdir()) == sorted([*others, tmp_path / "c.txt"])
+
+
+def test_nobody_sees_a_new_file_before_it_is_whole_and_none_is_written_over(tmp_path: Path) -> None:
+    (tmp_path / "room.png").write_text("old")
+
+    def write(path: Path) -> None:
+        write_text(path, "new")
+        assert [found.name for found in tmp_path.iterdir() if not found.name.startswith(".")] == ["room.png"]
+
+    assert write_new(tmp_path, "room", ".png", write).name == "room-2.png"
+    assert (tmp_path / "room.png").read_text() == "old"
+
+
+def test_a_failure_names_the_file_that_was_wanted(tmp_path: Path) -> None:
+    def fail(path: Path) -> None:
+        raise OSError(f"{path}: the disk is full")
+
+    with pytest.raises(OSError, match=r"/room\.png: the disk is full$"):
+        write_new(tmp_path, "room", ".png", fail)
+
+
+def test_a_folder_without_links_takes_files_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: object) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", refused)
+    names = [write_new(tmp_path, "room", ".png", lambda path: write_text(path, "")).name for _ in range(2)]
+    assert names == ["room.png", "room-2.png"] and len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize("name", ["é" * 120 + ".png", "室" * 80 + ".png"])
+def test_long_names_have_room_for_what_hides_them(tmp_path: Path, name: str) -> None:
+    write_text(tmp_path / name, "whole")
+    assert (tmp_path / name).read_text() == "whole"
+
+
+def test_a_lock_is_had_by_one_at_a_time(tmp_path: Path) -> None:
+    with file_lock(tmp_path / "a.json", 0.0) as mine, file_lock(tmp_path / "a.json", 0.05) as others:
+        assert mine and not others
+    with file_lock(tmp_path / "a.json", 0.0) as again:
+        assert again
+
+
+def test_a_background_writer_waits_for_nothing_and_writes_what_was_asked_last() -> None:
+    """While the disk takes its time, the window goes on; of what waits, only the newest is written."""
+    writer, disk, written = BackgroundWriter(), threading.Event(), list[str]()
+
+    def slow() -> None:
+        assert disk.wait(30.0)
+        written.append("first")
+
+    first = writer.write(slow)
+    while not first.running():
+        time.sleep(0.001)
+    second, third = (writer.write(lambda name=name: written.append(name)) for name in ("second", "third"))
+    assert not first.done(), "nobody waited"
+    disk.set()
+    third.result(30.0)
+    assert second.cancelled() and written == ["first", "third"]

@@ -12,7 +12,7 @@ from viewer.services.controller import Controller
 from viewer.state.keymap import HELD
 from viewer.state.preferences import SCALES, Preferences
 from viewer.state.views import View
-from viewer.window import closer, command, commands
+from viewer.window import command, commands, keyboard, picture_commands
 from viewer.window.ui import Ui
 
 
@@ -25,19 +25,19 @@ def ui():
 
 
 def test_keys_and_names_are_unique(ui):
-    keys = Counter(command.chord(key) for c in ui.commands for key in c.keys)
+    keys = Counter(keyboard.chord(key) for c in ui.commands for key in c.keys)
     assert [k for k, n in keys.items() if n > 1] == []
     names = Counter(c.name for c in ui.commands)
     assert [n for n, count in names.items() if count > 1] == []
 
 
 def test_no_command_takes_a_key_that_flies(ui):
-    flying = {command.chord(key) for key in HELD.values() if key}
-    assert flying.isdisjoint(command.chord(key) for c in ui.commands for key in c.keys)
+    flying = {keyboard.chord(key) for key in HELD.values() if key}
+    assert flying.isdisjoint(keyboard.chord(key) for c in ui.commands for key in c.keys)
 
 
 def test_the_plus_of_every_keyboard_makes_the_interface_larger(ui):
-    by_name = {c.name: {command.chord(key) for key in c.keys} for c in ui.commands}
+    by_name = {c.name: {keyboard.chord(key) for key in c.keys} for c in ui.commands}
     ctrl, key = int(imgui.Key.mod_ctrl), imgui.Key
     plus = {ctrl | int(key.equal), ctrl | int(key.mod_shift) | int(key.equal), ctrl | int(key.keypad_add)}
     assert by_name["Larger interface"] == plus
@@ -50,7 +50,7 @@ def test_every_command_is_in_a_menu(ui):
 
 def test_unknown_keys_are_refused():
     with pytest.raises(ValueError, match="Hyper"):
-        command.chord("HyperKey")
+        keyboard.chord("HyperKey")
 
 
 def test_every_command_can_be_asked_for_its_state_without_a_scene(ui):
@@ -72,10 +72,10 @@ def test_no_panel_opens_by_itself_where_it_would_cover_the_picture(ui):
     ui.show_panel = shown.append
     for name in ("folded", "hidden"):
         setattr(ui.fold, name, True)
-        closer.offer(ui, "Pixels")
+        picture_commands.offer(ui, "Pixels")
         setattr(ui.fold, name, False)
     assert shown == []
-    closer.offer(ui, "Pixels")
+    picture_commands.offer(ui, "Pixels")
     assert shown == ["Pixels"]
 
 
@@ -105,3 +105,7 @@ def test_culling_is_switched(ui):
 def test_the_keys_of_views_are_those_of_their_commands(ui):
     by_name = {c.name: c for c in ui.commands}
     assert [by_name[view.label].key for view in View] == [view.key for view in View]
+
+
+def test_what_one_panel_needs_is_not_kept_for_all():
+    assert len(Ui.__slots__) <= 21, "keep it in the panel's own state: ui.state(YourState)"

@@ -14,7 +14,7 @@ from viewer.window.widgets import ERROR
 def test_wrong_answers_are_those_of_the_method_that_is_shown():
     settings = Settings(16, 8, method="paper", verify=True)
     c = SimpleNamespace(
-        frame=make_frame(settings), tracing=SimpleNamespace(settings=settings), runs=SimpleNamespace(current=None),
+        frame=make_frame(settings), scheduler=SimpleNamespace(settings=settings), runs=SimpleNamespace(current=None),
         session=SimpleNamespace(settings=settings, view=View.DIFFERENCE),
     )  # fmt: skip
     text, color = wrong_answers(c)
@@ -24,7 +24,7 @@ def test_wrong_answers_are_those_of_the_method_that_is_shown():
     c.runs.current = SimpleNamespace(name="zoom test")
     text, color = wrong_answers(c)
     assert text == "wrong answers of the zoom test are in its own panel" and color != ERROR
-    c.runs.current, c.tracing.settings = None, Settings(16, 8, method="auto", verify=True)
+    c.runs.current, c.scheduler.settings = None, Settings(16, 8, method="auto", verify=True)
     assert wrong_answers(c) is None
 
 

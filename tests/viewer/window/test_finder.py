@@ -7,9 +7,10 @@ import pytest
 from tracer.geometry.accelerators import ACCELERATORS
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
-from viewer.window import commands, findable
-from viewer.window.finder import Finder, Item, Kind, find
+from viewer.window import commands
+from viewer.window.finder import Finder, Item, Kind, find, match
 from viewer.window.guard import Guard
+from viewer.window.panels.command_palette import items
 from viewer.window.ui import Ui
 
 
@@ -23,11 +24,11 @@ def ui():
 
 
 def look_for(ui: Ui, typed: str) -> list[Item]:
-    return [found.item for found in find(typed, findable.items(ui), ui.controller.preferences.used)]
+    return find(typed, items(ui), ui.controller.preferences.used)
 
 
 def test_every_item_has_a_name_of_its_own(ui):
-    names = [item.name for item in findable.items(ui)]
+    names = [item.name for item in items(ui)]
     assert len(set(names)) == len(names) > 100
 
 
@@ -62,23 +63,23 @@ def test_what_was_used_last_comes_first(ui):
 
 def test_what_cannot_be_run_says_why_and_stays_open(ui):
     finder = Finder()
-    (play,) = (item for item in findable.items(ui) if item.name == "Play")
+    (play,) = (item for item in items(ui) if item.name == "Play")
     assert not play.enabled and play.why_not == "nothing moves in this scene" and play.key == "Space"
     assert finder.enter(play) is None and "nothing moves" in finder.problem
 
 
 def test_ticks_are_those_of_the_commands(ui):
-    by_name = {item.name: item for item in findable.items(ui)}
+    by_name = {item.name: item for item in items(ui)}
     assert by_name["Colour"].checked and by_name["Depth"].checked is False and by_name["Open..."].checked is None
     by_name["Depth"].run()
-    assert {item.name: item for item in findable.items(ui)}["Depth"].checked
+    assert {item.name: item for item in items(ui)}["Depth"].checked
 
 
 def test_a_setting_is_typed(ui):
     finder, c = Finder(), ui.controller
     finder.begin()
     finder.type("bounces")
-    finder.follow(findable.items(ui), [])
+    finder.update(items(ui), [])
     assert finder.enter(finder.aimed) is None and finder.setting.label == "Bounces" and finder.typed == "10"
     for wrong in ("many", "200", "-1", "", "1.5"):
         finder.type(wrong)
@@ -101,12 +102,20 @@ def test_lines_are_stepped_through_around_the_end(ui):
     finder = Finder()
     finder.begin()
     finder.type("light")
-    finder.follow(findable.items(ui), [])
+    finder.update(items(ui), [])
     first = finder.aimed
     finder.step(-1)
-    assert finder.aimed is finder.found[-1].item
+    assert finder.aimed is finder.found[-1]
     finder.step(1)
     assert finder.aimed is first
     finder.type("zzzz")
-    finder.follow(findable.items(ui), [])
+    finder.update(items(ui), [])
     assert finder.found == [] and finder.aimed is None and finder.enter(None) is None
+
+
+def test_words_elsewhere_count_for_less_and_a_whole_word_for_most():
+    assert match("view", "Colour", "View") < match("view", "Next view")
+    assert match("light", "Light theme") > match("light", "Lighter")
+    assert match("default", "default") > match("default", "Default layout") + 19.0, "the name itself"
+    assert match("xyz", "Occlusion mode") is None and match("mode x", "Shadow mode") is None
+    assert match("oclusion", "Occlusion mode") is not None and match("zebra", "Occlusion mode") is None

@@ -27,7 +27,7 @@ DVORAK = {key: dict(zip(_PLACES, _DVORAK, strict=True)).get(letter, letter) for 
 
 def keyboard(printed: dict[int, str]) -> Keyboard:
     made = Keyboard(printed.get)
-    made.follow()
+    made.update()
     return made
 
 
@@ -59,7 +59,7 @@ def test_a_place_that_imgui_takes_for_another_is_told_from_it_by_glfw():
     """On French keyboards the 6 has a minus, and what is a minus elsewhere is one for ImGui as well."""
     down: set[int] = set()
     made = Keyboard((FRENCH | {glfw.KEY_MINUS: ")"}).get, down.__contains__)
-    made.follow()
+    made.update()
     assert made.chord("6") == made.chord("Minus") == int(KEY.minus)
     for key, other in (("6", "Minus"), ("Minus", "6")):
         down.clear()
@@ -75,7 +75,7 @@ def test_another_layout_is_noticed(monkeypatch: pytest.MonkeyPatch):
     assert made.chord("W") == int(KEY.w)
     printed.update(FRENCH)
     made._looked = float("-inf")
-    made.follow()
+    made.update()
     assert made.chord("W") == int(KEY.z)
 
 

@@ -97,7 +97,7 @@ def test_a_preview_that_cannot_be_made_frees_what_it_took_and_is_not_tried_again
         count = len(made)
         assert count > 1 and all(isinstance(one.mglo, moderngl.mgl.InvalidObject) for one in made)
         graphics.draw_preview(ui)
-        assert len(made) == count and ui.preview is None, "said once"
+        assert len(made) == count and ui.graphics.preview is None, "said once"
         graphics.release_preview(ui)  # another window
         with pytest.raises(moderngl.Error):
             graphics.draw_preview(ui)

@@ -9,8 +9,7 @@ from tests.viewer.fakes import make_frame, with_certificates
 from tracer.settings import Settings
 from viewer.state import terms
 from viewer.window.panels import loading
-from viewer.window.panels.coming import first_picture
-from viewer.window.panels.status import doing
+from viewer.window.panels.status import doing, first_picture
 from viewer.window.panels.why import unanswered
 
 
@@ -66,10 +65,10 @@ def _idle(**changes: object) -> SimpleNamespace:
     )
     c = SimpleNamespace(
         loader=SimpleNamespace(warm_up_job=None, load_job=None, method_job=None, compiles=False),
-        frame=None, runs=SimpleNamespace(current=None), tracing=tracing, renderer=SimpleNamespace(busy=False),
+        frame=None, runs=SimpleNamespace(current=None), scheduler=tracing, renderer=SimpleNamespace(busy=False),
         motion=SimpleNamespace(under_way=False, lively=False),
         session=SimpleNamespace(scene=object(), playing=False, settings=SimpleNamespace(method="lie", samples=1)),
-        selection=SimpleNamespace(picked=None, pixel=None),
+        selection=SimpleNamespace(picked=None, pixel=None), inspector=SimpleNamespace(problem=""),
     )  # fmt: skip
     for name, value in changes.items():
         setattr(tracing if hasattr(tracing, name) else c, name, value)
@@ -88,7 +87,7 @@ def test_without_a_picture_it_is_said_what_goes_on() -> None:
 def test_what_was_asked_says_what_it_waits_for() -> None:
     """Nothing moves while samples are added, and an answer comes all the same only after one."""
     for changes, said in (
-        ({}, "looking into it ..."),
+        ({}, "tracing its shadow rays ..."),
         ({"adds_samples": True}, "answered after this sample"),
         ({"refines_lamps": True}, "answered after the samples of lamps"),
         ({"renderer": SimpleNamespace(busy=True)}, "answered after this picture"),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.output.thumbnail import from_text
 from viewer.window.camera_commands import KEYED_BOOKMARKS
-from viewer.window.panels.names import edit_name
+from viewer.window.panels.names import NameField, begin_edit, edit_name
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, em, fitted, heading, paragraph, tooltip
 
@@ -17,18 +19,26 @@ _MOST = 5  # lines that are seen at once
 _DRAGGED = "bookmark"
 
 
+@dataclass
+class BookmarksState:
+    """The name that is typed for a new one."""
+
+    new: str = ""
+
+
 def show(ui: Ui) -> None:
     """A part of the camera's panel."""
+    state = ui.state(BookmarksState)
     c = ui.controller
     heading("Bookmarks")
     button = f"{icons.ICON_FA_BOOKMARK}##add"
     imgui.set_next_item_width(-em(2.6))
     flags = int(imgui.InputTextFlags_.enter_returns_true)
-    entered, ui.new_bookmark = imgui.input_text_with_hint("##bookmark", "name", ui.new_bookmark, flags)
+    entered, state.new = imgui.input_text_with_hint("##bookmark", "name", state.new, flags)
     imgui.same_line()
     if imgui.button(button, (-1.0, 0.0)) or entered:
-        c.bookmarks.add(ui.new_bookmark)
-        ui.new_bookmark = ""
+        c.bookmarks.add(state.new)
+        state.new = ""
     tooltip(f"keep this view: camera, time and settings{ui.key('Add bookmark')}")
     if not c.bookmarks.all:
         paragraph("None yet in this scene.", QUIET)
@@ -63,7 +73,7 @@ def _line(ui: Ui, index: int) -> bool:
     text = corner.x + _picture(ui, mark, corner, height) + em(0.6)
     imgui.set_cursor_screen_pos(ImVec2(text, corner.y + 0.5 * (height - imgui.get_frame_height())))
     text_room = corner.x + room - buttons - text
-    if ui.editing == (LIST, index):
+    if ui.state(NameField).place == (LIST, index):
         imgui.set_next_item_width(text_room)
         edit_name(ui, lambda typed: c.bookmarks.rename(index, typed))
     else:
@@ -71,7 +81,7 @@ def _line(ui: Ui, index: int) -> bool:
         imgui.text_unformatted(fitted(name, text_room))
     imgui.set_cursor_screen_pos(ImVec2(corner.x + room - buttons + em(0.4), corner.y + 0.5 * (height - em(1.3))))
     if imgui.small_button(icons.ICON_FA_PEN):
-        ui.edit((LIST, index), name)
+        begin_edit(ui, (LIST, index), name)
     tooltip("rename it")
     imgui.same_line()
     if imgui.small_button(icons.ICON_FA_XMARK):
@@ -90,7 +100,9 @@ def _picture(ui: Ui, mark: dict, corner: ImVec2, height: float) -> float:
     room, draw = 1.6 * height, imgui.get_window_draw_list()
     text = mark.get("picture")
     picture = ui.cached(f"picture of {id(mark)}", mark, text, lambda: from_text(text))
-    texture = ui.shots.texture_id(picture, True) if picture is not None and ui.shots is not None else None
+    texture = (
+        ui.graphics.shots.texture_id(picture, True) if picture is not None and ui.graphics.shots is not None else None
+    )
     low, high = ImVec2(corner.x, corner.y), ImVec2(corner.x + room, corner.y + height)
     if picture is None or texture is None:
         draw.add_rect_filled(low, high, imgui.get_color_u32(imgui.Col_.frame_bg), em(0.2))
@@ -123,7 +135,7 @@ def _more(ui: Ui, index: int) -> bool:
     """The menu of a bookmark; returns whether the list has changed."""
     marks, last = ui.controller.bookmarks, len(ui.controller.bookmarks.all) - 1
     if imgui.menu_item("Rename", "", False)[0]:
-        ui.edit((LIST, index), str(marks.all[index].get("name", "?")))
+        begin_edit(ui, (LIST, index), str(marks.all[index].get("name", "?")))
     if imgui.menu_item("Let it be this place", "", False)[0]:
         marks.replace(index)
     for label, to, possible in (("Move up", index - 1, index > 0), ("Move down", index + 1, index < last)):

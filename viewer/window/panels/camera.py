@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state import navigation
-from viewer.window.commands import focus
+from viewer.window.camera_commands import focus
 from viewer.window.panels import bookmarks
 from viewer.window.ui import Ui
 from viewer.window.widgets import (

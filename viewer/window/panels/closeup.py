@@ -6,6 +6,7 @@ The wheel with Ctrl zooms around the pointer, a drag with Ctrl pans, and a drag 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
@@ -13,7 +14,7 @@ from viewer.state.comparison import Side
 from viewer.state.keymap import HELD
 from viewer.state.pixels import Point, region_between
 from viewer.state.zooming import GRID_FROM, STEP, panned, pixels_shown
-from viewer.window import closer, comparing
+from viewer.window import comparing, picture_commands
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
@@ -30,6 +31,15 @@ _MOST_NUMBERS = 1500  # pixels whose values are written at once
 # --- hands ---------------------------------------------------------------------------------------
 
 
+@dataclass
+class CloseupState:
+    """What a drag does that moves no camera, where in the picture it began, and the point that the menu is about."""
+
+    gesture: str = ""
+    gesture_at: Point = (0.0, 0.0)
+    menu_at: Point = (0.0, 0.0)
+
+
 def wheel(ui: Ui, area: Area) -> bool:
     """Zoom around the pointer, with Ctrl; whether the wheel was for that."""
     io = imgui.get_io()
@@ -37,54 +47,56 @@ def wheel(ui: Ui, area: Area) -> bool:
         return False
     if io.mouse_wheel:
         at = (io.mouse_pos.x - area.corner.x) / area.size.x, (io.mouse_pos.y - area.corner.y) / area.size.y
-        closer.zoom_by(ui, STEP**io.mouse_wheel, at)
+        picture_commands.zoom_by(ui, STEP**io.mouse_wheel, at)
     return True
 
 
 def drag(ui: Ui, area: Area) -> bool:
     """Pan with Ctrl, choose a region with Shift; whether the pointer, on ImGui's last item, does either."""
+    state = ui.state(CloseupState)
     io = imgui.get_io()
     if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
         flying = any(ui.keyboard.is_down(ui.keymap.of(name)) for name in _FLYING)  # then Shift flies faster
-        ui.gesture = "pan" if io.key_ctrl else "region" if io.key_shift and not flying else ""
-        ui.gesture_at = area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
+        state.gesture = "pan" if io.key_ctrl else "region" if io.key_shift and not flying else ""
+        state.gesture_at = area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
     released = imgui.is_item_deactivated()
-    if not ui.gesture or not (imgui.is_item_active() or released):
+    if not state.gesture or not (imgui.is_item_active() or released):
         return False
-    if ui.gesture == "pan":
+    if state.gesture == "pan":
         s = ui.controller.session
         s.zoom = panned(s.zoom, io.mouse_delta.x / area.size.x, io.mouse_delta.y / area.size.y)
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
     else:
-        start, here = ui.gesture_at, area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
+        start, here = state.gesture_at, area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
         frame = ui.controller.frame
         moved = frame is not None and (abs(start[0] - here[0]) * frame.width, abs(start[1] - here[1]) * frame.height)
         ui.pixels.region = region_between(start, here) if moved and max(moved) >= 0.5 else None
     if released:
-        if ui.gesture == "region" and ui.pixels.region is not None:
-            closer.offer(ui, "Pixels")
-        ui.gesture = ""
+        if state.gesture == "region" and ui.pixels.region is not None:
+            picture_commands.offer(ui, "Pixels")
+        state.gesture = ""
     return True
 
 
 def open_menu(ui: Ui, point: Point) -> None:
     """The menu over the picture, about this point of it."""
-    ui.menu_at = point
+    ui.state(CloseupState).menu_at = point
     imgui.open_popup(_MENU)
 
 
 def menu(ui: Ui) -> None:
     """The menu, while it is open."""
+    state = ui.state(CloseupState)
     if not imgui.begin_popup(_MENU):
         return
     c, frame = ui.controller, ui.controller.frame
     if frame is not None:
         if imgui.menu_item("Inspect this pixel", "Click", False, True)[0]:
-            c.selection.select(ui.menu_at)
+            c.selection.select(state.menu_at)
         if imgui.menu_item("Watch this pixel, or no longer", ui.key_label("Watch pixel"), False, True)[0]:
-            closer.pin(ui, ui.menu_at)
+            picture_commands.pin(ui, state.menu_at)
         imgui.separator()
-    for name in ("Keep as A", "Fit picture", "Clear the region"):
+    for name in ("Keep as A", "Fit picture", "Clear region"):
         command = next((one for one in ui.commands if one.name == name), None)
         if command is not None and imgui.menu_item(name, ui.key_label(name), False, command.enabled())[0]:
             ui.guard.step(f"The command {name}", command.run)

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state.preferences import RECENT_COMMANDS
-from viewer.window import findable
-from viewer.window.escape import ANY_POPUP
-from viewer.window.finder import Finder, Found, Item, Kind
-from viewer.window.ui import Ui
+from viewer.util.resources import embedded_scenes
+from viewer.window import setting_entries
+from viewer.window.command import Command
+from viewer.window.finder import Finder, Item, Kind
+from viewer.window.menus import ANY_POPUP
+from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, fitted, paragraph, tooltip
 
 TITLE = "##command palette"
@@ -29,9 +34,10 @@ _ROW = int(imgui.SelectableFlags_.no_auto_close_popups)
 
 def show(ui: Ui) -> None:
     """It lies at the top of the window, and goes with Escape, with a click elsewhere, and when something is run."""
-    finder = ui.finder
-    if finder.wanted:
-        finder.wanted = False
+    finder = ui.state(Finder)
+    if Dialog.PALETTE in ui.dialogs:
+        ui.close(Dialog.PALETTE)  # it is a popup from here on, which knows itself whether it is open
+        finder.begin()
         imgui.open_popup(TITLE)
     if not imgui.is_popup_open(TITLE):
         return
@@ -44,7 +50,7 @@ def show(ui: Ui) -> None:
     imgui.set_next_window_size(ImVec2(width, 0.0))
     if not imgui.begin_popup(TITLE):
         return
-    finder.follow(findable.items(ui), ui.controller.preferences.used)
+    finder.update(items(ui), ui.controller.preferences.used)
     taken = finder.aimed
     entered = _line(finder)
     clicked = None
@@ -134,15 +140,14 @@ def _list(finder: Finder, room: float) -> Item | None:
                 imgui.set_cursor_pos_y(number * height)
                 if _row(finder.found[number], number == finder.marked, height):
                     finder.marked = number
-                    clicked = finder.found[number].item
+                    clicked = finder.found[number]
         clipper.end()
     imgui.end_child()
     imgui.pop_style_var()
     return clicked
 
 
-def _row(found: Found, marked: bool, height: float) -> bool:
-    item = found.item
+def _row(item: Item, marked: bool, height: float) -> bool:
     imgui.push_id(item.name)
     clicked = imgui.selectable("##row", marked, _ROW, ImVec2(0.0, height - imgui.get_style().item_spacing.y))[0]
     if item.why_not:
@@ -155,7 +160,7 @@ def _row(found: Found, marked: bool, height: float) -> bool:
     left, edge = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
     right = item.key or (item.value if item.value is not None else "")
     key_room = imgui.calc_text_size(right).x + em(0.6) if right else 0.0
-    _label(found, edge - key_room)
+    clipped(item.label, None if item.enabled else imgui.get_style_color_vec4(imgui.Col_.text_disabled))
     path_room = edge - key_room - (imgui.get_item_rect_max().x - left.x) - em(1.2)
     if item.path and path_room > em(3.0):
         imgui.same_line(0.0, em(0.8))
@@ -168,28 +173,65 @@ def _row(found: Found, marked: bool, height: float) -> bool:
     return clicked
 
 
-def _label(found: Found, room: float) -> None:
-    """The label with the letters that were typed in another colour."""
-    label = fitted(found.item.label, room)
-    plain = imgui.Col_.text if found.item.enabled else imgui.Col_.text_disabled
-    marked = imgui.Col_.text_link if found.item.enabled else imgui.Col_.text_disabled
-    typed = [place for place in found.places if place < len(label)]
-    at, runs = 0, []
-    for place in typed:
-        if place > at:
-            runs.append((label[at:place], plain))
-        if runs and runs[-1][1] is marked and place == at:
-            runs[-1] = (runs[-1][0] + label[place], marked)
-        else:
-            runs.append((label[place], marked))
-        at = place + 1
-    if at < len(label) or not runs:
-        runs.append((label[at:], plain))
-    imgui.begin_group()
-    for number, (text, color) in enumerate(runs):
-        if number:
-            imgui.same_line(0.0, 0.0)
-        imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(color))
-        imgui.text_unformatted(text)
-        imgui.pop_style_color()
-    imgui.end_group()
+def items(ui: Ui) -> list[Item]:
+    """Everything, as it is now; commands first, in the order of the menus."""
+    return [*_commands(ui), *setting_entries.items(ui), *_presets(ui), *_panels(ui), *_bookmarks(ui), *_scenes(ui)]
+
+
+def _commands(ui: Ui) -> Iterator[Item]:
+    for command in ui.commands:
+        label = command.label
+        if label and command.name != Dialog.PALETTE.value:
+            yield Item(
+                command.name,
+                label,
+                Kind.COMMAND,
+                _running(ui, command),
+                path=command.menu.replace("/", " > "),
+                key=ui.keyboard.label(ui.keymap.shown(command.name)),
+                checked=command.checked() if command.checked is not None else None,
+                enabled=command.enabled(),
+                why_not=command.why_not,
+                also=f"{command.name} {command.also}",
+            )
+
+
+def _running(ui: Ui, command: Command) -> Callable[[], None]:
+    return lambda: ui.guard.step(f"The command {command.name}", command.run)
+
+
+def _presets(ui: Ui) -> Iterator[Item]:
+    presets = ui.controller.presets
+    for name in presets.names:
+        yield Item(f"preset {name}", name, Kind.PRESET, partial(presets.apply, name), "Edit > Presets",
+                   also="apply")  # fmt: skip
+
+
+def _panels(ui: Ui) -> Iterator[Item]:
+    for label in ui.panel_labels:
+        yield Item(f"panel {label}", f"Panel {label}", Kind.COMMAND, partial(ui.show_panel, label), "Panels",
+                   also="show open")  # fmt: skip
+
+
+def _bookmarks(ui: Ui) -> Iterator[Item]:
+    c = ui.controller
+    for number, mark in enumerate(c.bookmarks.all):
+        yield Item(
+            f"bookmark {number}",
+            str(mark.get("name", "?")),
+            Kind.BOOKMARK,
+            partial(c.go_to_bookmark, number),
+            "go there",
+        )
+
+
+def _scenes(ui: Ui) -> Iterator[Item]:
+    loader, own = ui.controller.loader, embedded_scenes()
+    for name, path in own.items():
+        yield Item(f"scene {path}", name, Kind.SCENE, partial(loader.open, path), "comes with Shadowcull",
+                   also="open")  # fmt: skip
+    for text in ui.controller.preferences.recent:
+        path = Path(text)
+        if path not in own.values():
+            yield Item(f"scene {path}", path.name, Kind.SCENE, partial(loader.open, path), str(path.parent),
+                       also="open recent")  # fmt: skip

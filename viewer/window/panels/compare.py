@@ -158,7 +158,7 @@ def _columns(ui: Ui) -> None:
     a, b = comparing.a, comparing.b
     if a is None or b is None:
         return
-    timed = ui.controller.baseline.measured if comparing.measures else None
+    timed = ui.controller.baseline.measured if comparing.second_method else None
     found = figures(ui, a.frame, b.frame, timed)
     flags = int(
         imgui.TableFlags_.sizing_stretch_same

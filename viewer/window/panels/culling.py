@@ -80,17 +80,17 @@ def show(ui: Ui) -> None:
     if wide_button(
         f"{icons.ICON_FA_ERASER}  Reset modes", f"forget all modes and certificates{ui.key('Reset modes')}", 2
     ):
-        c.tracing.reset_modes()
+        c.reset_modes()
     imgui.same_line()
     if wide_button(
         f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again",
         f"trace the same frame once more, with what is known after the last one{ui.key('Trace again')}",
     ):
-        c.tracing.trace_again()
+        c.scheduler.trace_again()
 
     def keep(on: bool) -> None:
         p.keep_tracing = on
-        c.tracing.trace_again()
+        c.scheduler.trace_again()
 
     checkbox(
         "Keep tracing when idle",
@@ -139,9 +139,9 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
         return None
     if c.runs.current is not None:
         return f"wrong answers of the {c.runs.current.name} are in its own panel", QUIET
-    if c.frame.settings.method != c.tracing.settings.method:
+    if c.frame.settings.method != c.scheduler.settings.method:
         return None
     said, color = verified.in_words(c.frame.statistics), ERROR if verified.is_wrong(c.frame.statistics) else QUIET
-    if not c.tracing.settings.verify or c.session.settings.verify:
+    if not c.scheduler.settings.verify or c.session.settings.verify:
         return said, color
     return f"{said} (verified for the view {c.session.view.label})", color

@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
-from viewer.window.panels import browser, command_palette, keys, presets, questions, save_as
-from viewer.window.ui import Ui
+from viewer.window.panels import command_palette, keys, open_file, presets, save_as
+from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import QUIET, centred, em, paragraph
 
 
 def show(ui: Ui) -> None:
     """All of them; each shows itself only when it is wanted."""
-    ui.guard.overlay(browser.NAME, lambda: browser.show(ui), lambda: setattr(ui.browser, "open", False))
-    ui.guard.overlay(save_as.NAME, lambda: save_as.show(ui), lambda: setattr(ui, "save_as_open", False))
-    ui.guard.overlay("The question", lambda: questions.show(ui), ui.controller.questions.drop)
+    ui.guard.overlay(open_file.TITLE, lambda: open_file.show(ui), lambda: ui.close(Dialog.OPEN_FILE))
+    ui.guard.overlay(save_as.NAME, lambda: save_as.show(ui), lambda: ui.close(Dialog.SAVE_AS))
+    ui.guard.overlay("The question", lambda: _question(ui), ui.controller.questions.drop)
     ui.guard.overlay("The command palette", lambda: command_palette.show(ui), command_palette.close)
-    ui.guard.overlay("The list of keys", lambda: keys.show(ui), lambda: setattr(ui, "shortcuts_open", False))
-    ui.guard.overlay("The presets", lambda: presets.show(ui), lambda: setattr(ui, "presets_open", False))
-    ui.guard.overlay("The dialog about the program", lambda: _about(ui), lambda: setattr(ui, "about_open", False))
+    ui.guard.overlay("The list of keys", lambda: keys.show(ui), lambda: ui.close(Dialog.KEYS))
+    ui.guard.overlay("The presets", lambda: presets.show(ui), lambda: ui.close(Dialog.PRESETS))
+    ui.guard.overlay("The dialog about the program", lambda: _about(ui), lambda: ui.close(Dialog.ABOUT))
 
 
 def _about(ui: Ui) -> None:
-    if not ui.about_open:
+    if Dialog.ABOUT not in ui.dialogs:
         return
     centred(em(30.0))
     flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_resize
     shown, open_ = imgui.begin("About Shadowcull", True, int(flags))
-    ui.about_open = bool(open_)
+    if not open_:
+        ui.close(Dialog.ABOUT)
     if shown:
         paragraph("A ray tracer that remembers its shadows.")
         imgui.spacing()
@@ -36,5 +37,39 @@ def _about(ui: Ui) -> None:
             QUIET,
         )
         imgui.spacing()
-        paragraph(f"Drawn by {ui.renderer_name}" if ui.renderer_name else "", QUIET)
+        paragraph(f"Drawn by {ui.graphics.renderer_name}" if ui.graphics.renderer_name else "", QUIET)
     imgui.end()
+
+
+def _question(ui: Ui) -> None:
+    """A dialog with a button for each answer; Escape chooses the first, which changes nothing."""
+    asking = ui.controller.questions
+    question = asking.question
+    if question is None:
+        return
+    name = f"{question.title}###question"
+    if not imgui.is_popup_open(name):
+        imgui.open_popup(name)
+    viewport = imgui.get_main_viewport()
+    imgui.set_next_window_pos(viewport.get_work_center(), int(imgui.Cond_.appearing), ImVec2(0.5, 0.5))
+    imgui.set_next_window_size(ImVec2(min(em(30.0), 0.95 * viewport.work_size.x), 0.0))
+    flags = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_saved_settings
+    shown, stays = imgui.begin_popup_modal(name, True, int(flags))
+    if not shown:
+        return
+    paragraph(question.text)
+    for option in question.options:
+        changed, _ = imgui.checkbox(option, option in question.ticked)
+        if changed:
+            question.ticked.symmetric_difference_update({option})
+    imgui.spacing()
+    chosen = question.answers[0][0] if not stays or imgui.is_key_pressed(imgui.Key.escape) else ""
+    for number, (answer, _) in enumerate(question.answers):
+        if number:
+            imgui.same_line()
+        if imgui.button(answer):
+            chosen = answer
+    if chosen:
+        imgui.close_current_popup()
+        ui.guard.step(f"The answer {chosen}", lambda: asking.answer(chosen))
+    imgui.end_popup()

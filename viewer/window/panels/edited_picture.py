@@ -15,6 +15,7 @@ from tracer.scene.lights import light_in_words
 from viewer.state import edit_effects
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.views import View
+from viewer.window.edit_commands import WhatIfState
 from viewer.window.panels.marks import SHADE
 from viewer.window.ui import Ui
 from viewer.window.widgets import count, em, tooltip_at
@@ -54,7 +55,7 @@ class ChangedPixels:
 
 def _open(ui: Ui) -> bool:
     """Whether the panel is on the screen."""
-    return imgui.get_frame_count() - ui.what_if_drawn <= 2
+    return imgui.get_frame_count() - ui.state(WhatIfState).drawn <= 2
 
 
 def marks_of(ui: Ui, frame: Frame) -> list[Mark]:
@@ -78,27 +79,28 @@ def marks_of(ui: Ui, frame: Frame) -> list[Mark]:
 def handle(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
     """Let the pointer drag a light in the plane of the screen; whether it holds one.  The picture is ImGui's last
     item."""
+    state = ui.state(WhatIfState)
     c, io = ui.controller, imgui.get_io()
     frame = c.frame
-    if frame is None or not (_open(ui) or ui.held_light is not None):
-        ui.held_light = None
+    if frame is None or not (_open(ui) or state.held_light is not None):
+        state.held_light = None
         return False
-    near = _nearest(marks_of(ui, frame), corner, size) if ui.held_light is None and imgui.is_item_hovered() else None
+    near = _nearest(marks_of(ui, frame), corner, size) if state.held_light is None and imgui.is_item_hovered() else None
     if near is not None and imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
-        ui.held_light, ui.dragged = near.number, False
-        ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
-    held = ui.held_light
+        state.held_light, ui.picture.dragged = near.number, False
+        ui.picture.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
+    held = state.held_light
     if held is None:
         if near is not None and not imgui.is_item_active():
             tooltip_at(f"{near.name}{'' if near.on else ', off'}: drag it; a click switches it {_other(near.on)}")
         return False
-    ui.dragged |= math.dist(ui.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > em(0.3)
-    if ui.dragged and (io.mouse_delta.x or io.mouse_delta.y):
+    ui.picture.dragged |= math.dist(ui.picture.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > em(0.3)
+    if ui.picture.dragged and (io.mouse_delta.x or io.mouse_delta.y):
         _drag(ui, frame, held, ((io.mouse_pos.x - corner.x) / size.x, (io.mouse_pos.y - corner.y) / size.y))
     if not imgui.is_item_active():
-        if not ui.dragged:
+        if not ui.picture.dragged:
             c.editing.switch(held, held in c.editing.now.lights_off)
-        ui.held_light = None
+        state.held_light = None
     return True
 
 
@@ -137,7 +139,9 @@ def show_lights(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     dark = imgui.get_color_u32(SHADE)
     for mark in marks_of(ui, frame):
         at = ImVec2(corner.x + mark.at[0] * (end.x - corner.x), corner.y + mark.at[1] * (end.y - corner.y))
-        bright = imgui.get_color_u32(_HELD if mark.number == ui.held_light else _ON if mark.on else _OFF)
+        bright = imgui.get_color_u32(
+            _HELD if mark.number == ui.state(WhatIfState).held_light else _ON if mark.on else _OFF
+        )
         for color, wider in ((dark, 0.12), (bright, 0.0)):
             if mark.on:
                 draw.add_circle_filled(at, em(0.26 + wider / 2), color)
@@ -156,14 +160,14 @@ def show_lights(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
 def show_changed(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """In place of the picture: dimmed, with the pixels in magenta that the edits have changed."""
     c = ui.controller
-    if not ui.changed_shown or ui.shots is None:
+    if not ui.state(WhatIfState).changed_shown or ui.graphics.shots is None:
         return
     found, frame = c.before_edits.effects, c.before_edits.frame
-    if found is None or frame is None or found.changes is None or c.tracing.drawn_view is not View.COLOR:
+    if found is None or frame is None or found.changes is None or c.scheduler.drawn_view is not View.COLOR:
         return
     changes = found.changes
     shot = ui.cached("changed pixels", found, None, lambda: ChangedPixels(frame, changes))
-    texture = ui.shots.texture_id(shot, small=False)
+    texture = ui.graphics.shots.texture_id(shot, small=False)
     if texture is None:
         return
     draw = imgui.get_window_draw_list()

@@ -10,8 +10,8 @@ from imgui_bundle import ImVec2, imgui
 from viewer.output.figure1 import figure_of
 from viewer.output.figure1_layout import lay_out
 from viewer.output.figure1_shapes import Area, Arrow, Box, Drawing, Tone
-from viewer.window.palette import BLUE
-from viewer.window.panels import coming
+from viewer.window.panels import status
+from viewer.window.style import BLUE
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, em, packed, paragraph, tooltip_at
 
@@ -23,7 +23,7 @@ def show(ui: Ui) -> None:
     c = ui.controller
     frame = c.frame
     if frame is None:
-        paragraph(coming.first_picture(c), QUIET)
+        paragraph(status.first_picture(c), QUIET)
         return
     style, room = imgui.get_style(), imgui.get_content_region_avail()
     # The same width with a scroll bar as without, so that neither brings about the other.

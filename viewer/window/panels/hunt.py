@@ -186,7 +186,7 @@ def _details(ui: Ui, hunts: HuntController, number: int, find: Counterexample, s
     _colors(find)
     for sentence in (*counterexample.in_words(find, scene), counterexample.in_its_frame(find)):
         paragraph(in_window_style(sentence))
-    if ui.controller.tracing.is_frozen:
+    if ui.controller.scheduler.is_frozen:
         paragraph("The picture stays at 1 sample a pixel, as it was found, until you move.", QUIET)
 
 

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode
-from tracer.frame import Frame
-from tracer.why_in_words import Words
-from viewer.state.picking import Pick, pixel_of
+from tracer.scene.model import Material
+from tracer.why_in_words import Link, Words
+from viewer.state.picking import Pick
 from viewer.state.readings import can_draw, cell_lights
 from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING, View
-from viewer.window.panels import rays, teaching, why
+from viewer.window.panels import rays, why
 from viewer.window.panels.links import sentence
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -34,32 +32,31 @@ from viewer.window.widgets import (
 
 def show(ui: Ui) -> None:
     """The panel: what was clicked, else what the pointer is on."""
-    c = ui.controller
-    if c.selection.picked is not None:
-        at, named = c.selection.pixel, f"{c.selection.picked.object_name} ({c.selection.picked.kind})"
-        where = f"pixel {at[0]}, {at[1]}: {named}" if at is not None else f"{named}, not visible from here"
-        clipped(where, QUIET)
+    selection = ui.controller.selection
+    picked, at = selection.picked, selection.pixel
+    if picked is not None:
+        named = f"{picked.object_name} ({picked.kind})"
+        clipped(f"pixel {at[0]}, {at[1]}: {named}" if at is not None else f"{named}, not visible from here", QUIET)
         imgui.same_line()
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
-            c.selection.picked = None
+            selection.clear()
             return
-        tooltip(f"let it go, and follow the pointer again{ui.key('Stop, or clear the selection')}")
-        _details(ui, c.selection.picked)
+        tooltip(f"clear the selection, and inspect what the pointer is on{ui.key('Stop, or clear the selection')}")
+        _details(ui, picked, at)
         return
-    found = c.selection.at(c.selection.hovered)
+    found = selection.at(selection.hovered)
     if found is None:
         paragraph(
-            "Point at the picture to inspect a pixel; click to keep it here. Why are its shadow rays culled, or not?",
-            QUIET,
+            "Point at the picture to inspect a pixel, or click to select one: why are its shadow rays culled?", QUIET
         )
     elif found.primitive < 0:
-        paragraph(f"Pixel {found.x}, {found.y}: nothing but background.", QUIET)
+        paragraph(f"Pixel {found.x}, {found.y}: background.", QUIET)
     else:
         clipped(f"pixel {found.x}, {found.y} under the pointer: {found.object_name} ({found.kind})", QUIET)
-        _details(ui, found)
+        _details(ui, found, (found.x, found.y))
 
 
-def _details(ui: Ui, pick: Pick) -> None:
+def _details(ui: Ui, pick: Pick, at: tuple[int, int] | None) -> None:
     frame = ui.controller.frame
     by_modes = frame is None or frame.settings.keeps_modes
     if pick.wrong and frame is not None:
@@ -68,28 +65,30 @@ def _details(ui: Ui, pick: Pick) -> None:
     if by_modes:
         heading("Modes of its cell" if pick.in_cells else "Modes")
         _modes(ui, pick)
-        _references(ui)
     rays.section(ui)
     heading("Surface")
     with properties("primitive", 5.8) as shown:
-        if shown:
-            fact("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
-            fact("Primitive", f"{pick.primitive}  ({pick.kind})")
-            if pick.in_cells:
-                fact("Cell", f"{pick.unit}", "the part of it that carries modes and counts")
-            if pick.material is not None:
-                fact("Material", pick.material.name, _describe(pick))
-            asks = _cell_asks(frame, pick)
-            if asks:
-                fact("Its cell", asks, "of the octree of this method: all but those that it knows to be hidden")
-            if not by_modes:  # else it is said above
-                fact("Pixels", f"{count(pick.pixels)} now")
-            if math.isfinite(pick.depth):  # else nothing of it is seen
-                fact("Depth", f"{pick.depth:.5g}")
-            if pick.point is not None:
-                fact("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
-            if pick.normal is not None:
-                fact("Normal", ", ".join(f"{along:z.2f}" for along in pick.normal))
+        if not shown:
+            return
+        fact("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
+        fact("Primitive", f"{pick.primitive}  ({pick.kind})")
+        if pick.in_cells:
+            fact("Cell", f"{pick.unit}", "the part of the primitive that has modes and pixel counts of its own")
+        if pick.material is not None:
+            fact("Material", pick.material.name, _describe(pick.material))
+        if frame is not None and at is not None and can_draw(frame, View.CELL_LIGHTS):
+            asked = int(cell_lights(frame)[at[1], at[0]])
+            if asked >= 0:
+                lights = f"looks at {count(asked)} of {count(frame.lights)} lights"
+                fact("Its cell", lights, "of the octree of this method: all but those known to be hidden from it")
+        if not by_modes:  # else it is said above
+            fact("Pixels", f"{count(pick.pixels)} now")
+        if math.isfinite(pick.depth):  # else nothing of it is seen
+            fact("Depth", f"{pick.depth:.5g}")
+        if pick.point is not None:
+            fact("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
+        if pick.normal is not None:
+            fact("Normal", ", ".join(f"{along:z.2f}" for along in pick.normal))
 
 
 def _wrong(answers: int, samples: int) -> str:
@@ -98,56 +97,27 @@ def _wrong(answers: int, samples: int) -> str:
     return f"{count(answers)} wrong shadow {'answer' if answers == 1 else 'answers'} at this pixel, {of}."
 
 
-def _references(ui: Ui) -> None:
-    """What became of the occlusion tests of the pixel against its two neighbours."""
-    found, scene = ui.controller.inspector.why, ui.controller.session.scene
-    if found is None or scene is None:
-        return
-    words = Words(scene, found)
-    for number, one in enumerate(found.references):
-        sentence(ui, words.reference(one), f"reference {number}", QUIET)
-
-
-def _cell_asks(frame: Frame | None, pick: Pick) -> str:
-    """How many lights the cell must look at that the pixel is in, in words; nothing where that is not known."""
-    at = pixel_of(pick, frame) if frame is not None and can_draw(frame, View.CELL_LIGHTS) else None
-    if frame is None or at is None:
-        return ""
-    asked = int(cell_lights(frame)[at[1], at[0]])
-    return f"asks {count(asked)} of {count(frame.lights)} lights" if asked >= 0 else ""
-
-
 def _modes(ui: Ui, pick: Pick) -> None:
-    """The occlusion mode, and the shadow mode per light."""
-    with _rows() as shown:
-        if not shown:
-            return
+    """The occlusion mode and the shadow mode per light, and how the pixel compares with its two reference pixels."""
+    if imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_prop)):
+        imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
+        imgui.table_setup_column("mode", int(imgui.TableColumnFlags_.width_stretch), 1.5)
         if pick.occlusion is not None:
             mode = pick.occlusion
             _mode("occlusion", mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode])
-            teaching.of_occlusion(ui, pick)
-        moves = pick.occlusion is OcclusionMode.DYNAMIC
-        for light, shadow in enumerate(() if moves else pick.shadows):
+        for light, shadow in enumerate(() if pick.occlusion is OcclusionMode.DYNAMIC else pick.shadows):
             if shadow is not None:
                 _mode(ui.light_name(light), shadow.name, SHADOW_COLORS[shadow], SHADOW_MEANING[shadow])
-                teaching.of_light(ui, pick, light, shadow)
+                _origin(ui, pick, light)
+        imgui.end_table()
     uncovered = sum(mode is None for mode in pick.shadows)
     if uncovered:
-        paragraph(f"{uncovered} more {'light is' if uncovered == 1 else 'lights are'} not culled", QUIET)
-
-
-@contextmanager
-def _rows() -> Iterator[bool]:
-    """A table of two columns that wrap, a light on the left and its mode; yields whether it is visible."""
-    shown = imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_prop))
-    if shown:
-        imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
-        imgui.table_setup_column("mode", int(imgui.TableColumnFlags_.width_stretch), 1.5)
-    try:
-        yield shown
-    finally:
-        if shown:
-            imgui.end_table()
+        paragraph(f"{uncovered} more {'light has' if uncovered == 1 else 'lights have'} no shadow mode", QUIET)
+    found, scene = ui.controller.inspector.why, ui.controller.session.scene
+    if found is not None and scene is not None:
+        words = Words(scene, found)
+        for number, one in enumerate(found.references):
+            sentence(ui, words.reference(one), f"reference {number}", QUIET)
 
 
 def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str) -> None:
@@ -159,9 +129,23 @@ def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str)
     tooltip(meaning)
 
 
-def _describe(pick: Pick) -> str:
-    m = pick.material
-    assert m is not None
+def _origin(ui: Ui, pick: Pick, light: int) -> None:
+    """The pictures, numbered as in the plots, in which the primitive was first seen lit by a light and blocked from it,
+    with the pixels that were."""
+    origins = ui.controller.history.origins_of(pick)
+    if origins is None or light >= len(origins.lights):
+        return
+    for lit, number in origins.lights[light].met():
+        found, word, by = ui.controller.origins.of(number, light, lit), "lit" if lit else "blocked", ""
+        if found is not None and found.pixel is not None:
+            by = f" at {found.pixel[0]}, {found.pixel[1]}" + (f" and {found.count - 1} more" if found.count > 1 else "")
+        elif found is not None:
+            by = " for reflected or refracted rays"
+        link = Link(f"picture {number}", frame=number, pixel=None if found is None else found.pixel)
+        sentence(ui, (f"{word} in ", link, by), f"{light} {word}", QUIET)
+
+
+def _describe(m: Material) -> str:
     text = "diffuse ({:.3g}, {:.3g}, {:.3g}), specular ({:.3g}, {:.3g}, {:.3g})".format(*m.diffuse, *m.specular)
     text += f", exponent {m.exponent:.4g}"
     return text + (f", transmission {m.transmission:.3g}, index {m.ior:.3g}" if m.transmission else "")

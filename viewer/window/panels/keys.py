@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.state.fuzzy import match
 from viewer.state.keymap import HELD
 from viewer.window.command import MENUS
-from viewer.window.ui import Ui
+from viewer.window.finder import match
+from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
 
 TITLE = "Keyboard and mouse"
@@ -32,10 +33,17 @@ _WHEELS = {
 }
 
 
+@dataclass
+class KeysState:
+    """What is looked for."""
+
+    filter: str = ""
+
+
 def show(ui: Ui) -> None:
     """The dialog, while it is open."""
-    if not ui.shortcuts_open:
-        ui.key_wanted = ""
+    if Dialog.KEYS not in ui.dialogs:
+        ui.keyboard.wanted_for = ""
         return
     viewport = imgui.get_main_viewport()
     size = ImVec2(min(em(58.0), 0.96 * viewport.work_size.x), min(em(46.0), 0.92 * viewport.work_size.y))
@@ -43,7 +51,8 @@ def show(ui: Ui) -> None:
     imgui.set_next_window_size(size, int(imgui.Cond_.appearing))
     flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_collapse
     shown, open_ = imgui.begin(TITLE, True, int(flags))
-    ui.shortcuts_open = bool(open_)
+    if not open_:
+        ui.close(Dialog.KEYS)
     if shown:
         _capture(ui)
         conflicts = ui.keymap.conflicts()
@@ -64,9 +73,10 @@ def show(ui: Ui) -> None:
 
 
 def _head(ui: Ui, at_odds: int) -> None:
+    state = ui.state(KeysState)
     keymap = ui.keymap
     imgui.set_next_item_width(em(11.0))
-    _, ui.key_filter = imgui.input_text_with_hint("##filter", "find a command or a key", ui.key_filter)
+    _, state.filter = imgui.input_text_with_hint("##filter", "find a command or a key", state.filter)
     imgui.same_line(0.0, em(1.0))
     imgui.begin_disabled(not ui.controller.preferences.keys)
     if imgui.button("Reset all keys"):
@@ -77,24 +87,24 @@ def _head(ui: Ui, at_odds: int) -> None:
         imgui.same_line(0.0, em(1.0))
         imgui.text_colored(ERROR, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {at_odds} conflicts")
     paragraph(
-        f"Press a key for {ui.key_wanted}, or Escape to leave it." if ui.key_wanted else
+        f"Press a key for {ui.keyboard.wanted_for}, or Escape to leave it." if ui.keyboard.wanted_for else
         "Click a key to choose another; the right button offers more. Keys without Ctrl or Alt are places on the "
         "keyboard, shown by what is printed there.",
-        None if ui.key_wanted else QUIET,
+        None if ui.keyboard.wanted_for else QUIET,
     )  # fmt: skip
 
 
 def _capture(ui: Ui) -> None:
     """Take the key that is pressed for the command that waits for one."""
-    if not ui.key_wanted:
+    if not ui.keyboard.wanted_for:
         return
     if imgui.is_key_pressed(imgui.Key.escape, repeat=False):
-        ui.key_wanted = ""
+        ui.keyboard.wanted_for = ""
         return
     key = ui.keyboard.pressed()
     if key is None:
         return
-    name, ui.key_wanted = ui.key_wanted, ""
+    name, ui.keyboard.wanted_for = ui.keyboard.wanted_for, ""
     if name in HELD:
         key = key.split("+")[-1]  # it is held with any modifier: Shift flies faster
     ui.keymap.choose(name, [key, *ui.keymap.of(name)[1:]])
@@ -106,7 +116,7 @@ def _capture(ui: Ui) -> None:
 
 def _groups(ui: Ui) -> Iterator[tuple[str, list[str]]]:
     """Titles, and the names below them; only what is looked for."""
-    typed = ui.key_filter.strip()
+    typed = ui.state(KeysState).filter.strip()
 
     def wanted(name: str, menu: str) -> bool:
         keys = " ".join(ui.keyboard.label(key) for key in ui.keymap.of(name))
@@ -136,13 +146,13 @@ def _group(ui: Ui, title: str, names: list[str], conflicts: dict[str, list[str]]
 
 
 def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
-    keymap, waiting = ui.keymap, ui.key_wanted == name
+    keymap, waiting = ui.keymap, ui.keyboard.wanted_for == name
     label = "press a key" if waiting else ui.keyboard.label(keymap.shown(name)) or "-"
     left = imgui.get_cursor_pos_x()
     color = ERROR if conflicts else imgui.get_style_color_vec4(imgui.Col_.text)
     imgui.push_style_color(imgui.Col_.text, color)
     if imgui.selectable(f"{label}##key", waiting, 0, ImVec2(em(_KEY - 0.6), 0.0))[0]:
-        ui.key_wanted = "" if waiting else name
+        ui.keyboard.wanted_for = "" if waiting else name
     imgui.pop_style_color()
     others = ", ".join(ui.keyboard.label(key) for key in keymap.of(name)[1:])
     if conflicts:

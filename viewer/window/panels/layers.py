@@ -16,7 +16,11 @@ def draw(ui: Ui, name: str, texture: int, area: Area, right: float = 1.0) -> Non
         return
     at = ImVec2(area.corner.x + (right - left) / (end - left) * area.size.x, area.end.y)
     start, stop = ImVec2(left, top), ImVec2(right, bottom)
-    crisp = ui.magnifier.texture_of(name, texture, area.zoom, ui.picture_size) if ui.magnifier is not None else None
+    crisp = (
+        ui.graphics.magnifier.texture_of(name, texture, area.zoom, ui.picture.size)
+        if ui.graphics.magnifier is not None
+        else None
+    )
     if crisp is not None:
         texture, start, stop = crisp, ImVec2(0.0, 0.0), ImVec2((right - left) / (end - left), 1.0)
     imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), area.corner, at, start, stop)

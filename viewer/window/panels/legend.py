@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from imgui_bundle import ImVec2, imgui
 
 from viewer.output.legend import legend_of
 from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting, lay_out
 from viewer.output.legend_parts import Chosen, Legend
+from viewer.state.placing import Rect
 from viewer.state.views import color_map, signed_map
 from viewer.window import comparing
 from viewer.window.ui import Ui
@@ -18,10 +21,19 @@ _CATCH = 1.6  # ems within which it snaps to an edge
 _MOST = 0.62  # of the picture's width, and of its height
 
 
+@dataclass
+class LegendState:
+    """Whether the picture shows its legend, where that is on the screen, and where the pointer holds it."""
+
+    shown: bool = False
+    place: Rect | None = None
+    held: tuple[float, float] = (0.0, 0.0)
+
+
 def of_picture(ui: Ui) -> Legend | None:
     """The legend of what is drawn of the newest frame; None where there is none."""
     c = ui.controller
-    frame, scene, view = c.frame, c.session.scene, c.tracing.drawn_view
+    frame, scene, view = c.frame, c.session.scene, c.scheduler.drawn_view
     if frame is None or scene is None:
         return None
     of_both = comparing.legend(ui)
@@ -41,7 +53,7 @@ def of_picture(ui: Ui) -> Legend | None:
 def in_panel(ui: Ui) -> None:
     """The whole legend at the cursor, where the picture does not show it."""
     legend = of_picture(ui)
-    if legend is None or ui.legend_shown:
+    if legend is None or ui.state(LegendState).shown:
         return
     layout = fitting(legend, _width_of, imgui.get_text_line_height(), imgui.get_content_region_avail().x, 1e6)
     layout = layout or lay_out(legend, _width_of, imgui.get_text_line_height())
@@ -54,7 +66,8 @@ def in_panel(ui: Ui) -> None:
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """Over the picture from `corner` to `end`: where it was put, and always inside."""
-    ui.legend_shown, ui.legend_place = False, None
+    state = ui.state(LegendState)
+    state.shown, state.place = False, None
     legend, p = of_picture(ui), ui.controller.preferences
     if legend is None or not p.legend:
         return
@@ -62,7 +75,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     layout = fitting(legend, _width_of, imgui.get_text_line_height(), _MOST * width, _MOST * height)
     if layout is None:
         return
-    ui.legend_shown = True
+    state.shown = True
     margin = em(_MARGIN)
     least = ImVec2(corner.x + margin, corner.y + margin + imgui.get_text_line_height() + em(0.7))  # below the title
     room = ImVec2(end.x - margin - layout.width - least.x, end.y - margin - layout.height - least.y)
@@ -71,7 +84,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     imgui.set_cursor_screen_pos(at)
     imgui.invisible_button("legend", ImVec2(layout.width, layout.height))
     _drag(ui, at, least, room)
-    ui.legend_place = at.x, at.y, at.x + layout.width, at.y + layout.height
+    state.place = at.x, at.y, at.x + layout.width, at.y + layout.height
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
     draw_layout(draw, layout, at)
@@ -83,15 +96,16 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
 
 def _drag(ui: Ui, at: ImVec2, least: ImVec2, room: ImVec2) -> None:
     """Follow the pointer that holds it; let go near an edge, it lies at that edge."""
+    state = ui.state(LegendState)
     p, mouse = ui.controller.preferences, imgui.get_io().mouse_pos
     if imgui.is_item_activated():
-        ui.legend_held = mouse.x - at.x, mouse.y - at.y
+        state.held = mouse.x - at.x, mouse.y - at.y
     released = imgui.is_item_deactivated()
     if imgui.is_item_hovered() or imgui.is_item_active():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
     if not (imgui.is_item_active() or released):
         return
-    left, top = mouse.x - ui.legend_held[0] - least.x, mouse.y - ui.legend_held[1] - least.y
+    left, top = mouse.x - state.held[0] - least.x, mouse.y - state.held[1] - least.y
     p.legend_x, p.legend_y = (min(max(way / free, 0.0), 1.0) for way, free in ((left, room.x), (top, room.y)))
     if released:
         p.legend_x, p.legend_y = _caught(p.legend_x, room.x), _caught(p.legend_y, room.y)

@@ -6,20 +6,22 @@ A scene may have thousands: a list draws the rows that are seen, and finds light
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 from imgui_bundle import imgui
 
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.scene.lights import Light, as_lamps, number_of
 from tracer.scene.model import Scene
-from viewer.services.lamps import OFFERED
+from viewer.services.refinement import OFFERED
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph, row, tooltip
 
 FEW = 8
 """Lights that are listed without a field to find them."""
 _ROWS = 6  # of the list that are seen at once
+_MOST_IN_COMBO = 64
 _SMALLEST, _LARGEST = 1e-5, 0.1  # radius on the slider, of the scene's diagonal
 _SCENE_SAYS = "as the scene says"
 _RADIUS = (
@@ -30,6 +32,13 @@ _SAMPLES = (
     "points from which each lamp shines: more make shadows smoother, and take a shadow ray each. In motion there are "
     "few; at idle more follow, up to these"
 )
+
+
+@dataclass
+class LightFilters:
+    """What is typed above each list of lights."""
+
+    texts: dict[str, str] = field(default_factory=dict)
 
 
 def lamp_rows(ui: Ui) -> None:
@@ -54,8 +63,8 @@ def lamp_rows(ui: Ui) -> None:
             c.settings.change(lamp_radius=None)
         tooltip("lights as the scene says")
     row("Lamp samples", _SAMPLES)
-    most = c.tracing.lamps.wanted
-    imgui.begin_disabled(most == 1 and not c.tracing.lamps.any)
+    most = c.scheduler.lamps.wanted
+    imgui.begin_disabled(most == 1 and not c.scheduler.lamps.any)
     if imgui.begin_combo("##lamp-samples", str(s.lamp_samples) if s.lamp_samples else _SCENE_SAYS):
         for number in (None, *OFFERED):
             if imgui.selectable(str(number) if number else _SCENE_SAYS, s.lamp_samples == number)[0]:
@@ -82,7 +91,7 @@ def combo(ui: Ui) -> None:
     """The light that the view shows, to choose another."""
     if imgui.begin_combo("##light", ui.light_name(ui.controller.session.light)):
         if imgui.is_window_appearing():
-            ui.light_filters["combo"] = ""
+            ui.state(LightFilters).texts["combo"] = ""
         shown = found(ui, "combo")
         if imgui.begin_child("lights", (0.0, min(max(len(shown), 1), 2 * _ROWS) * _line() + 2.0)):
             if _rows(ui, shown, described=False):
@@ -91,18 +100,32 @@ def combo(ui: Ui) -> None:
         imgui.end_combo()
 
 
+def combo_of_all(ui: Ui, place: str, chosen: int | None, choose: Callable[[int | None], None]) -> None:
+    """One light, or None for all of them together."""
+    if imgui.begin_combo("##light", "all lights" if chosen is None else ui.light_name(chosen)):
+        if imgui.is_window_appearing():
+            ui.state(LightFilters).texts[place] = ""
+        if imgui.selectable("all lights", chosen is None)[0]:
+            choose(None)
+        for number in list(found(ui, place))[:_MOST_IN_COMBO]:
+            if imgui.selectable(f"{ui.light_name(number)}##{number}", chosen == number)[0]:
+                choose(number)
+        imgui.end_combo()
+
+
 def found(ui: Ui, place: str, among: Scene | None = None) -> Sequence[int]:
     """The lights whose names have what is typed above them, of the scene that is shown or of another; all where they
     are few, and nothing is typed."""
+    state = ui.state(LightFilters)
     scene = among or ui.controller.session.scene
     assert scene is not None
     number = len(scene.lights)
     if number <= FEW:
         return range(number)
-    text = ui.light_filters.get(place, "")
+    text = state.texts.get(place, "")
     imgui.set_next_item_width(-1.0)
     _, text = imgui.input_text_with_hint(f"##find-{place}", f"find among {count(number)} lights", text)
-    ui.light_filters[place] = text
+    state.texts[place] = text
     numbers: Sequence[int] = ui.cached(f"lights {place}", scene, text, lambda: matching(scene.lights, text))
     if text:
         paragraph(f"{count(len(numbers))} of {count(number)}", QUIET)

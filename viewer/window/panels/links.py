@@ -4,21 +4,27 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
-from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.frame import Frame, Settings
 from tracer.reasons import SECTIONS
 from tracer.why_in_words import Link, Sentence
 from viewer.state.pixels import Point
-from viewer.window import closer
-from viewer.window.finding import fly_to_selected
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, fitted, tooltip
 
 _Word = tuple[str, Link | None]
 _TRAILING = re.compile(r"\S+\s*|\s+")
+
+
+@dataclass
+class Pointed:
+    """The name and the light of the Inspector that the pointer is on."""
+
+    link: Link | None = None
+    light: int | None = None
 
 
 def sentence(ui: Ui, said: Sentence, key: str, color: ImVec4 | None = None) -> None:
@@ -73,22 +79,19 @@ def _plain(text: str, color: ImVec4 | None) -> None:
 
 
 def _link(ui: Ui, link: Link, text: str, number: int) -> None:
-    """A name: a click leads to what it stands for, and the right button offers more."""
+    """A name: a click leads to what it stands for."""
     if link.section:
         imgui.text_colored(QUIET, text)
         tooltip(f"{link.text}  {SECTIONS[link.section]}")
         return
     if imgui.text_link(f"{text}##{number}"):
-        follow(ui, link)
+        go_to(ui, link)
     if imgui.is_item_hovered():
-        ui.pointed_link = link
-    tooltip(f"{_about(ui, link)}\n\nThe right button offers more.")
-    if imgui.begin_popup_context_item(f"more {number}"):
-        _menu(ui, link)
-        imgui.end_popup()
+        ui.state(Pointed).link = link
+    tooltip(_about(ui, link))
 
 
-def follow(ui: Ui, link: Link) -> None:
+def go_to(ui: Ui, link: Link) -> None:
     """Go to the frame, or select the pixel or the primitive, that a link stands for."""
     c = ui.controller
     if link.frame is not None:
@@ -106,31 +109,13 @@ def _about(ui: Ui, link: Link) -> str:
         kept = ui.controller.history.records.get(link.frame) is not None
         return f"Go to {ui.controller.navigator.name_of(link.frame)}" if kept else "This picture is no longer kept."
     if link.pixel is not None:
-        return "Select this pixel" if _point(ui, link) is not None else "A pixel of another picture than this one"
-    return "Select it; resting here outlines it in the picture"
-
-
-def _menu(ui: Ui, link: Link) -> None:
-    """What can be done with what a link stands for."""
-    if link.frame is not None:
-        if imgui.menu_item(f"{icons.ICON_FA_CLOCK}  Go there", "", False)[0]:
-            follow(ui, link)
-    elif link.pixel is not None:
-        if imgui.menu_item(f"{icons.ICON_FA_ARROW_POINTER}  Select", "", False)[0]:
-            follow(ui, link)
-        if imgui.menu_item(f"{icons.ICON_FA_MAP_PIN}  Mark and watch it", ui.key("Watch pixel").strip(" ()"), False)[0]:
-            closer.pin(ui, _point(ui, link))
-    elif link.primitive is not None:
-        if imgui.menu_item(f"{icons.ICON_FA_ARROW_POINTER}  Select", "", False)[0]:
-            follow(ui, link)
-        if imgui.menu_item(f"{icons.ICON_FA_PLANE}  Fly there", ui.key("Focus").strip(" ()"), False)[0]:
-            follow(ui, link)
-            fly_to_selected(ui)
+        return "Select this pixel" if _point(ui, link) is not None else "A pixel of another picture"
+    return "Select it; while the pointer rests here, the picture outlines it"
 
 
 def _point(ui: Ui, link: Link) -> Point | None:
-    """The pixel of a link as a point of the picture, or of the picture that taught; None where another picture is shown
-    than the one that it is of, or where that which taught is no longer kept."""
+    """The pixel of a link as a point of the picture, or of the picture that set a mode; None where another picture is
+    shown than the one that it is of, or where that is no longer kept."""
     c = ui.controller
     of: Frame | Settings | None = None
     if link.frame is not None:

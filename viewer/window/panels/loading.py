@@ -20,7 +20,7 @@ def show(ui: Ui) -> None:
     jobs = [job for job in (preparing, opener.load_job) if job is not None]
     if not jobs:
         return
-    if ui.preview is not None:
+    if ui.graphics.preview is not None:
         _slim(ui, jobs)
         return
     centred(em(26.0), 1.0 if ui.tour.step is not None else 0.5)

@@ -3,6 +3,8 @@ panel that failed."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
@@ -17,12 +19,20 @@ _ICONS = {
 }
 
 
+@dataclass
+class LogState:
+    """Whether only errors are listed."""
+
+    errors_only: bool = False
+
+
 def show(ui: Ui) -> None:
     """Draw the panel: every message there was, newest first."""
+    state = ui.state(LogState)
     log = ui.controller.notices.log
     log.mark_read()
-    entries = [e for e in log.entries() if not (ui.log_errors_only and e.level is Level.NOTICE)]
-    _, ui.log_errors_only = imgui.checkbox("Errors only", ui.log_errors_only)
+    entries = [e for e in log.entries() if not (state.errors_only and e.level is Level.NOTICE)]
+    _, state.errors_only = imgui.checkbox("Errors only", state.errors_only)
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_COPY}  Copy all") and entries:
         imgui.set_clipboard_text("".join(e.as_text for e in entries))
@@ -32,7 +42,7 @@ def show(ui: Ui) -> None:
         log.clear()
     if imgui.begin_child("entries", ImVec2(0.0, 0.0)):
         if not entries:
-            imgui.text_colored(QUIET, "No errors yet." if ui.log_errors_only else "No messages yet.")
+            imgui.text_colored(QUIET, "No errors yet." if state.errors_only else "No messages yet.")
         for number, entry in reversed(list(enumerate(entries))):
             imgui.push_id(number)
             _entry(ui, entry)

@@ -1,15 +1,22 @@
-"""Marks that panels draw over the picture: a ring around a point, and a cross where light is blocked."""
+"""A pen that draws over the picture: strokes, rings around pixels, and crosses where light is blocked."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from tracer.frame import Frame
+from viewer.state.projection import Stroke
+from viewer.window.panels.area import Area
 from viewer.window.widgets import em
 
 SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
 """Around what is drawn, so that it is seen on any picture."""
+Point = tuple[float, float]
+"""Of the picture, 0 to 1 from left and top."""
 
 
 def with_alpha(color: ImVec4, alpha: float) -> ImVec4:
@@ -17,23 +24,79 @@ def with_alpha(color: ImVec4, alpha: float) -> ImVec4:
     return ImVec4(color.x, color.y, color.z, color.w * alpha)
 
 
-def ring(draw: imgui.ImDrawList, at: ImVec2, radius: float = 0.4, alpha: float = 1.0) -> None:
-    """A white ring of so many ems around a point of the screen."""
-    draw.add_circle(at, em(radius), imgui.get_color_u32(SHADE), 0, em(0.22))
-    draw.add_circle(at, em(radius), imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, alpha)), 0, em(0.1))
+class Pen:
+    """Draws in places of the picture of a frame; widths are in ems.  `radius` is that of a ring around a pixel which
+    covers none of it."""
+
+    def __init__(self, area: Area, frame: Frame) -> None:
+        self.area, self.draw = area, imgui.get_window_draw_list()
+        self.pixel = area.whole_size.x / frame.width, area.whole_size.y / frame.height
+        self.radius = max(0.4, 0.5 * math.hypot(*self.pixel) / em(1.0) + 0.2)
+
+    def strokes(
+        self,
+        strokes: Iterable[Stroke],
+        color: ImVec4,
+        width: float,
+        behind: float = 0.6,
+        around: ImVec4 = SHADE,
+        rim: float = 0.06,
+        hole: Point | None = None,
+    ) -> None:
+        """Strokes with a rim `around` them; what lies behind something has the opacity `behind`, and nothing is drawn
+        within the ring around a `hole`."""
+        centre = self.area.to_screen(*hole) if hole is not None else None
+        for stroke in strokes:
+            alpha = 1.0 if stroke.seen else behind
+            ends = self.area.to_screen(*stroke.start), self.area.to_screen(*stroke.end)
+            outer = imgui.get_color_u32(with_alpha(around, alpha * color.w))
+            inner = imgui.get_color_u32(with_alpha(color, alpha))
+            for a, b in [ends] if centre is None else _outside(*ends, centre, em(self.radius)):
+                self.draw.add_line(a, b, outer, em(width + 2.0 * rim))
+                self.draw.add_line(a, b, inner, max(1.0, em(width)))
+
+    def ring(self, at: Point, radius: float | None = None, alpha: float = 1.0) -> None:
+        """A white ring, around a pixel unless it has another radius."""
+        centre, size = self.area.to_screen(*at), em(self.radius if radius is None else radius)
+        self.draw.add_circle(centre, size, imgui.get_color_u32(SHADE), 0, em(0.22))
+        self.draw.add_circle(centre, size, imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, alpha)), 0, em(0.1))
+
+    def disc(self, at: Point, color: ImVec4, radius: float) -> None:
+        """A disc with a rim."""
+        centre, shade = self.area.to_screen(*at), imgui.get_color_u32(with_alpha(SHADE, color.w))
+        self.draw.add_circle_filled(centre, em(radius + 0.1), shade)
+        self.draw.add_circle_filled(centre, em(radius), imgui.get_color_u32(color))
+
+    def cross(self, at: Point, color: ImVec4) -> None:
+        """A cross, where light is blocked."""
+        centre, shown, arm = self.area.to_screen(*at), imgui.get_color_u32(color), em(0.28)
+        for way in (arm, -arm):
+            a, b = ImVec2(centre.x - arm, centre.y - way), ImVec2(centre.x + arm, centre.y + way)
+            self.draw.add_line(a, b, shown, em(0.14))
+
+    def square(self, middle: ImVec2, size: Point, color: ImVec4) -> None:
+        """The outline of a pixel around a point of the screen."""
+        half = 0.5 * size[0] - 1.0, 0.5 * size[1] - 1.0
+        a, b = ImVec2(middle.x - half[0], middle.y - half[1]), ImVec2(middle.x + half[0], middle.y + half[1])
+        self.draw.add_rect(a, b, imgui.get_color_u32(ImVec4(0.03, 0.04, 0.05, 0.9)), 0.0, max(3.0, em(0.2)))
+        self.draw.add_rect(a, b, imgui.get_color_u32(color), 0.0, max(1.0, em(0.1)))
 
 
-def radius_around_pixel(width: float, height: float) -> float:
-    """That of a ring, in ems, around a pixel of so many of the screen's, none of which it covers."""
-    return max(0.4, (0.5 * math.hypot(width, height)) / em(1.0) + 0.2)
+@contextmanager
+def pen(area: Area, frame: Frame) -> Iterator[Pen]:
+    """A pen that leaves what is around the picture alone."""
+    made = Pen(area, frame)
+    made.draw.push_clip_rect(area.corner, area.end, True)
+    yield made
+    made.draw.pop_clip_rect()
 
 
-def outside(start: ImVec2, end: ImVec2, centre: ImVec2, radius: float) -> list[tuple[ImVec2, ImVec2]]:
-    """The parts of a line that are not within so many ems of a point."""
+def _outside(start: ImVec2, end: ImVec2, centre: ImVec2, radius: float) -> list[tuple[ImVec2, ImVec2]]:
+    """The parts of a line that are not within so many pixels of a point."""
     way = end.x - start.x, end.y - start.y
     off = start.x - centre.x, start.y - centre.y
     a = way[0] ** 2 + way[1] ** 2
-    b, c = off[0] * way[0] + off[1] * way[1], off[0] ** 2 + off[1] ** 2 - em(radius) ** 2
+    b, c = off[0] * way[0] + off[1] * way[1], off[0] ** 2 + off[1] ** 2 - radius**2
     root = b * b - a * c
     if a <= 0.0 or root <= 0.0:
         return [] if c < 0.0 else [(start, end)]
@@ -45,19 +108,3 @@ def outside(start: ImVec2, end: ImVec2, centre: ImVec2, radius: float) -> list[t
     if last <= 0.0 or first >= 1.0:
         return [(start, end)]
     return [(start, at(first))] * (first > 0.0) + [(at(last), end)] * (last < 1.0)
-
-
-def cross(draw: imgui.ImDrawList, at: ImVec2, color: ImVec4, arm: float = 0.28) -> None:
-    """A cross with arms of so many ems at a point of the screen."""
-    shown, reach = imgui.get_color_u32(color), em(arm)
-    for way in (1.0, -1.0):
-        start, end = ImVec2(at.x - reach, at.y - way * reach), ImVec2(at.x + reach, at.y + way * reach)
-        draw.add_line(start, end, shown, em(0.14))
-
-
-def line(
-    draw: imgui.ImDrawList, start: ImVec2, end: ImVec2, color: ImVec4, width: float, around: ImVec4, rim: float = 0.06
-) -> None:
-    """A line of so many ems, with a rim of another colour."""
-    draw.add_line(start, end, imgui.get_color_u32(around), em(width + 2.0 * rim))
-    draw.add_line(start, end, imgui.get_color_u32(color), max(1.0, em(width)))

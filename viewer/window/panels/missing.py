@@ -55,7 +55,7 @@ def _button(ui: Ui, what: str) -> bool:
 
 def _free(ui: Ui, left: float, right: float) -> tuple[float, float]:
     """From where to where across the picture a note may lie: on the wider side of the wipe's line, where that is."""
-    if ui.controller.tracing.drawn_view is not View.WIPE:
+    if ui.controller.scheduler.drawn_view is not View.WIPE:
         return left, right
     line = left + ui.controller.session.wipe * (right - left)
     return (left, line) if line - left > right - line else (line, right)

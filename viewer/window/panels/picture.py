@@ -18,30 +18,26 @@ from viewer.state.comparison import Way
 from viewer.state.picking import point_at
 from viewer.util.numbers import whole_percent
 from viewer.window import comparing
-from viewer.window.palette import ON_PICTURE_ERROR
 from viewer.window.panels import (
     closeup,
-    coming,
-    cut_overlay,
     edited_picture,
-    explanation,
     film,
     layers,
     legend,
     missing,
+    overlays,
     preview,
-    ray_overlay,
     savings,
     sides,
     slicing,
+    status,
     timeline,
     tour,
-    unseen,
-    why_overlay,
     wipe,
-    worst_pixels,
 )
 from viewer.window.panels.area import Area
+from viewer.window.panels.legend import LegendState
+from viewer.window.style import ON_PICTURE_ERROR
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, em, paragraph
 
@@ -73,8 +69,7 @@ def show(ui: Ui) -> None:
     strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
     room = ImVec2(room.x, room.y - strip)
     scale = imgui.get_io().display_framebuffer_scale
-    ui.picture_area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
-    ui.picture_focused = imgui.is_window_focused()
+    ui.picture.area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
     top = imgui.get_cursor_pos()
     if room.x >= 1.0 and room.y >= 1.0 and not film.screen(ui, room):
         _picture(ui, room)
@@ -97,9 +92,9 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     if frame is None or texture is None or c.session.scene is None:
         _placeholder(ui, room)
         return
-    ui.pixels.follow(c.session.scene.path)
+    ui.pixels.enter(c.session.scene.path)
     width, height = c.traced.full_size if c.traced is not None else (1, 1)
-    ui.picture_shape = width, height
+    ui.picture.shape = width, height
     seen, gap = comparing.shown(ui), em(sides.GAP)
     beside = seen is not None and seen[2] is Way.SIDE
     factor = min(((room.x - gap) / 2.0 if beside else room.x) / width, room.y / height)
@@ -107,9 +102,9 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     at = imgui.get_cursor_pos()
     left = at.x + (room.x - (2.0 * size.x + gap if beside else size.x)) / 2.0
     top = at.y + (room.y - size.y) / 2.0
-    if beside and seen is not None and ui.compared is not None:
+    if beside and seen is not None and ui.graphics.compared is not None:
         area = _area(ui, "picture of A", left, top, size)
-        layers.draw(ui, comparing.OF_A, ui.compared.a_texture or 0, area)
+        layers.draw(ui, comparing.OF_A, ui.graphics.compared.a_texture or 0, area)
         _pointer(ui, area, takes_edits=False)
         closeup.show(ui, area, seen[0])
         left += size.x + gap
@@ -119,17 +114,11 @@ def _picture(ui: Ui, room: ImVec2) -> None:
         sides.draw_a(ui, area, seen)
     with _inside(area):
         edited_picture.show_changed(ui, area.whole, area.whole_end)
-        if c.rays.visible:  # it shows the same rays, and more
-            ray_overlay.show(ui, area.whole, area.whole_end)
-        else:
-            explanation.show(ui, area.whole, area.whole_end)
-        why_overlay.show(ui, area)
-        unseen.show(ui, area.whole, area.whole_end)
-        cut_overlay.show(ui, area.whole, area.whole_end)
+        overlays.show(ui, area)
     _pointer(ui, area)
     closeup.show(ui, area)
     if seen is not None:
-        worst_pixels.show(ui, area, seen)
+        overlays.show_worst_pixels(ui, area, seen[1].frame)
     wipe.show(ui, area)
     lower = _overlay(ui, area.corner, area.end)
     with _inside(area):
@@ -149,7 +138,7 @@ def _area(ui: Ui, name: str, left: float, top: float, size: ImVec2) -> Area:
     imgui.set_next_item_allow_overlap()  # what lies over the picture takes the pointer there
     imgui.invisible_button(name, size, _ALL_BUTTONS)
     scale = imgui.get_io().display_framebuffer_scale
-    ui.picture_size = max(1, round(size.x * scale.x)), max(1, round(size.y * scale.y))
+    ui.picture.size = max(1, round(size.x * scale.x)), max(1, round(size.y * scale.y))
     return Area(corner, size, ui.controller.session.zoom)
 
 
@@ -166,7 +155,7 @@ def _inside(area: Area) -> Iterator[None]:
 
 def _last_picture(ui: Ui, room: ImVec2, texture: int) -> None:
     """What was shown before the scene was read again, until it is traced: else each change would flash."""
-    width, height = ui.picture_shape
+    width, height = ui.picture.shape
     factor = min(room.x / width, room.y / height)
     size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
     at = imgui.get_cursor_pos()
@@ -179,7 +168,7 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
     if c.loader.load_job is not None or c.loader.warm_up_job is not None:
         return  # the progress window speaks
-    text = coming.first_picture(c)
+    text = status.first_picture(c)
     if c.session.scene is None:
         text = f"Open a scene{ui.key('Open...')}, or drop one on this window"
     width = imgui.calc_text_size(text).x
@@ -191,8 +180,8 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
 def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
     """Hovering, clicking and dragging on the picture, which is ImGui's last item; of lights too if it `takes_edits`."""
     c, io = ui.controller, imgui.get_io()
-    if ui.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
-        ui.pivot, ui.pivot_scene = None, c.session.scene
+    if ui.picture.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
+        ui.picture.pivot, ui.picture.pivot_scene = None, c.session.scene
     u, v = area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.selection.hovered = (u, v)
@@ -203,20 +192,20 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
     if wipe.handle(ui, area) or closeup.drag(ui, area):
         return
     if imgui.is_item_activated():
-        ui.dragged = False
-        ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
-        ui.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), LEFT)
+        ui.picture.dragged = False
+        ui.picture.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
+        ui.picture.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), LEFT)
         point = point_at(c.frame, u, v) if c.frame is not None else None
         if point is not None:
-            ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
+            ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
     released = imgui.is_item_deactivated()
     if imgui.is_item_active() or released:  # a quick hand drags and lets go within one of our frames
-        ui.dragged |= math.dist(ui.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > CLICK_SLACK
-        if ui.dragged:
-            _drag(ui, ui.pressed, io.mouse_delta.x / area.size.y, io.mouse_delta.y / area.size.y)
-    if released and not ui.dragged and ui.pressed == RIGHT:
+        ui.picture.dragged |= math.dist(ui.picture.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > CLICK_SLACK
+        if ui.picture.dragged:
+            _drag(ui, ui.picture.pressed, io.mouse_delta.x / area.size.y, io.mouse_delta.y / area.size.y)
+    if released and not ui.picture.dragged and ui.picture.pressed == RIGHT:
         closeup.open_menu(ui, (u, v))
-    elif released and not ui.dragged:
+    elif released and not ui.picture.dragged:
         c.selection.select((u, v))
 
 
@@ -226,7 +215,7 @@ def _drag(ui: Ui, button: int, dx: float, dy: float) -> None:
         return
     c = ui.controller
     camera, world = c.session.camera, c.motion.world_up
-    pivot = ui.pivot
+    pivot = ui.picture.pivot
     orbiting = c.preferences.navigation == "orbit" and pivot is not None
     turn = navigation.RADIANS_PER_HEIGHT
     if button == MIDDLE or (button == RIGHT and orbiting):
@@ -246,9 +235,9 @@ def _wheel(ui: Ui, notches: float) -> None:
         at = c.selection.hovered
         point = point_at(c.frame, *at) if c.frame is not None and at is not None else None
         if point is not None:
-            ui.pivot = (float(point[0]), float(point[1]), float(point[2]))
-        if ui.pivot is not None:
-            c.motion.move(navigation.dolly(c.session.camera, ui.pivot, notches))
+            ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
+        if ui.picture.pivot is not None:
+            c.motion.move(navigation.dolly(c.session.camera, ui.picture.pivot, notches))
     else:
         c.preferences.speed = min(max(c.preferences.speed * 1.2**notches, 0.001), 1000.0)
         c.notices.say(f"flying speed {c.preferences.speed:.3g}")
@@ -257,13 +246,20 @@ def _wheel(ui: Ui, notches: float) -> None:
 def fly(ui: Ui) -> None:
     """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
     c, io = ui.controller, imgui.get_io()
-    if ui.key_wanted or io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or c.session.seen is None:
+    if (
+        ui.keyboard.wanted_for
+        or io.want_text_input
+        or io.key_ctrl
+        or io.key_alt
+        or io.key_super
+        or c.session.seen is None
+    ):
         return
     if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup_id | imgui.PopupFlags_.any_popup_level)):
         return
 
     def down(name: str) -> float:
-        return float(name not in ui.chorded and ui.keyboard.is_down(ui.keymap.of(name)))
+        return float(name not in ui.keyboard.chorded and ui.keyboard.is_down(ui.keymap.of(name)))
 
     def axis(plus: str, minus: str) -> float:
         return down(plus) - down(minus)
@@ -287,19 +283,19 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
     frame, request = c.frame, c.traced.request if c.traced is not None else None
     if frame is None or request is None:
         return corner.y
-    text = f"{c.tracing.title}   {frame.width} x {frame.height}"
+    text = f"{c.scheduler.title}   {frame.width} x {frame.height}"
     if request.divisor > 1:
         text += f"   1/{request.divisor}"
     if frame.statistics.part < 1.0:
         text += f"   {whole_percent(frame.statistics.part)} shaded"
     elif request.samples > 1:
-        text += f"   {c.tracing.samples_shown} of {request.samples} samples"
+        text += f"   {c.scheduler.samples_shown} of {request.samples} samples"
     if not c.session.zoom.fits:
         text += f"   {c.session.zoom.scale:.3g} x"
     tone = c.session.tone.in_words()
-    text += f"   {tone}" if tone and c.tracing.drawn_view.shows_picture else ""
+    text += f"   {tone}" if tone and c.scheduler.drawn_view.shows_picture else ""
     counter = ""
-    if c.tracing.drawn_view.needs_verify and not ui.legend_shown:
+    if c.scheduler.drawn_view.needs_verify and not ui.state(LegendState).shown:
         counter = f"   {verified.in_short(frame.statistics)}"
     size = imgui.calc_text_size(text + counter)
     if end.x - corner.x < size.x + em(2.0):

@@ -13,7 +13,7 @@ from viewer.state.pixels import ALL, Histogram, histogram
 from viewer.state.readings import can_draw
 from viewer.state.values import CHANNELS, values_of, words_at
 from viewer.state.views import View
-from viewer.window import closer, comparing
+from viewer.window import comparing, picture_commands
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
 
@@ -47,7 +47,7 @@ def _watched(ui: Ui) -> None:
     imgui.same_line(0.0, em(1.0))
     if not c.session.zoom.fits:
         if imgui.small_button("Fit"):
-            closer.fit(ui)
+            picture_commands.fit(ui)
         imgui.same_line()
     clipped("all of the picture" if c.session.zoom.fits else f"enlarged {c.session.zoom.scale:.3g} times", QUIET)
     frame = c.frame
@@ -56,9 +56,9 @@ def _watched(ui: Ui) -> None:
         paragraph(f"{text}{ui.key('Watch pixel')}.", QUIET)
         return
     sides = c.comparing.sides
-    of_view = c.tracing.drawn_view not in (View.COLOR, View.WIPE)  # else the value is the colour
+    of_view = c.scheduler.drawn_view not in (View.COLOR, View.WIPE)  # else the value is the colour
     columns = [("", 1.2), ("pixel", 4.0), ("primitive", 3.6), ("colour", 8.4)]
-    columns += [(c.tracing.drawn_view.label.lower(), 5.0)] if of_view else []
+    columns += [(c.scheduler.drawn_view.label.lower(), 5.0)] if of_view else []
     columns += [("the same in A", 8.4 if not of_view else 5.0)] if sides is not None else []
     flags = int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)
     if imgui.begin_table(f"watched pixels {len(columns)}", len(columns), flags):
@@ -94,9 +94,9 @@ def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Sid
     imgui.table_next_column()
     digits = 4 if a is None else 3  # to fit beside those of A
     clipped(" ".join(f"{channel:.{digits}f}" for channel in frame.color[y, x]))
-    if c.tracing.drawn_view not in (View.COLOR, View.WIPE):
+    if c.scheduler.drawn_view not in (View.COLOR, View.WIPE):
         imgui.table_next_column()
-        clipped(_value(ui, frame, c.tracing.drawn_view, c.session.light, x, y))
+        clipped(_value(ui, frame, c.scheduler.drawn_view, c.session.light, x, y))
     if a is not None:
         imgui.table_next_column()
         there = pixel_at(a.frame, *point)
@@ -112,7 +112,7 @@ def _value(ui: Ui, frame: Frame, view: View, light: int, x: int, y: int) -> str:
 def _histogram(ui: Ui) -> None:
     """How the values of the region lie, and the range of the colour map from them."""
     c, frame, region = ui.controller, ui.controller.frame, ui.pixels.region
-    view, light, cut = c.tracing.drawn_view, c.session.light, c.session.cut
+    view, light, cut = c.scheduler.drawn_view, c.session.light, c.session.cut
     difference = comparing.difference(ui)
     if frame is None or not can_draw(frame, view, light):
         return

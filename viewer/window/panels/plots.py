@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
@@ -14,36 +15,51 @@ from tracer.experiments.experiment import REFERENCE, Results
 from viewer.services.runs import Experiment
 from viewer.state import terms
 from viewer.util.numbers import whole_percent
-from viewer.window.palette import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
+from viewer.window.style import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, short
 
-_FATES = "What became of shadow rays"
-_LOGARITHMIC = "Milliseconds"
+
+@dataclass(frozen=True)
+class _Plot:
+    """A plot of curves: their labels, series and colours; `stacked` areas are together all rays that were due."""
+
+    title: str
+    curves: tuple[tuple[str, str, ImVec4], ...]
+    stacked: bool = False
+    logarithmic: bool = False
+    per_pixel: bool = True
+    only_if: str = ""  # the plot is shown once this series has a value
+
+
 _PLOTS = (
-    (_FATES, ((terms.CULLED, "culled", BLUE), (terms.DYNAMIC_ONLY, "dynamic_only", YELLOW),
-              (terms.CANDIDATES_ONLY, "candidates_only", ORANGE), (terms.CACHE_HITS, "cache_hits", PINK),
-              (terms.TRACED, "traced", GREY))),
-    ("Steps and tests", (("steps", "steps", BLUE), ("for shadows", "shadow_steps", SKY),
-                         ("tests", "tests", ORANGE))),
-    (_LOGARITHMIC, (("tracing", "traced_ms", BLUE), ("drawing", "drawn_ms", ORANGE))),
+    _Plot("What became of shadow rays",
+          ((terms.CULLED, "culled", BLUE), (terms.DYNAMIC_ONLY, "dynamic_only", YELLOW),
+           (terms.CANDIDATES_ONLY, "candidates_only", ORANGE), (terms.CACHE_HITS, "cache_hits", PINK),
+           (terms.TRACED, "traced", GREY)), stacked=True),
+    _Plot("Samples of lights",
+          ((terms.SAMPLES_DUE, "samples_due", BLUE), (terms.SAMPLES_REACHED, "samples_reached", YELLOW),
+           (terms.PENUMBRA, "penumbra", ORANGE)), only_if="samples_due"),
+    _Plot("Steps and tests",
+          (("steps", "steps", BLUE), ("for shadows", "shadow_steps", SKY), ("tests", "tests", ORANGE))),
+    _Plot("Milliseconds", (("tracing", "traced_ms", BLUE), ("drawing", "drawn_ms", ORANGE)), logarithmic=True,
+          per_pixel=False),
+    _Plot("Tree built, %", ((terms.BUILT, "built", BLUE),), per_pixel=False, only_if="built"),
 )  # fmt: skip
-_OF_LIGHTS = (
-    "Samples of lights", ((terms.SAMPLES_DUE, "samples_due", BLUE), (terms.SAMPLES_REACHED, "samples_reached", YELLOW),
-                          (terms.PENUMBRA, "penumbra", ORANGE)),
-)  # fmt: skip
-_BUILT = "Tree built, %"
-_OF_TREE = (_BUILT, ((terms.BUILT, "built", BLUE),))
-_SHARES = {
-    5: (0.25, 0.22, 0.22, 0.16, 0.15), 4: (0.30, 0.26, 0.26, 0.18), 3: (0.46, 0.30, 0.24), 2: (0.5, 0.5), 1: (1.0,)
-}  # fmt: skip
-"""Of the panel's width, for so many plots beside each other: by the length of their legends."""
-_ROOM = {5: 80.0, 4: 64.0, 3: 45.0, 2: 30.0}
-"""How wide the panel is, in ems, that has so many; what finds no room beside is below, and the panel scrolls."""
+_LEAST_WIDTH = 15.0
+"""Ems of a plot; what finds no room beside is below, and the panel scrolls."""
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
 COLORS = (BLUE, ORANGE, GREEN, SKY, PINK, YELLOW)
+
+
+@dataclass
+class PlotsState:
+    """`per_pixel` says that counters are divided by pixels, `pointed` is the frame that the pointer was on last."""
+
+    per_pixel: bool = True
+    pointed: int | None = None
 
 
 def whole_numbers(first: float, last: float, width: float) -> None:
@@ -69,20 +85,20 @@ def wrong_axis(most: int, condition: int) -> None:
 
 
 def show(ui: Ui) -> None:
-    """The panel: plots side by side, over the number of the frame."""
-    history = ui.controller.history
+    """Draw the panel: plots side by side, over the number of the frame."""
+    history, state = ui.controller.history, ui.state(PlotsState)
     if len(history) == 0:
         paragraph("Curves appear with the first frames.", QUIET)
         return
     checkbox(
-        "per pixel",
-        ui.per_pixel,
-        lambda on: setattr(ui, "per_pixel", on),
-        "of frames of all sizes, and of those in motion, of which only some pixels are shaded: primary rays and proofs "
-        "are divided by all pixels, all else by those that are shaded",
+        "Per pixel",
+        state.per_pixel,
+        lambda on: setattr(state, "per_pixel", on),
+        "Of frames of all sizes, and of those in motion, of which only some pixels are shaded: primary rays and proofs "
+        "are divided by all pixels, all else by those that are shaded.",
     )
     imgui.same_line()
-    if imgui.small_button("clear"):
+    if imgui.small_button("Clear"):
         history.hide()
         return
     imgui.same_line()
@@ -90,51 +106,47 @@ def show(ui: Ui) -> None:
     if (history.shaded() < 1.0).any():
         said += "; on a grey ground: only some pixels are shaded"
     clipped(said, QUIET)
-    room = imgui.get_content_region_avail()
-    spacing = imgui.get_style().item_spacing.x
-    plots = (_PLOTS[0], _OF_LIGHTS, *_PLOTS[1:]) if history.values("samples_due").any() else _PLOTS
-    if history.values("built").any():
-        plots = (*plots, _OF_TREE)
-    even = [n for n in _ROOM if len(plots) % n == 0]  # so that no row has an empty place
-    bar = (
-        imgui.get_style().scrollbar_size if imgui.get_scroll_max_y() > 0.0 else 0.0
-    )  # which fewer rows may need no more
-    columns = next((n for n in even if room.x + bar > em(_ROOM[n])), 1)
-    width = room.x - (columns - 1) * spacing
-    for number, (title, series) in enumerate(plots):
+    plots = [plot for plot in _PLOTS if not plot.only_if or history.values(plot.only_if).any()]
+    room, spacing = imgui.get_content_region_avail(), imgui.get_style().item_spacing.x
+    if imgui.get_scroll_max_y() > 0.0:  # fewer rows may need no bar
+        room.x += imgui.get_style().scrollbar_size
+    fitting = min(int((room.x + spacing) / (em(_LEAST_WIDTH) + spacing)), len(plots))
+    rows = math.ceil(len(plots) / max(fitting, 1))
+    columns = math.ceil(len(plots) / rows)
+    size = ImVec2((imgui.get_content_region_avail().x + spacing) / columns - spacing, max(room.y, em(8.0)))
+    for number, plot in enumerate(plots):
         if number % columns:
             imgui.same_line()
-        _plot(ui, title, series, ImVec2(_SHARES[columns][number % columns] * width, max(room.y, em(8.0))))
+        _draw(ui, plot, size)
 
 
-def _plot(ui: Ui, title: str, series: tuple[tuple[str, str, ImVec4], ...], size: ImVec2) -> None:
+def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
     history = ui.controller.history
-    per_pixel = ui.per_pixel and title not in (_LOGARITHMIC, _BUILT)
+    per_pixel = ui.state(PlotsState).per_pixel and plot.per_pixel
+    values_of = history.per_pixel if per_pixel else history.values  # contiguous float64, as ImPlot wants them
     implot.push_style_var(implot.StyleVar_.legend_inner_padding, ImVec2(em(0.15), em(0.3)))
     implot.push_style_var(implot.StyleVar_.legend_spacing, ImVec2(em(0.2), 0.0))
-    shown = implot.begin_plot(f"{title}{' per pixel' if per_pixel else ''}##{title}", size, FLAGS)
+    shown = implot.begin_plot(f"{plot.title}{' per pixel' if per_pixel else ''}##{plot.title}", size, FLAGS)
     implot.pop_style_var(2)
     if not shown:
         return
-    curves = [(label, _values(ui, name, per_pixel), color) for label, name, color in series]
+    curves = [(label, values_of(name), color) for label, name, color in plot.curves]
     last = history.first + max(len(history) - 1, 10)
-    top = max(float(values.max()) for _, values, _ in curves)
-    if title == _FATES:
-        top = float(_values(ui, "due", per_pixel).max())
+    top = float(values_of("due").max()) if plot.stacked else max(float(values.max()) for _, values, _ in curves)
     implot.setup_axes("", "", AXIS, AXIS)
     whole_numbers(history.first, last, size.x)
     implot.setup_axis_format(implot.ImAxis_.y1, "%.4g")
-    if title == _LOGARITHMIC:  # full frames and those in motion differ a hundredfold
+    if plot.logarithmic:  # full frames and those in motion differ a hundredfold
         implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))
         lowest, highest = 1.0, 10.0 * max(top, 1.0)
     else:
         lowest, highest = 0.0, 1.12 * top if top > 0.0 else 1.0
     implot.setup_axes_limits(history.first, last, lowest, highest, int(imgui.Cond_.always))
-    if title == _LOGARITHMIC:
+    if plot.logarithmic:
         _label_decades(highest, size.y)
     implot.setup_legend(implot.Location_.south, LEGEND)
     _mark_partly_shaded(float(history.first), history.shaded(), (lowest, highest))
-    if title == _FATES:
+    if plot.stacked:
         _stack(curves, float(history.first))
     else:
         for label, values, color in curves:
@@ -180,12 +192,6 @@ def _stack(curves: list[tuple[str, NDArray[np.float64], ImVec4]], first: float) 
         below = above
 
 
-def _values(ui: Ui, name: str, per_pixel: bool) -> NDArray[np.float64]:
-    """A series as ImPlot wants it, contiguous float64."""
-    history = ui.controller.history
-    return history.per_pixel(name) if per_pixel else history.values(name)
-
-
 def pointed_frame(first: int, last: int, frames: Sequence[int] | None = None) -> int | None:
     """Draw a line at the frame that the pointer is on, of those of the plot that is being drawn; returns its number, or
     its place among `frames`."""
@@ -207,7 +213,7 @@ def _go_to_frame(ui: Ui, number: int | None, values: list[str]) -> None:
     record = c.history.records.get(number) if number is not None else None
     if number is None or record is None:
         return
-    ui.plot_pointed = number
+    ui.state(PlotsState).pointed = number
     width, height, part = record.settings.width, record.settings.height, c.history.shaded_of(number)
     shaded = f", {whole_percent(part)} shaded" if part < 1.0 else ""
     said = f"{record.time:.3f} s, {record.settings.method}, {width} x {height}{shaded}"

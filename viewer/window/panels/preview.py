@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from viewer.window.panels.tour import TourState
 from viewer.window.ui import Ui
 from viewer.window.widgets import count, em
 
@@ -21,7 +22,7 @@ _BEHIND, _WORDS = (0.05, 0.06, 0.08, 0.85), (0.93, 0.94, 0.96, 1.0)
 
 def show(ui: Ui, room: ImVec2, drag: Callable[[Ui, int, float, float], None]) -> bool:
     """The preview, if there is any; `drag` moves the camera by a drag with a button of so many picture heights."""
-    texture = ui.preview.texture_id if ui.preview is not None else None
+    texture = ui.graphics.preview.texture_id if ui.graphics.preview is not None else None
     if texture is None:
         return False
     corner = imgui.get_cursor_screen_pos()
@@ -38,7 +39,7 @@ def make_room(ui: Ui, height: float) -> None:
     """Put the next window, so high, along the lower edge of the picture."""
     viewport = imgui.get_main_viewport()
     whole = viewport.work_pos.x, viewport.work_pos.y + viewport.work_size.y, viewport.work_size.x
-    left, lower, across = ui.tour_place or whole
+    left, lower, across = ui.state(TourState).place or whole
     imgui.set_next_window_pos(ImVec2(left, lower - height))
     imgui.set_next_window_size(ImVec2(across, height))
 
@@ -46,10 +47,10 @@ def make_room(ui: Ui, height: float) -> None:
 def _pointer(ui: Ui, height: float, drag: Callable[[Ui, int, float, float], None]) -> None:
     io = imgui.get_io()
     if imgui.is_item_activated():
-        ui.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
-        ui.pressed = next((b for b in _BUTTONS if imgui.is_mouse_clicked(b)), _BUTTONS[0])
-    if imgui.is_item_active() and math.dist(ui.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > 0.0:
-        drag(ui, ui.pressed, io.mouse_delta.x / height, io.mouse_delta.y / height)
+        ui.picture.pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
+        ui.picture.pressed = next((b for b in _BUTTONS if imgui.is_mouse_clicked(b)), _BUTTONS[0])
+    if imgui.is_item_active() and math.dist(ui.picture.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > 0.0:
+        drag(ui, ui.picture.pressed, io.mouse_delta.x / height, io.mouse_delta.y / height)
 
 
 def words(ui: Ui) -> list[str]:

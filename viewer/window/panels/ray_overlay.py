@@ -1,20 +1,91 @@
-"""Over the picture: the rays that the panel lists, the selected one picked out, and the node that it is in."""
+"""Over the picture: the rays that the panel lists, the selected one picked out.
+
+Rays are drawn on their way, and shadow rays as far as light comes, and on."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from enum import Enum
+from typing import NamedTuple
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+import numpy as np
+from imgui_bundle import ImVec4
+from numpy.typing import NDArray
 
 from tracer.frame import Frame
+from tracer.told_rays import AWAY, TRACED, RayTree
 from viewer.output.ray_rows import Row
-from viewer.services.ray_inspector import RayInspector
-from viewer.state.projection import Stroke, place
-from viewer.state.ray_lines import Part, RayLine, box_strokes, shadow_lines, way_strokes
+from viewer.state.projection import Stroke, place, strokes
+from viewer.state.verdicts import Filter
 from viewer.state.views import Color
-from viewer.window.panels import marks
-from viewer.window.panels.marks import SHADE, with_alpha
+from viewer.window.panels.marks import SHADE, Pen, Point
 from viewer.window.ui import Ui
+
+MOST_DRAWN = 160  # shadow rays
+FAR = 3.0  # times the way to the first hit: how far a ray is drawn that leaves the scene
+
+
+class Part(Enum):
+    """What a line stands for."""
+
+    PATH = "a reflected or refracted ray"
+    ASKED = "a shadow ray that was traced, as far as light comes"
+    SAVED = "a shadow ray that was culled, as far as light comes"
+    DARK = "the rest of a shadow ray, behind what blocks it"
+
+
+class RayLine(NamedTuple):
+    """A line of a ray: of which path ray, and which shadow ray of that, -1 for the path ray itself."""
+
+    part: Part
+    ray: int
+    place: int
+    strokes: list[Stroke]
+
+
+def ray_lines(frame: Frame, tree: RayTree, shown: Filter) -> list[RayLine]:
+    """The rays on their way and the shadow rays that a filter lets be seen, MOST_DRAWN of these at most: those of the
+    first points first, and of one point evenly."""
+    lines, left = [], MOST_DRAWN
+    for ray in tree.rays:
+        if ray.parent >= 0:
+            length = ray.t if np.isfinite(ray.t) else FAR * tree.rays[0].t
+            lines.append(
+                RayLine(Part.PATH, ray.number, -1, strokes(frame, [ray.origin, ray.origin + length * ray.direction]))
+            )
+        if ray.shadows is None:
+            continue
+        s = ray.shadows
+        places = shown.places(s)
+        places = places[s.verdict[places] != AWAY]
+        if len(places) > left:
+            places = places[np.linspace(0, len(places) - 1, left).astype(int)] if left else places[:0]
+        left -= len(places)
+        for number in places.tolist():
+            lines += shadow_lines(frame, tree, ray.number, number)
+    return lines
+
+
+def shadow_lines(frame: Frame, tree: RayTree, number: int, place: int) -> list[RayLine]:
+    """A shadow ray from its light to its point."""
+    ray = tree.rays[number]
+    s = ray.shadows
+    assert s is not None
+    start, end = tree.samples[place].astype(np.float64), ray.end.astype(np.float64)
+    part = Part.ASKED if s.verdict[place] == TRACED else Part.SAVED
+    if s.blocker[place] < 0:
+        return [RayLine(part, number, place, strokes(frame, [start, end]))]
+    stop = start + float(s.blocked_at[place]) * (end - start)
+    return [
+        RayLine(part, number, place, strokes(frame, [start, stop])),
+        RayLine(Part.DARK, number, place, strokes(frame, [stop, end])),
+    ]
+
+
+def box_edges(corners: NDArray) -> list[NDArray]:
+    """The twelve edges (2, 3) of a box with corners (8, 3), whose numbers have a bit for each axis."""
+    return [corners[[a, a | 1 << axis]] for axis in range(3) for a in range(8) if not a >> axis & 1]
+
 
 _COLORS: dict[Part, Color] = {
     Part.PATH: (0.36, 0.93, 0.72),
@@ -25,113 +96,62 @@ _COLORS: dict[Part, Color] = {
 _WIDTHS = {Part.PATH: 0.2, Part.ASKED: 0.15, Part.SAVED: 0.08, Part.DARK: 0.13}  # in ems
 _BEHIND = 0.4  # opacity of what lies behind something
 _FADED = 0.16  # of rays other than the one that is pointed at or selected
-_BESIDE = 0.2  # of all rays where clusters of lights are drawn over them
 _BLOCKED = ImVec4(0.84, 0.37, 0.0, 1.0)
 _PALE = ImVec4(0.8, 0.86, 1.0, 0.35)  # around what is dark
-BOX, HIT_BOX, WAY = (1.0, 0.62, 0.10), (1.0, 0.25, 0.30), (1.0, 1.0, 1.0)
-"""A node's box, one in which the ray hits something, and the part of the ray in it."""
-_DARK = ImVec4(0.02, 0.02, 0.03, 0.9)  # around a box, which is to be seen on wood and on brick
 _MANY = 40  # lines, from which on they are thin
 _MOST_OF_A_ROW = 64  # shadow rays of a row that are picked out
 
 
-def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
-    """Draw on the picture that fills the rectangle from a corner to its end."""
-    rays, frame = ui.controller.rays, ui.controller.frame
-    if frame is None or rays.tree is None:
+def draw(ui: Ui, made: Pen, frame: Frame, alpha: float) -> None:
+    """Draw all rays, so transparent, and those of the rows that are selected or pointed at over them."""
+    rays = ui.controller.rays
+    tree = rays.tree
+    if tree is None:
         return
-    width, height = end.x - corner.x, end.y - corner.y
-
-    def on_screen(at: tuple[float, float]) -> ImVec2:
-        return ImVec2(corner.x + at[0] * width, corner.y + at[1] * height)
-
-    draw = imgui.get_window_draw_list()
-    draw.push_clip_rect(corner, end, True)
     picked_out = [row for row in (rays.selected, rays.pointed) if row is not None]
-    lines = rays.lines(frame)
-    thin, beside = 0.55 if len(lines) > _MANY else 1.0, _BESIDE if ui.controller.cuts.cut is not None else 1.0
-    clicked = place(frame, rays.tree.rays[0].end) if rays.tree.rays[0].shadows is not None else None
-    radius = marks.radius_around_pixel(width / frame.width, height / frame.height)
-    hole = (on_screen(clicked), radius) if clicked is not None else None
+    lines: list[RayLine] = ui.cached("rays", frame, (tree, rays.shown), lambda: ray_lines(frame, tree, rays.shown))
+    clicked = place(frame, tree.rays[0].end) if tree.rays[0].shadows is not None else None
     for line in lines:
-        _line(draw, on_screen, line, hole, _FADED if picked_out else beside, thin)
+        _line(made, line, clicked, _FADED if picked_out else alpha, 0.55 if len(lines) > _MANY else 1.0)
     for row in picked_out:
-        for line in _of_row(rays, frame, lines, row):
-            _line(draw, on_screen, line, hole, 1.0)
-    _points(draw, on_screen, rays, frame, rays.pointed or rays.selected, radius)
-    _node(draw, on_screen, rays, frame)
-    draw.pop_clip_rect()
+        for line in _of_row(tree, frame, lines, row):
+            _line(made, line, clicked, 1.0)
+    _points(made, tree, frame, rays.pointed or rays.selected)
 
 
-def _of_row(rays: RayInspector, frame: Frame, lines: Sequence[RayLine], row: Row) -> list[RayLine]:
+def _of_row(tree: RayTree, frame: Frame, lines: Sequence[RayLine], row: Row) -> list[RayLine]:
     """The lines of a row's rays."""
     if not len(row.places):
         return [line for line in lines if line.ray == row.ray and line.place < 0]
-    assert rays.tree is not None
     wanted = row.places[:: -(-len(row.places) // _MOST_OF_A_ROW)].tolist()
     known = {line.place for line in lines if line.ray == row.ray}
     found = [line for line in lines if line.ray == row.ray and line.place in wanted]
     for missing in (one for one in wanted if one not in known):
-        found += shadow_lines(frame, rays.tree, row.ray, missing)
+        found += shadow_lines(frame, tree, row.ray, missing)
     return found
 
 
-def _line(
-    draw: imgui.ImDrawList,
-    on_screen: Callable,
-    line: RayLine,
-    hole: tuple[ImVec2, float] | None,
-    alpha: float,
-    width: float = 1.0,
-) -> None:
-    """All of it but what would cover the clicked pixel, within so many ems of a point."""
+def _line(made: Pen, line: RayLine, hole: Point | None, alpha: float, width: float = 1.0) -> None:
+    """All of it but what would cover the clicked pixel."""
     around = _PALE if line.part is Part.DARK else SHADE
-    for stroke in line.strokes:
-        seen = alpha * (1.0 if stroke.seen else _BEHIND)
-        a, b, color = on_screen(stroke.start), on_screen(stroke.end), ImVec4(*_COLORS[line.part], seen)
-        for start, end in [(a, b)] if hole is None else marks.outside(a, b, *hole):
-            marks.line(draw, start, end, color, width * _WIDTHS[line.part], with_alpha(around, seen))
+    made.strokes(
+        line.strokes, ImVec4(*_COLORS[line.part], alpha), width * _WIDTHS[line.part], _BEHIND, around, hole=hole
+    )
 
 
-def _points(
-    draw: imgui.ImDrawList,
-    on_screen: Callable,
-    rays: RayInspector,
-    frame: Frame,
-    chosen: Row | None,
-    radius: float,
-) -> None:
+def _points(made: Pen, tree: RayTree, frame: Frame, chosen: Row | None) -> None:
     """A ring around each point that is shaded, a larger one at the clicked one; a cross where the chosen ray ends."""
-    assert rays.tree is not None
-    for ray in rays.tree.rays:
+    for ray in tree.rays:
         at = place(frame, ray.end) if ray.shadows is not None else None
         if at is not None:
             alpha = 1.0 if chosen is None or chosen.ray == ray.number else 0.5
-            marks.ring(draw, on_screen(at), radius if ray.parent < 0 else 0.26, alpha)
+            made.ring(at, None if ray.parent < 0 else 0.26, alpha)
     if chosen is None or len(chosen.places) != 1:
         return
-    ray, one = rays.tree.rays[chosen.ray], int(chosen.places[0])
+    ray, one = tree.rays[chosen.ray], int(chosen.places[0])
     s = ray.shadows
     if s is not None and s.blocker[one] >= 0:
-        start = rays.tree.samples[one]
+        start = tree.samples[one]
         at = place(frame, start + s.blocked_at[one] * (ray.end - start))
         if at is not None:
-            marks.cross(draw, on_screen(at), _BLOCKED)
-
-
-def _node(draw: imgui.ImDrawList, on_screen: Callable, rays: RayInspector, frame: Frame) -> None:
-    """The box of the node that is looked at, and the part of the ray in it."""
-    row, visits = rays.selected, rays.visits
-    if row is None or rays.tree is None or not visits or rays.step >= len(visits):
-        return
-    visit, known = visits[rays.step], rays.tree
-    one = int(row.places[0]) if len(row.places) else None
-    _strokes(draw, on_screen, box_strokes(frame, visit), HIT_BOX if visit.hits else BOX, 0.2)
-    _strokes(draw, on_screen, way_strokes(frame, known, row.ray, one, visit), WAY, 0.28)
-
-
-def _strokes(draw: imgui.ImDrawList, on_screen: Callable, pieces: Sequence[Stroke], color: Color, width: float) -> None:
-    for stroke in pieces:
-        alpha = 1.0 if stroke.seen else 0.55
-        a, b = on_screen(stroke.start), on_screen(stroke.end)
-        marks.line(draw, a, b, ImVec4(*color, alpha), width, with_alpha(_DARK, alpha), rim=0.11)
+            made.cross(at, _BLOCKED)

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from viewer.output.exr import ENDING as EXR
 from viewer.services.picture_controller import JPEG
 from viewer.state.plans import MOST_MULTIPLE
-from viewer.window.ui import Ui
+from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import QUIET, centred, checkbox, em, paragraph, properties, row, tooltip
 
 NAME = "The dialog that saves a picture"
@@ -22,7 +22,7 @@ _KINDS = {
 
 def show(ui: Ui) -> None:
     """The dialog, while it is open."""
-    if not ui.save_as_open:
+    if Dialog.SAVE_AS not in ui.dialogs:
         return
     if not imgui.is_popup_open(TITLE):
         imgui.open_popup(TITLE)
@@ -43,7 +43,7 @@ def show(ui: Ui) -> None:
     imgui.same_line()
     done = imgui.button("Cancel", ImVec2(em(6.0), 0.0)) or done
     if done:
-        ui.save_as_open = False
+        ui.close(Dialog.SAVE_AS)
         imgui.close_current_popup()
     imgui.end_popup()
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.window import taking as commands_of
-from viewer.window.ui import CaptureKind, Ui
+from viewer.window.commands import copy_command
+from viewer.window.ui import CaptureKind, Dialog, Ui
 from viewer.window.widgets import QUIET, checkbox, paragraph, properties, row, tooltip, wide_button
 
 
@@ -21,12 +21,12 @@ def show(ui: Ui) -> None:
     if wide_button(
         f"{icons.ICON_FA_FLOPPY_DISK}  Save as", f"larger, with a caption, or as EXR{ui.key('Save picture as...')}", 2
     ):
-        ui.save_as_open = True
+        ui.open(Dialog.SAVE_AS)
     imgui.same_line()
     if wide_button(
         f"{icons.ICON_FA_TERMINAL}  Copy command", f"the command that makes this picture{ui.key('Copy as command')}"
     ):
-        commands_of.copy_command(ui)
+        copy_command(ui)
     with properties("pictures", 5.0) as shown:
         if shown:
             row("Folder", "where pictures are saved")

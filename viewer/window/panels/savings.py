@@ -24,7 +24,7 @@ _COLORS = {Tone.PLAIN: None, Tone.QUIET: QUIET, Tone.WRONG: ERROR}
 
 def standing(c: Controller) -> Standing:
     """What is known of the newest frame beside its counters."""
-    tracing, baseline, frame, run = c.tracing, c.baseline, c.frame, c.runs.current
+    tracing, baseline, frame, run = c.scheduler, c.baseline, c.frame, c.runs.current
     proves = ""
     if frame is not None and tracing.certifies:
         at, most = tracing.refinement.progress

@@ -10,7 +10,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.fit import lamps_in, overview
 from viewer.util.resources import embedded_scenes
 from viewer.window.panels import lights
-from viewer.window.ui import Ui
+from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import (
     QUIET,
     WARNING,
@@ -29,7 +29,7 @@ def show(ui: Ui) -> None:
     """The panel."""
     c = ui.controller
     if wide_button(f"{icons.ICON_FA_FOLDER_OPEN}  Open...", f"or drop a file on the window{ui.key('Open...')}", 2):
-        ui.browser.open = True
+        ui.open(Dialog.OPEN_FILE)
     imgui.same_line()
     if wide_button(f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Recent"):
         imgui.open_popup("recent")

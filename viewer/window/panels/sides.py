@@ -34,9 +34,14 @@ def area_of_b(ui: Ui, room: tuple[int, int]) -> tuple[int, int]:
 
 def draw_a(ui: Ui, area: Area, seen: Seen) -> None:
     """A, left of the line of a wipe."""
-    if seen[2] is not Way.WIPE or comparing.shows_a(ui) or ui.compared is None or ui.compared.a_texture is None:
+    if (
+        seen[2] is not Way.WIPE
+        or comparing.shows_a(ui)
+        or ui.graphics.compared is None
+        or ui.graphics.compared.a_texture is None
+    ):
         return
-    layers.draw(ui, comparing.OF_A, ui.compared.a_texture, area, ui.controller.session.wipe)
+    layers.draw(ui, comparing.OF_A, ui.graphics.compared.a_texture, area, ui.controller.session.wipe)
 
 
 def show_names(ui: Ui, area: Area, seen: Seen, top: float) -> None:

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
 from viewer.services.controller import Controller
-from viewer.services.cut_inspector import MOST_DRAWN
+from viewer.services.pixel_inspector import MOST_CLUSTERS
 from viewer.state.picking import pixel_at
 from viewer.state.readings import cell_lights, tree_of, voxels_of
 from viewer.state.slices import AXES, slice_seen, voxel_seen
@@ -16,9 +16,9 @@ from viewer.state.tree_slice import part_seen, part_words
 from viewer.state.views import View
 from viewer.util.numbers import several
 from viewer.window.layers_of_slice import go_to, layer_now
-from viewer.window.panels import words
-from viewer.window.panels.area import Area
-from viewer.window.panels.coming import after
+from viewer.window.panels.area import Area, write_beside
+from viewer.window.panels.legend import LegendState
+from viewer.window.panels.status import traced_before_an_answer
 from viewer.window.ui import Ui
 from viewer.window.widgets import count, em, percent, row
 
@@ -45,7 +45,7 @@ def rows(ui: Ui) -> None:
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     """What a pixel of the newest frame shows of space, in a view of that; nothing where it shows none."""
     c = ui.controller
-    frame, view, light = c.frame, c.tracing.drawn_view, c.session.light
+    frame, view, light = c.frame, c.scheduler.drawn_view, c.session.light
     if frame is None:
         return []
     if view is View.VOXELS:
@@ -63,9 +63,10 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
         tree, cut = tree_of(frame), c.session.cut
         part = part_seen(frame, tree, cut, x, y)
         return [] if part is None else list(part_words(part, tree.owner))
-    if view is View.CUTS and c.cuts.cut is not None and (c.cuts.cut.x, c.cuts.cut.y) == (x, y):
-        return cut_lines(c.cuts.cut)
-    if view is View.CUTS and c.selection.picked is None and c.cuts.waits_for == (x, y):
+    lit = c.inspector.cut
+    if view is View.CUTS and lit is not None and (lit.x, lit.y) == (x, y):
+        return cut_lines(lit)
+    if view is View.CUTS and c.selection.picked is None and c.inspector.awaits_cut == (x, y):
         return awaited(c)
     if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:
         asked = int(cell_lights(frame)[y, x])
@@ -75,7 +76,8 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
 
 def awaited(c: Controller) -> list[str]:
     """That the clusters of a pixel are to come, where they do not come at once."""
-    return [f"its clusters are drawn after {after(c)}"] if after(c) else []
+    before = traced_before_an_answer(c)
+    return [f"its clusters are drawn after {before}"] if before else []
 
 
 def cut_lines(cut: LightCut) -> list[str]:
@@ -89,8 +91,8 @@ def cut_lines(cut: LightCut) -> list[str]:
     if total > 0.0:
         top = np.sort(cut.sent)[::-1]
         lines.append(f"the brightest sends {percent(float(top[0]), total)} of their light")
-    if many > MOST_DRAWN:
-        lines.append(f"drawn are the {MOST_DRAWN} that send most")
+    if many > MOST_CLUSTERS:
+        lines.append(f"drawn are the {MOST_CLUSTERS} that send most")
     return lines
 
 
@@ -104,4 +106,4 @@ def show(ui: Ui, area: Area) -> None:
     if not lines:
         return
     room = area.corner.x, area.corner.y, area.end.x, area.end.y
-    words.write(lines, imgui.get_io().mouse_pos, room, ui.legend_place)
+    write_beside(lines, imgui.get_io().mouse_pos, room, ui.state(LegendState).place)

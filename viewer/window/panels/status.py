@@ -87,23 +87,23 @@ def doing(c: Controller) -> str:
         return "no scene is open"
     if c.motion.under_way or c.session.playing:
         return TRACING
-    if c.tracing.refines_lamps:
-        return f"lamp samples: {c.tracing.lamp_samples_shown} of {c.tracing.lamps.wanted}"
-    if c.tracing.certifies:
+    if c.scheduler.refines_lamps:
+        return f"lamp samples: {c.scheduler.lamp_samples_shown} of {c.scheduler.lamps.wanted}"
+    if c.scheduler.certifies:
         made = c.frame.statistics.certificates if c.frame is not None else 0
         before = ", before more samples" if c.session.settings.samples > 1 else ""
         makes, _ = terms.made(c.session.settings.method)
         return f"preparing{before}{f' ({makes} in the last picture: {count(made)})' if made else ''}"
-    if c.renderer.busy or c.tracing.awaits:
-        return "refining the picture" if c.tracing.becoming_finer or _learns(c) else TRACING
-    if c.tracing.adds_samples:
-        return f"adding samples: {c.tracing.samples_shown} of {c.tracing.samples_wanted}"
+    if c.renderer.busy or c.scheduler.awaits:
+        return "refining the picture" if c.scheduler.becoming_finer or _learns(c) else TRACING
+    if c.scheduler.adds_samples:
+        return f"adding samples: {c.scheduler.samples_shown} of {c.scheduler.samples_wanted}"
     return IDLE
 
 
 def _learns(c: Controller) -> bool:
     """Whether the picture is there, and whether it is being refined."""
-    return c.frame is not None and not c.tracing.outdated and c.frame.camera == c.session.camera
+    return c.frame is not None and not c.scheduler.outdated and c.frame.camera == c.session.camera
 
 
 def _summary(ui: Ui) -> str:
@@ -118,3 +118,20 @@ def _summary(ui: Ui) -> str:
     if rate is not None and c.active:
         parts.append(rate_in_words(rate))
     return "   ".join(filter(None, parts))
+
+
+def traced_before_an_answer(c: Controller) -> str:
+    """What is traced before a question about the picture is answered; nothing where it is answered at once."""
+    if c.scheduler.refines_lamps:
+        return "the samples of lamps"
+    if c.scheduler.adds_samples:
+        return "this sample"
+    return "this picture" if c.renderer.busy else ""
+
+
+def first_picture(c: Controller) -> str:
+    """What goes on while there is no picture, in a sentence."""
+    now = doing(c)
+    if now == IDLE:
+        return "No picture has been traced yet."
+    return "Tracing the first picture ..." if now == TRACING else f"{now[0].upper()}{now[1:]}"

@@ -3,6 +3,8 @@ start is still compiling."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
@@ -15,41 +17,51 @@ _LEAST = 9.0  # ems of height that the picture keeps: with less room the strip l
 _PADDING = ImVec2(0.6, 0.45)  # ems
 
 
+@dataclass
+class TourState:
+    """The height that the picture leaves free below it for the tour, and where that is: left, top and width."""
+
+    height: float = 0.0
+    place: tuple[float, float, float] | None = None
+
+
 def show(ui: Ui) -> None:
     """The step that is next, and what to do; all steps while there is no picture yet."""
+    state = ui.state(TourState)
     tour = ui.tour
-    tour.follow()
+    tour.update()
     if tour.step is None and not tour.last_word:
-        ui.tour_height = 0.0
+        state.height = 0.0
         return
-    if ui.controller.frame is None and ui.preview is None:
+    if ui.controller.frame is None and ui.graphics.preview is None:
         _all_steps(ui)
-    elif ui.tour_place is not None:
-        _strip(ui, *ui.tour_place)
+    elif state.place is not None:
+        _strip(ui, *state.place)
 
 
 def leave_room(ui: Ui, corner: ImVec2, room: ImVec2) -> float:
     """How much of the room that the picture has from `corner` on goes to the tour, below the picture."""
     wanted = height(ui)
-    ui.tour_place = (corner.x, corner.y + room.y - wanted, room.x)
+    ui.state(TourState).place = (corner.x, corner.y + room.y - wanted, room.x)
     return wanted if room.y - wanted >= em(_LEAST) else 0.0
 
 
 def height(ui: Ui) -> float:
     """How much the tour would have of the room for the picture; 0 while none is taken."""
-    return ui.tour_height if ui.tour.step is not None or ui.tour.last_word else 0.0
+    return ui.state(TourState).height if ui.tour.step is not None or ui.tour.last_word else 0.0
 
 
 def _strip(ui: Ui, left: float, top: float, width: float) -> None:
     """The step in two or three lines, as wide as the picture's window."""
+    state = ui.state(TourState)
     tour = ui.tour
     padding = ImVec2(em(_PADDING.x), em(_PADDING.y))
     wrap = max(width - 2.0 * padding.x, em(4.0))
     texts = [tour.text(step) for step in STEPS] if tour.step is not None else [tour.last_word]
     words = max(imgui.calc_text_size(text, False, wrap).y for text in texts)
-    ui.tour_height = imgui.get_frame_height_with_spacing() + words + 2.0 * padding.y + em(0.2)
+    state.height = imgui.get_frame_height_with_spacing() + words + 2.0 * padding.y + em(0.2)
     imgui.set_next_window_pos(ImVec2(left, top))
-    imgui.set_next_window_size(ImVec2(width, ui.tour_height - em(0.2)))
+    imgui.set_next_window_size(ImVec2(width, state.height - em(0.2)))
     flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_docking
     flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_focus_on_appearing
     imgui.push_style_var(imgui.StyleVar_.window_padding, padding)

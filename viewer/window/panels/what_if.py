@@ -16,6 +16,7 @@ from viewer.services.before_edits import Lack
 from viewer.state import terms
 from viewer.state.edit_effects import Effects, Transitions
 from viewer.state.edits import one_by_one
+from viewer.window.edit_commands import WhatIfState
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -45,19 +46,20 @@ _MOST_BLOCKERS = 4
 
 def show(ui: Ui) -> None:
     """The panel."""
+    state = ui.state(WhatIfState)
     edited = ui.controller.session.edited
     if edited is None:
         paragraph("No scene is open.", QUIET)
         return
-    ui.what_if_drawn = imgui.get_frame_count()
+    state.drawn = imgui.get_frame_count()
     if not ui.controller.editing.now:
         paragraph("Change the scene, not its file, and see what that changes. Undo brings all back.", QUIET)
     _object(ui, edited)
     _lights(ui, edited)
     _edits(ui)
     _effects(ui)
-    if ui.what_if_below < 0.0:  # where the list of lights ends
-        ui.what_if_below += imgui.get_cursor_pos_y()
+    if state.below < 0.0:  # where the list of lights ends
+        state.below += imgui.get_cursor_pos_y()
 
 
 # --- what is edited ----------------------------------------------------------------------------------
@@ -143,13 +145,14 @@ def _blocker(ui: Ui, edited: Edited, primitive: int) -> None:
 
 def _lights(ui: Ui, edited: Edited) -> None:
     """All lights of the scene as it was read, with a tick for those that are on."""
+    state = ui.state(WhatIfState)
     original = edited.original
     heading(f"Lights ({len(original.lights)})")
     if not original.lights:
         paragraph("The scene has no lights.", QUIET)
         return
     numbers = lights.found(ui, "what if", original)
-    line, room = imgui.get_frame_height_with_spacing(), imgui.get_content_region_avail().y - ui.what_if_below
+    line, room = imgui.get_frame_height_with_spacing(), imgui.get_content_region_avail().y - state.below
     height = min(max(len(numbers), 1) * line, max(_ROWS * line, room)) + 2.0
     if imgui.begin_child("switches", (0.0, height)):
         clipper = imgui.ListClipper()
@@ -159,7 +162,7 @@ def _lights(ui: Ui, edited: Edited) -> None:
                 _light(ui, edited, numbers[k])
         clipper.end()
     imgui.end_child()
-    ui.what_if_below = -imgui.get_cursor_pos_y()
+    state.below = -imgui.get_cursor_pos_y()
     paragraph("Drag a light in the picture, or type where it is.", QUIET)
 
 
@@ -234,7 +237,8 @@ def _pixels(ui: Ui, found: Effects) -> None:
     share = 100.0 * found.pixels / max(found.changes.size, 1)
     paragraph(f"{count(found.pixels)} pixels ({share:.1f} %), by up to {found.most} of 255")
     tooltip(f"{count(found.exact)} where differences count that a screen does not show")
-    checkbox("Show changed pixels", ui.changed_shown, lambda on: setattr(ui, "changed_shown", on),
+    state = ui.state(WhatIfState)
+    checkbox("Show changed pixels", state.changed_shown, lambda on: setattr(state, "changed_shown", on),
              "in magenta on the dimmed picture, the brighter the more they changed; in the view Colour")  # fmt: skip
 
 

@@ -9,12 +9,12 @@ from imgui_bundle import ImVec2, imgui
 from tracer.explanation import Explanation
 from tracer.reasons import Reason, Rule, Why
 from tracer.why_in_words import Words, plain
-from viewer.services.shadow_inspector import MOST_LIGHTS, nearest_first
-from viewer.services.teachers import with_teachers
+from viewer.services.origin_pixels import with_origins
+from viewer.services.pixel_inspector import MOST_LIGHTS, nearest_first
 from viewer.state.views import FATE_COLORS, FATE_NAMES
 from viewer.window.panels import lights
-from viewer.window.panels.coming import after
-from viewer.window.panels.links import sentence
+from viewer.window.panels.links import Pointed, sentence
+from viewer.window.panels.status import traced_before_an_answer
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, count, em, fitted, paragraph, swatch, tooltip_at
 
@@ -26,7 +26,7 @@ def show(ui: Ui) -> None:
     if found is None or scene is None:
         paragraph(unanswered(ui), QUIET)
         return
-    found = _with_teachers(ui, found)
+    found = _with_origins(ui, found)
     words = Words(scene, found)
     if not found.reasons:
         paragraph("The scene has no lights.", QUIET)
@@ -56,9 +56,12 @@ def unanswered(ui: Ui) -> str:
         return f"answered when the {run.name} has ended"
     if selection.picked is not None and selection.pixel is None:
         return "The clicked point is not visible from here. Its shadow rays are explained when it is in view again."
+    if c.inspector.problem:
+        return f"No answer: {c.inspector.problem}."
     if c.motion.lively:
         return "answered when nothing moves"
-    return f"answered after {after(c)}" if after(c) else "looking into it ..."
+    before = traced_before_an_answer(c)
+    return f"answered after {before}" if before else "tracing its shadow rays ..."
 
 
 def summary(known: Sequence[Explanation]) -> str:
@@ -66,19 +69,19 @@ def summary(known: Sequence[Explanation]) -> str:
     due = [one for one in known if one.due]
     lit = sum(one.reached == one.samples for one in due)
     dark = sum(one.reached == 0 for one in due)
-    parts = {"lit": lit, "in part": len(due) - lit - dark, "in shadow": dark, "behind it": len(known) - len(due)}
+    parts = {"lit": lit, "in part": len(due) - lit - dark, "in shadow": dark, "facing away": len(known) - len(due)}
     return ", ".join(f"{count(number)} {name}" for name, number in parts.items() if number)
 
 
-def _with_teachers(ui: Ui, found: Why) -> Why:
-    """The same with the pictures and pixels that gave the modes of what was clicked."""
+def _with_origins(ui: Ui, found: Why) -> Why:
+    """The same with the pictures and pixels that set the modes of what was clicked."""
     c = ui.controller
-    taught = None if c.selection.picked is None else c.history.taught(c.selection.picked)
-    if taught is None:
+    origins = None if c.selection.picked is None else c.history.origins_of(c.selection.picked)
+    if origins is None:
         return found
     known: Why = ui.cached(
-        "why", found, (taught, c.teachers.answered),
-        lambda: with_teachers(found, taught, c.teachers.of, lambda number: f"picture {number}"),
+        "why", found, (origins, c.origins.answered),
+        lambda: with_origins(found, origins, c.origins.of, lambda number: f"picture {number}"),
     )  # fmt: skip
     return known
 
@@ -107,7 +110,7 @@ def _name(ui: Ui, one: Reason, chosen: bool) -> ImVec2:
     if clicked:
         ui.controller.settings.set_light(one.light)
     if imgui.is_item_hovered():
-        ui.pointed_light = one.light
+        ui.state(Pointed).light = one.light
     imgui.pop_id()
     return ImVec2(start.x + imgui.calc_text_size(name).x, start.y)
 
@@ -140,4 +143,4 @@ def _many(ui: Ui, words: Words, found: Why, known: Sequence[Explanation], chosen
 
 def _beyond(wrong: int) -> str:
     answers = "1 shadow answer" if wrong == 1 else f"{count(wrong)} shadow answers"
-    return f"Wrong, too: {answers} at what is mirrored here or seen through it (X lists the rays)."
+    return f"Also wrong: {answers} at what is reflected here or seen through it; Rays lists them."

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.method import Method
@@ -21,18 +23,26 @@ _DARK, _LIGHT, _HELD, _GROUND = (
 )
 
 
+@dataclass
+class WipeState:
+    """Whether the pointer holds the line."""
+
+    held: bool = False
+
+
 def handle(ui: Ui, area: Area) -> bool:
     """Let the pointer drag the line across the picture, which is ImGui's last item; whether the line holds it."""
+    state = ui.state(WipeState)
     c = ui.controller
     if not _there(ui):
-        ui.wiping = False
+        state.held = False
         return False
     if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and _near(ui, area):
-        ui.wiping = True
-    held = ui.wiping
+        state.held = True
+    held = state.held
     if held:
         c.session.wipe = min(max(area.to_picture(imgui.get_io().mouse_pos.x, 0.0)[0], 0.0), 1.0)
-        ui.wiping = imgui.is_item_active()
+        state.held = imgui.is_item_active()
     if held or (imgui.is_item_hovered() and not imgui.is_item_active() and _near(ui, area)):
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     return held
@@ -43,7 +53,7 @@ def _there(ui: Ui) -> bool:
     seen = comparing.shown(ui)
     if seen is not None:
         return seen[2] is Way.WIPE and not comparing.shows_a(ui)
-    return ui.controller.tracing.drawn_view is View.WIPE
+    return ui.controller.scheduler.drawn_view is View.WIPE
 
 
 def _names(ui: Ui) -> tuple[str, str]:
@@ -71,7 +81,7 @@ def show(ui: Ui, area: Area) -> None:
         return
     x, corner, end = _place(ui, area), area.corner, area.end
     dark, light, held, ground = (imgui.get_color_u32(color) for color in (_DARK, _LIGHT, _HELD, _GROUND))
-    bright = held if ui.wiping else light
+    bright = held if ui.state(WipeState).held else light
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
     half = max(1.0, em(0.05))

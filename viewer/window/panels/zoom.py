@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
@@ -9,10 +11,10 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.experiments.zoom import Approach, Results, Step
 from viewer.output.reports import changes_in_words, happenings, modes_in_words
 from viewer.services.runs import LONGEST_SIDE, ZoomTest
-from viewer.window.palette import MARK
 from viewer.window.panels import film
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
 from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress, whose
+from viewer.window.style import MARK
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
@@ -35,6 +37,13 @@ _TABLE = 20.0  # ems of the table
 _NARROWEST = 15.0  # ems of a plot that stands beside another
 _LOW = 9.0  # ems of height below which a plot has no legend
 _FILM, _LEAST_FILM, _MOST_FILM = 0.4, 3.6, 9.0  # the pictures' part of the height, and its limits in ems
+
+
+@dataclass
+class ZoomState:
+    """Whether the table has a row for each step."""
+
+    all_steps: bool = False
 
 
 def show(ui: Ui) -> None:
@@ -210,10 +219,11 @@ def _explain(step: Step) -> None:
 
 def _table(ui: Ui, test: ZoomTest | None, results: Results | None) -> None:
     """The steps, those where something happens or all; a click shows what was recorded there."""
+    state = ui.state(ZoomState)
     if test is None or results is None:
         return
     tip = "else only those where modes or wrong pixels change"
-    checkbox("all steps", ui.zoom_all_steps, lambda on: setattr(ui, "zoom_all_steps", on), tip)
+    checkbox("all steps", state.all_steps, lambda on: setattr(state, "all_steps", on), tip)
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y | imgui.TableFlags_.sizing_stretch_prop
     if not imgui.begin_table("steps", 5, int(flags)):
         return
@@ -224,7 +234,7 @@ def _table(ui: Ui, test: ZoomTest | None, results: Results | None) -> None:
     imgui.table_headers_row()
     for number, approach in enumerate(results.approaches):
         imgui.push_id(number)
-        for step in approach.steps if ui.zoom_all_steps else happenings(approach):
+        for step in approach.steps if state.all_steps else happenings(approach):
             _row(ui, test, approach, step)
         imgui.pop_id()
     imgui.end_table()

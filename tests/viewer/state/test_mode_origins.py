@@ -1,4 +1,4 @@
-"""Who taught which mode, against a record that is kept mode by mode; and frames to come back to."""
+"""Which frame set which mode, against a record that is kept mode by mode; and frames to come back to."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ UNITS = 600
 @pytest.mark.parametrize(("lights", "word"), [(3, np.uint32), (20, np.uint64)])
 def test_the_first_frame_of_each_answer_is_known(lights: int, word: type) -> None:
     """Words drawn by lot, which gain and lose modes; and lights that move, so that what they had was forgotten."""
-    lots, ledger = np.random.default_rng(3), ModeOrigins(lights)
+    lots, origins = np.random.default_rng(3), ModeOrigins(lights)
     first: dict[tuple[int, int], int] = {}  # by unit and bit
     whole: dict[int, int] = {}
     words = np.zeros(UNITS, word)
@@ -30,7 +30,7 @@ def test_the_first_frame_of_each_answer_is_known(lights: int, word: type) -> Non
         lost = np.where(lots.random(UNITS) < 0.1, lots.integers(0, 1 << 62, UNITS), 0).astype(word)
         gained &= word(4 ** (lights + 1) - 1)
         before, words = words, (words | np.where(lots.random(UNITS) < 0.3, gained, word(0))) & ~lost
-        ledger.add(number, words, moved)
+        origins.add(number, words, moved)
         for unit in range(UNITS):
             for bit in range(2, 2 + 2 * lights):
                 has, had = int(words[unit]) >> bit & 1, int(before[unit]) >> bit & 1 and not moved[(bit - 2) // 2]
@@ -45,26 +45,26 @@ def test_the_first_frame_of_each_answer_is_known(lights: int, word: type) -> Non
                 whole.pop(unit, None)
     assert len(first) > UNITS and whole
     for unit in range(UNITS):
-        taught = ledger.of(unit)
+        known = origins.of(unit)
         for light in range(lights):
             expected = tuple(first.get((unit, 2 + 2 * light + bit), NEVER) for bit in (0, 1))
-            assert expected == (NEVER, NEVER) if taught is None else taught.lights[light] == expected
-        assert (NEVER if taught is None else taught.whole) == whole.get(unit, NEVER)
+            assert expected == (NEVER, NEVER) if known is None else known.lights[light] == expected
+        assert (NEVER if known is None else known.whole) == whole.get(unit, NEVER)
 
 
 def test_memory_is_bounded() -> None:
-    ledger = ModeOrigins(3, most_bytes=100 * 4 * 7)
-    ledger.add(0, np.full(UNITS, 4, np.uint32))
-    assert ledger.full and ledger.of(99) is not None and ledger.of(100) is None
-    ledger.add(1, np.full(UNITS, 4 | 8, np.uint32))
-    assert ledger.of(7).lights[0] == (0, 1) and ledger.of(-1) is None and ledger.of(UNITS) is None
+    origins = ModeOrigins(3, most_bytes=100 * 4 * 7)
+    origins.add(0, np.full(UNITS, 4, np.uint32))
+    assert origins.full and origins.of(99) is not None and origins.of(100) is None
+    origins.add(1, np.full(UNITS, 4 | 8, np.uint32))
+    assert origins.of(7).lights[0] == (0, 1) and origins.of(-1) is None and origins.of(UNITS) is None
 
 
 def test_what_was_known_before_the_record_began_has_no_teacher() -> None:
-    ledger = ModeOrigins(1, blank=False)
-    ledger.add(5, np.array([4, 0], np.uint32))
-    ledger.add(6, np.array([4, 4], np.uint32))
-    assert ledger.of(0) is None and ledger.of(1).lights == ((6, NEVER),)
+    origins = ModeOrigins(1, blank=False)
+    origins.add(5, np.array([4, 0], np.uint32))
+    origins.add(6, np.array([4, 4], np.uint32))
+    assert origins.of(0) is None and origins.of(1).lights == ((6, NEVER),)
 
 
 def test_frames_are_kept_by_their_numbers() -> None:

@@ -1,12 +1,12 @@
-"""How much of a picture is traced before it is shown, so that frames come as fast as they should.
+"""How much of a frame is traced before it is shown, so that frames come as fast as they should.
 
-Each picture begins with its primary rays at full resolution and with some sixteenths of its pixels shaded, the rest
-filled in from them; then it becomes whole.  How many sixteenths fit into the time of a frame follows from what the last
-frames have cost: a fixed part, a part for each primary ray and a part for each shaded pixel, estimated separately, and
-the rest of the frame (placing objects, making certificates).  Pixels are estimated apart for each number of samples
-that lamps have.  Only where the primary rays alone do not fit is the
-resolution divided by 2, 3, ... as well; before that, frames take a little longer than they should.  More is traced only
-with some time to spare, so that pictures do not flutter between two steps.
+Each frame begins with its primary rays at full resolution and with some sixteenths of its pixels shaded, the rest
+filled in from them; then it becomes whole. How many sixteenths fit into the time of a frame follows from what the
+last frames have cost: a fixed part, a part for each primary ray and a part for each shaded pixel, estimated
+separately, and the rest of the frame (placing objects, making certificates). Shaded pixels are estimated apart for
+each number of samples that lamps have. Only where the primary rays alone do not fit is the resolution divided by 2,
+3, ... as well; before that, frames take a little longer than they should. More is traced only with some time to
+spare, so that pictures do not flutter between two steps.
 """
 
 from __future__ import annotations
@@ -18,22 +18,32 @@ import numpy as np
 from tracer.shading.blocks import TURNS
 from tracer.statistics import FrameStatistics
 
-PARTS = (16, 12, 8, 6, 4, 2, 1, 0.5)  # sixteenths of the pixels that the first picture may have
+PARTS = (16, 12, 8, 6, 4, 2, 1, 0.5)
+"""Sixteenths of the pixels that the first picture may have."""
 LARGEST_DIVISOR = 8
-SPARE = 0.95  # of a frame's time that a finer step may take
-# How much longer than it should what comes before shading may take before the resolution falls, and rises again.
-LENIENCE, REGAINED = 1.75, 1.25
-SOON = 0.3  # seconds that a whole picture may take without a part of it being shown, where nothing moves
-SHOWN_AGAIN = 0.5  # seconds that it takes at least until a picture that becomes whole is shown again
-KEPT, FORGETTING = 24, 0.8  # observations, and what each counts against the one after it
-TRUST = 0.05  # in how costs were divided before, against all that was observed
+FINER_BELOW = 0.95
+"""Of a frame's time that a finer step may take."""
+LOWER_RESOLUTION_ABOVE, RAISE_RESOLUTION_BELOW = 1.75, 1.25
+"""Of a frame's time that primary rays and what comes before them may take until the resolution changes."""
+WHOLE_AT_ONCE_SECONDS = 0.3
+"""That a whole picture may take without a part of it being shown, where nothing moves."""
+SHOWN_AGAIN_SECONDS = 0.5
+"""That it takes at least until a picture that becomes whole is shown again."""
+MOST_OBSERVED, WEIGHT_OF_OLDER = 24, 0.8
+"""Observations of a cost, and what each counts against the one after it."""
+WEIGHT_OF_SPLIT = 0.05
+"""Of how costs were divided before, against all that was observed."""
 SMOOTHING = 0.4
-LAMP_SAMPLE = 0.6  # of a pixel's cost by points, that each further sample of lamps adds until it has been observed
-MOVING_SAMPLES, FEWEST_SAMPLES = 4, 1  # of lamps in motion, where there is time and where there is none
-LEAST_PART = 4  # sixteenths of the pixels that there must be time for with the former
-STALLED = 10.0  # times what a frame should take, after which one alone is not believed
+LAMP_SAMPLE_COST = 0.6
+"""Of a pixel's cost by points, that each further sample of lamps adds until it has been observed."""
+MOVING_SAMPLES, FEWEST_SAMPLES = 4, 1
+"""Samples of lamps in motion, where there is time and where there is none."""
+LEAST_PART = 4
+"""Sixteenths of the pixels that there must be time for with the former."""
+STALLED = 10.0
+"""Times what a frame should take, after which one alone is not believed."""
 PRIMARY, UNSHADED, SHADING = ("primary",), ("surfaces", "filling"), ("shading",)
-BESIDE = ("place", "occlusion testing", "certification", "mode setting")
+OTHER_PHASES = ("place", "occlusion testing", "certification", "mode setting")
 
 
 @dataclass(frozen=True)
@@ -62,33 +72,33 @@ class Cost:
 
     def observe(self, number: float, seconds: float) -> None:
         """Learn that so many took so long."""
-        self._seen = [*self._seen[1 - KEPT :], (number, seconds)]
+        self._seen = [*self._seen[1 - MOST_OBSERVED :], (number, seconds)]
         numbers, taken = np.array(self._seen).T
-        weights = FORGETTING ** np.arange(len(taken))[::-1]
+        weights = WEIGHT_OF_OLDER ** np.arange(len(taken))[::-1]
         before = self.fixed + self.each * numbers
         scale = float((weights * taken * before).sum() / max((weights * before * before).sum(), 1e-30))
         parts = scale * self.fixed, scale * self.each
         unit = max(float(numbers.mean()), 1.0)  # so that both unknowns are seconds
         rows = np.stack([np.ones_like(numbers), numbers / unit], axis=1)
         weighted = rows * weights[:, None]
-        system = weighted.T @ rows + TRUST * weights.sum() * np.eye(2)
-        known = weighted.T @ taken + TRUST * weights.sum() * np.array([parts[0], parts[1] * unit])
+        system = weighted.T @ rows + WEIGHT_OF_SPLIT * weights.sum() * np.eye(2)
+        known = weighted.T @ taken + WEIGHT_OF_SPLIT * weights.sum() * np.array([parts[0], parts[1] * unit])
         fixed, each = np.maximum(np.linalg.solve(system, known), 0.0)
         self.fixed, self.each = float(fixed), float(each) / unit
 
 
-class Governor:
-    """Plans pictures by what frames have cost."""
+class FrameBudget:
+    """Plans frames by what the last ones have cost."""
 
     def __init__(self) -> None:
         self.forget()
 
     def forget(self) -> None:
-        """Another scene costs something else."""
+        """Begin anew: another scene costs something else."""
         self._primary, self._unshaded = Cost(3e-3, 3e-8), Cost(1e-3, 3e-8)
         self._shading = {1: Cost(5e-3, 6e-7)}  # by samples of lamps
         self._moving_samples = MOVING_SAMPLES
-        self._beside = 0.0
+        self._other_phases = 0.0
         self._finest = 0.0  # pixels that the last plan shaded
         self._known, self._stalled, self._last_divisor = False, False, 1
 
@@ -98,7 +108,8 @@ class Governor:
         if pixels <= 0 or "shading" not in phases:
             return
         taken, expected = sum(phases.values()), self.seconds(pixels, TURNS * statistics.part, lamp_samples)
-        self._stalled = self._known and not self._stalled and taken > STALLED * expected + SOON
+        late = taken > STALLED * expected + WHOLE_AT_ONCE_SECONDS
+        self._stalled = self._known and not self._stalled and late
         if self._stalled:  # the machine was asleep, or is much slower from now on: the next frame tells which
             return
         self._primary.observe(pixels, _sum(phases, PRIMARY))
@@ -106,35 +117,35 @@ class Governor:
             self._unshaded.observe(pixels, _sum(phases, UNSHADED))
         self._shading[lamp_samples] = shading = self._shading_with(lamp_samples)
         shading.observe(pixels * statistics.part, _sum(phases, SHADING))
-        beside = _sum(phases, BESIDE)
-        self._beside = self._beside + SMOOTHING * (beside - self._beside) if self._known else beside
+        other = _sum(phases, OTHER_PHASES)
+        self._other_phases += (SMOOTHING if self._known else 1.0) * (other - self._other_phases)
         self._known = True
 
     def seconds(self, pixels: float, part: float, lamp_samples: int = 1) -> float:
-        """What a picture of so many pixels takes until it is shown with so many sixteenths of them shaded."""
-        return self._unavoidable(pixels, part) + self._shading_with(lamp_samples)(pixels * part / TURNS)
+        """Return what a picture of so many pixels takes until it is shown with so many sixteenths of them shaded."""
+        return self._before_shading(pixels, part) + self._shading_with(lamp_samples)(pixels * part / TURNS)
+
+    def _before_shading(self, pixels: float, part: float = 0.0) -> float:
+        """Return what it takes before anything is shaded; nothing is filled in where all is."""
+        return self._other_phases + self._primary(pixels) + (self._unshaded(pixels) if part < TURNS else 0.0)
 
     def _shading_with(self, lamp_samples: int) -> Cost:
-        """The cost of shaded pixels; unless it has been observed, by that of the next smaller number of samples, or of
-        the smallest."""
+        """Return the cost of shaded pixels; unless it has been observed, by that of the next smaller number of samples,
+        or of the smallest."""
         known = self._shading.get(lamp_samples)
         if known is not None:
             return known
         near = max((samples for samples in self._shading if samples < lamp_samples), default=min(self._shading))
-        more = (1.0 + LAMP_SAMPLE * (lamp_samples - 1)) / (1.0 + LAMP_SAMPLE * (near - 1))
+        more = (1.0 + LAMP_SAMPLE_COST * (lamp_samples - 1)) / (1.0 + LAMP_SAMPLE_COST * (near - 1))
         return Cost(self._shading[near].fixed, more * self._shading[near].each)
 
     def moving_samples(self, width: int, height: int, seconds: float) -> int:
-        """Samples of lamps in motion, where a picture is to be shown so many seconds later.  The answer changes only
-        with some time to spare, as modes are lost with it."""
-        lenience = LENIENCE if self._moving_samples == MOVING_SAMPLES else SPARE
-        fits = self.seconds(width * height, LEAST_PART, MOVING_SAMPLES) <= lenience * seconds
+        """Return the samples of lamps in motion, where a picture is to be shown so many seconds later.  The answer
+        changes only with some time to spare, as modes are lost with it."""
+        limit = LOWER_RESOLUTION_ABOVE if self._moving_samples == MOVING_SAMPLES else FINER_BELOW
+        fits = self.seconds(width * height, LEAST_PART, MOVING_SAMPLES) <= limit * seconds
         self._moving_samples = MOVING_SAMPLES if fits else FEWEST_SAMPLES
         return self._moving_samples
-
-    def _unavoidable(self, pixels: float, part: float = 0.0) -> float:
-        """What it takes before anything is shaded; nothing is filled in where all is."""
-        return self._beside + self._primary(pixels) + (self._unshaded(pixels) if part < TURNS else 0.0)
 
     def plan(
         self,
@@ -145,25 +156,26 @@ class Governor:
         playing: bool = True,
         lamp_samples: int = 1,
     ) -> Plan:
-        """How to begin a picture that is to be shown so many seconds later, and how to go on; at full resolution unless
-        it may be a `coarse` one, and at once where nothing moves and the whole does not take long."""
+        """Return how to begin a picture that is to be shown so many seconds later, and how to go on; at full resolution
+        unless it may be a `coarse` one, and at once where nothing moves and the whole does not take long."""
         divisor = self._divisor(width, height, seconds) if coarse else 1
-        if not coarse and not playing and self.seconds(width * height, TURNS, lamp_samples) <= SOON:
+        if not coarse and not playing and self.seconds(width * height, TURNS, lamp_samples) <= WHOLE_AT_ONCE_SECONDS:
             return AT_ONCE
         w, h = divided(width, height, divisor)
         for part in PARTS:
             shaded = w * h * part / TURNS
-            if self.seconds(w * h, part, lamp_samples) <= (seconds if shaded <= self._finest else SPARE * seconds):
+            limit = seconds if shaded <= self._finest else FINER_BELOW * seconds
+            if self.seconds(w * h, part, lamp_samples) <= limit:
                 break
         self._finest = shaded
         return Plan(divisor, self._onward(w * h, part, self._shading_with(lamp_samples)))
 
     def _divisor(self, width: int, height: int, seconds: float) -> int:
-        """The finest resolution whose primary rays fit into so many seconds."""
+        """Return the finest resolution whose primary rays fit into so many seconds."""
         for divisor in range(1, LARGEST_DIVISOR):
             w, h = divided(width, height, divisor)
-            limit = (LENIENCE if divisor >= self._last_divisor else REGAINED) * seconds
-            if self._unavoidable(w * h) <= limit:
+            limit = LOWER_RESOLUTION_ABOVE if divisor >= self._last_divisor else RAISE_RESOLUTION_BELOW
+            if self._before_shading(w * h) <= limit * seconds:
                 break
         else:
             divisor = LARGEST_DIVISOR
@@ -171,11 +183,11 @@ class Governor:
         return divisor
 
     def _onward(self, pixels: int, part: float, shading: Cost) -> tuple[float, ...]:
-        """From a part to the whole, in steps that are worth showing."""
+        """Return the way from a part to the whole, in steps that are worth showing."""
         parts, more = [part], part
         while more < TURNS:
             more = min(2 * more, TURNS)
-            if more == TURNS or shading(pixels * (more - parts[-1]) / TURNS) > SHOWN_AGAIN:
+            if more == TURNS or shading(pixels * (more - parts[-1]) / TURNS) > SHOWN_AGAIN_SECONDS:
                 parts.append(more)
         return tuple(parts)
 
@@ -185,5 +197,5 @@ def _sum(phases: dict[str, float], names: tuple[str, ...]) -> float:
 
 
 def divided(width: int, height: int, divisor: int) -> tuple[int, int]:
-    """The size of a frame that is coarser by `divisor`, never empty."""
+    """Return the size of a frame that is coarser by `divisor`, never empty."""
     return max(1, round(width / divisor)), max(1, round(height / divisor))

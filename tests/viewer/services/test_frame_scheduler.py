@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from itertools import count
+from threading import Event, Thread
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,11 +13,13 @@ from tests.viewer.fakes import FakeRenderer, make_scene
 from tracer.frame import Settings
 from tracer.scene.model import Camera, Cancelled
 from viewer.services.controller import Controller
+from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
+from viewer.services.jobs import Wake
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.services.tracing import Conditions, Tracing
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
+from viewer.window.app import advance
 
 CAMERA = Camera((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -47,34 +50,28 @@ def test_pictures_are_asked_for_once_and_again_after_a_run():
     """A run drops what was asked for, and leaves the world at its own last frame."""
     pictures, session = Pictures(), Session(settings=Settings(method="none", samples=1))
     session.open(make_scene())
-    tracing = Tracing(session, Preferences(dynamic_resolution=False), pictures)
-    here = Conditions(size=(16, 8))
+    scheduler = FrameScheduler(session, Preferences(dynamic_resolution=False), pictures)
+    here = FrameInputs(size=(16, 8))
     for _ in range(3):
-        tracing.ask(here)
+        scheduler.request(here)
     (request,) = pictures.asked[1:] if len(pictures.asked) > 1 else pictures.asked
     assert (request.settings.width, request.settings.height, request.parts) == (16, 8, (16,))
     run = SimpleNamespace(showing="showing frame 3", lacks=lambda view: "")
-    tracing.ask(replace(here, run=run))
-    assert tracing.title == f"showing frame 3   {View.COLOR.label}"
+    scheduler.request(replace(here, run=run))
+    assert scheduler.title == f"showing frame 3   {View.COLOR.label}"
     count = len(pictures.asked)
-    tracing.ask(here)
+    scheduler.request(here)
     assert len(pictures.asked) == count + 1 and pictures.asked[-1] == request
 
 
 def test_until_certificates_can_be_made_pictures_come_without():
     session = Session(settings=Settings(method="certified+rest"))
-    tracing = Tracing(session, Preferences(), Pictures())
-    assert tracing.settings.method == "certified+rest"
-    tracing.ask(Conditions(ready=False))
-    assert tracing.settings.method == "none+rest"
+    scheduler = FrameScheduler(session, Preferences(), Pictures())
+    assert scheduler.settings.method == "certified+rest"
+    scheduler.request(FrameInputs(ready=False))
+    assert scheduler.settings.method == "none+rest"
     session.settings = replace(session.settings, method="paper")
-    assert tracing.settings.method == "paper"
-
-
-def test_nothing_is_reset_while_it_is_locked():
-    pictures = Pictures()
-    Tracing(Session(), Preferences(), pictures, locked=lambda: True).reset_modes()
-    assert pictures.resets == 0
+    assert scheduler.settings.method == "paper"
 
 
 def test_a_hand_that_falters_starves_no_picture():
@@ -100,10 +97,37 @@ def test_a_hand_that_falters_starves_no_picture():
             if step % 2:
                 x = 0.001 * step
                 controller.motion.move(replace(controller.session.camera, position=(x, 0.0, 0.0)))
-            controller.tick(size)
+            advance(controller, size)
             if controller.traced is not None:
                 shown.add(controller.traced.request.camera)
             time.sleep(0.016)
         assert len(shown) >= 5
     finally:
         assert controller.close()
+
+
+def test_a_window_stays_until_nobody_is_just_waking_it():
+    """A thread that refreshed a window which has gone would call into what is no more."""
+    wake, waking, go_on, gone = Wake(), Event(), Event(), Event()
+
+    def refresh() -> None:
+        waking.set()
+        assert go_on.wait(20.0) and not gone.is_set()
+
+    wake.connect(refresh)
+    thread = Thread(target=wake)
+    thread.start()
+    assert waking.wait(20.0)
+
+    def close() -> None:
+        wake.connect(None)
+        gone.set()
+
+    closing = Thread(target=close)
+    closing.start()
+    assert not gone.wait(0.05), "the window has gone while a thread was waking it"
+    go_on.set()
+    thread.join(20.0)
+    closing.join(20.0)
+    assert gone.is_set()
+    wake()  # does nothing

@@ -4,22 +4,32 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from tests.viewer.fakes import make_frame
 from tracer.culling.fate import Fate
 from tracer.explanation import NO_CERTIFICATE, Explanation, explain
+from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info
+from tracer.scene.model import Cancelled
 from tracer.why_in_words import Link
+from viewer.services import pixel_inspector
 from viewer.services.controller import Controller
-from viewer.services.shadow_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, Part, drawn_lights, drawn_lines
+from viewer.services.origin_pixels import find_pixels
+from viewer.services.pixel_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, PixelInspector, drawn_lights, find_cut
+from viewer.services.queries import Newest, Queries, Query
 from viewer.state import navigation
 from viewer.state.preferences import Preferences
-from viewer.window.panels.links import follow
+from viewer.window.app import advance
+from viewer.window.panels.links import go_to
+from viewer.window.panels.overlays import BLOCKER, LIT, OCCLUDER, STOPPED, shadow_lines
 from viewer.window.panels.why import summary, unanswered
 from viewer.window.ui import Ui
 
@@ -42,7 +52,7 @@ class Desk:
         end, held = time.monotonic() + 120.0, 0  # kernels may be compiled first
         while held < ticks:
             assert time.monotonic() < end, "in vain"
-            self.c.tick(SIZE)
+            advance(self.c, SIZE)
             held = held + 1 if holds() else 0
             time.sleep(0.001)
 
@@ -162,12 +172,11 @@ def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out
     answer = desk.answered()
     stopped = next(one for one in answer.lights if one.blocked_at is not None)
     assert stopped.certificate == "CANDIDATES" and stopped.named == (0, 1)
-    lines = [line for line in drawn_lines(answer, desk.c.frame) if line.light == stopped.light]
-    parts = [line.part for line in lines]
-    assert parts == [*[Part.BLOCKER] * 3, Part.OCCLUDER, Part.OCCLUDER, Part.REACHING, Part.STOPPED]
+    colors = [color for color, _, light, _ in shadow_lines(answer, desk.c.frame) if light == stopped.light]
+    assert colors == [*[BLOCKER] * 3, OCCLUDER, OCCLUDER, LIT, STOPPED]
     many = replace(answer, lights=(replace(stopped, blocker=2, named=tuple([2] + [0] * 30)),))
-    drawn = [line.part for line in drawn_lines(many, desk.c.frame)]
-    assert drawn.count(Part.OCCLUDER) == MOST_OCCLUDERS - 1
+    drawn = [color for color, _, _, _ in shadow_lines(many, desk.c.frame)]
+    assert drawn.count(OCCLUDER) == MOST_OCCLUDERS - 1
 
 
 def test_reasons_come_with_the_answer_and_say_what_the_frame_did(desk: Desk):
@@ -194,12 +203,12 @@ def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: Desk):
     desk.until(lambda: desk.c.frame is not first, ticks=1)
     assert desk.c.inspector.why is answer.why and not desk.c.inspector.names_pixels_of(desk.c.frame)
     before = desk.c.selection.picked
-    follow(ui, neighbour)
+    go_to(ui, neighbour)
     assert desk.c.selection.picked is before, "it would be another pixel"
     desk.until(lambda: not desk.c.active)
     desk.answered()
     assert desk.c.inspector.names_pixels_of(desk.c.frame)
-    follow(ui, neighbour)
+    go_to(ui, neighbour)
     assert (desk.c.selection.picked.x, desk.c.selection.picked.y) == neighbour.pixel
 
 
@@ -211,7 +220,7 @@ def _explained(light: int, samples: int = 16, reached: int = 16, due: bool = Tru
 
 def test_lights_are_summed_up_by_the_samples_that_arrive():
     lights = [_explained(0), _explained(1, 16, 3), _explained(2, due=False), _explained(3, 16, 0), _explained(4, 4, 0)]
-    assert summary(lights) == "1 lit, 1 in part, 2 in shadow, 1 behind it"
+    assert summary(lights) == "1 lit, 1 in part, 2 in shadow, 1 facing away"
 
 
 def test_of_many_lights_the_nearest_are_drawn():
@@ -219,3 +228,93 @@ def test_of_many_lights_the_nearest_are_drawn():
     drawn = drawn_lights(lights)
     assert len(drawn) == MOST_LIGHTS and all(one.due for one in drawn) and min(one.light for one in drawn) >= 240
     assert drawn_lights(lights[:30]) == tuple(one for one in lights[:30] if one.due)
+
+
+# --- clusters of lights -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("over", [False, True])
+def test_clusters_are_those_of_the_pixel_and_the_picture_that_is_looked_at(monkeypatch: pytest.MonkeyPatch, over: bool):
+    """`over`: the renderer has begun another frame when it is asked."""
+    asked: list[Query] = []
+
+    def light_cut(renderer, frame, x, y):
+        if over:
+            raise LookupError("another frame has begun")
+        return SimpleNamespace(frame=frame, x=x, y=y) if x == 0 else None
+
+    monkeypatch.setattr(pixel_inspector, "light_cut", light_cut)
+    queries, frame = Queries(), make_frame()
+    selection = SimpleNamespace(picked=None, hovered=(0.0, 0.0))
+    frame.primitive[:] = 0
+
+    def answer() -> None:
+        while (query := queries.take()) is not None:
+            if query.function is find_cut:
+                asked.append(query)
+                query.answer(None, lambda: False)
+
+    inspector = PixelInspector(selection, lambda function, frame, *more: queries.ask(function, frame, more))
+
+    def look(frame: Frame) -> tuple[bool, object]:
+        inspector.update(frame, idle=True, cuts=True)
+        return inspector.cut is not None, inspector.awaits_cut
+
+    assert look(frame) == (False, (0, 0))
+    answer()
+    assert look(frame) == ((False, (0, 0)) if over else (True, None)), "asked again where nobody could say"
+    if over:
+        return
+    assert look(replace(frame, color=frame.color + 1.0)) == (True, None) and len(asked) == 1, "more samples"
+    selection.hovered = (0.6, 0.0)
+    assert look(frame)[0] is False, "what is drawn is never that of another pixel"
+    answer()
+    assert look(frame) == (False, None), "it has none"
+    selection.hovered = (0.0, 0.0)
+    assert look(replace(frame, primitive=frame.primitive.copy())) == (False, (0, 0)), "another picture"
+    inspector.update(frame, idle=True, cuts=False)
+    assert inspector.awaits_cut is None
+
+
+# --- what fails, and what takes long ----------------------------------------------------------------
+
+
+def test_an_answer_that_fails_is_one_line_in_the_panel_and_stops_no_film(desk: Desk, monkeypatch: pytest.MonkeyPatch):
+    def fail(*_: object) -> None:
+        raise ValueError("no such light")
+
+    monkeypatch.setattr(pixel_inspector, "explain", fail)
+    desk.c.motion.toggle_play()
+    desk.c.selection.select(desk.shadow)
+    desk.until(lambda: desk.c.inspector.problem == "no such light")
+    assert desk.c.session.playing
+    desk.c.motion.toggle_play()
+    desk.until(lambda: not desk.c.active)
+    assert unanswered(Ui(desk.c)) == "No answer: no such light."
+
+
+def test_a_frame_that_is_traced_once_more_for_its_pixels_gives_way_and_leaves_the_world(desk: Desk):
+    frame, renderer, asked = desk.c.frame, desk.renderer, desk.c.frame.time
+    more = 0, asked + 1.0, frame.camera, frame.settings, 0, False
+    before = explain(renderer, frame, *pixel(frame, desk.shadow))
+    with pytest.raises(Cancelled):
+        find_pixels(renderer, frame, *more, lambda: True)
+    assert explain(renderer, frame, *pixel(frame, desk.shadow)) == before
+    finder = desk.c.origins
+    desk.c.selection.select(desk.lit)
+    with_query = SimpleNamespace(future=Future(), frames=[])
+
+    def query(function, frame, *arguments):
+        with_query.frames.append(frame)
+        return with_query.future
+
+    finder._newest = Newest(query, find_pixels)
+    traced = desk.c.traced
+    finder.update(desk.c.session.scene, traced)
+    assert with_query.frames == [traced.frame]
+    finder.update(desk.c.session.scene, None)  # something moves
+    assert with_query.future.cancelled()
+
+
+def pixel(frame: Frame, point: tuple[float, float]) -> tuple[int, int]:
+    return int(point[0] * frame.width), int(point[1] * frame.height)

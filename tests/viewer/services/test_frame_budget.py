@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tracer.statistics import FrameStatistics
-from viewer.services.governor import PARTS, Cost, Governor, divided
+from viewer.services.frame_budget import PARTS, Cost, FrameBudget, divided
 
 FIXED, RAY, PIXEL = 5e-3, 1e-7, 1e-6
 
@@ -19,11 +19,11 @@ def frame(pixels: int, part: float, beside: float = 0.0, slower: float = 1.0) ->
     return FrameStatistics(part=part / 16, phases=phases)
 
 
-def taught(*seen: FrameStatistics, pixels: int = 400_000) -> Governor:
-    governor = Governor()
+def taught(*seen: FrameStatistics, pixels: int = 400_000) -> FrameBudget:
+    budget = FrameBudget()
     for statistics in seen:
-        governor.observe(statistics, pixels)
-    return governor
+        budget.observe(statistics, pixels)
+    return budget
 
 
 def test_fixed_and_growing_costs_are_learnt_apart():
@@ -64,22 +64,22 @@ def test_old_costs_are_forgotten():
     ],
 )
 def test_the_most_that_fits_is_shaded_and_only_then_the_resolution_falls(seconds: float, part: float, divisor: int):
-    governor = taught(*(frame(400_000, part) for part in (1, 4, 16, 2, 8) * 3))
-    assert governor.seconds(400_000, 4) == pytest.approx(FIXED + RAY * 4e5 + PIXEL * 1e5, rel=0.1)
-    plan = governor.plan(800, 500, seconds)
+    budget = taught(*(frame(400_000, part) for part in (1, 4, 16, 2, 8) * 3))
+    assert budget.seconds(400_000, 4) == pytest.approx(FIXED + RAY * 4e5 + PIXEL * 1e5, rel=0.1)
+    plan = budget.plan(800, 500, seconds)
     assert (plan.parts[0], plan.divisor) == (part, divisor)
     assert plan.parts[-1] == 16 and list(plan.parts) == sorted(set(plan.parts))
 
 
 def test_what_was_whole_at_once_teaches_what_its_primary_rays_cost():
     """Else a view that became dear would never be shaded in parts again."""
-    governor, dear = taught(*(frame(300_000, part, slower=0.1) for part in (1, 16) * 3)), FrameStatistics(part=1.0)
-    assert governor.plan(640, 480, 0.05).parts == (16,)
+    budget, dear = taught(*(frame(300_000, part, slower=0.1) for part in (1, 16) * 3)), FrameStatistics(part=1.0)
+    assert budget.plan(640, 480, 0.05).parts == (16,)
     dear.phases = {"primary": 0.15, "shading": 0.01}
     for _ in range(20):
-        governor.observe(dear, 640 * 480)
-    assert governor.plan(640, 480, 0.05).divisor > 1
-    assert governor.plan(640, 480, 0.05, coarse=False, playing=False).parts == (16,), "0.16 s do not take long"
+        budget.observe(dear, 640 * 480)
+    assert budget.plan(640, 480, 0.05).divisor > 1
+    assert budget.plan(640, 480, 0.05, coarse=False, playing=False).parts == (16,), "0.16 s do not take long"
 
 
 def test_steps_on_the_way_to_the_whole_are_worth_showing():
@@ -97,12 +97,12 @@ def test_what_does_not_take_long_is_whole_at_once_where_nothing_moves():
 
 
 def test_a_finer_step_needs_time_to_spare_and_a_coarser_one_none():
-    governor = taught(*(frame(400_000, part) for part in (1, 4, 16, 2, 8) * 3))
-    quarter = governor.seconds(400_000, 4)
-    assert governor.plan(800, 500, 0.9 * quarter).parts[0] == 2
-    assert governor.plan(800, 500, 1.05 * quarter).parts[0] == 2, "a quarter would fit, but with nothing to spare"
-    assert governor.plan(800, 500, 1.4 * quarter).parts[0] == 4
-    assert governor.plan(800, 500, 1.05 * quarter).parts[0] == 4
+    budget = taught(*(frame(400_000, part) for part in (1, 4, 16, 2, 8) * 3))
+    quarter = budget.seconds(400_000, 4)
+    assert budget.plan(800, 500, 0.9 * quarter).parts[0] == 2
+    assert budget.plan(800, 500, 1.05 * quarter).parts[0] == 2, "a quarter would fit, but with nothing to spare"
+    assert budget.plan(800, 500, 1.4 * quarter).parts[0] == 4
+    assert budget.plan(800, 500, 1.05 * quarter).parts[0] == 4
 
 
 def test_what_else_is_in_a_frame_leaves_less_time():
@@ -110,7 +110,7 @@ def test_what_else_is_in_a_frame_leaves_less_time():
     beside = taught(*(frame(400_000, part, beside=0.1) for part in PARTS * 3))
     assert beside.seconds(400_000, 1) == pytest.approx(alone.seconds(400_000, 1) + 0.1, rel=0.01)
     beside.forget()
-    assert beside.seconds(400_000, 1) == Governor().seconds(400_000, 1), "another scene"
+    assert beside.seconds(400_000, 1) == FrameBudget().seconds(400_000, 1), "another scene"
 
 
 def test_divided_sizes_are_never_empty():
@@ -122,10 +122,10 @@ def test_a_frame_that_was_slept_through_changes_nothing_but_slow_ones_do():
     def picture() -> FrameStatistics:
         return frame(400_000, 8)
 
-    governor = taught(*[picture() for _ in range(20)])
-    before = governor.plan(800, 500, 0.32)
-    governor.observe(frame(400_000, 8, beside=3600.0), 400_000)
-    assert governor.plan(800, 500, 0.32) == before
+    budget = taught(*[picture() for _ in range(20)])
+    before = budget.plan(800, 500, 0.32)
+    budget.observe(frame(400_000, 8, beside=3600.0), 400_000)
+    assert budget.plan(800, 500, 0.32) == before
     for _ in range(10):
-        governor.observe(frame(400_000, 8, slower=50.0), 400_000)
-    assert governor.plan(800, 500, 0.32).divisor > before.divisor
+        budget.observe(frame(400_000, 8, slower=50.0), 400_000)
+    assert budget.plan(800, 500, 0.32).divisor > before.divisor

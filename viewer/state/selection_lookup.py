@@ -30,43 +30,15 @@ class Place(NamedTuple):
     normal: NDArray[np.float64] | None = None
 
 
-def corners_of(scene: Scene, primitive: int, time: float) -> NDArray[np.float64]:
-    """World space corners of a primitive: (3, 3) of a triangle, (8, 3) of a box around a sphere or a cone."""
-    index = scene.object_of(primitive)
-    return _corners(scene, index, np.array([primitive]), time)[0]
+def primitive_points(scene: Scene, primitive: int, time: float) -> NDArray[np.float64]:
+    """World space corners of a primitive: (3, 3) of a triangle, (8, 3) of a box around a sphere or a cone; (0, 3) where
+    it is beyond all numbers."""
+    corners = _corners(scene, scene.object_of(primitive), np.array([primitive]), time)[0]
+    return corners if np.isfinite(corners).all() else np.empty((0, 3))
 
 
-def place_of(scene: Scene, primitive: int, time: float) -> Place | None:
-    """Where a primitive is; None where it is beyond all numbers."""
-    corners = corners_of(scene, primitive, time)
-    if not np.isfinite(corners).all():
-        return None
-    normal = None
-    if len(corners) == 3:
-        across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-        length = float(np.linalg.norm(across))
-        normal = across / length if length > 0.0 else None
-    return _ball(corners, normal)
-
-
-def place_of_part(now: Edited, part: int, time: float) -> Place | None:
-    """Where a part of the scene is; None where it is nowhere."""
-    points = _points_of_part(now, part, time)
-    return _ball(points) if len(points) else None
-
-
-def lines_of_part(now: Edited, part: int, time: float) -> list[NDArray[np.float64]]:
-    """The edges (2, 3) of a box around a part of the scene; none where it is nowhere."""
-    points = _points_of_part(now, part, time)
-    if not len(points):
-        return []
-    low, high = points.min(axis=0), points.max(axis=0)
-    corners = 0.5 * (low + high) + 0.5 * (high - low) * _BOX
-    return [corners[list(edge)] for edge in _EDGES]
-
-
-def _points_of_part(now: Edited, part: int, time: float) -> NDArray[np.float64]:
-    """(k, 3) corners of all its primitives that are somewhere."""
+def part_points(now: Edited, part: int, time: float) -> NDArray[np.float64]:
+    """(k, 3) corners of all primitives of a part that are somewhere."""
     scene, found = now.scene, _primitives_of(now, part)
     if not len(found):
         return np.empty((0, 3))
@@ -77,15 +49,33 @@ def _points_of_part(now: Edited, part: int, time: float) -> NDArray[np.float64]:
     return points[np.isfinite(points).all(axis=1)]
 
 
+def place_of(points: NDArray) -> Place | None:
+    """Where these points are, of a triangle with its normal; None where there are none."""
+    if not len(points):
+        return None
+    low, high, normal = points.min(axis=0), points.max(axis=0), None
+    if len(points) == 3:
+        across = np.cross(points[1] - points[0], points[2] - points[0])
+        length = float(np.linalg.norm(across))
+        normal = across / length if length > 0.0 else None
+    return Place((low + high) / 2.0, float(np.linalg.norm(high - low)) / 2.0, normal)
+
+
+def outline_of(points: NDArray) -> list[NDArray[np.float64]]:
+    """Lines (n, 3) around points: a triangle's sides, or else the edges of a box."""
+    if len(points) == 3:
+        return [points[[0, 1, 2, 0]]]
+    if not len(points):
+        return []
+    low, high = points.min(axis=0), points.max(axis=0)
+    corners = 0.5 * (low + high) + 0.5 * (high - low) * _BOX
+    return [corners[list(edge)] for edge in _EDGES]
+
+
 def _primitives_of(now: Edited, part: int) -> NDArray:
     """The numbers of a part's primitives in the edited scene: of those that are in it."""
     found = now.numbers[parts_of(now.original).primitives_of(part)]
     return found[found >= 0]
-
-
-def _ball(points: NDArray, normal: NDArray | None = None) -> Place:
-    low, high = points.min(axis=0), points.max(axis=0)
-    return Place((low + high) / 2.0, float(np.linalg.norm(high - low)) / 2.0, normal)
 
 
 def _corners(scene: Scene, index: int, primitives: NDArray, time: float) -> NDArray[np.float64]:
@@ -119,14 +109,6 @@ def _boxes(scene: Scene, index: int, which: NDArray) -> NDArray[np.float64]:
     return np.asarray(np.einsum("kij,kcj->kci", maps[:, :, :3], boxes) + maps[:, None, :, 3], np.float64)
 
 
-def lines_of(scene: Scene, primitive: int, time: float) -> list[NDArray[np.float64]]:
-    """Lines (n, 3) that show where a primitive is: a triangle's sides, or a box around a sphere or a cone."""
-    corners = corners_of(scene, primitive, time)
-    if not np.isfinite(corners).all():
-        return []
-    return [corners[[0, 1, 2, 0]]] if len(corners) == 3 else [corners[list(edge)] for edge in _EDGES]
-
-
 def pick_primitive(frame: Frame, scene: Scene, primitive: int) -> Pick | None:
     """A primitive as if it had been clicked: at the pixel in the middle of what is seen of it, or, where nothing of it
     is seen, at its own middle.  None for a number that is no primitive's, or of what is beyond all numbers."""
@@ -135,11 +117,10 @@ def pick_primitive(frame: Frame, scene: Scene, primitive: int) -> Pick | None:
     shown = frame.primitive == primitive
     if shown.any():
         return _middle_pick(frame, scene, shown)
-    place = place_of(scene, primitive, frame.time)
-    if place is None:
+    points = primitive_points(scene, primitive, frame.time)
+    if not len(points):
         return None
-    corners = corners_of(scene, primitive, frame.time)
-    point = corners.mean(axis=0) if len(corners) == 3 else place.middle
+    x, y, z = points.mean(axis=0).tolist()
     in_cells = has_modes_of_cells(frame)
     known = not in_cells and primitive < len(frame.modes)
     unit = primitive if known else -1
@@ -154,7 +135,7 @@ def pick_primitive(frame: Frame, scene: Scene, primitive: int) -> Pick | None:
         dynamic=scene.object_of(primitive) > 0,
         material=scene.material_of(primitive),
         shadows=tuple(shadow_mode_of(frame, unit, light) if known else None for light in range(len(scene.lights))),
-        point=(float(point[0]), float(point[1]), float(point[2])),
+        point=(x, y, z),
     )
 
 

@@ -1,0 +1,64 @@
+"""Paths that are typed, and the desktop's own dialog."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from viewer.window.panels import open_file
+from viewer.window.panels.open_file import OpenFileState
+from viewer.window.ui import Dialog
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name in ("Robot.aff", "robot_2.aff", "plot.PNG", "notes.txt", ".hidden.aff", "deep/inner.obj", "deep/way.ply"):
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.touch()
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("typed", "names", "completed"),
+    [
+        ("", ["deep/", "plot.PNG", "Robot.aff", "robot_2.aff"], ""),
+        ("p", ["plot.PNG"], "plot.PNG"),
+        ("ROB", ["Robot.aff", "robot_2.aff"], "ROB"),
+        (".h", [".hidden.aff"], ".hidden.aff"),
+        ("de", ["deep/"], "deep/"),
+        ("deep/", ["inner.obj", "way.ply"], "deep/"),
+        ("deep/in", ["inner.obj"], "deep/inner.obj"),
+        ("gone/x", [], "gone/x"),
+    ],
+)
+def test_a_path_is_completed_as_far_as_names_agree(folder: Path, typed: str, names: list[str], completed: str) -> None:
+    state = OpenFileState(folder=folder, typed=typed)
+    assert state.names() == names and state.completed() == completed
+
+
+def test_a_folder_is_read_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[Path] = []
+    monkeypatch.setattr(open_file, "names_in", lambda path: read.append(path) or ["a.aff", "b.aff"])
+    state = OpenFileState(folder=folder)
+    for typed in ("", "a", "", "b"):
+        state.typed = typed
+        state.names()
+    assert read == [folder]
+
+
+def test_where_the_desktop_has_a_dialog_it_asks(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[Path] = []
+    state, dialogs, ready = OpenFileState(folder=folder), [Dialog.OPEN_FILE], [False, False, True]
+    ui = SimpleNamespace(
+        state=lambda kind: state, dialogs=dialogs, close=dialogs.remove,
+        controller=SimpleNamespace(loader=SimpleNamespace(open=opened.append)),
+    )  # fmt: skip
+    chosen = SimpleNamespace(ready=lambda wait: ready.pop(0), result=lambda: [str(folder / "deep/inner.obj")])
+    monkeypatch.setattr(open_file, "has_native_dialog", lambda: True)
+    monkeypatch.setattr(open_file.native, "open_file", lambda *given: chosen)
+    while ready:
+        open_file.show(ui)
+    assert opened == [folder / "deep/inner.obj"] and state.folder == folder / "deep" and not dialogs

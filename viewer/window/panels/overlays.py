@@ -1,0 +1,225 @@
+"""Over the picture, for what was clicked: its rays to the lights and what blocks them, what hides it, where it is
+itself, and the clusters of lights that shade it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4
+
+from tracer.culling.fate import Fate
+from tracer.frame import Frame
+from tracer.light_cut import LightCut
+from tracer.reasons import Why
+from viewer.services.pixel_inspector import MOST_CLUSTERS, Answer, drawn_primitives
+from viewer.state.projection import Stroke, place, strokes
+from viewer.state.selection_lookup import outline_of, part_points, primitive_points
+from viewer.state.views import FATE_COLORS, SHADOW_COLORS, ShadowMode, color_map
+from viewer.window import comparing
+from viewer.window.panels import ray_overlay, slicing
+from viewer.window.panels.area import Area, write_beside
+from viewer.window.panels.legend import LegendState
+from viewer.window.panels.links import Pointed
+from viewer.window.panels.marks import Pen, pen
+from viewer.window.ui import Ui
+from viewer.window.widgets import em
+
+LIT, STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
+BLOCKER, OCCLUDER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW], (0.90, 0.62, 0.0)
+"""Colours of a shadow ray as far as light comes, of its rest, of what blocks it, and of what a certificate names."""
+_FADED = 0.18  # opacity of other lights than the one that is pointed at
+BESIDE_CLUSTERS = 0.2
+"""Opacity of rays where clusters of lights are drawn over them."""
+_OUTLINE = 0.13  # width in ems
+_HIDER, _WHITE = ImVec4(*FATE_COLORS[Fate.PARTLY_OCCLUDED], 1.0), ImVec4(1.0, 1.0, 1.0, 1.0)
+_SAME, _MISSED = ImVec4(0.6, 0.64, 0.7, 1.0), ImVec4(0.3, 0.85, 0.95, 1.0)
+_SIDE = 0.5  # ems, of a pixel's square at least
+_THIN, _WIDE = 0.05, 0.13  # ems: boxes of clusters that send least, and of those that send most
+
+
+def show(ui: Ui, area: Area) -> None:
+    """Draw all that is to be seen of what was clicked, or is pointed at."""
+    c = ui.controller
+    state = ui.state(Pointed)
+    pointed, state.light = state.light, None  # the inspector says so in each frame
+    frame = c.frame
+    if frame is None:
+        return
+    with pen(area, frame) as made:
+        picked, answer = c.selection.picked, c.inspector.answer
+        if c.rays.visible:  # it shows the same rays, and more
+            ray_overlay.draw(ui, made, frame, BESIDE_CLUSTERS if c.inspector.cut is not None else 1.0)
+        elif picked is not None and answer is not None and c.preferences.draw_explanation:
+            _shadow_rays(ui, made, frame, answer, pointed)
+        _why(ui, made, frame)
+        _occluded_selection(ui, made, frame)
+        _clusters(ui, made, frame)
+
+
+Line = tuple[tuple[float, float, float], float, int, list[Stroke]]
+"""Colour, width in ems, light and strokes."""
+
+
+def shadow_lines(answer: Answer, frame: Frame) -> list[Line]:
+    """Outlines of what is named, then, for each light that is drawn, its ray to the point as far as it gets, and on."""
+    lines: list[Line] = []
+    for one in answer.drawn:
+        for number in drawn_primitives(one):
+            color, width = (BLOCKER, 0.16) if number == one.blocker else (OCCLUDER, 0.1)
+            lines += [(color, width, one.light, strokes(frame, line)) for line in answer.outlines[number]]
+    for one in answer.drawn:
+        end = one.point if one.blocked_at is None else one.blocked_at
+        lines.append((LIT, 0.13, one.light, strokes(frame, [one.light_position, end])))
+        if one.blocked_at is not None:
+            lines.append((STOPPED, 0.13, one.light, strokes(frame, [one.blocked_at, one.point])))
+    return lines
+
+
+def _shadow_rays(ui: Ui, made: Pen, frame: Frame, answer: Answer, pointed: int | None) -> None:
+    """The lights' rays to the point, with a disc at each light and a cross where its ray ends before the point."""
+    others = BESIDE_CLUSTERS if ui.controller.inspector.cut is not None else 1.0
+
+    def alpha(light: int) -> float:
+        return others if pointed is None else 1.0 if pointed == light else _FADED
+
+    point = place(frame, answer.lights[0].point) if answer.lights else None
+    lines: list[Line] = ui.cached("shadow rays", frame, answer, lambda: shadow_lines(answer, frame))
+    for color, width, light, pieces in lines:
+        made.strokes(pieces, ImVec4(*color, alpha(light)), width, hole=point)
+    for one in answer.drawn:
+        at = place(frame, one.light_position)
+        if at is not None:
+            made.disc(at, ImVec4(*LIT, alpha(one.light)), 0.3)
+        stop = place(frame, one.blocked_at) if one.blocked_at is not None else None
+        if stop is not None:
+            made.cross(stop, ImVec4(*BLOCKER, alpha(one.light)))
+    if point is not None:
+        made.ring(point)
+
+
+# --- why -------------------------------------------------------------------------------------------
+
+
+def _why(ui: Ui, made: Pen, frame: Frame) -> None:
+    """What hides the clicked primitive, where, the pixels that the clicked one is compared with, and what the pointer's
+    link stands for."""
+    c = ui.controller
+    state = ui.state(Pointed)
+    link, state.link = state.link, None  # the panel says so in each frame
+    found, in_place = c.inspector.why, c.inspector.names_pixels_of(frame)
+    if c.selection.picked is not None and c.preferences.draw_explanation and found is not None:
+        by = None if found.coverage is None else found.coverage.occluded
+        if by is not None and not by.at_edge and by.primitive >= 0:
+            _outline(ui, made, frame, by.primitive, _HIDER, "occluder")
+        if by is not None and in_place and by.pixel != (found.x, found.y):
+            made.square(*_square_of(made, frame, by.pixel), _HIDER)
+        if in_place and c.selection.pixel == (found.x, found.y):
+            _figure_3(made, frame, found)
+    if link is not None and link.primitive is not None:
+        _outline(ui, made, frame, link.primitive, _WHITE, "pointed link")
+    if link is not None and link.pixel is not None and link.frame is None and in_place:
+        made.square(*_square_of(made, frame, link.pixel), _WHITE)
+
+
+def _outline(ui: Ui, made: Pen, frame: Frame, primitive: int, color: ImVec4, name: str) -> None:
+    scene = ui.controller.session.scene
+    if scene is not None and primitive < scene.primitive_count:
+
+        def lines() -> list[Stroke]:
+            return _projected(frame, outline_of(primitive_points(scene, primitive, frame.time)))
+
+        pieces = ui.cached(name, frame, primitive, lines)
+        made.strokes(pieces, color, _OUTLINE)
+
+
+def _projected(frame: Frame, lines: list) -> list[Stroke]:
+    return [stroke for line in lines for stroke in strokes(frame, line)]
+
+
+def _figure_3(made: Pen, frame: Frame, found: Why) -> None:
+    """The clicked pixel and its left and upper neighbours, as in the paper's Figure 3; where pixels are small, larger
+    than they are."""
+    middle, (width, height) = _square_of(made, frame, (found.x, found.y))
+    for one in found.references:
+        color = _HIDER if one.occluded else _MISSED if one.tested else _SAME
+        across, down = one.pixel[0] - found.x, one.pixel[1] - found.y
+        made.square(ImVec2(middle.x + across * width, middle.y + down * height), (width, height), color)
+    if found.references:
+        made.square(middle, (width, height), _WHITE)
+
+
+def _square_of(made: Pen, frame: Frame, pixel: tuple[int, int]) -> tuple[ImVec2, tuple[float, float]]:
+    """The middle of a pixel on the screen, and the size of its square there."""
+    middle = made.area.to_screen((pixel[0] + 0.5) / frame.width, (pixel[1] + 0.5) / frame.height)
+    return middle, (max(made.pixel[0], em(_SIDE)), max(made.pixel[1], em(_SIDE)))
+
+
+# --- what is selected -------------------------------------------------------------------------------
+
+
+def _occluded_selection(ui: Ui, made: Pen, frame: Frame) -> None:
+    """Where what is selected lies behind something, as dashed lines."""
+    c = ui.controller
+    now, picked, part, at = c.session.edited, c.selection.picked, c.selection.part, c.selection.pixel
+    if now is None or picked is None:
+        return
+    if at is not None and (part is not None or frame.primitive[at[1], at[0]] == picked.primitive):
+        return
+
+    def lines() -> list[Stroke]:
+        points = primitive_points(now.scene, picked.primitive, frame.time)
+        return _projected(frame, outline_of(points if part is None else part_points(now, part, frame.time)))
+
+    made.strokes(ui.cached("occluded selection", frame, (picked.primitive, part), lines), _WHITE, 0.12, behind=0.75)
+
+
+# --- clusters of lights -----------------------------------------------------------------------------
+
+Cluster = tuple[list[Stroke], tuple[float, float] | None, float]
+"""Edges of a cluster's box, or where its only light is, and what it sends as a fraction of the most that one does."""
+
+
+def clusters(cut: LightCut) -> list[Cluster]:
+    """What is drawn of a cut: the clusters that send most, those that send least of them first."""
+    order = np.argsort(-cut.sent, kind="stable")[:MOST_CLUSTERS][::-1]
+    most, found = max(float(cut.sent.max(initial=0.0)), 1e-30), list[Cluster]()
+    for k in order.tolist():
+        box, fraction = cut.boxes[k].astype(np.float64), float(cut.sent[k]) / most
+        if int(cut.lights[k]) == 1 or (box[:3] == box[3:]).all():
+            found.append(([], place(cut.frame, box[:3]), fraction))
+            continue
+        corners = np.array([[box[3 * (n >> axis & 1) + axis] for axis in range(3)] for n in range(8)])
+        found.append((_projected(cut.frame, ray_overlay.box_edges(corners)), None, fraction))
+    return found
+
+
+def _clusters(ui: Ui, made: Pen, frame: Frame) -> None:
+    """The clusters that shade a pixel, by how much of its light each sends; until they come, that they are to come."""
+    inspector, waits = ui.controller.inspector, slicing.awaited(ui.controller)
+    cut, at = inspector.cut, inspector.awaits_cut
+    if cut is not None and cut.frame.camera == frame.camera:
+        colors = color_map(64)
+        drawn: list[Cluster] = ui.cached("clusters", cut, None, lambda: clusters(cut))
+        for pieces, light, fraction in drawn:
+            red, green, blue = colors[min(int(63.0 * fraction**0.5), 63)].tolist()
+            color = ImVec4(red, green, blue, 1.0)
+            made.strokes(pieces, color, _THIN + (_WIDE - _THIN) * fraction**0.5, behind=0.45)
+            if light is not None:
+                made.disc(light, color, 0.28)
+        made.ring(((cut.x + 0.5) / cut.frame.width, (cut.y + 0.5) / cut.frame.height))
+    elif at is not None and waits and ui.controller.selection.picked is not None:
+        where = (at[0] + 0.5) / frame.width, (at[1] + 0.5) / frame.height
+        made.ring(where)
+        corner, end = made.area.whole, made.area.whole_end
+        write_beside(
+            waits, made.area.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place
+        )
+
+
+def show_worst_pixels(ui: Ui, area: Area, frame: Frame) -> None:
+    """Over a signed difference: rings around the pixels that are furthest apart, where marks are wanted."""
+    spots = comparing.marked(ui)
+    if spots:
+        with pen(area, frame) as made:
+            for x, y in spots:
+                made.ring(((x + 0.5) / frame.width, (y + 0.5) / frame.height), max(0.65, made.radius))

@@ -1,0 +1,130 @@
+"""The menus Picture and Compare: zoom, exact values, exposure; what is kept as A, and how it is compared with B."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from viewer.state.comparison import Way
+from viewer.state.pixels import Point
+from viewer.state.tone import NEUTRAL, brighter
+from viewer.state.zooming import FIT, MOST, STEP, zoomed
+from viewer.window.command import Command, Condition, switch
+from viewer.window.ui import Ui
+
+_STOPS = 0.5  # of exposure by a key
+_NAMES = {
+    Way.FLIP: "Flip between A and B",
+    Way.WIPE: "Wipe between A and B",
+    Way.SIDE: "A and B side by side",
+    Way.DIFFERENCE: "Signed difference B - A",
+    Way.BLINK: "Blink A and B",
+}
+
+
+def comparing(ui: Ui) -> list[Command]:
+    """The menu Compare."""
+    c = ui.controller
+    comparing, state = c.comparing, c.comparing.state
+    there = Condition(lambda: comparing.b is not None, "there is no picture yet")
+    kept = Condition(lambda: state.kept is not None, "nothing is kept as A")
+
+    def keep() -> None:
+        comparing.keep()
+        offer(ui, "Compare")
+
+    def by(way: Way) -> Command:
+        return Command(_NAMES[way], "Compare", lambda: comparing.toggle(way), enabled=there, tip=way.meaning,
+                       checked=lambda: state.on and state.way is way)  # fmt: skip
+
+    return [
+        Command("Keep as A", "Compare", keep, "Ctrl+A", enabled=there),
+        Command("Clear A", "Compare", comparing.forget, enabled=kept),
+        Command("Two methods live", "Compare", comparing.toggle_methods, "Shift+C", enabled=there,
+                checked=lambda: bool(c.comparing.second_method),
+                tip="trace each frame by a second method as well, with modes and counters of its own"),
+        Command("Next way to compare", "Compare", comparing.next_way, "Shift+Z", enabled=there, separated=True),
+        *[by(way) for way in Way],
+        Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not state.on, separated=True),
+    ]  # fmt: skip
+
+
+def looking(ui: Ui) -> list[Command]:
+    """The menu Picture: zoom and values of pixels, exposure and what is clipped."""
+    session, p, watched = ui.controller.session, ui.controller.preferences, ui.pixels.watched
+
+    def expose(stops: float) -> Callable[[], None]:
+        def change() -> None:
+            session.tone = brighter(session.tone, stops)
+            ui.controller.notices.say(f"exposure {session.tone.exposure:+.3g} stops")
+
+        return change
+
+    def clear_region() -> None:
+        ui.pixels.region = None
+
+    larger = Condition(lambda: session.zoom.scale < MOST, f"it is enlarged {MOST:.0f} times, which is the most")
+    enlarged = Condition(lambda: not session.zoom.fits, "the whole picture is shown")
+    watching = Condition(lambda: bool(watched), "no pixel is watched")
+    chosen = Condition(lambda: ui.pixels.region is not None, "no region is chosen")
+    toned = Condition(lambda: not session.tone.neutral, "colours are shown as traced")
+    return [
+        Command("Zoom in", "Picture", lambda: zoom_by(ui, STEP, _at(ui)), "Equal", repeats=True,
+                enabled=larger, other_keys=("Shift+Equal", "KeypadAdd")),
+        Command("Zoom out", "Picture", lambda: zoom_by(ui, 1.0 / STEP, _at(ui)), "Minus", repeats=True,
+                enabled=enlarged, other_keys=("KeypadSubtract",)),
+        Command("Fit picture", "Picture", lambda: fit(ui), "Shift+F", enabled=enlarged),
+        switch("Values in pixels", "Picture", p, "pixel_values", separated=True),
+        Command("Watch pixel", "Picture", lambda: pin_what_is_pointed_at(ui), "Shift+P"),
+        Command("Unwatch all pixels", "Picture", watched.clear, enabled=watching),
+        Command("Clear region", "Picture", clear_region, enabled=chosen),
+        Command("Brighter", "Picture", expose(_STOPS), "RightBracket", repeats=True, separated=True),
+        Command("Darker", "Picture", expose(-_STOPS), "LeftBracket", repeats=True),
+        Command("Colours as traced", "Picture", lambda: setattr(session, "tone", NEUTRAL),
+                enabled=toned),
+        switch("Mark clipped pixels", "Picture", session, "clipping", "Shift+M"),
+    ]  # fmt: skip
+
+
+def _at(ui: Ui) -> tuple[float, float]:
+    """Where the pointer is in the picture's room, else its middle."""
+    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.zoom
+    if hovered is None:
+        return 0.5, 0.5
+    return (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale
+
+
+def zoom_by(ui: Ui, factor: float, at: Point = (0.5, 0.5)) -> None:
+    """Enlarge the picture; `at`, 0 to 1 in the room that it has, stays where it is."""
+    session = ui.controller.session
+    session.zoom = zoomed(session.zoom, factor, at)
+
+
+def offer(ui: Ui, panel: str) -> None:
+    """Bring a panel to the eye, unless panels are hidden or it would cover the picture that is looked at."""
+    if not ui.fold.away:
+        ui.show_panel(panel)
+
+
+def pin(ui: Ui, point: Point | None) -> None:
+    """Watch the pixel at a point, or no longer; says so."""
+    c = ui.controller
+    if c.frame is None or point is None:
+        c.notices.say("point at a pixel, or click one, to watch it")
+        return
+    c.notices.say(ui.pixels.pin(c.frame, point))
+    if ui.pixels.watched:
+        offer(ui, "Pixels")
+
+
+def pin_what_is_pointed_at(ui: Ui) -> None:
+    """Watch the pixel under the pointer, or else what was clicked."""
+    c = ui.controller
+    point, clicked = c.selection.hovered, c.selection.pixel
+    if point is None and clicked is not None and c.frame is not None:
+        point = (clicked[0] + 0.5) / c.frame.width, (clicked[1] + 0.5) / c.frame.height
+    pin(ui, point)
+
+
+def fit(ui: Ui) -> None:
+    """Show all of the picture."""
+    ui.controller.session.zoom = FIT

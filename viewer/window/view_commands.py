@@ -1,0 +1,171 @@
+"""The menus View and Culling: what the picture shows, how the window looks, and by which method is culled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tracer.method import Kind, Method, additions, bases
+from viewer.state.methods import toggled, with_base
+from viewer.state.preferences import SCALES
+from viewer.state.scene_rows import Level
+from viewer.state.views import View
+from viewer.window.command import Command, Condition, switch
+from viewer.window.layers_of_slice import step, turn
+from viewer.window.ui import Ui
+
+
+@dataclass
+class FindState:
+    """`focus` asks for the keyboard above the table, of which `drawn` rows were drawn last, each `height` pixels high,
+    in the order `order`."""
+
+    focus: bool = False
+    drawn: int = 0
+    height: float = 0.0
+    order: object = None
+
+
+def view(ui: Ui) -> list[Command]:
+    """The menu View."""
+    c, p = ui.controller, ui.controller.preferences
+
+    def show(view: View) -> Command:
+        return Command(view.label, "View", lambda: c.settings.set_view(view), view.key, also=view.also,
+                       checked=lambda: c.session.view is view)  # fmt: skip
+
+    def light(step: int) -> Callable[[], None]:
+        return lambda: c.settings.set_light(c.session.light + step)
+
+    def another(step: int) -> Callable[[], None]:
+        views = list(View)
+        return lambda: c.settings.set_view(views[(views.index(c.session.view) + step) % len(views)])
+
+    lit = Condition(
+        lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "there are not several lights"
+    )
+    return [
+        *[show(view) for view in View],
+        Command("Next view", "View", another(1)),
+        Command("Previous view", "View", another(-1)),
+        Command("Next light", "View", light(1), "L", enabled=lit, separated=True),
+        Command("Previous light", "View", light(-1), "Shift+L", enabled=lit),
+        *_space(ui),
+        switch("What culling saves", "View", p, "savings", "Shift+B", separated=True,
+               tip="one sentence above the picture, and a bar of the shadow rays by what became of them"),
+        switch("Legend", "View", p, "legend", "N"),
+        switch("Outlines", "View", p, "outlines", "B"),
+        switch("Mark wrong pixels", "View", p, "mark_wrong", "M"),
+        switch("Shares of rays", "View", p, "work_shares", "U"),
+        Command("Rays of the clicked pixel", "View", ui.show_rays, "X", separated=True),
+        *_find(ui),
+        switch("Draw shadow rays", "View", p, "draw_explanation", "I"),
+        switch("Smooth upscaling", "View", p, "smooth_upscaling"),
+        *_interface(ui),
+        switch("Hide panels", "View", ui.fold, "hidden", "Tab", separated=True),
+        switch("Full screen", "View", ui.full_screen, "wanted", "F11"),
+        Command("Default layout", "View", lambda: ui.desktop.reset_layout()),
+    ]  # fmt: skip
+
+
+def _space(ui: Ui) -> list[Command]:
+    """What methods keep of space: the slice through it."""
+    sliced = Condition(
+        lambda: ui.controller.scheduler.drawn_view.has_slice, "no slice is shown: choose the view Voxels or Tree built"
+    )
+    return [
+        Command("Next layer of the slice", "View", lambda: step(ui, 1), "Shift+RightBracket", enabled=sliced,
+                separated=True, repeats=True),
+        Command("Previous layer of the slice", "View", lambda: step(ui, -1), "Shift+LeftBracket",
+                enabled=sliced, repeats=True),
+        Command("Slice across another axis", "View", lambda: turn(ui), enabled=sliced),
+    ]  # fmt: skip
+
+
+def _find(ui: Ui) -> list[Command]:
+    """Open the table, choose what its rows are, and save it."""
+    table = ui.controller.table
+    listed = Condition(lambda: table.listing is not None, "there is no table yet: open the panel Find")
+
+    def find() -> None:
+        ui.show_panel("Find")
+        ui.state(FindState).focus = True
+
+    def show(level: Level) -> None:
+        table.level = level
+        ui.show_panel("Find")
+
+    return [
+        Command("Find objects and primitives", "View", find, "Ctrl+F",
+                tip="a table of all, with modes, pixels, rays saved and wrong answers"),
+        Command("Table of objects", "View/Table", lambda: show(Level.OBJECTS),
+                checked=lambda: table.level is Level.OBJECTS),
+        Command("Table of primitives", "View/Table", lambda: show(Level.PRIMITIVES),
+                checked=lambda: table.level is Level.PRIMITIVES),
+        Command("Save the table as CSV", "View/Table", table.save, enabled=listed, separated=True,
+                tip="the rows that the filter finds, in their order, into the folder of the pictures"),
+    ]  # fmt: skip
+
+
+def _interface(ui: Ui) -> list[Command]:
+    """The theme, and the size of the interface."""
+    p = ui.controller.preferences
+
+    def sized(steps: int) -> Callable[[], None]:
+        def change() -> None:
+            nearest = min(range(len(SCALES)), key=lambda i: abs(SCALES[i] - p.ui_scale))
+            p.ui_scale = SCALES[min(max(nearest + steps, 0), len(SCALES) - 1)] if steps else 1.0
+            ui.controller.notices.say(f"interface at {100.0 * p.ui_scale:.0f} %")
+
+        return change
+
+    largest = Condition(lambda: p.ui_scale < SCALES[-1], "it is as large as it can be")
+    smallest = Condition(lambda: p.ui_scale > SCALES[0], "it is as small as it can be")
+
+    def other_theme() -> None:
+        p.theme = "dark" if p.theme == "light" else "light"
+
+    return [
+        Command("Light theme", "View", other_theme, checked=lambda: p.theme == "light", separated=True),
+        Command("Larger interface", "View", sized(1), "Ctrl+Equal", enabled=largest,
+                other_keys=("Ctrl+Shift+Equal", "Ctrl+KeypadAdd")),
+        Command("Smaller interface", "View", sized(-1), "Ctrl+Minus", enabled=smallest,
+                other_keys=("Ctrl+KeypadSubtract",)),
+        Command("Interface at 100 %", "View", sized(0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
+    ]  # fmt: skip
+
+
+def culling(ui: Ui) -> list[Command]:
+    """The menu Culling: the methods, and what they have learnt."""
+    c, p = ui.controller, ui.controller.preferences
+
+    def toggle_tracing() -> None:
+        p.keep_tracing = not p.keep_tracing
+        c.scheduler.trace_again()
+
+    s = lambda: c.session.settings  # noqa: E731
+    method = lambda: Method.parse(s().method)  # noqa: E731
+
+    def base(kind: Kind) -> Command:
+        change = lambda: c.settings.change(method=with_base(s().method, kind.name))  # noqa: E731
+        name, chosen = f"Method {kind.name}", lambda: method().kind is kind
+        return Command(name, "Culling", change, checked=chosen, tip=kind.summary)
+
+    def addition(kind: Kind) -> Command:
+        change = lambda: c.settings.change(method=toggled(s().method, kind.name))  # noqa: E731
+        name, chosen = f"Method +{kind.name}", lambda: method().has(kind.name)
+        enabled = lambda: method().kind is not kind  # noqa: E731
+        return Command(name, "Culling", change, enabled=enabled, checked=chosen, tip=kind.summary)
+
+    return [
+        *[base(kind) for kind in bases()],
+        *[addition(kind) for kind in additions()],
+        Command("Shadow culling", "Culling", c.settings.toggle_culling, "C", checked=lambda: method().culls,
+                separated=True),
+        Command("Symmetric occlusion test", "Culling", lambda: c.settings.change(symmetric=not s().symmetric), "Y",
+                checked=lambda: s().symmetric),
+        Command("Verify", "Culling", lambda: c.settings.change(verify=not s().verify), "V", checked=lambda: s().verify),
+        Command("Reset modes", "Culling", c.reset_modes, "Backspace", separated=True),
+        Command("Trace again", "Culling", c.scheduler.trace_again, "T"),
+        Command("Keep tracing when idle", "Culling", toggle_tracing, "K", checked=lambda: p.keep_tracing),
+    ]  # fmt: skip
