@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from tracer.experiments import experiment, lamp_experiment, zoom
 from tracer.version import program_version
@@ -23,7 +23,7 @@ from viewer.util.files import check_outputs, write_each, write_new, write_text
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from viewer.output.film import Film
+    from viewer.output.filmstrip import Filmstrip
 
 Results = TypeVar("Results", experiment.Results, lamp_experiment.LampResults, zoom.Results)
 Writers = Mapping[str, Callable[[Results, Path], None]]
@@ -37,15 +37,15 @@ _drawing = threading.Lock()  # matplotlib's settings are global while a figure i
 
 def _writers(csv_text: Callable[[Results], str], figure: Callable[[Results], Figure]) -> Writers[Results]:
     return {
-        "json": lambda results, path: write_text(path, json_text(results)),
+        "json": lambda results, path: write_text(path, json_text(results.to_dict())),
         "csv": lambda results, path: write_text(path, csv_text(results)),
         "plot": lambda results, path: _plot(partial(figure, results), path),
     }
 
 
-def json_text(results: experiment.Results | lamp_experiment.LampResults | zoom.Results) -> str:
+def json_text(figures: dict[str, Any]) -> str:
     """Every figure, and which version of the program found them."""
-    return json.dumps(results.to_dict() | {"version": program_version()})
+    return json.dumps(figures | {"version": program_version()})
 
 
 def _plot(draw: Callable[[], Figure], path: Path) -> None:
@@ -72,7 +72,7 @@ def experiment_writers(verified: bool) -> Writers[experiment.Results]:
 
 
 LAMP_WRITERS: Writers[lamp_experiment.LampResults] = {
-    "json": lambda results, path: write_text(path, json_text(results)),
+    "json": lambda results, path: write_text(path, json_text(results.to_dict())),
     "csv": lambda results, path: write_text(path, reports.lamp_csv(results)),
 }
 
@@ -95,17 +95,7 @@ def write_files(writers: Writers[Results], results: Results, wanted: Mapping[str
     return write_each(partial(writers[kind], results, path) for kind, path in wanted.items())
 
 
-def write_experiment(results: experiment.Results, verified: bool, path: Path) -> None:
-    """Into a file of one of ENDINGS; raises OSError, and ValueError where there is nothing to plot."""
-    experiment_writers(verified)[ENDINGS[path.suffix]](results, path)
-
-
-def write_zoom_test(results: zoom.Results, path: Path) -> None:
-    """Into a file of one of ENDINGS; raises OSError, and ValueError where there is nothing to plot."""
-    ZOOM_WRITERS[ENDINGS[path.suffix]](results, path)
-
-
-def write_film(film: Film, results: zoom.Results, path: Path) -> None:
+def write_film(film: Filmstrip, results: zoom.Results, path: Path) -> None:
     """The filmstrip of a zoom test, as a picture; raises OSError, and ValueError where there is nothing to draw."""
 
     def draw() -> Figure:

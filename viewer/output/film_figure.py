@@ -6,14 +6,14 @@ from matplotlib.figure import Figure
 
 from tracer.experiments import zoom
 from viewer.output.figures import COLORS, SIZE, styled
-from viewer.output.film import Film, Shot
+from viewer.output.filmstrip import Filmstrip, Shot
 from viewer.output.reports import happenings, zoom_title
 
 COLUMNS = 8
 
 
 @styled
-def film_figure(film: Film, results: zoom.Results) -> Figure:
+def film_figure(film: Filmstrip, results: zoom.Results) -> Figure:
     """Up to COLUMNS pictures of each factor's way, the same steps for all: those where something happens first.
 
     Raises ValueError where no picture was kept."""

@@ -8,13 +8,13 @@ stop the run.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import date
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol, cast
+from typing import Protocol, cast
 
 from tracer.experiments import experiment, zoom
 from tracer.experiments.experiment import Experiment
@@ -24,6 +24,7 @@ from tracer.experiments.zoom import Step, ZoomTest
 from tracer.method import in_order
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Scene
+from tracer.settings import Settings
 from viewer.output import exports
 from viewer.output.filmstrip import Filmstrip
 from viewer.services.capture_service import CaptureService
@@ -35,8 +36,8 @@ from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.util.messages import failure
 from viewer.util.files import write_text
+from viewer.util.messages import failure
 from viewer.util.numbers import several
 
 LONGEST_SIDE = 4096
@@ -53,9 +54,11 @@ class FileRun(Run[Path]):
 class RecordedZoomTest(ZoomTest):
     """A zoom test that keeps the picture of each step."""
 
-    def __init__(self, *arguments: Any) -> None:
+    def __init__(
+        self, scene: Scene, settings: Settings, start: zoom.Aim, factors: Sequence[float], steps: int, ratio: float
+    ) -> None:
         self.filmstrip = Filmstrip()
-        super().__init__(*arguments, record=self.filmstrip.record)
+        super().__init__(scene, settings, start, factors, steps, ratio, self.filmstrip.record)
 
 
 def missing_in(run: Run, view: View) -> str:
@@ -165,7 +168,7 @@ class Runs:
         """Whether a run is under way that must not be disturbed; says so."""
         if self.current is None or self.current.stopping:
             return False
-        self._notices.say(f"the {self.current.name} is still under way; stop it first (Escape)")
+        self._notices.say(f"the {self.current.name} is still under way; stop it first")
         return True
 
     def start(self, make: Callable[[Scene], Run]) -> bool:

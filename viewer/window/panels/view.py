@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
+from viewer.services.runs import missing_in
 from viewer.state.views import View
 from viewer.window.panels import legend, lights, slicing, tone
 from viewer.window.ui import Ui
@@ -84,7 +85,7 @@ def _explanation(ui: Ui) -> None:
     """What the view shows, and what it costs."""
     c = ui.controller
     view, run, text = c.session.view, c.runs.current, c.session.view.explanation
-    lacks = run.lacks(view) if run is not None else ""
+    lacks = missing_in(run, view) if run is not None else ""
     if lacks:
         paragraph(f"This run {lacks}.", WARNING)
     elif view.needs_verify:
