@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results
+.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -100,6 +100,10 @@ window:  ## time how soon the window shows a picture, and its own frames while t
 table:  ## time the window with a table of 500,000 primitives, and how soon a click is seen (ARGS="--clicks 200")
 	@tools/environment.sh dev
 	@$(RUN) tools/with_screen.py $(RUN) -m tests.bench.table_times $(ARGS)
+
+views:  ## how long each view takes to draw, beside what tracing a frame takes (ARGS="--sizes 1920x1080 SCENE")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.drawing $(ARGS)
 
 motion:  ## how good pictures in motion are, and how soon they are whole (ARGS="--json motion.json SCENE")
 	@tools/environment.sh dev

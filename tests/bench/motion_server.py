@@ -23,11 +23,11 @@ from numpy.typing import NDArray
 from PIL import Image
 from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
+from tests.viewer.drawn import picture
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.shading.blocks import TURNS
 from tracer.statistics import FrameStatistics
-from viewer.output.pictures import picture
 from viewer.services.frame_budget import AT_ONCE, FINER_BELOW, LARGEST_DIVISOR, FrameBudget, Plan, divided
 from viewer.state import navigation
 from viewer.window.app import App

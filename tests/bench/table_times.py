@@ -217,8 +217,7 @@ class User:
             d.context.mouse_down(0)
 
             def seen(primitive: int = primitive) -> bool:
-                drawn = self.app.ui.graphics.display._drawn
-                return drawn is not None and drawn[1].selected == primitive and primitive in self.watch.rows
+                return self.app.ui.graphics.display.selected == primitive and primitive in self.watch.rows
 
             self.watch.doing = "clicking"
             self.watch.wait_for("a click is seen", seen)

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from tests.viewer.drawn import picture
 from tracer.frame import Frame, Settings
 from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import World
@@ -30,9 +31,8 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
 from viewer.output.light_cube import picture_of
-from viewer.output.pictures import picture
+from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.readings import LIGHT_CUBES
-from viewer.state.slices import MIDDLE, Slice
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 
@@ -111,7 +111,7 @@ class OfMethod:
 
     def picture(self, frame: Frame) -> NDArray[np.uint8]:
         """(height, width, 3)."""
-        return picture(frame, self.view, cut=self.cut)
+        return picture(frame, self.view, slice=self.cut)
 
 
 EXACT = "figure3-exact"

@@ -18,6 +18,7 @@ from tests.tracing.nasty_worlds import nasty_walk, with_lamps
 from tests.tracing.same import assert_same
 from tests.tracing.shades import floor
 from tests.tracing.worlds import quad, scene
+from tests.viewer.drawn import picture
 from tracer.experiments.experiment import figures_of
 from tracer.geometry.world import ACCELERATORS
 from tracer.methods.lightcuts import errors_of
@@ -26,7 +27,6 @@ from tracer.scene.lights import Light
 from tracer.scene.load import load_scene
 from tracer.scene.model import Camera
 from tracer.shading.lightcuts.block import DARK
-from viewer.output.pictures import picture
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 

@@ -16,8 +16,8 @@ import pytest
 from PIL import Image
 
 import viewer
+from tests.viewer.drawn import picture
 from tests.viewer.fakes import make_frame
-from viewer.output.pictures import picture
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -20,7 +20,7 @@ from viewer.util.messages import ERROR, say
 if TYPE_CHECKING:
     from tracer.experiments.warmup_frames import WarmupFrame
     from tracer.scene.model import Camera
-    from viewer.state.slices import Slice
+    from viewer.state.draw_options import Slice
     from viewer.state.views import View
 
 T = TypeVar("T")
@@ -291,7 +291,7 @@ def view(text: str) -> ChosenView:
 
 def slice_(text: str) -> Slice:
     """Read an axis and a place along it, like x:0.5."""
-    from viewer.state.slices import AXES, MIDDLE, Slice
+    from viewer.state.draw_options import AXES, MIDDLE, Slice
 
     wrong = "is not a slice; give an axis and 0 to 1 along it, like y:0.3"
     axis, at = _matched(rf"([{''.join(AXES)}])(?::(0|1|[01]?\.\d{{1,30}}))?", text, wrong)

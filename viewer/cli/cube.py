@@ -15,8 +15,8 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import print_table, titled, working
 from viewer.output.light_cube import EMPTY, FEW, MANY, ONE, described, picture_of, seen
-from viewer.output.pictures import lights_in_words
 from viewer.util.messages import printable
+from viewer.views.legend import lights_in_words
 
 EPILOG = """\
 examples:

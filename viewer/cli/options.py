@@ -24,9 +24,9 @@ from tracer.scene.things import things
 from tracer.settings import MAX_NODES, Settings
 from viewer.cli.arguments import UPS, Parser, before, count, number, several, size, whole
 from viewer.cli.console import Work
-from viewer.output.pictures import lights_in_words
 from viewer.services import stills
 from viewer.util import resources
+from viewer.views.legend import lights_in_words
 
 CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
 MOST_PIXELS = 1 << 26  # 8192 × 8192; a frame's buffers then take some 4 GB

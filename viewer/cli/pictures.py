@@ -18,10 +18,11 @@ from viewer.output import capture, recipe
 from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
 from viewer.services.scene_files import find_scene, is_capture
+from viewer.state.draw_options import MIDDLE
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
-from viewer.state.slices import MIDDLE
+from viewer.state.palette import BENEATH
 from viewer.state.tone import MOST_EXPOSURE, NEUTRAL, WHITES, Curve, Tone
-from viewer.state.views import BENEATH, View
+from viewer.state.views import View
 
 LOWER_LEFT = 0.0, 1.0
 OR_PICTURE = ", or a saved picture, for its scene, settings and view"

@@ -26,7 +26,7 @@ from viewer.cli import options, pictures
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import Work, print_table, titled, working
 from viewer.output import exr, figure1_svg, png, recipe, tev
-from viewer.output.buffers import buffers
+from viewer.output.exr import buffers
 from viewer.output.recipe import Recipe
 from viewer.services import stills
 from viewer.services.refinement import has_lamps

@@ -106,7 +106,7 @@ def run(given: Namespace) -> int:
         results = work.perform(test, world)
         if not test.whole:
             work.note(f"cancelled after {test.traced} of {test.frames} frames; the tables are of these")
-        failures = exports.write_files(exports.ZOOM_WRITERS, results, wanted)
+        failures = exports.write_files(results, wanted)
     for approach in results.approaches:
         print_table(_steps_table(approach))
     print_table(_summary_table(results))

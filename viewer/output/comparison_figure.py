@@ -6,7 +6,7 @@ import base64
 import re
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.scene.model import Scene
 from viewer.output.capture import CHUNK
-from viewer.output.pictures import picture
 from viewer.output.recipe import Recipe
-from viewer.state.readings import work_top
+from viewer.state.palette import color_map
 from viewer.state.session import Session
-from viewer.state.views import View, color_map
+from viewer.state.views import View
 from viewer.util.numbers import changed
+from viewer.views import colorize
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,19 +78,13 @@ class Shown:
         view = self.recipe.view
         if self.recipe.style.span is not None or not view.needs_work:
             return self.recipe.style.span
-        return 0.0, max(work_top(frame, view) for frame in self.frames.values())
+        return 0.0, max(view.declared.span(frame)[1] for frame in self.frames.values())
 
     @property
     def pictures(self) -> dict[str, NDArray[np.uint8]]:
         """(h, w, 3) of each method, in one range of colours for all."""
-        view, style = self.recipe.view, self.recipe.style
-        return {
-            method: picture(
-                frame, view, self.recipe.light, style.shading, style.marked, self.recipe.wipe, style.shares,
-                style.beneath, style.outlines, 1, style.tone, style.clipping, self.span, style.cut,
-            )
-            for method, frame in self.frames.items()
-        }  # fmt: skip
+        draw = replace(self.recipe.draw, magnified=1).with_span(self.span)
+        return {method: colorize(frame, draw) for method, frame in self.frames.items()}
 
     def difference(self, method: str) -> NDArray[np.float32]:
         """(h, w) how far a method's colours are from those of "none": the largest of the three channels."""
@@ -133,6 +127,8 @@ def _figure(shown: Shown) -> Figure:
     from matplotlib.figure import Figure
     from matplotlib.gridspec import GridSpec
 
+    from viewer.output import figures
+
     width, height = shown.recipe.size
     crops = list(shown.crops) or [Crop(0, 0, width, height)]
     tall = [_COLUMN * min(max(crop.height / crop.width, 0.3), 1.5) for crop in crops]
@@ -158,7 +154,7 @@ def _figure(shown: Shown) -> Figure:
         crop_number = -1
         for number, (kind, _) in enumerate(rows):
             panel = page.add_subplot(grid[number, column])
-            _bare(panel)
+            figures.bare(panel)
             if number == 0:
                 panel.set_title(method, fontsize=15.0, fontweight="bold")
             if kind == "picture":
@@ -203,14 +199,6 @@ def _row_name(kind: str, crop: int | None) -> str:
         return "picture"
     name = "picture" if crop is None and kind == "crop" else f"crop {'ABCDEF'[crop or 0]}"
     return name if kind == "crop" else "difference\nto none"
-
-
-def _bare(panel: Axes) -> None:
-    panel.set_xticks([])
-    panel.set_yticks([])
-    panel.grid(False)
-    for side in panel.spines.values():
-        side.set_visible(False)
 
 
 def _frame(panel: Axes, crop: int | None) -> None:

@@ -16,8 +16,7 @@ from tracer.method import Method
 from tracer.statistics import FrameStatistics
 from viewer.state import terms, verified
 from viewer.state.methods import BY_MODES
-from viewer.state.savings import bar_of
-from viewer.state.views import (
+from viewer.state.palette import (
     FATE_COLORS,
     FATE_MEANING,
     FATE_NAMES,
@@ -28,8 +27,9 @@ from viewer.state.views import (
     SHADOW_MEANING,
     WRONG,
     Color,
-    View,
 )
+from viewer.state.savings import bar_of
+from viewer.state.views import View
 from viewer.util.numbers import count, percent, whole_percent
 
 TITLE = "Figure 1"

@@ -14,7 +14,7 @@ from itertools import combinations, pairwise
 
 from viewer.output.figure1 import Figure, Flow, Part, Stage
 from viewer.output.figure1_shapes import Area, Arrow, Box, Drawing, Point, Tone, Words
-from viewer.output.legend_layout import wrapped
+from viewer.views.legend import wrapped
 
 Measure = Callable[[str], float]
 

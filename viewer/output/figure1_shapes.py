@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
-from viewer.state.views import Color, View
+from viewer.state.palette import Color
+from viewer.state.views import View
 
 Point = tuple[float, float]
 

@@ -12,8 +12,8 @@ from viewer.output.figure1 import Figure, figure_of
 from viewer.output.figure1_layout import lay_out
 from viewer.output.figure1_shapes import Arrow, Box, Drawing, Tone, Words
 from viewer.output.legend_picture import font
+from viewer.state.palette import Color
 from viewer.state.session import Session
-from viewer.state.views import Color
 from viewer.util.files import write_whole
 
 WIDTH, HEIGHT = 1280.0, 720.0

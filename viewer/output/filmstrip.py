@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from tracer.frame import Frame
-from viewer.output.pictures import ringed
+from viewer.views.difference import ringed
 
 MOST_BYTES = 64_000_000
 MOST_SHOTS = 600

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting
-from viewer.output.legend_parts import Legend
-from viewer.state.views import UNTRUSTED_STRIPE, Color, color_map, signed_map
+from viewer.state.palette import Color, color_map, signed_map
+from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, Swatch, fitting
+from viewer.views.shadow import STRIPE
 
 SMALLEST, LINES = 11, 42
 """The least size of letters in pixels, and how many lines of them a picture holds at least from edge to edge."""
@@ -59,7 +59,7 @@ def _fill(image: Image.Image, draw: ImageDraw.ImageDraw, swatch: Swatch, left: i
     if swatch.color is not None:
         draw.rectangle((x, y, x + width - 1, y + height - 1), in_bytes(swatch.color))
         if swatch.stripes is not None:
-            rows, columns = np.nonzero(np.add.outer(np.arange(height), np.arange(width)) // UNTRUSTED_STRIPE % 2)
+            rows, columns = np.nonzero(np.add.outer(np.arange(height), np.arange(width)) // STRIPE % 2)
             draw.point(np.stack([x + columns, y + rows], axis=1).reshape(-1).tolist(), in_bytes(swatch.stripes))
         return
     colors = np.round((signed_map if swatch.signed else color_map)(width) * 255.0).astype(np.uint8)

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from tracer.culling.lightbuffer.cubes import Cube
 from tracer.culling.lightbuffer.tell import full_depths, list_lengths
-from viewer.output.legend_parts import Entry, Legend, Scale
+from tracer.culling.modes import ShadowMode
 from viewer.output.legend_picture import with_legend
-from viewer.state.views import BACKGROUND, GREY, SHADOW_COLORS, Color, ShadowMode, color_map
+from viewer.state.palette import BACKGROUND, GREY, SHADOW_COLORS, Color, color_map
 from viewer.util.numbers import count, percent
+from viewer.views.legend import Entry, Legend, Scale
 
 _CROSS = {(1, 0): "+x", (1, 1): "+z", (1, 2): "-x", (1, 3): "-z", (0, 1): "+y", (2, 1): "-y"}  # row and column
 _GAP = 0.06  # of a face's side, between the crosses

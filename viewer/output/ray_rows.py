@@ -19,8 +19,8 @@ from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
 from tracer.told_rays import AWAY, VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.why_in_words import primitive_in_words
+from viewer.state.palette import Color
 from viewer.state.verdicts import SAID, Filter, color_of, color_of_all
-from viewer.state.views import Color
 from viewer.util.numbers import count, several
 
 MOST_LIGHTS = 12

@@ -25,15 +25,15 @@ from tracer.scene.load import AFF_EXTENSIONS
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
-from viewer.output.pictures import SHADING
 from viewer.state import edits as scene_edits
-from viewer.state.marks import wipe_column
+from viewer.state.draw_options import MIDDLE, SHADING, DrawOptions, Slice
+from viewer.state.palette import BENEATH
 from viewer.state.session import Snapshot, settings_to_json
-from viewer.state.slices import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
-from viewer.state.views import BENEATH, View
+from viewer.state.views import View
 from viewer.util import resources
 from viewer.util.json_numbers import number, whole
+from viewer.views.wipe import wipe_column
 
 MOST_BEFORE = 100_000  # frames
 CHANCE = "what is certified depends on time and threads"
@@ -92,6 +92,17 @@ class Recipe:
     @property
     def size(self) -> tuple[int, int]:
         return self.settings.width, self.settings.height
+
+    @property
+    def draw(self) -> DrawOptions:
+        """How the frame is drawn."""
+        style = self.style
+        options = DrawOptions(
+            view=self.view, light=self.light, wipe=self.wipe, slice=style.cut, beneath=style.beneath,
+            shading=style.shading, tone=style.tone, outlines=style.outlines, shares=style.shares,
+            mark_wrong=style.marked, clipping=style.clipping, magnified=style.magnified,
+        )  # fmt: skip
+        return options.with_span(style.span)
 
     @property
     def needs_history(self) -> bool:

@@ -8,10 +8,10 @@ from PIL import Image, ImageDraw
 
 from tracer.frame import Frame
 from viewer.output.caption import LINES, SMALLEST
-from viewer.output.legend_layout import BACKDROP, TEXT, wrapped
 from viewer.output.legend_picture import font, in_bytes
+from viewer.state.palette import FATE_COLORS, Color, label_color
 from viewer.state.savings import PALE, Bar, bar_of, counters_in_words
-from viewer.state.views import FATE_COLORS, Color, label_color
+from viewer.views.legend import BACKDROP, TEXT, wrapped
 
 
 def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None) -> NDArray[np.uint8]:

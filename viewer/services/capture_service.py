@@ -16,7 +16,6 @@ from tracer.frame import Frame
 from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Progress
 from viewer.output import capture
-from viewer.output.legend_parts import Legend
 from viewer.output.legend_picture import with_legend
 from viewer.output.recipe import Recipe
 from viewer.output.savings_picture import with_savings
@@ -25,6 +24,7 @@ from viewer.services.jobs import Job
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session, settings_to_json
+from viewer.views.legend import Legend
 
 
 class CaptureService:

@@ -5,51 +5,22 @@ What is drawn of the two, and what is told, is decided here; `viewer.state.compa
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import replace
 
 from tracer.frame import Frame
 from tracer.method import Method, bases
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.settings_controller import SettingsController
-from viewer.state.comparison import (
-    ENDLESS,
-    Apart,
-    Side,
-    Source,
-    Way,
-    apart,
-    named,
-    signed_difference,
-    sizes_in_words,
-)
+from viewer.state.comparison import CompareMode, Side, Source, named, sizes_in_words
+from viewer.state.draw_options import DrawOptions, Slice
 from viewer.state.methods import BY_MODES, NO_CULLING
 from viewer.state.notices import Notices
-from viewer.state.readings import can_draw, span_of
+from viewer.state.readings import can_draw
 from viewer.state.session import Session
-from viewer.state.slices import Slice
-from viewer.state.values import Values, values_of
 from viewer.state.views import View
-from viewer.state.worst import Spot, worst_spots
 from viewer.util.numbers import whole_percent
-
-
-@dataclass(frozen=True)
-class Difference:
-    """B - A at each pixel of B, (h, w) float32, of such values, how far they are apart in all, and where most."""
-
-    pixels: NDArray[np.float32]
-    values: Values
-    apart: Apart
-    worst: tuple[Spot, ...]
-
-    def differing(self) -> Values:
-        """The differences as values, of the pixels that have one."""
-        size = np.abs(self.pixels)
-        known = (size > 0.0) & (size < ENDLESS)
-        return Values(self.pixels[..., None], ("B - A",), known, self.values.classes)
+from viewer.views import values_of
+from viewer.views.compare import Difference, difference_of
 
 
 class Comparing:
@@ -114,7 +85,7 @@ class Comparing:
             return "Nothing is kept as A yet: choose Keep as A." if state.on else ""
         if a is None or b is None:
             return f"Tracing by {state.second} as well ..." if state.on else ""
-        if state.on and state.way is Way.DIFFERENCE and self.difference(a, b) is None:
+        if state.on and state.mode is CompareMode.DIFFERENCE and self.difference(a, b) is None:
             return f"A has nothing for the view {b.view.label}: choose another view, or keep A in this one."
         if state.on and state.source is Source.METHOD and a.view is not b.view:
             return f"The frame by {a.method} has nothing for the view {b.view.label}: its picture is shown."
@@ -129,15 +100,14 @@ class Comparing:
             return known[3]
         found = None
         if can_draw(a.frame, b.view, b.light) and can_draw(b.frame, b.view, b.light):
-            values = values_of(b.frame, b.view, b.light, cut=cut)
-            pixels = signed_difference(values_of(a.frame, b.view, b.light, cut=cut), values)
-            found = Difference(pixels, values, apart(pixels), worst_spots(pixels, values.classes))
+            draw = DrawOptions(view=b.view, light=b.light, slice=cut)
+            found = difference_of(values_of(a.frame, draw), values_of(b.frame, draw))
         self._difference = a, b, cut, found
         return found
 
     def limit(self, found: Difference) -> float:
         """The range of a difference, as chosen or as it fits."""
-        return self.state.limit or found.apart.limit
+        return self.state.limit or found.stats.limit
 
     def span(self, view: View) -> tuple[float, float] | None:
         """The range that maps of numbers have: chosen, or one for both pictures, so that a colour means the same in A
@@ -150,7 +120,7 @@ class Comparing:
             self._span = (*frames, {})
         spans = self._span[2]
         if view not in spans:
-            both = [span_of(frame, view) for frame in frames]
+            both = [view.declared.span(frame) for frame in frames]
             spans[view] = min(low for low, _ in both), max(high for _, high in both)
         return spans[view]
 
@@ -173,26 +143,26 @@ class Comparing:
         if self.state.source is Source.KEPT:
             self.end()
 
-    def start(self, way: Way) -> None:
+    def start(self, mode: CompareMode) -> None:
         """Compare in this way."""
-        self.state.on, self.state.way = True, way
+        self.state.on, self.state.mode = True, mode
         if self._session.view is View.WIPE:  # one line is enough
             self._settings.set_view(View.COLOR)
         if self.state.source is Source.KEPT and self.state.kept is None:
             self._notices.say(self.remark)
 
-    def toggle(self, way: Way) -> None:
+    def toggle(self, mode: CompareMode) -> None:
         """Compare in this way, or no longer if that is done already."""
-        if self.state.on and self.state.way is way:
+        if self.state.on and self.state.mode is mode:
             self.end()
         else:
-            self.start(way)
+            self.start(mode)
 
-    def next_way(self) -> None:
+    def next_mode(self) -> None:
         """Compare in the next of all ways; after the last in the first."""
-        ways = list(Way)
-        now = ways.index(self.state.way)
-        self.start(ways[(now + 1) % len(ways)] if self.state.on else self.state.way)
+        modes = list(CompareMode)
+        now = modes.index(self.state.mode)
+        self.start(modes[(now + 1) % len(modes)] if self.state.on else self.state.mode)
 
     def end(self) -> None:
         self.state.on = self.state.held = False
@@ -215,7 +185,7 @@ class Comparing:
         if not self.state.second or self.state.second == self._session.settings.method:
             self.state.second = self._other_method()
         self.state.source = Source.METHOD
-        self.start(Way.SIDE)
+        self.start(CompareMode.SIDE)
 
     def _other_method(self) -> str:
         """What is worth comparing with the method that is chosen: none at all, or else the paper's."""
@@ -241,4 +211,4 @@ class Comparing:
 
     def blinks(self) -> bool:
         """Whether the window must be drawn again and again."""
-        return self.state.on and self.state.way is Way.BLINK and self.sides is not None
+        return self.state.on and self.state.mode is CompareMode.BLINK and self.sides is not None

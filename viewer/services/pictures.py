@@ -17,7 +17,6 @@ from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import clipboard, exr, png, tev
-from viewer.output.legend_parts import Legend
 from viewer.output.legend_picture import with_legend
 from viewer.output.recipe import Recipe, cannot_come_back
 from viewer.services import stills
@@ -29,6 +28,7 @@ from viewer.state.plans import MOST_MULTIPLE, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.util.files import write_new
+from viewer.views.legend import Legend
 
 MOST_PIXELS = 1 << 26
 JPEG = ".jpg"

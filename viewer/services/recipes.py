@@ -12,10 +12,10 @@ from viewer.output import recipe
 from viewer.output.recipe import BUILT, Recipe, Style
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.scene_loader import SceneLoader
+from viewer.state.draw_options import MIDDLE
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
-from viewer.state.slices import MIDDLE
 from viewer.state.tone import NEUTRAL
 from viewer.state.views import View
 

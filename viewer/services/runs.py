@@ -36,7 +36,6 @@ from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.util.files import write_text
 from viewer.util.messages import failure
 from viewer.util.numbers import several
 
@@ -301,13 +300,10 @@ class Runs:
         if isinstance(run, Hunt):
             if scene is None or not run.is_of(scene):
                 return {}
-            return {".json": lambda path: write_text(path, exports.json_text(results.to_dict(scene)))}
-        writers: exports.Writers = {}
-        if isinstance(run, Experiment):
-            writers = exports.experiment_writers(run.verifies)
-        elif isinstance(run, ZoomTest):
-            writers = exports.ZOOM_WRITERS
-        return {end: partial(writers[kind], results) for end, kind in exports.ENDINGS.items() if kind in writers}
+            return {".json": lambda path: exports.write_json(path, results.to_dict(scene))}
+        if isinstance(run, Experiment | ZoomTest):
+            return dict.fromkeys(exports.ENDINGS, partial(exports.write, results))
+        return {}
 
     def export(self, run: Run, ending: str) -> None:
         """Write the results, as one of `exports_of`, into the folder of the pictures."""

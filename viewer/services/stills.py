@@ -22,15 +22,14 @@ from tracer.scene.model import Scene
 from tracer.version import program_version
 from viewer.output import capture, kept_modes
 from viewer.output.caption import with_caption
-from viewer.output.legend import legend_of
-from viewer.output.legend_parts import Chosen
 from viewer.output.legend_picture import with_legend
-from viewer.output.pictures import lights_in_words, picture
 from viewer.output.recipe import Recipe
 from viewer.output.savings_picture import with_savings
 from viewer.state.readings import can_record_lights, records_lights
 from viewer.state.session import Session
 from viewer.state.views import View
+from viewer.views import colorize, legend_of
+from viewer.views.legend import lights_in_words
 
 
 def check_light(recipe: Recipe, scene: Scene) -> None:
@@ -102,21 +101,15 @@ def lights_fit(recipe: Recipe, scene: Scene, everything: bool = False) -> bool:
 def draw(frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8], str]:
     """(h, w, 3) uint8, the frame as the recipe draws it, with all that goes with it; and why there is no legend where
     one was wanted, in words."""
-    style, view, light = recipe.style, recipe.view, recipe.light
-    pixels = picture(
-        frame, view, light, style.shading, style.marked, recipe.wipe, style.shares, style.beneath,
-        style.outlines, style.magnified, style.tone, style.clipping, style.span, style.cut,
-    )  # fmt: skip
+    pixels = colorize(frame, recipe.draw)
     return dressed(pixels, frame, scene, recipe)
 
 
 def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8], str]:
     """What lies over a drawn view (h, w, 3), above and below it; as `draw`."""
-    style, view, light, missing = recipe.style, recipe.view, recipe.light, ""
+    style, missing = recipe.style, ""
     if style.legend is not None:
-        looks = style.marked, style.shares, style.span, style.tone, style.clipping
-        chosen = Chosen(light, scene.lights, *looks, style.cut)
-        legend = legend_of(frame, view, chosen)
+        legend = legend_of(frame, recipe.draw, scene.lights)
         described = with_legend(pixels, legend, style.legend) if legend is not None else None
         if described is None:
             missing = f"no legend: {'the picture is too small for it' if legend else 'the traced picture needs none'}"

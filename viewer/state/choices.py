@@ -13,9 +13,9 @@ from typing import Any
 from tracer.setting import check_all
 from viewer.state import codec
 from viewer.state.comparison import Chosen
+from viewer.state.draw_options import Slice
 from viewer.state.preferences import Preferences, checked
 from viewer.state.session import Session, settings_from_json, settings_to_json
-from viewer.state.slices import Slice
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
 from viewer.state.zooming import Zoom

@@ -1,61 +1,36 @@
-"""Two pictures beside each other: A, which was kept or is traced by a second method, and B, the live one.
-
-`signed_difference` is what is drawn where one is taken from the other; sizes need not be the same.
-"""
+"""Two pictures beside each other: A, which was kept or is traced by a second method, and B, the live one."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from enum import StrEnum
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tracer.frame import Frame
-from viewer.state.values import Values
 from viewer.state.views import View
 
 RATES = (0.25, 3.0)
 """Times a second, least and most, that pictures blink: no more, as faster flashes are dangerous to some people."""
 ENDLESS = 1e29
 """From here on a difference is one without end: one of the two pictures hits nothing there."""
-HIDDEN_SHARE = 0.5
-"""Per cent of the pixels that differ, at most, which lie beyond the range of a difference that is fitted."""
 
 
-class Way(StrEnum):
+class CompareMode(StrEnum):
     """How two pictures are compared."""
 
-    FLIP = "flip"
-    WIPE = "wipe"
-    SIDE = "side"
-    DIFFERENCE = "difference"
-    BLINK = "blink"
+    label: str
+    meaning: str
 
-    @property
-    def label(self) -> str:
-        return _LABELS[self]
+    def __new__(cls, value: str, label: str, meaning: str) -> CompareMode:
+        made = str.__new__(cls, value)
+        made._value_, made.label, made.meaning = value, label, meaning
+        return made
 
-    @property
-    def meaning(self) -> str:
-        return _MEANINGS[self]
-
-
-_LABELS = {
-    Way.FLIP: "Flip",
-    Way.WIPE: "Wipe",
-    Way.SIDE: "Side by side",
-    Way.DIFFERENCE: "Signed difference",
-    Way.BLINK: "Blink",
-}
-
-_MEANINGS = {
-    Way.FLIP: "B is shown, and A while Z is held",
-    Way.WIPE: "A left of a line, B right of it; drag the line",
-    Way.SIDE: "A on the left, B on the right",
-    Way.DIFFERENCE: "B - A: orange where B has more, blue where it has less",
-    Way.BLINK: "A and B in turn",
-}
+    FLIP = "flip", "Flip", "B is shown, and A while Z is held"
+    WIPE = "wipe", "Wipe", "A left of a line, B right of it; drag the line"
+    SIDE = "side", "Side by side", "A on the left, B on the right"
+    DIFFERENCE = "difference", "Signed difference", "B - A: orange where B has more, blue where it has less"
+    BLINK = "blink", "Blink", "A and B in turn"
 
 
 class Source(StrEnum):
@@ -122,70 +97,12 @@ def sizes_in_words(a: Frame, b: Frame) -> str:
     return f"A has {a.width} x {a.height} pixels, B {b.width} x {b.height}: A is shown in B's size{stretched}."
 
 
-def fitted(a: NDArray, size: tuple[int, int]) -> NDArray:
-    """(h, w, ...) of A at the pixels of a picture of this width and height: of each the nearest."""
-    width, height = size
-    rows = ((2 * np.arange(height) + 1) * a.shape[0]) // (2 * height)
-    columns = ((2 * np.arange(width) + 1) * a.shape[1]) // (2 * width)
-    return a if a.shape[:2] == (height, width) else a[rows[:, None], columns[None]]
-
-
-def signed_difference(a: Values, b: Values) -> NDArray[np.float32]:
-    """(h, w) float32, at the pixels of B: B - A, in the channel where they differ most; 1 where classes are others."""
-    height, width = b.numbers.shape[:2]
-    apart = b.numbers - fitted(a.numbers, (width, height))
-    if b.classes:
-        return (apart[..., 0] != 0.0).astype(np.float32)
-    if apart.shape[-1] == 1:
-        return apart[..., 0]
-    strongest = np.abs(apart).argmax(axis=-1)
-    return np.take_along_axis(apart, strongest[..., None], -1)[..., 0]
-
-
-def difference_words(difference: NDArray[np.float32], values: Values, x: int, y: int) -> tuple[str, ...]:
-    """What a signed difference says of one pixel."""
-    apart = float(difference[y, x])
-    if values.classes:
-        return ("other",) if apart else ("same",)
-    if abs(apart) > ENDLESS:
-        return ("miss", "in A" if apart < 0.0 else "in B")
-    return (f"{apart:+.3g}" if apart else "0",)
-
-
-@dataclass(frozen=True)
-class Apart:
-    """How far two pictures are apart: pixels that differ, of so many, the least, the largest and the mean difference;
-    `limit` is the range, to both sides of 0, that shows nearly all."""
-
-    pixels: int
-    of: int
-    least: float
-    largest: float
-    mean: float
-    limit: float
-
-
-def apart(difference: NDArray[np.float32]) -> Apart:
-    """Sum a difference up.  Where one of the two pictures has no depth, it counts as differing, and no further."""
-    finite = np.where(np.abs(difference) < ENDLESS, difference, np.float32(0.0))
-    changed = finite[finite != 0.0]
-    limit = float(np.percentile(np.abs(changed), 100.0 - HIDDEN_SHARE)) if len(changed) else 1.0
-    return Apart(
-        pixels=int(np.count_nonzero(difference)),
-        of=difference.size,
-        least=float(finite.min(initial=0.0)),
-        largest=float(finite.max(initial=0.0)),
-        mean=float(finite.mean(dtype=np.float64)) if finite.size else 0.0,
-        limit=limit,
-    )
-
-
 @dataclass(frozen=True)
 class Chosen:
     """What undo brings back of a comparison: whether and how there is one.  What was kept is no part of it."""
 
     on: bool
-    way: Way
+    mode: CompareMode
     source: Source
     second: str
     same_view: bool
@@ -195,8 +112,8 @@ class Chosen:
     def changes(self, after: Chosen) -> dict[str, str]:
         """What has changed since, in a few words for each."""
         changed: dict[str, str] = {}
-        if (self.on, self.way) != (after.on, after.way):
-            changed["way"] = f"comparison: {after.way.label.lower()}" if after.on else "comparison off"
+        if (self.on, self.mode) != (after.on, after.mode):
+            changed["mode"] = f"comparison: {after.mode.label.lower()}" if after.on else "comparison off"
         if self.source is not after.source:
             changed["source"] = "A by another method" if after.source is Source.METHOD else "A as it was kept"
         if self.second and self.second != after.second:
@@ -216,7 +133,7 @@ class Comparison:
     the range of the difference, None for one that fits; `held` says that A is to be seen while a key is held."""
 
     on: bool = False
-    way: Way = Way.WIPE
+    mode: CompareMode = CompareMode.WIPE
     source: Source = Source.KEPT
     kept: Side | None = None
     same_view: bool = False
@@ -239,4 +156,23 @@ class Comparison:
         """Whether, of the ways that show one picture at a time, it is A's turn at this time in seconds."""
         if self.held:
             return True
-        return self.way is Way.BLINK and int(2.0 * self.rate * seconds) % 2 == 1
+        return self.mode is CompareMode.BLINK and int(2.0 * self.rate * seconds) % 2 == 1
+
+
+def elided(name: str, other: str, fits: Callable[[str], bool]) -> str:
+    """The name, or as much of it as fits; what it has in common with the beginning of the other goes first, from its
+    end, then what both end with, then the end of what is left."""
+    if fits(name):
+        return name
+    alike = next((n for n, pair in enumerate(zip(name, other, strict=False)) if pair[0] != pair[1]), None)
+    same = name[: min(len(name), len(other)) if alike is None else alike]
+    same = same[: max(same.rfind(mark) + 1 for mark in " ,+") if len(same) < len(name) else 0]  # whole words
+    rest = name[len(same) :]
+    for kept in range(len(same) - 1, -1, -1) if same else ():
+        if fits(same[:kept].rstrip() + "..." + rest):
+            return same[:kept].rstrip() + "..." + rest
+    front = "..." if same else ""
+    for end in range(len(rest) - 1, 0, -1):
+        if fits(front + rest[:end].rstrip() + "..."):
+            return front + rest[:end].rstrip() + "..."
+    return front + rest[:1]

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from tracer.setting import setting
+from viewer.state.palette import BENEATH
 from viewer.state.tone import NEUTRAL, Tone
-from viewer.state.views import BENEATH, View
+from viewer.state.views import View
 from viewer.state.zooming import FIT, Zoom
 
 AXES = ("x", "y", "z")

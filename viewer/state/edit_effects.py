@@ -13,8 +13,8 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from tracer.statistics import FrameStatistics
+from viewer.state.palette import WRONG, Certificate
 from viewer.state.readings import has_modes_of_cells
-from viewer.state.views import WRONG, Certificate
 
 DIMMED, LEAST = 0.3, 0.25
 """Brightness of the picture beneath changed pixels, and how strong the colour is of those that have changed least."""

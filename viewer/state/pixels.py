@@ -8,15 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tracer.frame import Frame
 from viewer.state.picking import pixel_at
-from viewer.state.values import Values
 
 MOST_WATCHED = 16
-BINS = 64
 
 Point = tuple[float, float]
 
@@ -74,42 +69,3 @@ class Pixels:
             return f"{MOST_WATCHED} pixels are watched, and no more can be: let go of one first"
         self.watched.append(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
         return f"watching pixel {x}, {y}"
-
-
-@dataclass(frozen=True)
-class Histogram:
-    """How often values lie where: `counts` (k, BINS) for each of k numbers, between `low` and `high`; and of each
-    number the least, the largest and the mean.  `pixels` have a value, of so many."""
-
-    counts: NDArray[np.int64]
-    low: float
-    high: float
-    least: tuple[float, ...]
-    largest: tuple[float, ...]
-    mean: tuple[float, ...]
-    pixels: int
-    of: int
-
-
-def histogram(values: Values, rows: slice, columns: slice) -> Histogram | None:
-    """Of a region's values; None where no pixel of it has one."""
-    known = values.known[rows, columns]
-    numbers = values.numbers[rows, columns][known].astype(np.float64)
-    numbers = numbers[np.isfinite(numbers).all(axis=-1)]
-    if len(numbers) == 0:
-        return None
-    low, high = float(numbers.min()), float(numbers.max())
-    if low == high or (numbers == np.rint(numbers)).all():
-        low, high = low - 0.5, high + 0.5
-    bins = min(BINS, round(high - low)) if (numbers == np.rint(numbers)).all() and high - low <= BINS else BINS
-    counts = np.stack([np.histogram(column, bins, (low, high))[0] for column in numbers.T])
-    return Histogram(
-        counts,
-        low,
-        high,
-        tuple(numbers.min(axis=0)),
-        tuple(numbers.max(axis=0)),
-        tuple(numbers.mean(axis=0)),
-        len(numbers),
-        known.size,
-    )

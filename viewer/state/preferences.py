@@ -22,7 +22,8 @@ from tracer.method import DEFAULT_METHOD, Method
 from tracer.scene.lights import MAX_SAMPLES
 from viewer.state.merging import merged
 from viewer.state.methods import ADAPTIVE, NO_CULLING, is_method, with_base
-from viewer.state.views import BENEATH, View
+from viewer.state.palette import BENEATH
+from viewer.state.views import View
 from viewer.util.files import file_lock, write_text
 from viewer.util.json_numbers import finite
 

@@ -19,7 +19,7 @@ from tracer.statistics import ShadowCounts
 from viewer.state import terms, verified
 from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import BY_MODES, NO_CULLING
-from viewer.state.views import FATE_MEANING, FATE_NAMES, FATE_WOULD
+from viewer.state.palette import FATE_MEANING, FATE_NAMES, FATE_WOULD
 from viewer.util.numbers import count, percent, whole_percent
 
 LONGEST = ": 29.6 % of shadow rays saved, 15 % fewer steps, not verified, 1.08 × as fast as none (± 0.02)"

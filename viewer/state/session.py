@@ -22,7 +22,7 @@ from tracer.settings import RECORDS
 from viewer.state import codec
 from viewer.state import edits as scene_edits
 from viewer.state.comparison import Comparison
-from viewer.state.slices import MIDDLE, Slice
+from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
 from viewer.state.zooming import FIT, Zoom
@@ -82,12 +82,22 @@ class Snapshot:
                 span=_span(data.get("span")),
                 meshes=_meshes_from_json(data.get("meshes", {})),
                 edits=scene_edits.from_json(data.get("edits", {})),
-                cut=Slice.from_json(data.get("slice", list(MIDDLE))),
+                cut=_slice(data.get("slice", list(MIDDLE))),
             )
         except KeyError as error:
             raise ValueError(f"its saved state lacks {error}") from None
         except TypeError:
             raise ValueError("its saved state is damaged") from None
+
+
+def _slice(data: Any) -> Slice:
+    """A slice through space, if it is one."""
+    try:
+        found = Slice(int(data[0]), number(data[1]))
+        found.check()
+    except (TypeError, ValueError, IndexError):
+        raise ValueError("its slice is damaged") from None
+    return found
 
 
 def _span(data: Any) -> tuple[float, float] | None:

@@ -1,7 +1,6 @@
 """How colours as they were traced become colours of the screen: exposure, white point and tone curve.
 
-It changes what is shown and saved, never what was traced.  `toned` is the twin of the function of that name in
-`shaders/common.glsl`.
+It changes what is shown and saved, never what was traced.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ HABLE = (0.15, 0.50, 0.10, 0.20, 0.02, 0.30)
 
 
 class Curve(StrEnum):
-    """The curves, in the order of their numbers in the shader."""
+    """The curves that colours can take to the screen."""
 
     NONE = "none"
     REINHARD = "reinhard"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
 from tracer.told_rays import AWAY, TRACED, ShadowRays
-from viewer.state.views import Color
+from viewer.state.palette import Color
 
 SAID: dict[Verdict, str] = {
     Verdict.AWAY: "surface faces away",

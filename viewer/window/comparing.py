@@ -6,29 +6,25 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
 from imgui_bundle import imgui
-from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from viewer.output.compared import composed as composed_of
-from viewer.output.compared import difference_legend
-from viewer.output.legend_parts import Legend
-from viewer.services.comparing import Difference
-from viewer.state.comparison import Side, Way, difference_words
-from viewer.state.marks import wipe_column
+from viewer.state.comparison import CompareMode, Side
+from viewer.state.draw_options import DrawOptions
 from viewer.state.picking import pixel_at
-from viewer.state.values import words_at
 from viewer.state.worst import Spot, with_rings
-from viewer.window.compared import SignedDifference
-from viewer.window.display import Display, Look
+from viewer.views import words_at
+from viewer.views.base import Highlight, Pixels, Words
+from viewer.views.compare import Difference, composed, difference_legend
+from viewer.views.legend import Legend
+from viewer.views.wipe import wipe_column
+from viewer.window.display import InWindow, PictureTexture
 from viewer.window.ui import Ui
 
 PICTURE, OF_A = "picture", "A"
 """What the magnifier calls what fills the picture, and A beside it."""
 
-Words = tuple[Frame, Callable[[int, int], tuple[str, ...]]]
-Seen = tuple[Side, Side, Way]
+Seen = tuple[Side, Side, CompareMode]
 
 
 def read_key(ui: Ui) -> None:
@@ -38,138 +34,136 @@ def read_key(ui: Ui) -> None:
     state.held = state.on and free and ui.keyboard.is_down(ui.keymap.of("Show A"))
 
 
-def draw(ui: Ui, look: Look) -> None:
-    """Bring to the GPU what is to be seen besides the live picture, which is drawn with this look."""
-    c, compared = ui.controller, ui.graphics.compared
+def draw_options(ui: Ui) -> DrawOptions:
+    """Return how the newest frame is drawn: in the view that it can be drawn in, with a range for both pictures."""
+    c, p, s = ui.controller, ui.controller.preferences, ui.controller.session
+    view = c.scheduler.drawn_view
+    options = DrawOptions(
+        view=view, light=s.light, shading=p.shading, outlines=p.outlines, mark_wrong=p.mark_wrong,
+        magnified=c.scheduler.magnified, wipe=s.wipe, shares=p.work_shares, beneath=p.beneath, tone=s.tone,
+        clipping=s.clipping, slice=s.cut,
+    )  # fmt: skip
+    return options.with_span(c.comparing.span(view))
+
+
+def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
+    """Bring to the GPU what is to be seen besides the live picture, which is drawn with these options."""
+    comparing, compared = ui.controller.comparing, ui.graphics.compared
     if compared is None:
         return
-    sides = c.comparing.sides
+    sides = comparing.sides
     if sides is None:
         compared.release()
         return
     a, b = sides
-    found = c.comparing.difference(a, b) if c.comparing.state.way is Way.DIFFERENCE else None
+    found = comparing.difference(a, b) if comparing.state.mode is CompareMode.DIFFERENCE else None
     if found is not None:
-        compared.difference.draw(found.pixels, c.comparing.limit(found))
-    if found is None or c.comparing.state.held:
-        compared.draw_a(a.frame, _look_of_a(ui, look, a, b))
-
-
-def _look_of_a(ui: Ui, look: Look, a: Side, b: Side) -> Look:
-    session = ui.controller.session
-    span = look.span if a.view is b.view else session.spans.get(a.view)
-    return replace(look, view=a.view, light=a.light, selected=-1, line=False, span=span)
+        compared.draw_difference(found, comparing.limit(found))
+    if found is None or comparing.state.held:
+        spans = options.spans if a.view is b.view else tuple(ui.controller.session.spans.items())
+        of_a = replace(options, view=a.view, light=a.light, spans=spans)
+        compared.a.draw(a.frame, of_a, InWindow(smooth=smooth, highlight=Highlight(line=False)))
 
 
 def shown(ui: Ui) -> Seen | None:
-    """A, B and the way in which both are seen now; None where only B is."""
-    c, compared = ui.controller, ui.graphics.compared
-    sides = c.comparing.sides
+    """Return A, B and the mode in which both are seen now; None where only B is."""
+    comparing, compared = ui.controller.comparing, ui.graphics.compared
+    sides = comparing.sides
     if sides is None or compared is None:
         return None
-    way = c.comparing.state.way
-    if way is Way.DIFFERENCE and compared.difference.texture_id is not None:
-        if c.comparing.difference(*sides) is not None:
-            return *sides, way
-    if compared.a_texture is None:
+    mode = comparing.state.mode
+    if mode is CompareMode.DIFFERENCE and compared.difference.texture_id is not None and comparing.difference(*sides):
+        return *sides, mode
+    if compared.a.texture_id is None:
         return None
-    return *sides, Way.FLIP if way is Way.DIFFERENCE else way
+    return *sides, CompareMode.FLIP if mode is CompareMode.DIFFERENCE else mode
 
 
 def difference(ui: Ui) -> Difference | None:
-    """The signed difference, while that is seen."""
+    """Return the signed difference, while that is seen."""
     seen = shown(ui)
-    if seen is None or seen[2] is not Way.DIFFERENCE or shows_a(ui):
+    if seen is None or seen[2] is not CompareMode.DIFFERENCE or shows_a(ui):
         return None
     return ui.controller.comparing.difference(seen[0], seen[1])
 
 
 def marked(ui: Ui) -> tuple[Spot, ...]:
-    """The pixels of a signed difference that have rings."""
+    """Return the pixels of a signed difference that have rings."""
     found = difference(ui) if ui.controller.preferences.mark_wrong else None
     return () if found is None else found.worst
 
 
 def shows_a(ui: Ui) -> bool:
-    """Whether it is A alone that is seen, of the ways that show one at a time or while the key is held."""
+    """Return whether A alone is seen, in the modes that show one at a time or while the key is held."""
     state, compared = ui.controller.comparing.state, ui.graphics.compared
-    there = compared is not None and compared.a_texture is not None and shown(ui) is not None
-    return there and state.shows_a(time.monotonic()) and state.way is not Way.SIDE
+    there = compared is not None and compared.a.texture_id is not None and shown(ui) is not None
+    return there and state.shows_a(time.monotonic()) and state.mode is not CompareMode.SIDE
 
 
-def filling(ui: Ui) -> Display | SignedDifference | None:
-    """What fills the picture: B, or A, or their difference; A's part of a wipe is drawn over it."""
+def filling(ui: Ui) -> PictureTexture | None:
+    """Return what fills the picture: B, or A, or their difference; A's part of a wipe is drawn over it."""
     seen, compared = shown(ui), ui.graphics.compared
     if seen is None or compared is None:
         return ui.graphics.display
     if shows_a(ui):
         return compared.a
-    return compared.difference if seen[2] is Way.DIFFERENCE else ui.graphics.display
+    return compared.difference if seen[2] is CompareMode.DIFFERENCE else ui.graphics.display
 
 
-def magnify(ui: Ui, look: Look) -> None:
+def magnify(ui: Ui, options: DrawOptions, smooth: bool) -> None:
     """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
-    magnifier, size = ui.graphics.magnifier, ui.picture.size
+    magnifier, size, zoom = ui.graphics.magnifier, ui.picture.size, ui.controller.session.zoom
     if magnifier is None or min(size) < 1:
         return
-    seen = shown(ui)
-    beside = seen is not None and seen[2] in (Way.SIDE, Way.WIPE) and not shows_a(ui)
-    for name, drawn in (
-        (PICTURE, filling(ui)),
-        (OF_A, ui.graphics.compared.a if beside and ui.graphics.compared is not None else None),
-    ):
+    seen, compared = shown(ui), ui.graphics.compared
+    a = compared.a if compared is not None else None
+    beside = seen is not None and seen[2] in (CompareMode.SIDE, CompareMode.WIPE) and not shows_a(ui)
+    for name, drawn in ((PICTURE, filling(ui)), (OF_A, a if beside else None)):
         picture = drawn.picture if drawn is not None else None
-        of_a = seen is not None and ui.graphics.compared is not None and drawn is ui.graphics.compared.a
-        view = seen[0].view if seen is not None and of_a else look.view
-        smooth = look.smooth and view.is_smooth and not isinstance(drawn, SignedDifference)
-        enlarged = picture is not None and (size[0] > picture.size[0] or not ui.controller.session.zoom.fits)
-        if drawn is not None and enlarged and not smooth:
-            magnifier.draw(name, picture, drawn.version, ui.controller.session.zoom, size)
+        view = seen[0].view if seen is not None and drawn is a else options.view
+        blended = smooth and view.shows_clipped and (compared is None or drawn is not compared.difference)
+        enlarged = picture is not None and (size[0] > picture.size[0] or not zoom.fits)
+        if drawn is not None and enlarged and not blended:
+            magnifier.draw(name, picture, drawn.version, zoom, size)
         else:
             magnifier.drop(name)
 
 
 def legend(ui: Ui) -> Legend | None:
-    """Of the signed difference, while that is seen."""
-    found, comparing = difference(ui), ui.controller.comparing
-    if found is None:
-        return None
-    return difference_legend(found.apart, found.values, comparing.limit(found), len(marked(ui)))
+    """Return the legend of the signed difference, while that is seen."""
+    found = difference(ui)
+    return None if found is None else difference_legend(found, ui.controller.comparing.limit(found), len(marked(ui)))
 
 
-def words(ui: Ui, side: Side | None = None) -> Words | None:
-    """The frame whose pixels are seen, and what each of them says: those of a side, or of all that fills the picture;
-    None without a frame."""
+def words(ui: Ui, options: DrawOptions, side: Side | None = None) -> tuple[Frame, Callable[[int, int], Words]] | None:
+    """Return the frame whose pixels are seen, and what says what each of them shows: those of a side, or of all that
+    fills the picture; None without a frame."""
     c, seen = ui.controller, shown(ui)
-    shares = c.preferences.work_shares
-    if side is None and seen is not None and shows_a(ui):
-        side = seen[0]
     if side is None:
-        side = c.comparing.b
+        side = seen[0] if seen is not None and shows_a(ui) else c.comparing.b
     if side is None:
         return None
     own = side
 
-    def of(one: Side, x: int, y: int) -> tuple[str, ...]:
+    def of(one: Side, x: int, y: int) -> Words:
         at = pixel_at(one.frame, (x + 0.5) / own.frame.width, (y + 0.5) / own.frame.height)
-        return words_at(one.frame, one.view, one.light, *at, shares, c.session.cut)
+        return words_at(one.frame, replace(options, view=one.view, light=one.light), *at)
 
-    if seen is not None and own.frame is seen[1].frame and seen[2] is Way.DIFFERENCE:
+    if seen is not None and own.frame is seen[1].frame and seen[2] is CompareMode.DIFFERENCE:
         found = c.comparing.difference(seen[0], seen[1])
         if found is not None:
-            return own.frame, lambda x, y: difference_words(found.pixels, found.values, x, y)
-    if seen is not None and own.frame is seen[1].frame and seen[2] is Way.WIPE:
-        column = wipe_column(own.frame.width, c.session.wipe)
+            return own.frame, found.words
+    if seen is not None and own.frame is seen[1].frame and seen[2] is CompareMode.WIPE:
+        column = wipe_column(own.frame.width, options.wipe)
         return own.frame, lambda x, y: of(seen[0] if x < column else seen[1], x, y)
     return own.frame, lambda x, y: of(own, x, y)
 
 
-def composed(ui: Ui, b: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The picture to save: B as it was drawn, (h, w, 3) uint8, and what is compared with it."""
+def composed_picture(ui: Ui, b: Pixels) -> Pixels:
+    """Return the picture to save: B as it was drawn, and what is compared with it."""
     seen, compared = shown(ui), ui.graphics.compared
     if seen is None or compared is None:
         return b
-    alone = shows_a(ui)
-    if seen[2] is Way.DIFFERENCE and not alone:
+    if seen[2] is CompareMode.DIFFERENCE and not shows_a(ui):
         return with_rings(compared.difference.read(), marked(ui))
-    return composed_of(compared.read_a(), b, seen[2], ui.controller.session.wipe, alone)
+    return composed(compared.a.read(), b, seen[2], ui.controller.session.wipe, shows_a(ui))

@@ -1,281 +1,165 @@
-"""From a frame's buffers to a picture on the screen, on the GPU.
+"""From a frame to a picture on the screen: the view's pixels as a texture, which ImGui shows as an image.
 
-A view is one pass of a small shader over the frame's buffers, which are textures by then (`frame_textures`), into an
-RGBA target, which ImGui then shows as an image; the plain picture goes there as it is.  So changing the view, the light
-or the selection never traces.
-
-All of it runs before the widgets of a frame, and leaves the window's framebuffer bound as it was.
+`viewer.views` makes the pixels, on one core; changing the view, the light or the selection never traces.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.fate import Fate
-from tracer.culling.modes import OcclusionMode, has_shadow_mode
-from tracer.shading.screen import to_screen
-from viewer.state.marks import wipe_column
-from viewer.state.slices import MIDDLE, Slice
-from viewer.state.tone import NEUTRAL, Curve, Tone
-from viewer.state.views import (
-    ARRIVAL_COLORS,
-    BACKGROUND,
-    BENEATH,
-    BLACK,
-    CELL_LINE,
-    CERTIFICATE_COLORS,
-    FAINT_LINE,
-    GREY,
-    MOVING_SHADOW_COLORS,
-    OCCLUSION_COLORS,
-    PALE,
-    RING_DIMMING,
-    SHADOW_COLORS,
-    TOO_BRIGHT,
-    TREE_WAITS,
-    UNTRUSTED_STRIPE,
-    VOXEL_COLORS,
-    WIPE_LINE,
-    WRONG,
-    View,
-    fate_palette,
-)
-from viewer.window.frame_textures import NAMES, TABLE_WIDTH, DisplayError, FrameTextures
-from viewer.window.passes import Passes
+from tracer.frame import Frame
+from viewer.state.draw_options import DrawOptions
+from viewer.views import AS_SAVED, Highlight, Pixels, colorize, picture_options
+from viewer.views.compare import Difference, signed_picture
 
-if TYPE_CHECKING:
-    from tracer.renderer import Frame
+
+class DisplayError(RuntimeError):
+    """The GPU does not do what is asked of it; the message is one line."""
 
 
 @dataclass(frozen=True)
-class Look:
-    """How to draw a frame: everything that changes the picture without tracing.
+class InWindow:
+    """What the window adds to how a frame is drawn: a bright border around the `selected` primitive, or around all of
+    the selected part of the scene; whether pixels are blended where they are enlarged; and what is highlighted."""
 
-    `marked` draws rings around wrong pixels, sized for pixels that are shown `magnified` times,
-    `wipe` is the place of the line, 0 to 1 from the left, and `line` whether it is drawn.
-    `selected` is the primitive that has a bright border, or, with `selected_part`, that whole part of the scene has it;
-    `shares` makes shares of the counts in maps of work; `beneath` is the brightness of the picture
-    beneath the difference.  Pictures have a `tone`, and stripes where they are cut off if that is to be seen
-    (`clipping`); maps of numbers go over `span`, or, where that is None, over what the frame has; `cut` is the slice
-    that is shown of space, and `fate` the one of shadow rays that stands out among the others."""
-
-    view: View = View.COLOR
-    light: int = 0
-    shading: float = 0.35
-    outlines: bool = False
     selected: int = -1
     selected_part: int = -1
     smooth: bool = True
-    marked: bool = True
-    magnified: int = 1
-    wipe: float = 0.5
-    line: bool = True
-    shares: bool = False
-    beneath: float = BENEATH
-    tone: Tone = NEUTRAL
-    clipping: bool = False
-    span: tuple[float, float] | None = None
-    fate: Fate | None = None
-    cut: Slice = MIDDLE
-
-    @property
-    def plain(self) -> bool:
-        """Whether the picture is shown as it was traced: then it is brought to the target without a pass over it, which
-        takes long where a processor draws."""
-        as_traced = self.tone.neutral and not self.clipping
-        return self.view is View.COLOR and as_traced and not self.outlines and self.selected < 0
+    highlight: Highlight = AS_SAVED
 
 
-class Display:
-    """Textures of the newest frame and the target its view is drawn into; needs a current GL context."""
+PLAIN = InWindow()
 
-    def __init__(self, passes: Passes | None = None) -> None:
-        """`passes` are those of another display, whose context this one shares."""
-        self.passes, self._shares_passes = passes or Passes(), passes is not None
-        self.context = self.passes.context
-        self._buffers = FrameTextures(self.context)
-        self._drawn: tuple[int, Look] | None = None
-        self._failed: tuple[int, Look] | None = None
-        self._target: Any = None
+
+class PictureTexture:
+    """A picture on the GPU; needs a current GL context.  `version` is another one whenever the picture is."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self.context = context
+        self.version = 0
+        self.picture: Any = None
+        self._pixels: Pixels | None = None
 
     @property
     def texture_id(self) -> int | None:
-        """Name of the GL texture to show, or None while there is none; row 0 is the top."""
-        return self._target.color_attachments[0].glo if self._target is not None else None
+        """Name of the GL texture, None while there is none; row 0 is the top."""
+        return self.picture.glo if self.picture is not None else None
 
-    @property
-    def picture(self) -> Any:
-        """That texture, or None."""
-        return self._target.color_attachments[0] if self._target is not None else None
-
-    @property
-    def version(self) -> object:
-        """Another one whenever another picture has been drawn."""
-        return self._drawn
-
-    @property
-    def size(self) -> tuple[int, int]:
-        return self._buffers.size
-
-    def show(self, frame: Frame | None) -> None:
-        """Show this frame from now on, or none: a view brings to the GPU what it needs of it."""
-        self._buffers.show(frame)
-
-    def know_parts(self, part_of: NDArray[np.int32] | None) -> None:
-        """Take (primitives,) the part of the scene that each primitive belongs to; needed while one is selected."""
-        self._buffers.part_of = part_of
-
-    def draw(self, look: Look) -> None:
-        """Draw the view of the frame into the target, unless it is there already.
-
-        What failed is not tried again, and the target keeps what it showed, until another frame or look is asked for.
-        Raises ValueError for a view of verified frames, or of what was recorded, where the frame is none, and
-        DisplayError for what is too much for the GPU."""
-        wanted = self._in_look(look)
-        if self._buffers.frame is None or wanted in (self._drawn, self._failed):
-            return
-        self._failed = wanted
-        window = self.context.detect_framebuffer()
-        try:
-            self._draw(look)
-        finally:
-            window.use()
-        self._drawn, self._failed = wanted, None
-
-    def _draw(self, look: Look) -> None:
+    def write(self, pixels: Pixels, smooth: bool) -> None:
+        """Bring a picture (h, w, 3) to the GPU.  Raises DisplayError for what is too much for it."""
+        size, most = (pixels.shape[1], pixels.shape[0]), self.context.info["GL_MAX_TEXTURE_SIZE"]
+        if max(size) > most:
+            raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, which takes {most} pixels a side")
         _ = self.context.error  # of somebody before us
-        target = self._fitting_target()
-        try:
-            self._draw_into(target, look)
-        except Exception:
-            if target is not self._target:
-                _release_framebuffer(target)
-            raise
-        if target is not self._target:
-            self._release_target()
-            self._target = target
-
-    def _draw_into(self, target: Any, look: Look) -> None:
-        frame = self._buffers.frame
-        assert frame is not None
-        if look.plain:
-            target.color_attachments[0].write(_on_screen(frame.color), alignment=1)
-        else:
-            self._render_into(target, look)
-        filtering = moderngl.LINEAR if look.smooth and look.view.is_smooth else moderngl.NEAREST
-        target.color_attachments[0].filter = (filtering, filtering)
+        if self.picture is None or self.picture.size != size:
+            made = self.context.texture(size, 3, alignment=1)
+            self.release()
+            self.picture = made
+            made.repeat_x = made.repeat_y = False
+        self.picture.write(np.ascontiguousarray(pixels), alignment=1)
+        filtering = moderngl.LINEAR if smooth else moderngl.NEAREST
+        self.picture.filter = (filtering, filtering)
         problem = self.context.error
         if problem != "GL_NO_ERROR":
             raise DisplayError(f"the GPU could not draw this: {problem}")
+        self._pixels = pixels
+        self.version += 1
 
-    def _render_into(self, target: Any, look: Look) -> None:
-        program, triangle = self.passes.made(look.view.value, units=NAMES)
-        self._set_uniforms(program, look)
-        self._buffers.use(program, look.light, look.magnified, look.cut)
-        self.passes.draw(triangle, target)
+    def read(self) -> Pixels:
+        """Return the picture (h, w, 3) uint8, row 0 at the top; there must be one."""
+        assert self._pixels is not None
+        return self._pixels
 
-    def drawn(self, look: Look) -> bool:
-        """Whether the target shows the frame in this look."""
-        return self._drawn == self._in_look(look)
+    def release(self) -> None:
+        """Free it."""
+        if self.picture is not None:
+            self.picture.release()
+        self.picture = self._pixels = None
 
-    def _in_look(self, look: Look) -> tuple[int, Look]:
-        """The frame and all that counts of a look: little of one that shows the picture as it was traced."""
-        return self._buffers.serial, Look(smooth=look.smooth) if look.plain else look
 
-    def read(self) -> NDArray[np.uint8]:
-        """The drawn view, (height, width, 3) uint8, row 0 at the top."""
-        width, height = self.size
-        data = self._target.read(components=3, alignment=1)
-        return np.frombuffer(data, np.uint8).reshape(height, width, 3)
+class Display(PictureTexture):
+    """The newest frame in its view."""
 
-    def read_window(self, width: int, height: int) -> NDArray[np.uint8]:
-        """All of the window as it was just drawn, (height, width, 3) uint8, row 0 at the top."""
+    def __init__(self, context: moderngl.Context | None = None) -> None:
+        super().__init__(context or moderngl.create_context())
+        self.frame: Frame | None = None
+        self.part_of: NDArray[np.int32] | None = None
+        """(primitives,) the part of the scene that each primitive belongs to, needed while one is selected."""
+        self.selected = -1
+        """The primitive that is drawn as selected."""
+        self._drawn: tuple[Frame, object] | None = None
+        self._failed: tuple[Frame, object] | None = None
+
+    @property
+    def size(self) -> tuple[int, int]:
+        return (self.frame.width, self.frame.height) if self.frame is not None else (0, 0)
+
+    def draw(self, frame: Frame | None, draw: DrawOptions, window: InWindow = PLAIN) -> None:
+        """Draw a frame, unless it is there already; without one, what was drawn stays.
+
+        What failed is not tried again, and the texture keeps what it showed, until something else is asked for.
+        Raises ValueError where the frame has nothing for the view, and DisplayError for what is too much for the
+        GPU."""
+        self.frame = frame
+        if frame is None:
+            return
+        wanted = frame, (picture_options(draw), window)
+        if wanted in (self._drawn, self._failed):  # frames are equal only where they are the same
+            return
+        self._failed = wanted
+        pixels = colorize(frame, draw, window.highlight)
+        if window.selected >= 0:
+            pixels[_selected_border(frame, window, self.part_of)] = 255
+        self.write(pixels, window.smooth and draw.view.shows_clipped)
+        self._drawn, self._failed, self.selected = wanted, None, window.selected
+
+    def shows(self, draw: DrawOptions, window: InWindow = PLAIN) -> bool:
+        """Return whether the frame is drawn like this."""
+        return self._drawn == (self.frame, (picture_options(draw), window))
+
+    def read_window(self, width: int, height: int) -> Pixels:
+        """Return all of the window as it was just drawn, (height, width, 3) uint8, row 0 at the top."""
         data = self.context.screen.read(viewport=(0, 0, width, height), components=3, alignment=1)
         return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 3)[::-1])
 
     def release(self) -> None:
-        """Free everything on the GPU, but what it shares with others."""
-        if not self._shares_passes:
-            self.passes.release()
-        self._buffers.release()
-        self._release_target()
+        super().release()
+        self.frame = self._drawn = None
+
+
+class Compared:
+    """What a comparison needs on the GPU beside the live picture; nothing of it stays when the comparison ends."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self.a = Display(context)
+        self.difference = PictureTexture(context)
+        self._drawn: tuple[Difference, float] | None = None
+
+    def draw_difference(self, found: Difference, limit: float) -> None:
+        """Draw a signed difference as far as `limit` to both sides, unless it is there."""
+        if self._drawn is None or self._drawn[0] is not found or self._drawn[1] != limit:
+            self.difference.write(signed_picture(found.pixels, limit), smooth=False)
+            self._drawn = found, limit
+
+    def release(self) -> None:
+        self.a.release()
+        self.difference.release()
         self._drawn = None
 
-    def _set_uniforms(self, program: Any, look: Look) -> None:
-        frame, view, ranges = self._buffers.frame, look.view, self._buffers.ranges
-        assert frame is not None
-        dynamic = OCCLUSION_COLORS[OcclusionMode.DYNAMIC]
-        words = frame.certificates if view is View.CERTIFICATE and frame.certificates is not None else frame.modes
-        palettes = {
-            View.OCCLUSION: list(OCCLUSION_COLORS.values()),
-            View.SHADOW: [*SHADOW_COLORS.values(), dynamic],
-            View.CERTIFICATE: [*CERTIFICATE_COLORS.values(), dynamic],
-            View.PENUMBRA: list(ARRIVAL_COLORS.values()),
-            View.VOXELS: list(VOXEL_COLORS.values()),
-            View.TREE: list(TREE_WAITS),
-            View.FATE: fate_palette(look.fate),
-            View.MOVING_SHADOW: list(MOVING_SHADOW_COLORS.values()),
-        }
-        values: dict[str, Any] = {
-            "table_width": TABLE_WIDTH,
-            "background": BACKGROUND,
-            "shading": look.shading,
-            "outlines": look.outlines,
-            "selected": look.selected,
-            "selected_part": look.selected_part if self._buffers.part_of is not None else -1,
-            "light": look.light if has_shadow_mode(words, look.light) else -1,
-            "range": look.span or ranges.span(view),
-            "curve": list(Curve).index(look.tone.curve),
-            "gain": look.tone.gain,
-            "white": look.tone.white,
-            "clipping": look.clipping,
-            "clip_colors": [TOO_BRIGHT, BLACK],
-            "shares": look.shares,
-            "beneath": look.beneath,
-            "pale": PALE,
-            "stripe": UNTRUSTED_STRIPE,
-            "cell_line": FAINT_LINE if view in (View.CELL_LIGHTS, View.TREE) else CELL_LINE,
-            "zoom_factor": frame.settings.zoom_factor,
-            "unknown": GREY,
-            "wrong_color": WRONG,
-            "ring_color": tuple(RING_DIMMING * channel for channel in WRONG),
-            "marked": look.marked,
-            "column": wipe_column(frame.width, look.wipe),
-            "line": look.line,
-            "line_color": WIPE_LINE,
-            "palette": palettes.get(view),
-        }
-        for name, value in values.items():
-            if name in program:
-                program[name] = value
 
-    def _fitting_target(self) -> Any:
-        """The target where it has the frame's size, else a new one."""
-        if self._target is not None and self._target.size == self.size:
-            return self._target
-        self._buffers.check_size(self.size)
-        texture = self.context.texture(self.size, 4)
-        texture.repeat_x = texture.repeat_y = False
-        return self.context.framebuffer([texture])
-
-    def _release_target(self) -> None:
-        if self._target is not None:
-            _release_framebuffer(self._target)
-            self._target = None
-
-
-def _on_screen(color: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Colours (height, width, 3) as a target holds them, (height, width, 4)."""
-    pixels = np.empty((*color.shape[:2], 4), np.uint8)
-    to_screen(np.ascontiguousarray(color, np.float32).reshape(-1, 3), pixels.reshape(-1, 4))
-    return pixels
-
-
-def _release_framebuffer(framebuffer: Any) -> None:
-    framebuffer.color_attachments[0].release()
-    framebuffer.release()
+def _selected_border(frame: Frame, window: InWindow, part_of: NDArray[np.int32] | None) -> NDArray[np.bool_]:
+    """Find the pixels (h, w) on either side of the border of what is selected."""
+    chosen = frame.primitive == window.selected
+    if window.selected_part >= 0 and part_of is not None:
+        chosen = (part_of[np.maximum(frame.primitive, 0)] == window.selected_part) & (frame.primitive >= 0)
+    padded = np.pad(chosen, 1, mode="edge")
+    above, here, below = padded[:-2], padded[1:-1], padded[2:]
+    some, every = above | here | below, above & here & below
+    some = some[:, :-2] | some[:, 1:-1] | some[:, 2:]
+    every = every[:, :-2] & every[:, 1:-1] & every[:, 2:]
+    return some & ~every

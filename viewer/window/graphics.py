@@ -13,9 +13,10 @@ from viewer.state.missing import missing
 from viewer.state.parts import parts_of
 from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.savings import comparison_in_words
+from viewer.state.views import View
+from viewer.views.base import Highlight
 from viewer.window import comparing
-from viewer.window.compared import Compared
-from viewer.window.display import Display, Look
+from viewer.window.display import Compared, Display, InWindow
 from viewer.window.magnifier import Magnifier
 from viewer.window.panels import legend, savings
 from viewer.window.preview import PreviewDisplay
@@ -30,8 +31,8 @@ def make(ui: Ui) -> None:
     """Make all that a new context needs."""
     ui.graphics.display = Display()
     ui.graphics.shots = Shots(ui.graphics.display.context)
-    ui.graphics.compared = Compared(ui.graphics.display.passes)
-    ui.graphics.magnifier = Magnifier(ui.graphics.display.passes)
+    ui.graphics.compared = Compared(ui.graphics.display.context)
+    ui.graphics.magnifier = Magnifier(ui.graphics.display.context)
     ui.graphics.renderer_name = ui.graphics.display.context.info["GL_RENDERER"]
 
 
@@ -50,15 +51,15 @@ def draw(ui: Ui) -> None:
     display, c = ui.graphics.display, ui.controller
     if display is None:
         return
-    display.show(c.frame)
     picked, part, now = c.selection.picked, c.selection.part, c.session.edited
     if part is not None and now is not None:
-        display.know_parts(ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives]))
-    look = look_of(ui, picked.primitive if picked is not None else -1)
-    look = replace(look if part is None else replace(look, selected_part=part), fate=ui.fate_shown)
-    display.draw(look)
-    comparing.draw(ui, look)
-    comparing.magnify(ui, look)
+        display.part_of = ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives])
+    options, window = comparing.draw_options(ui), in_window(ui)
+    if picked is not None:
+        window = replace(window, selected=picked.primitive, selected_part=-1 if part is None else part)
+    display.draw(c.frame, options, window)
+    comparing.draw(ui, options, window.smooth)
+    comparing.magnify(ui, options, window.smooth)
 
 
 def draw_preview(ui: Ui) -> None:
@@ -107,27 +108,12 @@ def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
         display.context.disable(moderngl.DEPTH_TEST)
 
 
-def look_of(ui: Ui, selected: int = -1) -> Look:
-    """How the view is to be drawn, with an outline around a primitive unless it is -1."""
-    c, p = ui.controller, ui.controller.preferences
-    return Look(
-        view=c.scheduler.drawn_view,
-        light=c.session.light,
-        shading=p.shading,
-        outlines=p.outlines,
-        selected=selected,
-        smooth=p.smooth_upscaling and c.session.zoom.fits,
-        marked=p.mark_wrong,
-        magnified=c.scheduler.magnified,
-        wipe=c.session.wipe,
-        line=not c.scheduler.becoming_finer,
-        shares=p.work_shares,
-        beneath=p.beneath,
-        tone=c.session.tone,
-        clipping=c.session.clipping,
-        span=c.comparing.span(c.scheduler.drawn_view),
-        cut=c.session.cut,
-    )
+def in_window(ui: Ui) -> InWindow:
+    """Return what the window adds to the picture, but for what is selected."""
+    c = ui.controller
+    smooth, view = c.preferences.smooth_upscaling and c.session.zoom.fits, c.scheduler.drawn_view
+    line = view is not View.WIPE or not c.scheduler.becoming_finer  # of few pixels it would be thick
+    return InWindow(smooth=smooth, highlight=Highlight(ui.fate_shown if view is View.FATE else None, line))
 
 
 def capture(ui: Ui) -> None:
@@ -146,14 +132,14 @@ def capture(ui: Ui) -> None:
     ready = shown and not c.scheduler.becoming_finer  # else the picture is saved when it has come
     if ui.graphics.display is not None and ready:
         ui.capture_wanted = ui.graphics.capture_view = None
-        look = look_of(ui, selected=-1)  # the mark is for the user, not for the picture
-        ui.graphics.display.draw(look)
-        pixels = ui.graphics.display.read() if ui.graphics.display.drawn(look) else None
+        options, window = comparing.draw_options(ui), in_window(ui)  # without what is selected
+        ui.graphics.display.draw(c.frame, options, window)
+        pixels = ui.graphics.display.read() if ui.graphics.display.shows(options, window) else None
         compared = pixels is not None and comparing.shown(ui) is not None
         if pixels is not None and compared:
-            pixels = comparing.composed(ui, pixels)
+            pixels = comparing.composed_picture(ui, pixels)
         described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
-        recipe = c.recipes.of(c.frame, look.view) if c.frame is not None and not compared else None
+        recipe = c.recipes.of(c.frame, options.view) if c.frame is not None and not compared else None
         if recipe is not None and c.frame is not None and recipe.tells_counters:
             said = comparison_in_words(c.frame, savings.standing(c))
             recipe = replace(recipe, style=replace(recipe.style, savings=said))

@@ -7,14 +7,16 @@ from typing import Any
 import moderngl
 
 from viewer.state.zooming import Zoom
-from viewer.window.passes import Passes
+from viewer.util.resources import shader_source
 
 
 class Magnifier:
     """Enlarged copies of pictures, by name; each stays until another is asked for under its name."""
 
-    def __init__(self, passes: Passes) -> None:
-        self._passes = passes
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._program: Any = None
+        self._triangle: Any = None
         self._targets: dict[str, Any] = {}
         self._shown: dict[str, tuple[Any, ...]] = {}
 
@@ -24,7 +26,7 @@ class Magnifier:
         wanted = source.glo, source.size, version, zoom, size
         if self._shown.get(name) == wanted:
             return
-        context = self._passes.context
+        context = self._context
         window = context.detect_framebuffer()
         try:
             target = self._targets.get(name)
@@ -33,14 +35,26 @@ class Magnifier:
                 texture = context.texture(size, 4)
                 texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
                 target = self._targets[name] = context.framebuffer([texture])
-            program, triangle = self._passes.made("magnified", "", ("source",))
+            self._compile()
             left, top, right, bottom = zoom.shown()
-            program["part"], program["size"] = (left, top, right - left, bottom - top), size
+            self._program["part"], self._program["size"] = (left, top, right - left, bottom - top), size
             source.use(0)
-            self._passes.draw(triangle, target)
+            target.use()
+            context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+            self._triangle.render(moderngl.TRIANGLES, vertices=3)
         finally:
             window.use()
         self._shown[name] = wanted
+
+    def _compile(self) -> None:
+        """Compile the shader when it is first needed."""
+        if self._program is None:
+            version = "#version 330 core\n"
+            self._program = self._context.program(
+                vertex_shader=version + shader_source("fullscreen.vert"),
+                fragment_shader=version + shader_source("magnified.frag"),
+            )
+            self._triangle = self._context.vertex_array(self._program, [])
 
     def texture_of(self, name: str, source: int, zoom: Zoom, size: tuple[int, int]) -> int | None:
         """Name of the GL texture with that part of that source in that size; None while there is none."""
@@ -59,3 +73,7 @@ class Magnifier:
     def release(self) -> None:
         for name in list(self._targets):
             self.drop(name)
+        if self._program is not None:
+            self._triangle.release()
+            self._program.release()
+            self._program = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from viewer.state.comparison import Way
+from viewer.state.comparison import CompareMode
 from viewer.state.pixels import Point
 from viewer.state.tone import NEUTRAL, brighter
 from viewer.state.zooming import FIT, MOST, STEP, zoomed
@@ -13,11 +13,11 @@ from viewer.window.ui import Ui
 
 _STOPS = 0.5  # of exposure by a key
 _NAMES = {
-    Way.FLIP: "Flip between A and B",
-    Way.WIPE: "Wipe between A and B",
-    Way.SIDE: "A and B side by side",
-    Way.DIFFERENCE: "Signed difference B - A",
-    Way.BLINK: "Blink A and B",
+    CompareMode.FLIP: "Flip between A and B",
+    CompareMode.WIPE: "Wipe between A and B",
+    CompareMode.SIDE: "A and B side by side",
+    CompareMode.DIFFERENCE: "Signed difference B - A",
+    CompareMode.BLINK: "Blink A and B",
 }
 
 
@@ -32,9 +32,9 @@ def comparing(ui: Ui) -> list[Command]:
         comparing.keep()
         offer(ui, "Compare")
 
-    def by(way: Way) -> Command:
-        return Command(_NAMES[way], "Compare", lambda: comparing.toggle(way), enabled=there, tip=way.meaning,
-                       checked=lambda: state.on and state.way is way)  # fmt: skip
+    def by(mode: CompareMode) -> Command:
+        return Command(_NAMES[mode], "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.meaning,
+                       checked=lambda: state.on and state.mode is mode)  # fmt: skip
 
     return [
         Command("Keep as A", "Compare", keep, "Ctrl+A", enabled=there),
@@ -42,8 +42,8 @@ def comparing(ui: Ui) -> list[Command]:
         Command("Two methods live", "Compare", comparing.toggle_methods, "Shift+C", enabled=there,
                 checked=lambda: bool(c.comparing.second_method),
                 tip="trace each frame by a second method as well, with modes and counters of its own"),
-        Command("Next way to compare", "Compare", comparing.next_way, "Shift+Z", enabled=there, separated=True),
-        *[by(way) for way in Way],
+        Command("Next way to compare", "Compare", comparing.next_mode, "Shift+Z", enabled=there, separated=True),
+        *[by(way) for way in CompareMode],
         Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not state.on, separated=True),
     ]  # fmt: skip
 

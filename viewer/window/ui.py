@@ -22,8 +22,7 @@ from viewer.state.preferences import default_screenshot_folder
 from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.views import View
 from viewer.window.command import Command
-from viewer.window.compared import Compared
-from viewer.window.display import Display
+from viewer.window.display import Compared, Display
 from viewer.window.full_screen import FullScreen
 from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard, is_key

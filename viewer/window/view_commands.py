@@ -6,12 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from tracer.method import Kind, Method, additions, bases
+from viewer.state.draw_options import AXES
 from viewer.state.methods import toggled, with_base
 from viewer.state.preferences import SCALES
 from viewer.state.scene_rows import Level
 from viewer.state.views import View
+from viewer.views import view_of
 from viewer.window.command import Command, Condition, switch
-from viewer.window.layers_of_slice import step, turn
 from viewer.window.ui import Ui
 
 
@@ -31,7 +32,7 @@ def view(ui: Ui) -> list[Command]:
     c, p = ui.controller, ui.controller.preferences
 
     def show(view: View) -> Command:
-        return Command(view.label, "View", lambda: c.settings.set_view(view), view.key, also=view.also,
+        return Command(view.label, "View", lambda: c.settings.set_view(view), view.key, also=view.declared.also,
                        checked=lambda: c.session.view is view)  # fmt: skip
 
     def light(step: int) -> Callable[[], None]:
@@ -73,12 +74,22 @@ def _space(ui: Ui) -> list[Command]:
     sliced = Condition(
         lambda: ui.controller.scheduler.drawn_view.has_slice, "no slice is shown: choose the view Voxels or Tree built"
     )
+    c, s = ui.controller, ui.controller.session
+
+    def step(layers: int) -> None:
+        layer = view_of(s.view).layer(c.frame, s.cut) if c.frame is not None else None
+        if layer is not None:
+            s.cut = layer.goes_to(s.cut, layer.number + layers)
+
+    def turn() -> None:
+        s.cut = s.cut._replace(axis=(s.cut.axis + 1) % len(AXES))
+
     return [
-        Command("Next layer of the slice", "View", lambda: step(ui, 1), "Shift+RightBracket", enabled=sliced,
+        Command("Next layer of the slice", "View", lambda: step(1), "Shift+RightBracket", enabled=sliced,
                 separated=True, repeats=True),
-        Command("Previous layer of the slice", "View", lambda: step(ui, -1), "Shift+LeftBracket",
+        Command("Previous layer of the slice", "View", lambda: step(-1), "Shift+LeftBracket",
                 enabled=sliced, repeats=True),
-        Command("Slice across another axis", "View", lambda: turn(ui), enabled=sliced),
+        Command("Slice across another axis", "View", turn, enabled=sliced),
     ]  # fmt: skip
 
 

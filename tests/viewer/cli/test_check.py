@@ -13,7 +13,7 @@ from tests.commands import ROOM, complaint, run
 from tracer.culling.fate import Fate
 from viewer.cli.console import Work
 from viewer.output import capture, png
-from viewer.state.views import FATE_COLORS
+from viewer.state.palette import FATE_COLORS
 
 SIZE = ("--size", "64x48", "--threads", 1)
 

@@ -23,7 +23,9 @@ from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from viewer.cli import main as command_line
 from viewer.cli import pictures
 from viewer.output import capture
-from viewer.state.views import BENEATH, TOO_BRIGHT, View
+from viewer.state.palette import BENEATH
+from viewer.state.views import View
+from viewer.views.color import TOO_BRIGHT
 
 ROOT = Path(__file__).resolve().parents[3]
 

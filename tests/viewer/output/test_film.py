@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.viewer.drawn import picture
 from tests.viewer.fakes import make_frame
 from tracer.experiments.zoom import Approach, Change, Results, Step
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
-from viewer.output.film_figure import COLUMNS, chosen_steps, film_figure
 from viewer.output.filmstrip import Filmstrip
-from viewer.output.pictures import picture, ringed
-from viewer.state.marks import Mark, wrong_marks
-from viewer.state.views import WRONG
+from viewer.output.run_figures import COLUMNS, chosen_steps, film_figure
+from viewer.state.palette import WRONG
+from viewer.views.difference import Mark, ringed, wrong_marks
 
 
 @pytest.fixture

@@ -26,7 +26,7 @@ from viewer.output.light_cube import (
     seen,
     unfolded,
 )
-from viewer.state.views import BACKGROUND, GREY, color_map
+from viewer.state.palette import BACKGROUND, GREY, color_map
 from viewer.util import resources
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from imgui_bundle import imgui
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
-from viewer.output.pictures import picture
 from viewer.state.views import View
 
 KEY = imgui.Key

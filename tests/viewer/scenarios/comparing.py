@@ -6,16 +6,16 @@ import numpy as np
 from imgui_bundle import imgui
 from PIL import Image
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
-from viewer.output.compared import GAP, composed, signed_picture
-from viewer.output.pictures import picture
 from viewer.state.columns import rows
-from viewer.state.comparison import Source, Way
-from viewer.state.marks import wipe_column
+from viewer.state.comparison import CompareMode, Source
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 from viewer.state.worst import with_rings
+from viewer.views.compare import GAP, composed, signed_picture
+from viewer.views.wipe import wipe_column
 from viewer.window import comparing as seen
 
 KEY = imgui.Key
@@ -41,26 +41,26 @@ def comparing(d: Driver) -> None:
     d.settle()
     assert d.c.frame is not kept and d.c.session.camera != kept.camera, "Ctrl+A has flown, or D has not"
     a, b = picture(kept), picture(d.c.frame)
-    for way in (Way.WIPE, Way.SIDE, Way.DIFFERENCE, Way.BLINK, Way.FLIP):
-        d.press(int(KEY.z) | SHIFT) if way is not Way.WIPE else d.c.comparing.start(way)
+    for way in (CompareMode.WIPE, CompareMode.SIDE, CompareMode.DIFFERENCE, CompareMode.BLINK, CompareMode.FLIP):
+        d.press(int(KEY.z) | SHIFT) if way is not CompareMode.WIPE else d.c.comparing.start(way)
         d.settle()
-        assert state.on and seen.shown(d.ui)[2] is state.way is way
+        assert state.on and seen.shown(d.ui)[2] is state.mode is way
         assert d.c.frame.primitive.shape == kept.primitive.shape, "both can be compared pixel by pixel"
         saved = _saved(d, f"{way.value}.png")
-        if way is Way.DIFFERENCE:
+        if way is CompareMode.DIFFERENCE:
             found = d.c.comparing.difference(*d.c.comparing.sides)
-            assert found.apart.pixels > 100 and np.array_equal(
+            assert found.stats.pixels > 100 and np.array_equal(
                 found.pixels != 0.0, (kept.color != d.c.frame.color).any(-1)
             )
-            shown = with_rings(signed_picture(found.pixels, found.apart.limit), found.worst)
+            shown = with_rings(signed_picture(found.pixels, found.stats.limit), found.worst)
             assert np.abs(saved.astype(int) - shown).max() <= 1 and found.worst, "with its rings"
             assert seen.legend(d.ui).entries[0].values == (str(len(found.worst)),)
             p.mark_wrong = False
             assert seen.marked(d.ui) == () and not seen.legend(d.ui).entries
             p.mark_wrong = True
-        elif way is not Way.BLINK:  # which may show either
+        elif way is not CompareMode.BLINK:  # which may show either
             assert np.array_equal(saved, composed(a, b, way, 0.5, shows_a=False))
-        if way is Way.SIDE:
+        if way is CompareMode.SIDE:
             assert saved.shape[1] == 2 * b.shape[1] + GAP
             _watches_from_a(d)
             for panel in ("Pixels", "Compare"):
@@ -80,17 +80,17 @@ def comparing(d: Driver) -> None:
     d.c.session.tone = Tone(-1.0, 1.0, Curve.SRGB)
     d.frames(2)
     expected = composed(
-        *(picture(f, tone=d.c.session.tone) for f in (kept, d.c.frame)), Way.WIPE, d.c.session.wipe, False
+        *(picture(f, tone=d.c.session.tone) for f in (kept, d.c.frame)), CompareMode.WIPE, d.c.session.wipe, False
     )
     assert np.abs(_saved(d, "toned.png").astype(int) - expected).max() <= 1, "both have the tone"
     d.press(KEY._9)
     d.settle()
-    assert not state.on and d.ui.graphics.compared.a is None, "one line at a time"
+    assert not state.on and d.ui.graphics.compared.a.texture_id is None, "one line at a time"
     d.press(KEY._1)
     d.c.session.tone = Tone()
     p.fixed_width, p.fixed_height = 80, 60
     d.settle()
-    d.c.comparing.start(Way.FLIP)
+    d.c.comparing.start(CompareMode.FLIP)
     d.settle()
     assert "A is shown in B's size" in d.c.comparing.remark
     d.c.comparing.forget()
@@ -124,7 +124,7 @@ def _watches_from_a(d: Driver) -> None:
 
 def _line(d: Driver, a: np.ndarray, b: np.ndarray) -> None:
     """The line between A and B is dragged as that of the other wipe; closely looked at, it waits at the edge."""
-    d.c.comparing.start(Way.WIPE)
+    d.c.comparing.start(CompareMode.WIPE)
     d.c.session.wipe = 0.5
     d.settle()
     left, top, right, bottom = d.picture_edges()
@@ -151,7 +151,7 @@ def _two_methods(d: Driver) -> None:
     d.press(int(KEY.c) | SHIFT)
     d.settle()
     state = d.c.comparing.state
-    assert state.on and state.source is Source.METHOD and state.way is Way.SIDE and state.second == "none"
+    assert state.on and state.source is Source.METHOD and state.mode is CompareMode.SIDE and state.second == "none"
     d.press(int(KEY.z) | CTRL)
     d.settle()
     assert not state.on and d.c.traced.second is None, "a comparison can be undone"
@@ -190,6 +190,6 @@ def _two_methods(d: Driver) -> None:
     d.settle()
     d.press(int(KEY.c) | SHIFT)
     d.settle()
-    assert not state.on and d.c.traced.second is None and d.ui.graphics.compared.a is None, (
+    assert not state.on and d.c.traced.second is None and d.ui.graphics.compared.a.texture_id is None, (
         "what is not seen takes no memory"
     )

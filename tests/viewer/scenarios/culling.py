@@ -8,14 +8,12 @@ from dataclasses import replace
 import numpy as np
 from imgui_bundle import imgui
 
+from tests.viewer.drawn import classes_in, picture
 from tests.viewer.driver import Driver
 from tracer.method import additions, bases
 from tracer.renderer import Renderer
-from viewer.output.legend_counts import occlusion_legend
-from viewer.output.pictures import picture
-from viewer.state.slices import slice_seen
-from viewer.state.tree_slice import layer_of
 from viewer.state.views import View
+from viewer.views.slices import layer_of, slice_seen
 from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
 from viewer.window.panels.links import Pointed
@@ -62,7 +60,7 @@ def certifying(d: Driver) -> None:
             d.press(key)
             assert d.c.scheduler.drawn_view is view and d.c.history.frames == traced
             assert np.abs(d.shown().astype(int) - picture(d.c.frame, view, d.c.session.light)).max() <= 2
-        seen = [row.name for row in occlusion_legend(d.c.frame) if row.pixels]
+        seen = [row.name for row in classes_in(d.c.frame, View.OCCLUSION) if row.pixels]
         assert "FULLY_RENDERED" in seen, seen
         said = d.c.frame.statistics.by_modes_in_all
         assert said.full_shadow + said.non_shadow > 0
@@ -133,7 +131,7 @@ def _space(d: Driver) -> None:
         d.context.item_click(f"//Picture/**/Use {name}##instead")
         d.settle()
         assert d.c.frame.settings.method.startswith(name) and d.c.scheduler.drawn_view is view
-        expected = picture(d.c.frame, view, beneath=d.c.preferences.beneath, cut=d.c.session.cut)
+        expected = picture(d.c.frame, view, beneath=d.c.preferences.beneath, slice=d.c.session.cut)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
         if view is View.VOXELS:
             _slice(d)
@@ -151,7 +149,7 @@ def _tree(d: Driver) -> None:
     d.settle()
     at = d.c.session.cut
     assert "all that has been seen" in d.c.recipes.now().history
-    expected = picture(d.c.frame, View.TREE, shading=d.c.preferences.shading, beneath=d.c.preferences.beneath, cut=at)
+    expected = picture(d.c.frame, View.TREE, shading=d.c.preferences.shading, beneath=d.c.preferences.beneath, slice=at)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.press(chord("Shift+RightBracket"))
     assert layer_of(d.c.session.cut) == layer_of(at) + 1

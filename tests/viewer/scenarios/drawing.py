@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 from imgui_bundle import imgui
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.steps import figure4
-from viewer.output.pictures import picture
-from viewer.state.marks import wipe_column
-from viewer.state.views import WRONG, View
+from viewer.state.palette import WRONG
+from viewer.state.views import View
+from viewer.views.wipe import wipe_column
 from viewer.window.keyboard import chord
 
 KEY = imgui.Key
@@ -122,7 +123,7 @@ def wiping(d: Driver) -> None:
         assert d.c.session.camera == camera and d.ui.picture.pivot is pivot and d.c.selection.picked is None
 
     drag_line(0.5, 0.3, middle)
-    assert np.abs(d.shown().astype(int) - picture(frame, View.WIPE, marked=False, wipe=d.c.session.wipe)).max() <= 1
+    assert np.abs(d.shown().astype(int) - picture(frame, View.WIPE, mark_wrong=False, wipe=d.c.session.wipe)).max() <= 1
     drag_line(0.3, 0.9, top + 0.2 * (bottom - top))
     pixels, column = d.shown(), wipe_column(128, d.c.session.wipe)
     assert np.array_equal(pixels[:, :column], picture(frame)[:, :column]), "left of the line is the traced picture"

@@ -9,8 +9,8 @@ import numpy as np
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
-from viewer.output.pictures import picture
 from viewer.services import scene_files
 from viewer.state.notices import QUIET_AFTER
 from viewer.state.views import View
@@ -46,7 +46,7 @@ def failing(d: Driver) -> None:
 
     # Drawing: the picture stays what it was, is not tried again until it should be another, and is not saved as one.
     before, frame = d.shown(), d.c.frame
-    draw_into, display._draw_into = display._draw_into, fail
+    write, display.write = display.write, fail
     d.press(KEY._5)
     noticed("Drawing the picture")
     assert np.array_equal(d.shown(), before)
@@ -54,7 +54,7 @@ def failing(d: Driver) -> None:
     d.frames(3)
     assert not (d.folder / "pictures").exists() and "no picture to save" in d.c.notices.message.text
     notices.dismiss_faults()
-    display._draw_into = draw_into
+    display.write = write
     d.press(KEY._6)
     expected = picture(frame, View.NORMAL, shading=d.c.preferences.shading)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from tests.viewer.drawn import classes_in, picture
 from tests.viewer.driver import Driver
 from tracer.culling.fate import Fate
 from tracer.frame import Frame
-from viewer.output.legend_counts import fate_legend, occlusion_legend
-from viewer.output.pictures import picture
-from viewer.state.views import OCCLUSION_COLORS, View
+from viewer.state.palette import OCCLUSION_COLORS
+from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 from viewer.window.keyboard import chord
 
@@ -33,8 +33,11 @@ def fates(d: Driver) -> None:
         drawn.append(d.shown())
         d.press(chord("L"))
     assert d.c.history.frames == traced and (drawn[0] != drawn[1]).any()
-    found = fate_legend(frame, 0)
-    assert found.pixels[Fate.CULLED] > 0 and found.due == found.saved + found.traced
+    found = frame.fate(0)[frame.primitive >= 0]
+    assert (found == Fate.CULLED).any() and (found >= Fate.CULLED).sum() == sum(
+        np.isin(found, [fate for fate in Fate if among(fate)]).sum()
+        for among in (lambda fate: fate.is_saved, lambda fate: fate.is_traced)
+    )
 
     # Views of fates, and of modes, while everything moves.
     d.press(chord("Space"))
@@ -66,5 +69,5 @@ def _legend_counts_what_is_drawn(frame: Frame) -> None:
     """The legend's shares are those of the colours in the picture."""
     drawn = picture(frame, View.OCCLUSION, shading=0.0).reshape(-1, 3)
     colors = np.round(255.0 * np.array(list(OCCLUSION_COLORS.values())))
-    for row, color in zip(occlusion_legend(frame), colors, strict=True):
+    for row, color in zip(classes_in(frame, View.OCCLUSION), colors, strict=True):
         assert row.pixels == (drawn == color).all(axis=1).sum(), row.name

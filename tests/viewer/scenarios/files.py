@@ -10,9 +10,9 @@ import numpy as np
 from imgui_bundle import glfw_utils, imgui
 from PIL import Image
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.studios import standing
-from viewer.output.pictures import picture
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 from viewer.window.keyboard import chord

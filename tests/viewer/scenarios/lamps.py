@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 from imgui_bundle import imgui
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tracer.renderer import Renderer
-from viewer.output.pictures import picture
 from viewer.state import readings
-from viewer.state.readings import arrivals
 from viewer.state.views import View
+from viewer.views.penumbra import arrivals
 from viewer.window.panels.lights import LightFilters
 from viewer.window.panels.status import doing
 

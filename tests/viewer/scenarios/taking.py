@@ -10,13 +10,13 @@ import numpy as np
 from imgui_bundle import imgui
 from PIL import Image
 
+from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from viewer.output import capture
-from viewer.output.compared import composed
-from viewer.output.pictures import picture
-from viewer.state.comparison import Way
+from viewer.state.comparison import CompareMode
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
+from viewer.views.compare import composed
 from viewer.window.panels import save_as
 from viewer.window.ui import CaptureKind, Dialog
 
@@ -132,7 +132,7 @@ def _copy(d: Driver) -> None:
         with Image.open(folder / "got.png") as image:
             assert np.array_equal(np.asarray(image), d.shown())
         d.c.comparing.keep()
-        d.c.comparing.start(Way.SIDE)
+        d.c.comparing.start(CompareMode.SIDE)
         d.settle()
         d.press(int(KEY.c) | CTRL)
         d.wait(lambda: not d.c.pictures.jobs and d.ui.capture_wanted is None, "the copy of both")
@@ -143,7 +143,7 @@ def _copy(d: Driver) -> None:
             os.environ["WAYLAND_DISPLAY"] = wayland
     with Image.open(folder / "got.png") as image:
         a = d.shown()
-        assert np.array_equal(np.asarray(image), composed(a, a, Way.SIDE, 0.5, False))
+        assert np.array_equal(np.asarray(image), composed(a, a, CompareMode.SIDE, 0.5, False))
     d.c.comparing.forget()
     d.c.session.tone = Tone()
     d.settle()

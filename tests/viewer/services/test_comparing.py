@@ -7,12 +7,12 @@ import gc
 import numpy as np
 
 from tests.viewer.desk import ELSEWHERE, Desk
+from tests.viewer.drawn import values_in
 from tests.viewer.fakes import make_frame, with_tree
 from tracer.frame import Settings
 from tracer.geometry.accelerators import BVH8, LAZY
-from viewer.state.comparison import Side, Source, Way
-from viewer.state.slices import Slice
-from viewer.state.values import values_of
+from viewer.state.comparison import CompareMode, Side, Source
+from viewer.state.draw_options import Slice
 from viewer.state.views import View
 
 
@@ -30,7 +30,7 @@ def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
     desk.c.settings.change(method="paper")
     desk.c.motion.move(ELSEWHERE)
     desk.rest()
-    comparing.start(Way.DIFFERENCE)
+    comparing.start(CompareMode.DIFFERENCE)
     desk.rest()
     a, b = comparing.sides
     assert a.frame is kept and np.array_equal(a.frame.color, color)
@@ -38,7 +38,7 @@ def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
     assert comparing.names(a, b) == ("A  none", "B  paper")
     found = comparing.difference(a, b)
     assert comparing.difference(a, b) is found, "found out once"
-    assert np.array_equal(found.pixels != 0.0, (b.frame.color != color).any(axis=-1)) and found.apart.pixels
+    assert np.array_equal(found.pixels != 0.0, (b.frame.color != color).any(axis=-1)) and found.stats.pixels
     comparing.state.limit = 0.25
     assert comparing.limit(found) == 0.25
     comparing.forget()
@@ -48,14 +48,14 @@ def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
 def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
     comparing = desk.c.comparing
     keep(desk, "paper")
-    comparing.start(Way.FLIP)
+    comparing.start(CompareMode.FLIP)
     desk.c.settings.set_view(View.COST)
     desk.rest()
     a, b = comparing.sides
     assert (a.view, b.view) == (View.COLOR, View.COST)
     comparing.state.same_view = True
     assert comparing.a.view is View.COLOR, "what it has not recorded it cannot show"
-    comparing.start(Way.DIFFERENCE)
+    comparing.start(CompareMode.DIFFERENCE)
     assert comparing.difference(*comparing.sides) is None and "keep A in this one" in comparing.remark
     desk.c.settings.set_view(View.DEPTH)
     desk.rest()
@@ -70,7 +70,7 @@ def test_maps_of_both_have_one_range(desk: Desk) -> None:
     alone = comparing.span(View.DEPTH)
     desk.c.motion.move(ELSEWHERE)
     desk.rest()
-    comparing.start(Way.SIDE)
+    comparing.start(CompareMode.SIDE)
     a, b = comparing.sides
     both = comparing.span(View.DEPTH)
     hit = [side.frame.depth[np.isfinite(side.frame.depth)] for side in (a, b)]
@@ -85,7 +85,7 @@ def test_a_whose_tree_is_gone_is_shown_as_a_picture(desk: Desk) -> None:
     desk.c.settings.change(accelerator=LAZY)
     desk.c.settings.set_view(View.TREE)
     keep(desk)
-    comparing.start(Way.SIDE)
+    comparing.start(CompareMode.SIDE)
     assert comparing.a.view is View.TREE and comparing.span(View.TREE) is not None
     desk.c.settings.change(accelerator=BVH8)
     desk.rest()
@@ -100,7 +100,7 @@ def test_one_wipe_at_a_time(desk: Desk) -> None:
     comparing = desk.c.comparing
     keep(desk)
     desk.c.settings.set_view(View.WIPE)
-    comparing.start(Way.WIPE)
+    comparing.start(CompareMode.WIPE)
     assert desk.c.session.view is View.COLOR
     desk.rest()
     assert comparing.state.on
@@ -112,16 +112,16 @@ def test_one_wipe_at_a_time(desk: Desk) -> None:
 def test_all_ways_in_turn(desk: Desk) -> None:
     comparing = desk.c.comparing
     keep(desk)
-    comparing.start(Way.FLIP)
+    comparing.start(CompareMode.FLIP)
     seen = []
-    for _ in Way:
-        seen.append(comparing.state.way)
-        comparing.next_way()
-    assert seen == list(Way) and comparing.state.way is Way.FLIP
-    comparing.toggle(Way.FLIP)
+    for _ in CompareMode:
+        seen.append(comparing.state.mode)
+        comparing.next_mode()
+    assert seen == list(CompareMode) and comparing.state.mode is CompareMode.FLIP
+    comparing.toggle(CompareMode.FLIP)
     assert not comparing.state.on
-    comparing.next_way()
-    assert comparing.state.on and comparing.state.way is Way.FLIP, "where it was left"
+    comparing.next_mode()
+    assert comparing.state.on and comparing.state.mode is CompareMode.FLIP, "where it was left"
 
 
 def test_a_second_method_is_traced_while_it_is_seen(desk: Desk) -> None:
@@ -134,7 +134,7 @@ def test_a_second_method_is_traced_while_it_is_seen(desk: Desk) -> None:
     desk.rest()
     a, b = comparing.sides
     assert (a.method, b.method) == ("none", "paper") and a.frame is desk.c.traced.second
-    assert np.array_equal(a.frame.primitive, b.frame.primitive) and comparing.state.way is Way.SIDE
+    assert np.array_equal(a.frame.primitive, b.frame.primitive) and comparing.state.mode is CompareMode.SIDE
     comparing.trace_by("certified")
     desk.rest()
     assert desk.c.traced.second.settings.method == "certified"
@@ -154,7 +154,7 @@ def test_a_second_method_is_traced_while_it_is_seen(desk: Desk) -> None:
 def test_a_run_shows_its_frames_beside_what_was_kept(desk: Desk) -> None:
     comparing = desk.c.comparing
     keep(desk)
-    comparing.start(Way.WIPE)
+    comparing.start(CompareMode.WIPE)
     desk.runs.start_experiment()
     desk.until(lambda: desk.runs.current is not None and desk.c.frame is not comparing.state.kept.frame)
     assert comparing.sides is not None and comparing.sides[1].frame.width == 32
@@ -171,6 +171,6 @@ def test_a_difference_is_that_of_the_chosen_slice(desk: Desk) -> None:
         desk.c.session.cut = cut
         found = comparing.difference(a, b)
         assert found is not None and comparing.difference(a, b) is found
-        expected = values_of(b.frame, View.TREE, cut=cut)
+        expected = values_in(b.frame, View.TREE, slice=cut)
         assert np.array_equal(found.values.numbers, expected.numbers)
-    assert not np.array_equal(expected.numbers, values_of(b.frame, View.TREE, cut=Slice(1, 0.25)).numbers)
+    assert not np.array_equal(expected.numbers, values_in(b.frame, View.TREE, slice=Slice(1, 0.25)).numbers)

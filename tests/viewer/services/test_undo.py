@@ -13,7 +13,7 @@ from tracer.scene.model import Camera
 from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import MOST, Undo
-from viewer.state.comparison import Way
+from viewer.state.comparison import CompareMode
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -294,7 +294,7 @@ def test_ranges_and_stripes_come_back(desk: Desk):
 
 def test_a_comparison_is_a_step_but_what_is_kept_stays(desk: Desk):
     comparison = desk.session.comparison
-    comparison.on, comparison.way = True, Way.SIDE
+    comparison.on, comparison.mode = True, CompareMode.SIDE
     desk.frame()
     comparison.kept = kept = object()
     comparison.same_view = True
@@ -305,4 +305,4 @@ def test_a_comparison_is_a_step_but_what_is_kept_stays(desk: Desk):
     desk.undo.undo()
     assert not comparison.on and comparison.kept is kept
     desk.undo.redo()
-    assert comparison.on and comparison.way is Way.SIDE
+    assert comparison.on and comparison.mode is CompareMode.SIDE

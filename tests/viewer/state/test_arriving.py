@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
+from tests.viewer.drawn import legend_in
 from tests.viewer.fakes import make_frame, make_scene, with_cuts
 from tracer.fit import overview
 from tracer.frame import Settings
 from tracer.statistics import CutCounts
-from viewer.output.legend import legend_of
 from viewer.state.arriving import fitting_view
 from viewer.state.views import View
 
@@ -44,16 +44,16 @@ def test_a_view_with_nothing_to_show_gives_way_to_the_picture(view, method, ligh
 
 def test_a_map_of_clusters_in_which_each_light_is_one_says_so():
     frame = with_cuts(make_frame(Settings(16, 8, method="lightcuts")))
-    assert legend_of(frame, View.CUTS).notes == ()
+    assert legend_in(frame, View.CUTS).notes == ()
     for cuts, said in (
         (CutCounts(3, 7, 20, 0, 3), f"Nearly every light is a cluster of its own: {FEW.replace('are 6', 'are 3')}"),
         (CutCounts(6, 7, 40, 0, 6), f"Nearly every sample of a light is a cluster of its own: {FEW_SAMPLES}"),
         (CutCounts(100, 7, 700, 0, 100), "Nearly every sample of a light is a cluster of its own."),
     ):
         frame.statistics.cuts = cuts
-        (note,) = legend_of(frame, View.CUTS).notes
+        (note,) = legend_in(frame, View.CUTS).notes
         assert note.text == said
-    assert legend_of(frame, View.CUTS).facts[0].values[0].endswith(" for 100 samples of 3 lights")
+    assert legend_in(frame, View.CUTS).facts[0].values[0].endswith(" for 100 samples of 3 lights")
 
 
 def test_the_overview_names_every_method_that_leaves_lights_to_tracing():

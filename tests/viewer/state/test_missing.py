@@ -19,8 +19,10 @@ from tests.viewer.fakes import (
 from tracer.frame import Settings
 from tracer.method import bases
 from viewer.state.missing import missing
-from viewer.state.readings import MOST_RECORDED, arrivals, can_draw, lights_due
+from viewer.state.readings import MOST_RECORDED, can_draw
 from viewer.state.views import View
+from viewer.views import lights
+from viewer.views.penumbra import arrivals
 
 
 @pytest.mark.parametrize("method", [*(kind.name for kind in bases()), "certified+cache", "paper+rest", "none+cache"])
@@ -92,7 +94,7 @@ def test_what_is_recorded_of_one_light_shows_that_light():
         assert can_draw(all_of_them, View.PENUMBRA, light) and can_draw(alone, View.PENUMBRA, light) == (light == 1)
     assert can_draw(all_of_them, View.LIGHTS) and not can_draw(alone, View.LIGHTS, 1)
     assert np.array_equal(arrivals(alone, 1), arrivals(all_of_them, 1))
-    for lacks in (lambda: arrivals(alone, 0), lambda: lights_due(alone)):
+    for lacks in (lambda: arrivals(alone, 0), lambda: lights.VIEW.found(alone)):
         with pytest.raises(ValueError, match="did not record which samples"):
             lacks()
 

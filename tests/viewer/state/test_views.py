@@ -10,31 +10,32 @@ import numpy as np
 import pytest
 
 from tests.viewer.colors import luminance
+from tests.viewer.drawn import classes_in
 from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
 from tracer.statistics import SampleCounts
-from viewer.output import legend_counts
-from viewer.state import marks, readings, views
+from viewer.state import palette
 from viewer.state.history import History, counters
 from viewer.state.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
-from viewer.util.resources import shader_source
+from viewer.state.views import View
+from viewer.views.difference import Mark, wrong_marks
+from viewer.views.penumbra import ARRIVALS
+from viewer.views.wipe import wipe_column
 from viewer.window.widgets import in_window_style, percent
 
 
 def test_the_occlusion_legend_counts_primitives_and_pixels():
-    rows = {r.name: r for r in legend_counts.occlusion_legend(make_frame())}
+    rows = {r.name: r for r in classes_in(make_frame(), View.OCCLUSION)}
     assert {name: r.units for name, r in rows.items()} == {
         "INIT": 1, "PARTIALLY_OCCLUDED": 1, "FULLY_RENDERED": 3, "DYNAMIC": 2,
     }  # fmt: skip
     assert rows["FULLY_RENDERED"].pixels == 3 * 16
-    assert sum(r.pixel_share for r in rows.values()) == pytest.approx(1.0)
-    assert sum(r.unit_share for r in rows.values()) == pytest.approx(1.0)
 
 
 def test_the_shadow_legend_counts_what_moves_apart():
-    rows = {r.name: r.units for r in legend_counts.shadow_legend(make_frame(), 0)}
+    rows = {r.name: r.units for r in classes_in(make_frame(), View.SHADOW)}
     assert rows == {
         "INIT": 2, "FULL_SHADOW": 1, "FULL_SHADOW, untrusted": 0, "NON_SHADOW": 1, "NON_SHADOW, untrusted": 0,
         "PARTIAL_SHADOW": 1, "DYNAMIC": 2,
@@ -43,55 +44,37 @@ def test_the_shadow_legend_counts_what_moves_apart():
     doubted = replace(
         frame, modes=frame.modes & ~np.uint32(3) | np.where(frame.modes & 3 == 3, np.uint32(3), np.uint32(1))
     )
-    rows = {r.name: (r.units, r.stripes is not None) for r in legend_counts.shadow_legend(doubted, 0)}
+    rows = {r.name: (r.units, r.striped) for r in classes_in(doubted, View.SHADOW)}
     assert rows["FULL_SHADOW"] == rows["NON_SHADOW"] == (0, False)
     assert rows["FULL_SHADOW, untrusted"] == rows["NON_SHADOW, untrusted"] == (1, True)
     assert rows["PARTIAL_SHADOW"] == (1, False) and rows["DYNAMIC"] == (2, False)
-    assert legend_counts.shadow_legend(make_frame(), 31) == []
-    assert legend_counts.shadow_legend(make_frame(), 15) == []
+    assert classes_in(make_frame(), View.SHADOW, 31) == classes_in(make_frame(), View.SHADOW, 15) == []
 
 
 def test_the_certificate_legend_counts_the_cells_that_are_seen():
     frame = with_certificates(make_frame())
-    rows = {r.name: r for r in legend_counts.certificate_legend(frame, 1)}
+    rows = {r.name: r for r in classes_in(frame, View.CERTIFICATE, 1)}
     dynamic = np.isin(frame.primitive, (4, 5))
     for number, name in enumerate(("NONE", "FULL", "LIT", "CANDIDATES")):
         there = (frame.primitive >= 0) & ~dynamic & ((frame.certificates >> 4) & 3 == number)
         assert rows[name].pixels == there.sum()
         assert rows[name].units == len(np.unique(frame.cells[there & (frame.cells >= 0)]))
     assert (rows["DYNAMIC"].pixels, rows["DYNAMIC"].units) == (dynamic.sum(), 0)
-    assert sum(r.pixel_share for r in rows.values()) == pytest.approx(1.0)
     assert sum(r.units for r in rows.values()) == frame.cells.max() + 1
-    assert legend_counts.certificate_legend(make_frame(), 1) == legend_counts.certificate_legend(frame, 15) == []
-
-
-@pytest.mark.parametrize("view", [views.View.SAVED, views.View.COST])
-def test_the_legend_of_work_sums_it_up(view):
-    frame = with_certificates(make_frame(Settings(width=160, height=80)))
-    found = legend_counts.work_legend(frame, view)
-    work = frame.saved if view is views.View.SAVED else frame.cost
-    assert (found.total, found.most) == (work.sum(), work.max())
-    assert found.whole == (frame.due_rays if view is views.View.SAVED else frame.saved + frame.cost).sum()
-    assert found.total < found.whole
-    assert found.per_pixel == pytest.approx(work.mean())
-    assert np.percentile(work[frame.primitive >= 0], 98) <= found.top <= work.max()
-    for empty in (replace(frame, saved=work * 0, cost=work * 0), replace(frame, primitive=work * 0 - 1)):
-        assert legend_counts.work_legend(empty, view).top == 1.0
-    with pytest.raises(ValueError, match="did not record"):
-        legend_counts.work_legend(make_frame(), view)
+    assert classes_in(make_frame(), View.CERTIFICATE, 1) == classes_in(frame, View.CERTIFICATE, 15) == []
 
 
 def test_wide_words_reach_light_30():
     frame = make_frame()
     words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
     frame = replace(frame, modes=words)
-    rows = {r.name: r.units for r in legend_counts.shadow_legend(frame, 30)}
+    rows = {r.name: r.units for r in classes_in(frame, View.SHADOW, 30)}
     assert rows["NON_SHADOW"] + rows["NON_SHADOW, untrusted"] == 5
     assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
     assert shadow_mode_of(frame, 0, 31) is None
 
 
-def dichromat(color: views.Color) -> np.ndarray:
+def dichromat(color: palette.Color) -> np.ndarray:
     """What is left of a colour without red-green vision (Vienot et al. 1999, deuteranopia, roughly linear)."""
     linear = np.power(color, 2.2)
     lms = np.array([[17.88, 43.52, 4.12], [3.46, 27.16, 3.87], [0.03, 0.18, 1.47]]) @ linear
@@ -102,13 +85,17 @@ def dichromat(color: views.Color) -> np.ndarray:
 
 def test_the_colour_of_wrong_answers_is_unmistakable():
     """Bright on black, and far from every colour of every other view, for the colour-blind too."""
-    assert (luminance(views.WRONG) + 0.05) / 0.05 > 4.5
-    assert np.linalg.norm(dichromat(views.WRONG)) > 0.8
-    others = [*views.OCCLUSION_COLORS.values(), *views.SHADOW_COLORS.values(), *views.ARRIVAL_COLORS.values()]
-    others += [views.BACKGROUND, views.GREY]
-    for other in [*others, views.WIPE_LINE, *views.color_map()]:
-        assert np.linalg.norm(np.subtract(views.WRONG, other)) > 0.5
-        assert np.linalg.norm(dichromat(views.WRONG) - dichromat(other)) > 0.15
+    assert (luminance(palette.WRONG) + 0.05) / 0.05 > 4.5
+    assert np.linalg.norm(dichromat(palette.WRONG)) > 0.8
+    others = [
+        *palette.OCCLUSION_COLORS.values(),
+        *palette.SHADOW_COLORS.values(),
+        *(color for _, color, _ in ARRIVALS.values()),
+    ]
+    others += [palette.BACKGROUND, palette.GREY]
+    for other in [*others, palette.WIPE_LINE, *palette.color_map()]:
+        assert np.linalg.norm(np.subtract(palette.WRONG, other)) > 0.5
+        assert np.linalg.norm(dichromat(palette.WRONG) - dichromat(other)) > 0.15
 
 
 @pytest.mark.parametrize(
@@ -117,12 +104,12 @@ def test_the_colour_of_wrong_answers_is_unmistakable():
 )
 def test_rings_lie_at_one_distance_grow_with_the_picture_and_stay_small_on_screen(size, magnified, radius, thickness):
     frame = make_frame(Settings(width=size[0], height=size[1], verify=True))
-    found = marks.wrong_marks(frame, magnified)
+    found = wrong_marks(frame, magnified)
     points = np.argwhere(frame.wrong > 0)
     rows, columns = np.indices(found.shape)
     distance = np.min([np.hypot(rows - y, columns - x) for y, x in points], axis=0)
-    np.testing.assert_array_equal(found == marks.Mark.WRONG, distance == 0)
-    ring = found == marks.Mark.RING
+    np.testing.assert_array_equal(found == Mark.WRONG, distance == 0)
+    ring = found == Mark.RING
     assert ring.any() and (distance[ring] > radius).all()
     np.testing.assert_array_equal(ring, (distance > radius + 0.5) & (distance < radius + thickness + 0.5))
 
@@ -139,47 +126,41 @@ def test_numbers_of_other_places_are_written_as_in_the_window():
     assert in_window_style("1,234,570 (0.499%), lights 0, 2: 12") == "1,234,570 (0.499 %), lights 0, 2: 12"
 
 
-def test_no_rings_where_nothing_is_wrong():
-    frame = make_frame(Settings(width=16, height=8, verify=True))
-    assert not marks.wrong_marks(replace(frame, wrong=np.zeros_like(frame.wrong))).any()
-
-
 def test_the_line_of_a_wipe_reaches_both_edges():
-    assert [marks.wipe_column(10, wipe) for wipe in (-1.0, 0.0, 0.05, 0.5, 0.99, 1.0, 2.0)] == [0, 0, 0, 5, 9, 10, 10]
+    assert [wipe_column(10, wipe) for wipe in (-1.0, 0.0, 0.05, 0.5, 0.99, 1.0, 2.0)] == [0, 0, 0, 5, 9, 10, 10]
 
 
-@pytest.mark.parametrize("palette", [views.OCCLUSION_COLORS, views.SHADOW_COLORS, views.CERTIFICATE_COLORS])
+@pytest.mark.parametrize("palette", [palette.OCCLUSION_COLORS, palette.SHADOW_COLORS, palette.CERTIFICATE_COLORS])
 def test_mode_colours_can_be_told_apart_without_red_green_vision(palette):
     for a, b in itertools.combinations(palette.values(), 2):
         assert np.linalg.norm(dichromat(a) - dichromat(b)) > 0.15
 
 
 def test_one_fate_stands_out_and_words_can_be_read_on_each():
-    colors = views.FATE_COLORS
-    assert views.fate_palette() == list(colors.values())
-    traced = views.fate_palette(Fate.TRACED)
+    colors = palette.FATE_COLORS
+    assert palette.fate_palette() == list(colors.values())
+    traced = palette.fate_palette(Fate.TRACED)
     assert [color == colors[fate] for fate, color in zip(colors, traced)] == [fate.is_traced for fate in colors]
-    culled = views.fate_palette(Fate.CULLED)
+    culled = palette.fate_palette(Fate.CULLED)
     assert [fate for fate, color in zip(colors, culled) if color == colors[fate]] == [Fate.CULLED]
     for color in colors.values():
-        light, dark = sorted((luminance(color), luminance(views.label_color(color))), reverse=True)
+        light, dark = sorted((luminance(color), luminance(palette.label_color(color))), reverse=True)
         assert (light + 0.05) / (dark + 0.05) >= 3.0, color
 
 
-def test_the_shader_of_fates_has_a_colour_for_each_in_their_order():
-    assert list(views.FATE_COLORS) == list(Fate)
-    assert f"uniform vec3 palette[{len(Fate)}];" in shader_source("fate.frag")
+def test_there_is_a_colour_for_each_fate_in_their_order():
+    assert list(palette.FATE_COLORS) == list(Fate)
 
 
 def test_the_colour_map_grows_lighter_all_the_way():
-    grey = views.color_map() @ np.array([0.2126, 0.7152, 0.0722])
+    grey = palette.color_map() @ np.array([0.2126, 0.7152, 0.0722])
     assert (np.diff(grey) > -1e-3).all() and grey[-1] - grey[0] > 0.6
 
 
 def test_the_depth_range_ignores_misses():
-    assert readings.depth_range(make_frame())[0] == pytest.approx(2.0)
+    assert View.DEPTH.declared.span(make_frame())[0] == pytest.approx(2.0)
     empty = replace(make_frame(), depth=np.full((8, 16), np.inf, np.float32))
-    assert readings.depth_range(empty) == (0.0, 1.0)
+    assert View.DEPTH.declared.span(empty) == (0.0, 1.0)
 
 
 def test_a_pick_tells_what_the_pixel_shows():

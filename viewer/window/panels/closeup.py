@@ -108,7 +108,7 @@ def menu(ui: Ui) -> None:
 
 def show(ui: Ui, area: Area, side: Side | None = None) -> None:
     """Over the picture of a side, or what else is seen: grid and values, watched pixels, the region."""
-    found = comparing.words(ui, side)
+    found = comparing.words(ui, comparing.draw_options(ui), side)
     if found is None:
         return
     frame, words = found

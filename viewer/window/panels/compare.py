@@ -7,10 +7,9 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.frame import Frame
 from viewer.state.columns import Row, rows
-from viewer.state.comparison import RATES, Side, Source, Way
+from viewer.state.comparison import RATES, CompareMode, Side, Source, elided
 from viewer.state.in_turn import InTurn
-from viewer.state.told_apart import told_apart
-from viewer.state.views import LESS, MORE
+from viewer.state.palette import LESS, MORE
 from viewer.window.panels.method_choice import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -77,11 +76,11 @@ def _controls(ui: Ui) -> None:
             held = ui.key_label("Show A")
             row("Show", f"how A and B are seen{f'; {held} shows A while it is held' if held else ''}")
             _way(ui)
-            if state.way is Way.BLINK:
+            if state.mode is CompareMode.BLINK:
                 row("Rate", "times a second that both are seen")
                 changed, rate = imgui.slider_float("##rate", state.rate, *RATES, "%.2f Hz")
                 state.rate = min(max(rate, RATES[0]), RATES[1]) if changed else state.rate
-            if state.way is Way.DIFFERENCE and state.on:
+            if state.mode is CompareMode.DIFFERENCE and state.on:
                 _limit(ui)
                 _rings(ui)
     if state.source is Source.KEPT:
@@ -92,12 +91,12 @@ def _controls(ui: Ui) -> None:
 
 def _way(ui: Ui) -> None:
     comparing, state = ui.controller.comparing, ui.controller.comparing.state
-    if not imgui.begin_combo("##way", state.way.label if state.on else "B alone"):
+    if not imgui.begin_combo("##way", state.mode.label if state.on else "B alone"):
         return
     if imgui.selectable("B alone", not state.on)[0]:
         comparing.end()
-    for way in Way:
-        if imgui.selectable(way.label, state.on and state.way is way)[0]:
+    for way in CompareMode:
+        if imgui.selectable(way.label, state.on and state.mode is way)[0]:
             comparing.start(way)
         tooltip(way.meaning)
     imgui.end_combo()
@@ -214,7 +213,7 @@ def _heads(a: Side, b: Side, names: tuple[str, str]) -> None:
 def _name(name: str, other: str) -> None:
     """What A or B is, so that one sees what sets it apart from the other."""
     letter, room = name[:3], imgui.get_content_region_avail().x + 0.5
-    shown = letter + told_apart(name[3:], other[3:], lambda text: imgui.calc_text_size(letter + text).x <= room)
+    shown = letter + elided(name[3:], other[3:], lambda text: imgui.calc_text_size(letter + text).x <= room)
     imgui.text_unformatted(shown)
     if shown != name:
         tooltip(name)

@@ -10,9 +10,9 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from viewer.services.scene_table import Listing, SceneTable
+from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.state.row_filter import HELP, HINTS
 from viewer.state.scene_rows import COLUMNS, Column, Level
-from viewer.state.views import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.window.camera_commands import fly_to_selected
 from viewer.window.panels import lights
 from viewer.window.ui import Ui

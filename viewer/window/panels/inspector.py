@@ -8,11 +8,14 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode
+from tracer.mode_origins import Origin
 from tracer.scene.model import Material
 from tracer.why_in_words import Link, Words
+from viewer.state.palette import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
 from viewer.state.picking import Pick
-from viewer.state.readings import can_draw, cell_lights
-from viewer.state.views import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING, View
+from viewer.state.readings import can_draw
+from viewer.state.views import View
+from viewer.views import cell_lights
 from viewer.window.panels import rays, why
 from viewer.window.panels.links import sentence
 from viewer.window.ui import Ui
@@ -77,7 +80,7 @@ def _details(ui: Ui, pick: Pick, at: tuple[int, int] | None) -> None:
         if pick.material is not None:
             fact("Material", pick.material.name, _describe(pick.material))
         if frame is not None and at is not None and can_draw(frame, View.CELL_LIGHTS):
-            asked = int(cell_lights(frame)[at[1], at[0]])
+            asked = int(cell_lights.VIEW.found(frame)[at[1], at[0]])
             if asked >= 0:
                 lights = f"looks at {count(asked)} of {count(frame.lights)} lights"
                 fact("Its cell", lights, "of the octree of this method: all but those known to be hidden from it")
@@ -99,6 +102,7 @@ def _wrong(answers: int, samples: int) -> str:
 
 def _modes(ui: Ui, pick: Pick) -> None:
     """The occlusion mode and the shadow mode per light, and how the pixel compares with its two reference pixels."""
+    origins = ui.controller.history.origins_of(pick)
     if imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_prop)):
         imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
         imgui.table_setup_column("mode", int(imgui.TableColumnFlags_.width_stretch), 1.5)
@@ -108,7 +112,8 @@ def _modes(ui: Ui, pick: Pick) -> None:
         for light, shadow in enumerate(() if pick.occlusion is OcclusionMode.DYNAMIC else pick.shadows):
             if shadow is not None:
                 _mode(ui.light_name(light), shadow.name, SHADOW_COLORS[shadow], SHADOW_MEANING[shadow])
-                _origin(ui, pick, light)
+                if origins is not None and light < len(origins.lights):
+                    _origin(ui, origins.lights[light], light)
         imgui.end_table()
     uncovered = sum(mode is None for mode in pick.shadows)
     if uncovered:
@@ -129,13 +134,10 @@ def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str)
     tooltip(meaning)
 
 
-def _origin(ui: Ui, pick: Pick, light: int) -> None:
+def _origin(ui: Ui, origin: Origin, light: int) -> None:
     """The pictures, numbered as in the plots, in which the primitive was first seen lit by a light and blocked from it,
     with the pixels that were."""
-    origins = ui.controller.history.origins_of(pick)
-    if origins is None or light >= len(origins.lights):
-        return
-    for lit, number in origins.lights[light].met():
+    for lit, number in origin.met():
         found, word, by = ui.controller.origins.of(number, light, lit), "lit" if lit else "blocked", ""
         if found is not None and found.pixel is not None:
             by = f" at {found.pixel[0]}, {found.pixel[1]}" + (f" and {found.count - 1} more" if found.count > 1 else "")

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from imgui_bundle import ImVec2, imgui
 
-from viewer.output.legend import legend_of
-from viewer.output.legend_layout import BACKDROP, BACKDROP_OPACITY, Layout, Swatch, fitting, lay_out
-from viewer.output.legend_parts import Chosen, Legend
+from viewer.state.palette import color_map, signed_map
 from viewer.state.placing import Rect
-from viewer.state.views import color_map, signed_map
+from viewer.views import legend_of, picture_options
+from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, Swatch, fitting, lay_out
 from viewer.window import comparing
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, tooltip_at
@@ -33,20 +32,20 @@ class LegendState:
 def of_picture(ui: Ui) -> Legend | None:
     """The legend of what is drawn of the newest frame; None where there is none."""
     c = ui.controller
-    frame, scene, view = c.frame, c.session.scene, c.scheduler.drawn_view
+    frame, scene = c.frame, c.session.scene
     if frame is None or scene is None:
         return None
     of_both = comparing.legend(ui)
     if of_both is not None:
         return of_both
-    light, seen = c.session.light, comparing.shown(ui)
+    options, seen = comparing.draw_options(ui), comparing.shown(ui)
     if seen is not None and comparing.shows_a(ui):
-        frame, view, light = seen[0].frame, seen[0].view, seen[0].light
-    s, p = c.session, c.preferences
-    span = c.comparing.span(view)
-    chosen = Chosen(light, scene.lights, p.mark_wrong, p.work_shares, span, s.tone, s.clipping, s.cut)
+        frame, options = seen[0].frame, replace(options, view=seen[0].view, light=seen[0].light)
     kept = "legend" if frame is c.frame else "legend of A"
-    found: Legend | None = ui.cached(kept, frame, (view, chosen), lambda: legend_of(frame, view, chosen))
+    lights = scene.lights
+    found: Legend | None = ui.cached(
+        kept, frame, (picture_options(options), lights), lambda: legend_of(frame, options, lights)
+    )
     return found
 
 

@@ -8,13 +8,14 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4
 
 from tracer.culling.fate import Fate
+from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
 from tracer.light_cut import LightCut
 from tracer.reasons import Why
 from viewer.services.pixel_inspector import MOST_CLUSTERS, Answer, drawn_primitives
+from viewer.state.palette import FATE_COLORS, SHADOW_COLORS, color_map
 from viewer.state.projection import Stroke, place, strokes
 from viewer.state.selection_lookup import outline_of, part_points, primitive_points
-from viewer.state.views import FATE_COLORS, SHADOW_COLORS, ShadowMode, color_map
 from viewer.window import comparing
 from viewer.window.panels import ray_overlay, slicing
 from viewer.window.panels.area import Area, write_beside

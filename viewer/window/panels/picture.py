@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.state import navigation, verified
-from viewer.state.comparison import Way
+from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
 from viewer.util.numbers import whole_percent
 from viewer.window import comparing
@@ -22,7 +22,6 @@ from viewer.window.panels import (
     closeup,
     edited_picture,
     film,
-    layers,
     legend,
     missing,
     overlays,
@@ -33,7 +32,6 @@ from viewer.window.panels import (
     status,
     timeline,
     tour,
-    wipe,
 )
 from viewer.window.panels.area import Area
 from viewer.window.panels.legend import LegendState
@@ -96,7 +94,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     width, height = c.traced.full_size if c.traced is not None else (1, 1)
     ui.picture.shape = width, height
     seen, gap = comparing.shown(ui), em(sides.GAP)
-    beside = seen is not None and seen[2] is Way.SIDE
+    beside = seen is not None and seen[2] is CompareMode.SIDE
     factor = min(((room.x - gap) / 2.0 if beside else room.x) / width, room.y / height)
     size = ImVec2(max(1.0, width * factor), max(1.0, height * factor))
     at = imgui.get_cursor_pos()
@@ -104,12 +102,12 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     top = at.y + (room.y - size.y) / 2.0
     if beside and seen is not None and ui.graphics.compared is not None:
         area = _area(ui, "picture of A", left, top, size)
-        layers.draw(ui, comparing.OF_A, ui.graphics.compared.a_texture or 0, area)
+        sides.draw_picture(ui, comparing.OF_A, ui.graphics.compared.a.texture_id or 0, area)
         _pointer(ui, area, takes_edits=False)
         closeup.show(ui, area, seen[0])
         left += size.x + gap
     area = _area(ui, "picture", left, top, size)
-    layers.draw(ui, comparing.PICTURE, texture, area)
+    sides.draw_picture(ui, comparing.PICTURE, texture, area)
     if seen is not None:
         sides.draw_a(ui, area, seen)
     with _inside(area):
@@ -119,7 +117,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
     closeup.show(ui, area)
     if seen is not None:
         overlays.show_worst_pixels(ui, area, seen[1].frame)
-    wipe.show(ui, area)
+    sides.show(ui, area)
     lower = _overlay(ui, area.corner, area.end)
     with _inside(area):
         edited_picture.show_lights(ui, area.whole, area.whole_end)
@@ -189,7 +187,7 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
             _wheel(ui, io.mouse_wheel)
     if takes_edits and edited_picture.handle(ui, area.whole, area.whole_size):
         return
-    if wipe.handle(ui, area) or closeup.drag(ui, area):
+    if sides.handle(ui, area) or closeup.drag(ui, area):
         return
     if imgui.is_item_activated():
         ui.picture.dragged = False

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
@@ -9,10 +11,12 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.frame import Frame
 from viewer.state.comparison import Side
 from viewer.state.picking import pixel_at
-from viewer.state.pixels import ALL, Histogram, histogram
+from viewer.state.pixels import ALL
 from viewer.state.readings import can_draw
-from viewer.state.values import CHANNELS, values_of, words_at
 from viewer.state.views import View
+from viewer.views import picture_options, values_of, words_at
+from viewer.views.base import Histogram, histogram
+from viewer.views.color import CHANNELS
 from viewer.window import comparing, picture_commands
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
@@ -105,14 +109,14 @@ def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Sid
 
 
 def _value(ui: Ui, frame: Frame, view: View, light: int, x: int, y: int) -> str:
-    c = ui.controller
-    return " ".join(words_at(frame, view, light, x, y, c.preferences.work_shares, c.session.cut)) or "-"
+    return " ".join(words_at(frame, replace(comparing.draw_options(ui), view=view, light=light), x, y)) or "-"
 
 
 def _histogram(ui: Ui) -> None:
     """How the values of the region lie, and the range of the colour map from them."""
     c, frame, region = ui.controller, ui.controller.frame, ui.pixels.region
-    view, light, cut = c.scheduler.drawn_view, c.session.light, c.session.cut
+    options = comparing.draw_options(ui)
+    view, light = options.view, options.light
     difference = comparing.difference(ui)
     if frame is None or not can_draw(frame, view, light):
         return
@@ -129,9 +133,9 @@ def _histogram(ui: Ui) -> None:
     what = view.label if difference is None else f"B - A, {view.label.lower()}"
     clipped(f"{what}: {where}{'' if region is not None else '; Shift+drag for a part of it'}")
     if difference is not None:
-        values = ui.cached("differing", difference, None, difference.differing)
+        values = ui.cached("differing", difference, None, lambda: difference.differing)
     else:
-        values = ui.cached("values", frame, (view, light, cut), lambda: values_of(frame, view, light, cut=cut))
+        values = ui.cached("values", frame, picture_options(options), lambda: values_of(frame, options))
     if values.classes:
         paragraph("Modes and numbers of primitives have no histogram; the legend counts them.", QUIET)
         return

@@ -7,11 +7,12 @@ from dataclasses import replace
 from imgui_bundle import ImVec2, imgui
 
 from tracer.culling.fate import Fate
-from viewer.output.legend_layout import BACKDROP, TEXT
 from viewer.services.controller import Controller
+from viewer.state.palette import FATE_COLORS, Color, label_color
 from viewer.state.savings import LONGEST, PALE, Bar, Clause, Part, Standing, Tone, bar_of, fitting, sentence
-from viewer.state.views import FATE_COLORS, Color, View, label_color
+from viewer.state.views import View
 from viewer.util.numbers import count
+from viewer.views.legend import BACKDROP, TEXT
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, packed, tooltip
 

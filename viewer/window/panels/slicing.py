@@ -1,4 +1,4 @@
-"""The slice through space: its axis and its place in the panel View; and, over the picture, what the pointer is on."""
+"""The slice through space: its rows in the panel View, going through its layers, and what the pointer is on."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
 from viewer.services.controller import Controller
 from viewer.services.pixel_inspector import MOST_CLUSTERS
+from viewer.state.draw_options import AXES
 from viewer.state.picking import pixel_at
-from viewer.state.readings import cell_lights, tree_of, voxels_of
-from viewer.state.slices import AXES, slice_seen, voxel_seen
-from viewer.state.tree_slice import part_seen, part_words
 from viewer.state.views import View
 from viewer.util.numbers import several
-from viewer.window.layers_of_slice import go_to, layer_now
+from viewer.views import cell_lights, view_of
+from viewer.views.slices import part_seen, part_words, slice_seen, voxel_seen
+from viewer.views.tree import tree_of
+from viewer.views.voxels import voxels_of
 from viewer.window.panels.area import Area, write_beside
 from viewer.window.panels.legend import LegendState
 from viewer.window.panels.status import traced_before_an_answer
@@ -32,14 +33,15 @@ def rows(ui: Ui) -> None:
             imgui.same_line(0.0, em(0.6))
         if imgui.radio_button(f"{name}##slice", s.cut.axis == axis):
             s.cut = s.cut._replace(axis=axis)
-    layer = layer_now(ui)
+    frame = ui.controller.frame
+    layer = view_of(s.view).layer(frame, s.cut) if frame is not None else None
     if layer is None:
         return
     row("Layer", "along the axis; Ctrl+click to type one")
     flags, shown = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[s.cut.axis]} = {layer.place:.4g})"
     changed, number = imgui.slider_int("##layer", layer.number, 0, layer.many - 1, shown, flags)
     if changed:
-        s.cut = go_to(s.cut, number, layer.many)
+        s.cut = layer.goes_to(s.cut, number)
 
 
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
@@ -69,7 +71,7 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     if view is View.CUTS and c.selection.picked is None and c.inspector.awaits_cut == (x, y):
         return awaited(c)
     if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:
-        asked = int(cell_lights(frame)[y, x])
+        asked = int(cell_lights.VIEW.found(frame)[y, x])
         return ["not known yet"] if asked < 0 else [f"its cell asks {count(asked)} of {count(frame.lights)} lights"]
     return []
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from imgui_bundle import imgui
 
-from viewer.state.readings import can_draw, span_of
+from viewer.state.readings import can_draw
 from viewer.state.tone import MID_GREY, MOST_EXPOSURE, NEUTRAL, WHITES, Curve, Tone
 from viewer.state.views import View
 from viewer.window.ui import Ui
@@ -65,7 +65,7 @@ def _range(ui: Ui) -> None:
     if frame is None or not can_draw(frame, view, s.light):
         return
     chosen = s.spans.get(view)
-    low, high = c.comparing.span(view) or ui.cached("span", frame, view, lambda: span_of(frame, view))
+    low, high = c.comparing.span(view) or view.declared.span(frame)
     row("Range", "what has the first and the last colour of the map; drag, or Ctrl+click to type")
     imgui.set_next_item_width(-em(4.2))
     speed = max((high - low) / 200.0, 1e-6)

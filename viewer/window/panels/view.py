@@ -10,11 +10,6 @@ from viewer.window.panels import legend, lights, slicing, tone
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, right, row
 
-_FLAT = (
-    *(View.OCCLUSION, View.SHADOW, View.PRIMITIVE, View.PIXEL_COUNT, View.CERTIFICATE, View.PENUMBRA, View.TREE),
-    *(View.FATE, View.MOVING_SHADOW),
-)
-
 
 def show(ui: Ui) -> None:
     """The panel."""
@@ -37,7 +32,7 @@ def show(ui: Ui) -> None:
                 row("Beneath", "how bright the picture is beneath the wrong pixels, or behind the slice")
                 changed, percents = imgui.slider_float("##beneath", 100.0 * p.beneath, 0.0, 60.0, "%.0f %%")
                 p.beneath = min(max(percents / 100.0, 0.0), 0.6) if changed else p.beneath
-            if c.session.view in _FLAT:
+            if c.session.view.is_flat:
                 row("Shading", "how much of the picture's light and shade shows under the colours")
                 changed, shading = imgui.slider_float("##shading", p.shading, 0.0, 1.0, "%.2f")
                 p.shading = min(max(shading, 0.0), 1.0) if changed else p.shading
@@ -84,7 +79,7 @@ def _views(ui: Ui) -> None:
 def _explanation(ui: Ui) -> None:
     """What the view shows, and what it costs."""
     c = ui.controller
-    view, run, text = c.session.view, c.runs.current, c.session.view.explanation
+    view, run, text = c.session.view, c.runs.current, c.session.view.help
     lacks = missing_in(run, view) if run is not None else ""
     if lacks:
         paragraph(f"This run {lacks}.", WARNING)

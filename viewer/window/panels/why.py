@@ -11,7 +11,7 @@ from tracer.reasons import Reason, Rule, Why
 from tracer.why_in_words import Words, plain
 from viewer.services.origin_pixels import with_origins
 from viewer.services.pixel_inspector import MOST_LIGHTS, nearest_first
-from viewer.state.views import FATE_COLORS, FATE_NAMES
+from viewer.state.palette import FATE_COLORS, FATE_NAMES
 from viewer.window.panels import lights
 from viewer.window.panels.links import Pointed, sentence
 from viewer.window.panels.status import traced_before_an_answer

@@ -1,0 +1,69 @@
+"""Pictures of frames by a few options."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
+from tracer.scene.lights import Light
+from viewer.state.draw_options import DrawOptions, Span
+from viewer.state.palette import Color
+from viewer.state.views import View
+from viewer.views import colorize, legend_of, values_of, words_at
+from viewer.views.base import Values
+from viewer.views.legend import Legend
+
+
+def options(view: View = View.COLOR, light: int = 0, span: Span | None = None, **more: Any) -> DrawOptions:
+    """A view of a light, in a range, and other options."""
+    return DrawOptions(view=view, light=light, **more).with_span(span)
+
+
+def picture(frame: Frame, view: View = View.COLOR, light: int = 0, **more: Any) -> NDArray[np.uint8]:
+    """(h, w, 3) uint8."""
+    return colorize(frame, options(view, light, **more))
+
+
+def legend_in(frame: Frame, view: View, light: int = 0, lights: tuple[Light, ...] = (), **more: Any) -> Legend | None:
+    """What is said of the view."""
+    return legend_of(frame, options(view, light, **more), lights)
+
+
+def values_in(frame: Frame, view: View, light: int = 0, **more: Any) -> Values:
+    """The exact values."""
+    return values_of(frame, options(view, light, **more))
+
+
+def words_in(frame: Frame, view: View, light: int, x: int, y: int, **more: Any) -> tuple[str, ...]:
+    """What one pixel shows."""
+    return words_at(frame, options(view, light, **more), x, y)
+
+
+class Counted(NamedTuple):
+    """A class as a legend counts it."""
+
+    name: str
+    color: Color
+    units: int
+    pixels: int
+    striped: bool
+
+
+def classes_in(frame: Frame, view: View, light: int = 0) -> list[Counted]:
+    """What a legend of modes or certificates counts."""
+    found = legend_in(frame, view, light)
+    said = [entry for entry in found.entries if entry.color] if found is not None else []
+    pixels = [re.search(r"([\d,]+) pixels;", entry.meaning) for entry in said]
+    return [
+        Counted(entry.meaning.split(":")[0], entry.color, _whole(entry.values[1]), _whole(at[1]), bool(entry.stripes))
+        for entry, at in zip(said, pixels, strict=True)
+        if at is not None and entry.color is not None
+    ]
+
+
+def _whole(text: str) -> int:
+    return int(text.replace(",", ""))

@@ -1,0 +1,439 @@
+"""Legends say what the colours of a view stand for, keep inside their room, and can be read over any picture."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.scenes import loaded
+from tests.tracing.nasty_worlds import nasty_walk
+from tests.viewer.colors import luminance
+from tests.viewer.drawn import classes_in, legend_in, picture
+from tests.viewer.fakes import (
+    in_cells,
+    in_part,
+    make_frame,
+    with_cell_lights,
+    with_certificates,
+    with_cuts,
+    with_lamps,
+    with_tree,
+    with_voxels,
+)
+from tracer.culling.fate import MOVING_SHADOW, Fate
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.culling.voxels.tell import STATE_NAMES
+from tracer.frame import Frame, Settings
+from tracer.renderer import Renderer
+from tracer.scene.lights import Light, light_in_words
+from tracer.statistics import CutErrors, SaidByModes
+from viewer.output.legend_picture import with_legend
+from viewer.state.draw_options import Slice
+from viewer.state.palette import FATE_COLORS, FATE_NAMES, GREY, OCCLUSION_COLORS, WRONG, Certificate, color_map
+from viewer.state.views import View
+from viewer.util.numbers import count, percent
+from viewer.util.resources import embedded_scenes
+from viewer.views.legend import (
+    BACKDROP,
+    BACKDROP_OPACITY,
+    NOTES,
+    QUIET,
+    TEXT,
+    Legend,
+    NoteKind,
+    fitting,
+    lay_out,
+    wrapped,
+)
+from viewer.views.voxels import voxels_of
+
+SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)
+LINE = 10.0
+
+
+LAMPS = tuple(Light("lamp", (0.0, 0.0, 0.0)) for _ in range(3))
+
+
+def measure(text: str) -> float:
+    return 5.0 * len(text)
+
+
+@pytest.fixture
+def frame() -> Frame:
+    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(make_frame(SETTINGS)))))))
+
+
+def of(frame: Frame, view: View, **chosen) -> Legend:
+    legend = legend_in(frame, view, **chosen)
+    assert legend is not None
+    return legend
+
+
+def test_every_view_but_the_picture_has_a_legend(frame: Frame):
+    assert legend_in(frame, View.COLOR) is None
+    for view in View:
+        if view is not View.COLOR:
+            legend = of(frame, view)
+            assert legend.title and (legend.entries or legend.scale or legend.facts or legend.notes), view
+    assert legend_in(make_frame(), View.DIFFERENCE) is legend_in(make_frame(), View.SAVED) is None
+
+
+def test_voxels_are_counted_in_the_slice_and_in_all(frame: Frame):
+    states, cut = voxels_of(frame), Slice(0, 0.3)
+    modes = (states.words[:-1] >> np.uint32(4) & 3).reshape(states.shape)
+    legend = of(frame, View.VOXELS, light=1, lights=LAMPS, slice=cut)
+    assert legend.title == "Voxels, light 1 (lamp)" and legend.columns == ("slice", "all")
+    for entry, state in zip(legend.entries, (1, 2, 0), strict=True):
+        shares = percent(int((modes[4] == state).sum()), 64), percent(int((modes == state).sum()), 1024)
+        assert entry.values == shares, entry
+    assert [fact.values for fact in legend.facts] == [("-0.875",), ("4 of 16",), ("16 x 8 x 8",)]
+    lamp = of(frame, View.VOXELS, light=2)
+    assert not lamp.entries and "Nothing is known of this light" in lamp.notes[0].text
+    assert legend_in(make_frame(), View.VOXELS) is None
+
+
+def test_what_rays_have_built_is_counted(frame: Frame):
+    legend = of(frame, View.TREE, slice=Slice(0, 0.01))
+    said = {fact.name: fact.values for fact in legend.facts}
+    assert said["slice at x"] == ("-1.94",) and said["built of the slice"] == ("100.0 %",)
+    assert said["nodes built"] == ("123",) and said["primitives in them"] == ("25.0 % of 160",)
+    assert (legend.scale.low, legend.scale.high) == ("level 0", "8") and "kdtree-lazy" in legend.title
+    assert of(frame, View.TREE, span=(1.0, 2.5)).scale.high == "2.5" and legend_in(make_frame(), View.TREE) is None
+
+
+def test_the_lights_that_cells_ask_are_counted(frame: Frame):
+    asked = frame.layers["cell lights"]
+    seen, legend = asked >= 0, of(frame, View.CELL_LIGHTS)
+    cells = len(np.unique(frame.cell[seen]))
+    assert [fact.values for fact in legend.facts] == [(f"{asked[seen].mean():.4g} of 3 lights",), (str(cells),)]
+    assert (legend.scale.low, legend.scale.high) == ("0", "3")
+    assert [entry.name for entry in legend.entries] == ["not known yet"]
+    assert of(frame, View.CELL_LIGHTS, span=(1.0, 2.5)).scale.high == "2.5"
+    assert legend_in(make_frame(), View.CELL_LIGHTS) is None
+
+
+def test_modes_come_with_shares_and_counts(frame: Frame):
+    legend = of(frame, View.OCCLUSION)
+    assert legend.columns == ("pixels", "primitives")
+    assert [entry.color for entry in legend.entries] == list(OCCLUSION_COLORS.values())
+    by_name = {entry.name: entry.values for entry in legend.entries}
+    assert by_name["fully rendered"] == ("42.9 %", "3") and by_name["dynamic"] == ("28.6 %", "2")
+    assert of(in_cells(make_frame(SETTINGS)), View.OCCLUSION).columns == ("pixels", "cells")
+
+
+@pytest.mark.parametrize("method", ["paper", "none", "auto", "certified", "paper+rest"])
+def test_a_scene_has_the_same_dynamic_primitives_by_every_method(method: str):
+    """Those that rest, in the second picture of one moment, carry modes where the method says so; none is missed."""
+    walk = nasty_walk(7, frames=1)
+    time, camera = walk.frames[0]
+    dynamic = sum(len(one.triangles) + len(one.quadrics) for one in walk.scene.objects[1:])
+    renderer = Renderer(walk.scene, Settings(30, 24, 2, method, modes=True, threads=1))
+    renderer.render(time, camera)
+    frame = renderer.render(time, camera)
+    for view in (View.OCCLUSION, View.SHADOW):
+        told = {entry.name: entry.values[1] for entry in of(frame, view).entries}
+        counts = {name: int(told.get(name, "0").replace(",", "")) for name in ("dynamic", "dynamic, at rest")}
+        assert sum(counts.values()) == dynamic > 0, counts
+        assert (counts["dynamic"] == 0) == (method not in ("paper", "none"))
+
+
+def test_in_motion_legends_count_the_modes_that_are_drawn():
+    """Also of pictures of which only a part is shaded, from places where the camera has not been, and coarser ones."""
+    scene = loaded(embedded_scenes()["default"])
+    renderer, seen = Renderer(scene, Settings(128, 96, depth=0, threads=2)), set()
+    for number, (width, height) in enumerate([(128, 96), (128, 96), (64, 48), (128, 96), (64, 48)]):
+        renderer.settings = replace(renderer.settings, width=width, height=height)
+        time = 1.0 + number / 8.0
+        with closing(renderer.refine(time, scene.camera_at(4.0 * time), parts=(2, 16))) as refining:
+            frame = next(refining)
+        assert frame.shaded is not None and not frame.shaded.all()
+        hit = (frame.primitive >= 0).sum()
+        for view in (View.OCCLUSION, View.SHADOW):
+            rows = classes_in(frame, view, 2)
+            drawn = picture(frame, view, 2, shading=0.0).reshape(-1, 3)
+            for color in {row.color for row in rows} - {GREY}:  # which is that of stripes, too
+                solid = sum(row.pixels for row in rows if row.color == color and not row.striped)
+                striped = sum(row.pixels for row in rows if row.color == color and row.striped)
+                found = (drawn == np.round(255.0 * np.array(color))).all(axis=1).sum()
+                assert solid <= found <= solid + striped and (found > solid or striped < 40), (view, color)
+            assert sum(row.pixels for row in rows) == hit
+            seen |= {row.name for row in rows if row.pixels}
+    assert seen >= {"PARTIALLY_OCCLUDED", "FULLY_RENDERED", "DYNAMIC", "FULL_SHADOW", "FULL_SHADOW, untrusted"}
+
+
+@pytest.mark.parametrize("light", [0, 1, 2])
+def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
+    legend, hit = of(frame, View.PENUMBRA, light=light, lights=LAMPS), frame.primitive >= 0
+    assert legend.title == f"Penumbra, light {light} (lamp)"
+    assert legend.facts[0].values == (str((16, 1, 64)[light]),)
+    asked, reached = frame.asked[hit][:, light].astype(int), frame.reached[hit][:, light].astype(int)
+    expected = {
+        "fully lit": (asked > 0) & (reached == asked),
+        "penumbra, more than half": (2 * reached > asked) & (reached < asked),
+        "penumbra, at most half": (2 * reached <= asked) & (reached > 0),
+        "fully dark": (asked > 0) & (reached == 0),
+        "faces away": asked == 0,
+    }
+    assert {entry.name: entry.values for entry in legend.entries} == {
+        name: (percent(there.sum(), hit.sum()),) for name, there in expected.items()
+    }
+    between = (reached > 0) & (reached < asked)
+    share = [percent(reached[between].sum(), asked[between].sum())] if between.any() else []
+    assert [fact.values[0] for fact in legend.facts[1:]] == share and bool(share) == (light != 1)
+    assert legend_in(make_frame(), View.PENUMBRA, light) is None
+
+
+@pytest.mark.parametrize("light", [0, 1, 2])
+@pytest.mark.parametrize("method", ["paper+cache", "certified+cache"])
+def test_fates_come_with_shares_of_pixels_and_of_the_rays_that_are_due(frame: Frame, light: int, method: str):
+    frame = replace(frame, settings=replace(SETTINGS, method=method))
+    legend, hit = of(frame, View.FATE, light=light, lights=LAMPS), frame.primitive >= 0
+    assert legend.title == f"Fate of shadow rays, first hits, light {light} (lamp)"
+    assert legend.columns == ("pixels", "of due")
+    fates = frame.fate(light)[hit]
+    due = (fates >= Fate.CULLED).sum()
+    by_name = {entry.name: entry for entry in legend.entries}
+    for fate in set(Fate(one) for one in fates):
+        entry, pixels = by_name.pop(FATE_NAMES[fate]), (fates == fate).sum()
+        share = percent(pixels, due) if fate is not Fate.FACES_AWAY else ""
+        assert entry.values == (percent(pixels, hit.sum()), share) and entry.color == FATE_COLORS[fate]
+    assert all(entry.values[0] == "0.0 %" for entry in by_name.values()), "what is usual is named"
+    saved = ((fates == Fate.CULLED) | (fates == Fate.DYNAMIC_ONLY)).sum()
+    said = {fact.name: fact.values[1] for fact in legend.facts}
+    assert said == {"saved": percent(saved, due), "traced": percent((fates >= Fate.PARTLY_OCCLUDED).sum(), due)}
+    assert not legend.notes and "nearest" in of(in_part(frame), View.FATE, light=light).notes[0].text
+    assert legend_in(make_frame(), View.FATE, light) is None
+
+
+def test_shadows_of_moving_objects_are_counted(frame: Frame):
+    legend, hit = of(frame, View.MOVING_SHADOW, light=1), frame.primitive >= 0
+    dark, asked = frame.moving_shadow(1), frame.fate(1) == Fate.DYNAMIC_ONLY
+    moves = (frame.occlusion_mode == OcclusionMode.DYNAMIC) & ~dark
+    counts = (dark & asked, dark & ~asked, ~dark & asked & ~moves, moves)
+    assert [entry.values for entry in legend.entries] == [(percent(one.sum(), hit.sum()),) for one in counts]
+    assert legend.facts[0].values == (percent((dark & asked).sum(), (dark & asked).sum() + counts[2].sum()),)
+    assert not legend.notes
+    bright = frame.fates.copy()
+    bright[..., 1] &= ~np.uint8(MOVING_SHADOW)
+    most = max((0, 2), key=lambda light: frame.moving_shadow(light).sum())
+    (note,) = of(replace(frame, fates=bright), View.MOVING_SHADOW, light=1, lights=LAMPS).notes
+    assert note.text == f"No moving object casts a shadow of this light now; light {most} (lamp) has some."
+    (note,) = of(replace(frame, fates=bright & ~np.uint8(MOVING_SHADOW)), View.MOVING_SHADOW, light=1).notes
+    assert note.text.endswith(", nor of another light.")
+    resting = replace(frame.statistics, resting=20)
+    (note,) = of(
+        replace(frame, fates=bright & ~np.uint8(MOVING_SHADOW), statistics=resting),
+        View.MOVING_SHADOW,
+        light=1,
+        lights=LAMPS,
+    ).notes
+    assert note.text == "What could move is at rest, and counts as static with paper."
+
+
+def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):
+    hit = frame.primitive >= 0
+    due = (frame.asked[hit] > 0).sum(axis=-1)
+    legend = of(frame, View.LIGHTS)
+    assert legend.facts[0].values == (f"{due.mean():.4g} of 3 lights",) and not legend.entries
+    assert (legend.scale.low, legend.scale.high) == ("0", "3")
+    part = in_part(frame)
+    known = (part.asked[hit & part.shaded] > 0).sum(axis=-1)
+    assert of(part, View.LIGHTS).facts[0].values == (f"{known.mean():.4g} of 3 lights",)
+    assert [entry.name for entry in of(part, View.LIGHTS).entries] == ["not known yet"]
+    unknown = {entry.name: entry.values for entry in of(part, View.PENUMBRA).entries}["not known yet"]
+    assert unknown == (percent((hit & ~part.shaded).sum(), hit.sum()),)
+    assert legend_in(make_frame(), View.LIGHTS) is None
+
+
+def test_clusters_of_lights_per_pixel_with_the_bound_of_their_error(frame: Frame):
+    nodes, bound = frame.layers["cut nodes"], frame.layers["cut bound"]
+    seen, legend = (frame.primitive >= 0) & (nodes >= 0), of(frame, View.CUTS)
+    assert [fact.values for fact in legend.facts] == [
+        (f"{nodes[seen].mean():.4g} for 100 samples of 3 lights",),
+        ("2.0 % of the light",),
+        (f"{percent(float(np.median(bound[seen])), 1.0)} at most",),
+    ]
+    assert legend.scale is not None and (legend.scale.low, legend.scale.middle, legend.scale.high) == ("0", "20", "40")
+    assert [entry.name for entry in legend.entries] == ["not known yet"]
+    assert of(frame, View.CUTS, span=(2.0, 9.0)).scale.high == "9"
+    assert legend_in(make_frame(), View.CUTS) is None
+
+
+def test_pictures_by_clusters_of_lights_tell_their_errors(frame: Frame):
+    cuts = replace(frame.statistics.cuts, errors=CutErrors(0.002, 0.0137, 0.041, 5))
+    legend = of(replace(frame, statistics=replace(frame.statistics, cuts=cuts)), View.DIFFERENCE)
+    assert [fact.values[0] for fact in legend.facts][2:] == ["0.2 % at most", "1.4 % at most", "4.1 % at most"]
+    assert not legend.notes, "nothing is said of answers"
+
+
+def test_a_light_is_called_by_its_number_and_by_a_name_that_says_more(frame: Frame):
+    assert light_in_words(2, "light 2") == light_in_words(2, "") == "light 2"
+    assert of(frame, View.SHADOW, light=1, lights=LAMPS).title == "Shadow mode, light 1 (lamp)"
+    uncovered = of(frame, View.SHADOW, light=20)
+    assert not uncovered.entries and uncovered.notes[0].kind is NoteKind.WARNING
+
+
+def test_heat_maps_say_whether_they_count_or_share(frame: Frame):
+    counts, shares = of(frame, View.SAVED), of(frame, View.SAVED, shares=True)
+    assert (counts.scale.low, counts.scale.high) == ("0", "7 and more")
+    assert (shares.scale.low, shares.scale.high) == ("0 %", "100 %") and "Share" in shares.title
+    assert counts.facts == shares.facts
+    total = f"{100 * frame.saved.sum() / frame.due_rays.sum():.1f} % of those due"
+    assert total in counts.facts[0].values[0]
+    assert "without culling" in of(frame, View.COST, shares=True).title
+
+
+@pytest.mark.parametrize("method, rests", [("paper", False), ("paper+rest", True), ("auto", True), ("none", True)])
+@pytest.mark.parametrize("view", [View.OCCLUSION, View.SHADOW])
+def test_what_is_dynamic_says_whether_what_rests_is(view: View, method: str, rests: bool):
+    frame = make_frame(Settings(width=16, height=8, method=method, modes=True))
+    (dynamic,) = (entry for entry in of(frame, view).entries if entry.name == "dynamic")
+    assert ("rests counts as static" in dynamic.meaning) == rests
+    assert ("also while it rests" in dynamic.meaning) != rests
+
+
+def test_work_of_a_picture_in_part_is_counted_where_it_was_done():
+    """Pixels that are not shaded yet show what the nearest has, and are no part of the counts."""
+    scene = loaded(embedded_scenes()["default"])
+    renderer = Renderer(scene, Settings(width=96, height=64, depth=2, record_work=True))
+    renderer.render(scene.frame_time(20))
+    partly, whole = renderer.refine(scene.frame_time(21), parts=(2, 16))
+    for one in (partly, whole):
+        rays, shadow = one.statistics.secondary.rays, one.statistics.shadow
+        saved, cost = (of(one, view).facts for view in (View.SAVED, View.COST))
+        assert saved[0].values == (f"{count(shadow.saved)} ({percent(shadow.saved, shadow.due)} of those due)",)
+        shaded = round(one.statistics.part * 96 * 64)
+        traced = shaded + rays + shadow.traced
+        assert cost[0].values[0].startswith(f"{count(traced)} (")
+        assert cost[1].values[0].startswith(f"{traced / shaded:.2f}, ")
+    legend = of(partly, View.COST)
+    part = percent(partly.statistics.part, 1.0)
+    assert legend.facts[0].name == f"in the {part} that is shaded" and "nearest" in legend.notes[0].text
+    assert of(whole, View.COST).facts[0].name == "in all" and not of(whole, View.COST).notes
+    assert of(partly, View.OCCLUSION).facts[0].name.endswith(f"{part} shaded")
+    assert not of(whole, View.OCCLUSION).facts[0].name.endswith("shaded")
+
+
+def test_the_depths_ends_are_those_of_the_colours():
+    depth = np.linspace(1.0, 9.0, 160 * 96, dtype=np.float32).reshape(96, 160)
+    scale = of(replace(make_frame(SETTINGS), depth=depth), View.DEPTH).scale
+    assert scale.reverse and float(scale.low) == pytest.approx(1.08, abs=0.01) and float(scale.high) > 8.9
+
+
+def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame):
+    wrong = of(frame, View.DIFFERENCE)
+    assert wrong.entries[0].color == WRONG and wrong.entries[0].values == ("2 (0.013 %)",)
+    assert wrong.facts[2].values[0].startswith("3 (")
+    assert (wrong.entries[0].name, wrong.facts[2].name) == ("wrong pixels", "wrong answers")
+    assert of(frame, View.WIPE, mark_wrong=False).entries[0].color is None
+    assert [fact.values for fact in wrong.facts[:2]] == [("2",), ("26 of 255",)]
+    found, known = frame.statistics.wrong, frame.statistics
+    known.wrong = replace(found, samples=4)
+    assert of(frame, View.DIFFERENCE).entries[0].name == "wrong pixels, 4 samples"
+    known.wrong, known.part = found, 0.12
+    assert of(frame, View.DIFFERENCE).notes[0].text == "in the 12.0 % of the picture that is shaded"
+    right = replace(frame, wrong=np.zeros_like(frame.wrong))
+    known.cuts, known.wrong, known.part = None, replace(found, answers=0, pixels=0), 1.0
+    assert of(right, View.DIFFERENCE).notes[0].kind is NoteKind.PLAIN
+    assert of(right, View.DIFFERENCE).notes[0].text == "None wrong of 15,360 answers known without tracing (25.0 %)."
+    known.wrong = replace(known.wrong, untraced=0)
+    off = of(right, View.DIFFERENCE).notes[0]
+    assert off.kind is NoteKind.WARNING and off.text.startswith("Every shadow ray was traced")
+
+
+def test_a_wrong_answer_that_no_screen_shows_is_not_a_difference_of_none(frame: Frame):
+    hardly = replace(frame, reference=frame.color + np.float32(1e-4) * (frame.wrong[..., None] > 0))
+    facts = {fact.name: fact.values[0] for fact in of(hardly, View.DIFFERENCE).facts}
+    assert facts["of them look otherwise"] == "0" and facts["largest difference"] == "0.026 of 255"
+
+
+@pytest.mark.parametrize("view", [view for view in View if view is not View.COLOR])
+def test_all_parts_lie_inside_and_no_two_texts_touch(frame: Frame, view: View):
+    layout = lay_out(of(frame, view), measure, LINE)
+    boxes = [(w.x, w.y, w.x + measure(w.text), w.y + LINE) for w in layout.words if w.text]
+    for left, top, right, bottom in [*boxes, *((s.x, s.y, s.x + s.width, s.y + s.height) for s in layout.swatches)]:
+        assert left >= 0.4 * LINE and right <= layout.width - 0.4 * LINE + 1e-6
+        assert top >= 0.4 * LINE and bottom <= layout.height - 0.4 * LINE + 1e-6
+    for i, one in enumerate(boxes):
+        for other in boxes[i + 1 :]:
+            assert one[2] <= other[0] or other[2] <= one[0] or one[3] <= other[1] or other[3] <= one[1]
+
+
+def test_in_little_room_less_is_said_and_in_none_nothing(frame: Frame):
+    legend = of(frame, View.SHADOW)
+    whole = lay_out(legend, measure, LINE)
+    assert fitting(legend, measure, LINE, whole.width, whole.height) == whole
+    narrower = fitting(legend, measure, LINE, whole.width - 1.0, whole.height)
+    texts = {words.text for words in narrower.words}
+    assert "pixels" in texts and "primitives" not in texts and "full shadow" in texts
+    bare = fitting(legend, measure, LINE, 150.0, whole.height)
+    assert {words.text for words in bare.words} >= {"full shadow"} and len(bare.words) < len(narrower.words)
+    assert fitting(legend, measure, LINE, 50.0, whole.height) is None
+    assert fitting(legend, measure, LINE, whole.width, 30.0) is None
+
+
+def test_words_wrap_at_the_edge():
+    lines = wrapped("one two three four five", measure, 45.0)
+    assert lines == ["one two", "three", "four five"] and max(map(measure, lines)) <= 45.0
+    assert wrapped("unbreakable", measure, 5.0) == ["unbreakable"]
+
+
+@pytest.mark.parametrize("picture", [0.0, 0.5, 1.0])
+def test_texts_can_be_read_over_any_picture(picture: float):
+    """Contrast of 4.5 to 1 (WCAG 2), against the backdrop over black, grey and white."""
+    backdrop = tuple(BACKDROP_OPACITY * channel + (1.0 - BACKDROP_OPACITY) * picture for channel in BACKDROP)
+    for color in (TEXT, QUIET, *NOTES.values()):
+        assert (luminance(color) + 0.05) / (luminance(backdrop) + 0.05) > 4.5
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (1.0, 1.0), (0.3, 0.9)])
+@pytest.mark.parametrize("size", [(240, 160), (512, 512), (1280, 720)])
+def test_a_legend_in_a_picture_has_its_colours_and_changes_nothing_around_it(
+    frame: Frame, place: tuple[float, float], size: tuple[int, int]
+):
+    white = np.full((size[1], size[0], 3), 255, np.uint8)
+    drawn = with_legend(white, of(frame, View.OCCLUSION), place)
+    rows, columns = np.nonzero((drawn != white).any(axis=-1))
+    top, bottom, left, right = rows.min(), rows.max(), columns.min(), columns.max()
+    assert left > 0 and right < size[0] - 1 and top > 0 and bottom < size[1] - 1, "inside, with a margin"
+    near = 3 + 0.05 * max(size)
+    for part, first, last, side in ((place[0], left, right, size[0]), (place[1], top, bottom, size[1])):
+        assert part > 0.0 or first < near
+        assert part < 1.0 or last > side - 1 - near
+    for color in OCCLUSION_COLORS.values():
+        assert (drawn == np.round(255.0 * np.asarray(color))).all(axis=-1).sum() >= 25
+    assert (white == 255).all(), "the picture itself stays as it is"
+
+
+def test_a_bar_in_a_picture_goes_through_the_colour_map(frame: Frame):
+    black = np.zeros((200, 300, 3), np.uint8)
+    depth, work = (with_legend(black, of(frame, view), (0.0, 0.0)) for view in (View.DEPTH, View.COST))
+    first, last = (np.round(255.0 * color) for color in color_map()[[0, -1]])
+
+    def column(drawn: np.ndarray, color: np.ndarray) -> int:
+        return int(np.nonzero((drawn == color).all(axis=-1).any(axis=0))[0][0])
+
+    assert column(work, first) < column(work, last) and column(depth, last) < column(depth, first)
+
+
+def test_a_picture_too_small_for_its_legend_has_none(frame: Frame):
+    assert with_legend(np.zeros((40, 60, 3), np.uint8), of(frame, View.OCCLUSION), (0.0, 0.0)) is None
+
+
+def test_modes_say_what_the_papers_method_would_cull(frame: Frame):
+    frame.statistics.by_modes = [SaidByModes(100, 25, 10), SaidByModes(300, 15, 0)]
+    of_light = of(
+        replace(frame, settings=replace(SETTINGS, method="certified", modes=True)), View.SHADOW, light=1
+    ).facts
+    assert [fact.values for fact in of_light] == [("light 1", "all lights"), ("5.0 %", "10.0 %"), ("0.0 %", "2.5 %")]
+    assert of_light[0].quiet and of_light[1].name == "culled"
+    assert [fact.values for fact in of(frame, View.OCCLUSION).facts] == [("all lights",), ("10.0 %",), ("2.5 %",)]
+    assert of(frame, View.OCCLUSION).facts[1].name == "culled"
+
+
+def test_what_voxels_and_certificates_say_of_a_light_has_the_same_words():
+    for state in (ShadowMode.FULL_SHADOW, ShadowMode.NON_SHADOW):
+        assert STATE_NAMES[int(state)] == Certificate(int(state)).name.lower()

@@ -1,0 +1,121 @@
+"""The exact value of a pixel, as a number and in words; histograms of regions; watched pixels."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.viewer.drawn import values_in, words_in
+from tests.viewer.fakes import (
+    in_part,
+    make_frame,
+    with_cell_lights,
+    with_certificates,
+    with_cuts,
+    with_lamps,
+    with_tree,
+    with_voxels,
+)
+from tracer.frame import Settings
+from viewer.state.pixels import ALL, MOST_WATCHED, Pixels, Region, region_between
+from viewer.state.readings import can_draw
+from viewer.state.views import View
+from viewer.views.base import histogram
+
+FRAME = with_cuts(
+    with_lamps(with_certificates(make_frame(Settings(width=16, height=8, verify=True, record_work=True))))
+)
+FRAME = with_tree(with_cell_lights(with_voxels(FRAME)))
+
+
+def test_no_axis_is_minus_nothing():
+    frame = replace(FRAME, normal=np.full_like(FRAME.normal, -1e-4))
+    assert words_in(frame, View.NORMAL, 0, 3, 2) == ("+0.000",) * 3
+
+
+def test_pixels_are_put_into_words():
+    def said(view: View, x: int, light: int = 0) -> tuple[str, ...]:
+        return words_in(FRAME, view, light, x, 2)
+
+    assert said(View.COLOR, 0) == ("0.500",) * 3
+    assert said(View.OCCLUSION, 2) == ("partially", "occluded")
+    assert [said(View.SHADOW, 4, light) for light in (0, 1)] == [("full", "shadow"), ("non", "shadow")]
+    assert said(View.SHADOW, 8) == ("dynamic",)
+    assert (said(View.PRIMITIVE, 13), said(View.PRIMITIVE, 15)) == (("6",), ("miss",))
+    assert (said(View.DEPTH, 3), said(View.NORMAL, 3)) == (("2",), ("+0.000", "+0.000", "+1.000"))
+    assert said(View.PIXEL_COUNT, 6) == ("16 now", "32 most") and said(View.PIXEL_COUNT, 0)[1] == "no most"
+    assert (said(View.DIFFERENCE, 3), said(View.COST, 3)) == (("1 wrong",), (str(FRAME.cost[2, 3]),))
+    assert said(View.PENUMBRA, 5) == (f"{FRAME.reached[2, 5, 0]} of {FRAME.asked[2, 5, 0]}",)
+    assert said(View.LIGHTS, 5) == (str(np.count_nonzero(FRAME.asked[2, 5])),)
+    part = in_part(FRAME)
+    assert words_in(part, View.DIFFERENCE, 0, 3, 2) == words_in(part, View.COST, 0, 3, 2) == ("?",)
+    assert words_in(part, View.COST, 0, 4, 2) == (str(FRAME.cost[2, 4]),)
+    for view in (View.SAVED, View.COST, View.DIFFERENCE):
+        assert np.array_equal(values_in(part, view).known, part.shaded), view
+    assert words_in(part, View.PENUMBRA, 0, 3, 2) == words_in(part, View.LIGHTS, 0, 3, 2) == ("?",)
+    nodes, bound = (FRAME.layers[name][2, 5] for name in ("cut nodes", "cut bound"))
+    assert nodes >= 0 and said(View.CUTS, 5) == (str(nodes), f"± {100 * bound:.3g} %")
+    assert {words_in(FRAME, View.CUTS, 0, x, y) for y, x in np.argwhere(FRAME.layers["cut nodes"] < 0) if x < 14} == {
+        ("?",)
+    }
+    shares = words_in(FRAME, View.SAVED, 0, 3, 2, shares=True)
+    assert shares == (f"{100 * FRAME.saved[2, 3] / FRAME.due_rays[2, 3]:.0f} %",)
+
+
+@pytest.mark.parametrize("view", list(View))
+def test_every_view_has_values_and_words_for_every_pixel(view):
+    values = values_in(FRAME, view, 1)
+    assert values.numbers.shape == (8, 16, len(values.names)) and values.numbers.dtype == np.float32
+    assert values.known.shape == (8, 16) and np.isfinite(values.numbers[values.known]).all()
+    assert all(words_in(FRAME, view, 1, x, y) for x in range(16) for y in range(8))
+    bare = make_frame()
+    if not can_draw(bare, view, 1):
+        assert words_in(bare, view, 1, 0, 0) == ()
+        with pytest.raises(ValueError, match="nothing"):
+            values_in(bare, view, 1)
+
+
+def test_a_region_is_of_whole_pixels():
+    region = region_between((0.62, 0.9), (0.2, -3.0))
+    assert region == Region(0.2, 0.0, 0.62, 0.9)
+    assert region.pixels(FRAME) == (slice(0, 8), slice(3, 10))
+    assert ALL.pixels(FRAME) == (slice(0, 8), slice(0, 16))
+    assert region_between((0.5, 0.5), (0.5, 0.5)).pixels(FRAME) == (slice(4, 5), slice(8, 9))
+
+
+def test_a_histogram_counts_the_region_and_nothing_else():
+    color = np.random.default_rng(3).random((8, 16, 3)).astype(np.float32)
+    frame = replace(FRAME, color=color)
+    rows, columns = slice(2, 5), slice(4, 12)
+    found = histogram(values_in(frame, View.COLOR), rows, columns)
+    part = color[rows, columns].reshape(-1, 3)
+    assert found.counts.sum(axis=1).tolist() == [24, 24, 24] and (found.pixels, found.of) == (24, 24)
+    for figures, expected in (
+        (found.least, part.min(0)),
+        (found.largest, part.max(0)),
+        (found.mean, part.mean(0)),
+    ):
+        assert figures == pytest.approx(tuple(expected))
+    edges = np.linspace(found.low, found.high, found.counts.shape[1] + 1)
+    assert np.array_equal(found.counts[1], np.histogram(part[:, 1], edges)[0])
+
+
+def test_whole_numbers_have_a_bin_each_and_misses_none():
+    found = histogram(values_in(FRAME, View.COST), slice(0, 8), slice(0, 16))
+    assert found.counts.shape[1] == FRAME.cost.max() - FRAME.cost.min() + 1
+    assert np.array_equal(found.counts[0], np.bincount(FRAME.cost.reshape(-1))[FRAME.cost.min() :])
+    depth = histogram(values_in(FRAME, View.DEPTH), slice(0, 8), slice(10, 16))
+    assert (depth.pixels, depth.of) == (32, 48) and depth.largest == (2.0,)
+    assert histogram(values_in(FRAME, View.DEPTH), slice(0, 8), slice(14, 16)) is None
+
+
+def test_pixels_are_pinned_once_and_let_go():
+    pixels = Pixels()
+    assert pixels.pin(FRAME, (0.5, 0.5)) == "watching pixel 8, 4"
+    assert pixels.watched == [(8.5 / 16, 4.5 / 8)]
+    assert "no longer" in pixels.pin(FRAME, (0.52, 0.51)) and pixels.watched == []
+    for x in range(MOST_WATCHED):
+        pixels.pin(FRAME, ((x + 0.5) / 16, 0.1))
+    assert "no more can be" in pixels.pin(FRAME, (0.5, 0.9)) and len(pixels.watched) == MOST_WATCHED

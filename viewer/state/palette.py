@@ -1,0 +1,196 @@
+"""The colours of modes, certificates and fates, and what each stands for: declared once, for all that shows them.
+
+The colours of modes are those of Okabe and Ito, which every kind of colour-blindness tells apart, and greys do too.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.fate import Fate
+from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.reasons import WHY_NOT_CULLED
+from viewer.state import terms
+
+Color = tuple[float, float, float]
+
+
+def hex_color(code: str) -> Color:
+    """Return a colour by its six hexadecimal digits."""
+    red, green, blue = (int(code[i : i + 2], 16) / 255.0 for i in (0, 2, 4))
+    return red, green, blue
+
+
+BACKGROUND = hex_color("16181D")
+GREY = hex_color("5C616C")
+UNKNOWN = hex_color("868C97")
+"""What is not known of a pixel yet."""
+FACES_AWAY = hex_color("3C3A72")
+"""A surface that faces away from the light."""
+
+
+class Certificate(IntEnum):
+    """What is proven of a cell and a light, in the place that a shadow mode has in a word."""
+
+    NONE = 0
+    FULL = 1
+    LIT = 2
+    CANDIDATES = 3
+
+
+OCCLUSION_COLORS: dict[OcclusionMode, Color] = {
+    OcclusionMode.INIT: GREY,
+    OcclusionMode.PARTIALLY_OCCLUDED: hex_color("E69F00"),
+    OcclusionMode.FULLY_RENDERED: hex_color("009E73"),
+    OcclusionMode.DYNAMIC: hex_color("CC79A7"),
+}
+
+SHADOW_COLORS: dict[ShadowMode, Color] = {
+    ShadowMode.INIT: GREY,
+    ShadowMode.FULL_SHADOW: hex_color("0072B2"),
+    ShadowMode.NON_SHADOW: hex_color("F0E442"),
+    ShadowMode.PARTIAL_SHADOW: hex_color("D55E00"),
+}
+
+CERTIFICATE_COLORS: dict[Certificate, Color] = {
+    Certificate.NONE: GREY,
+    Certificate.FULL: SHADOW_COLORS[ShadowMode.FULL_SHADOW],
+    Certificate.LIT: SHADOW_COLORS[ShadowMode.NON_SHADOW],
+    Certificate.CANDIDATES: SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW],
+}
+
+OCCLUSION_MEANING = {
+    OcclusionMode.INIT: "not seen yet, or to be examined again",
+    OcclusionMode.PARTIALLY_OCCLUDED: "something hides a part of it in this frame",
+    OcclusionMode.FULLY_RENDERED: "fully rendered: culled by its shadow modes",
+    OcclusionMode.DYNAMIC: "it moves: never culled",
+}
+
+SHADOW_MEANING = {
+    ShadowMode.INIT: "no shadow ray yet",
+    ShadowMode.FULL_SHADOW: "every shadow ray was blocked: culled once fully rendered",
+    ShadowMode.NON_SHADOW: "no shadow ray was blocked: tested against dynamic objects only once fully rendered",
+    ShadowMode.PARTIAL_SHADOW: "some were blocked: always traced",
+}
+
+CERTIFICATE_MEANING = {
+    Certificate.NONE: "nothing is proven, or the light is behind it: its shadow rays are traced",
+    Certificate.FULL: "all of it is in the shadow of static geometry: its shadow rays are culled",
+    Certificate.LIT: "nothing static is between it and the light: tested against dynamic objects only",
+    Certificate.CANDIDATES: "only a few primitives can block the light: tested against these and dynamic objects",
+}
+
+FATE_COLORS: dict[Fate, Color] = {
+    Fate.NONE: UNKNOWN,
+    Fate.FACES_AWAY: FACES_AWAY,
+    Fate.CULLED: SHADOW_COLORS[ShadowMode.FULL_SHADOW],
+    Fate.DYNAMIC_ONLY: SHADOW_COLORS[ShadowMode.NON_SHADOW],
+    Fate.CANDIDATES: hex_color("56B4E9"),
+    Fate.CACHED: hex_color("8ACBF3"),
+    Fate.PARTLY_OCCLUDED: OCCLUSION_COLORS[OcclusionMode.PARTIALLY_OCCLUDED],
+    Fate.PARTIAL_SHADOW: SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW],
+    Fate.NOT_SEEN_WHOLE: OCCLUSION_COLORS[OcclusionMode.INIT],
+    Fate.DYNAMIC: OCCLUSION_COLORS[OcclusionMode.DYNAMIC],
+    Fate.TRACED: hex_color("D3D6DC"),
+}
+"""Of a shadow ray; a fate that a mode brings about has the colour of this mode. TRACED also stands for all traced."""
+
+
+def label_color(color: Color) -> Color:
+    """Of words that stand on this colour: dark on bright ones, else light."""
+    red, green, blue = color
+    return (0.96, 0.97, 0.98) if 0.3 * red + 0.6 * green + 0.1 * blue < 0.45 else (0.05, 0.06, 0.08)
+
+
+def fate_palette(shown: Fate | None = None) -> list[Color]:
+    """The colours of all fates in their order; where one is to stand out, all but its own are dimmed.
+
+    TRACED stands for all traced."""
+
+    def stands_out(fate: Fate) -> bool:
+        return shown in (None, fate) or (shown is Fate.TRACED and fate.is_traced)
+
+    def dimmed(color: Color) -> Color:
+        red, green, blue = (OTHERS * part + (1.0 - OTHERS) * dark for part, dark in zip(color, BACKGROUND, strict=True))
+        return red, green, blue
+
+    return [color if stands_out(fate) else dimmed(color) for fate, color in FATE_COLORS.items()]
+
+
+OTHERS = 0.18
+"""How much is left of the colours of other fates than the one that is to stand out."""
+
+FATE_NAMES: dict[Fate, str] = {
+    Fate.NONE: "not known yet",
+    Fate.FACES_AWAY: "faces away",
+    Fate.CULLED: terms.CULLED,
+    Fate.DYNAMIC_ONLY: terms.DYNAMIC_ONLY,
+    Fate.CANDIDATES: terms.CANDIDATES_ONLY,
+    Fate.CACHED: terms.CACHE_HITS,
+    Fate.PARTLY_OCCLUDED: f"{terms.TRACED}: partially occluded",
+    Fate.PARTIAL_SHADOW: f"{terms.TRACED}: partly in shadow",
+    Fate.NOT_SEEN_WHOLE: f"{terms.TRACED}: not seen whole yet",
+    Fate.DYNAMIC: f"{terms.TRACED}: dynamic",
+    Fate.TRACED: terms.TRACED,
+}
+
+FATE_WOULD: dict[Fate, str] = {
+    Fate.CULLED: "would be culled",
+    Fate.DYNAMIC_ONLY: "… dynamic only",
+    Fate.TRACED: "traced in any case",
+}
+"""What fates that rays would have by the paper's method are called where nothing is culled."""
+
+FATE_MEANING: dict[Fate, str] = {
+    Fate.NONE: "this pixel has not been shaded yet",
+    Fate.FACES_AWAY: "no shadow ray is due: the surface faces away from the light",
+    Fate.CULLED: "answered without asking any geometry: with the paper's method, FULL_SHADOW of a fully rendered "
+    "primitive (§2.4)",
+    Fate.DYNAMIC_ONLY: "asked dynamic objects alone: with the paper's method, NON_SHADOW of a fully rendered "
+    "primitive (§2.4)",
+    Fate.CANDIDATES: "asked the few static primitives that can block it, and dynamic objects",
+    Fate.CACHED: "blocked by what blocked the last ray from here",
+    **{fate: f"traced: {why}" for fate, why in WHY_NOT_CULLED.items()},
+    Fate.TRACED: "traced through the whole scene",
+}
+
+
+WRONG = hex_color("FF00FF")
+"""A pixel with a wrong shadow answer: a colour of no other view, as pure as no shaded one gets."""
+
+BENEATH = 0.3
+"""Brightness of the traced picture beneath the difference."""
+
+WIPE_LINE = hex_color("F2F4F7")
+
+LESS, SAME, MORE = hex_color("5AA9F5"), hex_color("1B1D22"), hex_color("FF9F40")
+"""In a signed difference: where B has less than A, the same, and more."""
+
+# Viridis (even to the eye, in greys and to the colour-blind) as a polynomial of degree 6, constant term first.
+_VIRIDIS = np.array(
+    [
+        [0.2777273272234177, 0.005407344544966578, 0.3340998053353061],
+        [0.1050930431085774, 1.404613529898575, 1.384590162594685],
+        [-0.3308618287255563, 0.214847559468213, 0.09509516302823659],
+        [-4.634230498983486, -5.799100973351585, -19.33244095627987],
+        [6.228269936347081, 14.17993336680509, 56.69055260068105],
+        [4.776384997670288, -13.74514537774601, -65.35303263337234],
+        [-5.435455855934631, 4.645852612178535, 26.3124352495832],
+    ]
+)
+
+
+def color_map(steps: int = 256) -> NDArray[np.float32]:
+    """(steps, 3) float32 colours from the lowest value to the highest."""
+    t = np.linspace(0.0, 1.0, steps)[:, None]
+    return np.clip((t ** np.arange(len(_VIRIDIS))) @ _VIRIDIS, 0.0, 1.0).astype(np.float32)
+
+
+def signed_map(steps: int = 256) -> NDArray[np.float32]:
+    """(steps, 3) float32 colours of a signed difference, from the least to the largest."""
+    t = np.linspace(-1.0, 1.0, steps, dtype=np.float32)[:, None]
+    less, same, more = (np.asarray(color, np.float32) for color in (LESS, SAME, MORE))
+    return (same + np.abs(t) * (np.where(t < 0.0, less, more) - same)).astype(np.float32)

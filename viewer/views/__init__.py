@@ -1,0 +1,64 @@
+"""What can be seen of a frame: a view is one file here, which has the name of the view.
+
+The functions below are all that others need: they look the view up by its name.
+"""
+
+from __future__ import annotations
+
+from typing import cast
+
+from tracer.frame import Frame
+from viewer.state.draw_options import DrawOptions
+from viewer.state.readings import can_draw
+from viewer.state.views import View
+from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words
+from viewer.views.legend import Legend, lights_in_words
+
+AS_SAVED = Highlight()
+USUAL = DrawOptions()
+
+
+def view_of(view: View) -> FrameView:
+    """Return the view of this name."""
+    return cast(FrameView, view.declared)
+
+
+def colorize(frame: Frame, draw: DrawOptions = USUAL, highlight: Highlight = AS_SAVED) -> Pixels:
+    """Draw a frame, (h, w, 3) uint8, row 0 at the top.
+
+    Raises ValueError where there is no such light, or where the frame has not recorded what the view shows."""
+    if draw.view.of_light and not 0 <= draw.light < frame.lights:
+        raise ValueError(f"no light {draw.light}: {lights_in_words(frame.lights)}")
+    return view_of(draw.view).colorize(frame, draw, highlight)
+
+
+def legend_of(frame: Frame, draw: DrawOptions, lights: Lights = ()) -> Legend | None:
+    """Return the legend of a frame; None for colours that speak for themselves, and where the view cannot be drawn."""
+    return view_of(draw.view).legend(frame, draw, lights) if can_draw(frame, draw.view, draw.light) else None
+
+
+def values_of(frame: Frame, draw: DrawOptions) -> Values:
+    """Return the exact values of a frame.  Raises ValueError where the view cannot be drawn of it."""
+    if not can_draw(frame, draw.view, draw.light):
+        raise ValueError(f"the frame has nothing for the view {draw.view.label}")
+    return view_of(draw.view).values(frame, draw)
+
+
+def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    """Return the exact value of a pixel, in a few short lines; none where the view cannot be drawn of this frame."""
+    view = view_of(draw.view)
+    if not view.can_draw(frame, draw.light):
+        return ()
+    if not view.everywhere and frame.primitive[y, x] < 0:
+        return ("miss",)
+    return view.words(frame, draw, x, y)
+
+
+def picture_options(draw: DrawOptions) -> tuple[object, ...]:
+    """Return what of the options counts for the pixels of a view: another one whenever they must be drawn anew."""
+    used = draw.as_needed()
+    light, wipe = draw.light if draw.view.of_light else 0, draw.wipe if draw.view is View.WIPE else 0.0
+    return (
+        used.view, light, wipe, used.slice, used.beneath, used.shading, used.tone, used.span, used.outlines,
+        used.shares, used.mark_wrong, used.clipping, used.magnified,
+    )  # fmt: skip

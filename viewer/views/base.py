@@ -1,0 +1,181 @@
+"""What every view is made of: what it declares, its pixels, its legend, and its exact values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+from threading import Lock
+from typing import Any, ClassVar, NamedTuple, TypeVar
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.fate import Fate
+from tracer.frame import Frame
+from tracer.scene.lights import Light
+from viewer.state.draw_options import DrawOptions, Slice
+from viewer.state.views import Declaration, Record
+from viewer.views.legend import Legend
+
+Pixels = NDArray[np.uint8]
+Words = tuple[str, ...]
+Lights = tuple[Light, ...]
+T = TypeVar("T")
+
+NOT_RECORDED = {
+    Record.WORK: "the frame did not record the work at its pixels",
+    Record.LIGHTS: "the frame did not record which samples of its lights reach its pixels",
+}
+
+
+class Highlight(NamedTuple):
+    """What the window alone asks of a view: the fate that stands out, and whether the wipe has its line."""
+
+    fate: Fate | None = None
+    line: bool = True
+
+
+class Layer(NamedTuple):
+    """The layer of a slice, of so many, and where its middle lies along the axis, in units of the scene."""
+
+    number: int
+    many: int
+    place: float
+
+    def goes_to(self, cut: Slice, number: int) -> Slice:
+        """Return the slice in another layer, or in the last one before these end."""
+        return cut._replace(at=(min(max(number, 0), self.many - 1) + 0.5) / self.many)
+
+
+@dataclass(frozen=True)
+class Values:
+    """What a view shows of each pixel: `numbers` (h, w, k) float32 with a name for each of the k; where they are
+    `classes`, modes or numbers of primitives, only whether they are the same means anything.  `known` (h, w) says where
+    there is a value."""
+
+    numbers: NDArray[np.float32]
+    names: tuple[str, ...]
+    known: NDArray[np.bool_]
+    classes: bool = False
+
+
+class FrameView(Declaration):
+    """A view: the file that declares one names an instance of a subclass `VIEW`."""
+
+    everywhere: ClassVar[bool] = False
+    """Whether it shows something where nothing is hit, too."""
+
+    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+        """Draw a frame that it can be drawn of, (h, w, 3) uint8.  Raises ValueError for another."""
+        raise NotImplementedError
+
+    def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
+        """Say what the colours mean, and how much of the frame has them; None where they speak for themselves."""
+        return None
+
+    def values(self, frame: Frame, draw: DrawOptions) -> Values:
+        """Return the exact values that it shows."""
+        raise NotImplementedError
+
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+        """Return what it shows of one pixel, in a few short lines."""
+        raise NotImplementedError
+
+    def layer(self, frame: Frame, cut: Slice) -> Layer | None:
+        """Return the layer that a slice shows; None where there is nothing to cut."""
+        return None
+
+
+_found: WeakKeyDictionary[Frame, dict[Hashable, Any]] = WeakKeyDictionary()
+_lock = Lock()
+
+
+def once(frame: Frame, what: Hashable, find: Callable[[], T]) -> T:
+    """Return what `find` returns, which is found once for a frame: what is drawn again asks for it again."""
+    with _lock:
+        known = _found.setdefault(frame, {})
+    if what not in known:
+        known[what] = find()
+    found: T = known[what]
+    return found
+
+
+def forget(frame: Frame) -> None:
+    """Forget what was found of a frame."""
+    with _lock:
+        _found.pop(frame, None)
+
+
+def single(numbers: NDArray, name: str, known: NDArray[np.bool_], classes: bool = False) -> Values:
+    """Return values of one number a pixel (h, w)."""
+    return Values(np.asarray(numbers, np.float32)[..., None], (name,), known, classes)
+
+
+def hits(frame: Frame) -> NDArray[np.bool_]:
+    """Find the pixels that show something."""
+    return frame.primitive >= 0
+
+
+def is_shaded(frame: Frame, x: int, y: int) -> bool:
+    """Return whether a pixel of a picture that is shaded in part is one that is."""
+    return frame.shaded is None or bool(frame.shaded[y, x])
+
+
+def shaded_pixels(frame: Frame) -> NDArray[np.bool_]:
+    """Find the pixels that are shaded."""
+    return np.ones(frame.primitive.shape, np.bool_) if frame.shaded is None else frame.shaded
+
+
+def per_pixel(frame: Frame, entries: NDArray) -> NDArray[np.int64]:
+    """Return what units have at each pixel (h, w); -1 for a miss."""
+    if len(entries) == 0:
+        return np.full(frame.unit.shape, -1)
+    return np.where(frame.unit >= 0, entries[np.maximum(frame.unit, 0)].astype(np.int64), -1)
+
+
+def spoken(name: str) -> Words:
+    """Return the name of a mode in short lines."""
+    return tuple(name.lower().split("_"))
+
+
+BINS = 64
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """How often values lie where: `counts` (k, BINS) for each of k numbers, between `low` and `high`; and of each
+    number the least, the largest and the mean.  `pixels` have a value, of so many."""
+
+    counts: NDArray[np.int64]
+    low: float
+    high: float
+    least: tuple[float, ...]
+    largest: tuple[float, ...]
+    mean: tuple[float, ...]
+    pixels: int
+    of: int
+
+
+def histogram(values: Values, rows: slice, columns: slice) -> Histogram | None:
+    """Of a region's values; None where no pixel of it has one."""
+    known = values.known[rows, columns]
+    numbers = values.numbers[rows, columns][known].astype(np.float64)
+    numbers = numbers[np.isfinite(numbers).all(axis=-1)]
+    if len(numbers) == 0:
+        return None
+    low, high = float(numbers.min()), float(numbers.max())
+    if low == high or (numbers == np.rint(numbers)).all():
+        low, high = low - 0.5, high + 0.5
+    bins = min(BINS, round(high - low)) if (numbers == np.rint(numbers)).all() and high - low <= BINS else BINS
+    counts = np.stack([np.histogram(column, bins, (low, high))[0] for column in numbers.T])
+    return Histogram(
+        counts,
+        low,
+        high,
+        tuple(numbers.min(axis=0)),
+        tuple(numbers.max(axis=0)),
+        tuple(numbers.mean(axis=0)),
+        len(numbers),
+        known.size,
+    )

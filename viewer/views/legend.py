@@ -1,0 +1,233 @@
+"""What a legend consists of: the colours of a view, what each stands for, and how much of the frame has it.
+
+The window draws it into the picture, or beside it, and a saved picture may carry it; `lay_out` says where its
+parts lie: rectangles of colour and lines of text, in the unit in which `measure` gives the width of a text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from enum import Enum
+
+from viewer.state.palette import Color
+from viewer.util.numbers import count
+
+
+class NoteKind(Enum):
+    """How a note is meant."""
+
+    PLAIN = "a fact"
+    GOOD = "all is well"
+    WARNING = "take care"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A line: a colour, or none, what it stands for, a value for each of the legend's columns, and more in words.
+
+    Where it is `quiet`, its values name what is below them; the colour may have `stripes` of another."""
+
+    name: str
+    color: Color | None = None
+    values: tuple[str, ...] = ()
+    meaning: str = ""
+    quiet: bool = False
+    stripes: Color | None = None
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The colour map as a bar, and what its ends and its middle stand for; `reverse` begins with its last colour, and
+    `signed` is that of a signed difference."""
+
+    low: str
+    high: str
+    middle: str = ""
+    reverse: bool = False
+    signed: bool = False
+
+
+@dataclass(frozen=True)
+class Note:
+    """A sentence below the rest."""
+
+    text: str
+    kind: NoteKind = NoteKind.PLAIN
+
+
+@dataclass(frozen=True)
+class Legend:
+    """A title, names of the columns of values, and the rest as far as there is any; `facts` come after the colours."""
+
+    title: str
+    columns: tuple[str, ...] = ()
+    entries: tuple[Entry, ...] = ()
+    scale: Scale | None = None
+    facts: tuple[Entry, ...] = ()
+    notes: tuple[Note, ...] = ()
+
+
+def fact(name: str, value: str, meaning: str = "") -> Entry:
+    """Return a line without a colour."""
+    return Entry(name, None, (value,), meaning)
+
+
+def counts_scale(most: int, span: tuple[float, float] | None) -> Scale:
+    """Return the scale of a count: over what was chosen, or up to the most that there is."""
+    if span is not None:
+        return Scale(f"{span[0]:.4g}", f"{span[1]:.4g}")
+    return Scale("0", count(most), count(most // 2) if most % 2 == 0 else "")
+
+
+def lights_in_words(lights: int) -> str:
+    """Return what numbers the lights of a scene have."""
+    if lights == 0:
+        return "the scene has no lights"
+    return "the scene has one light, number 0" if lights == 1 else f"the scene's lights are 0 to {lights - 1}"
+
+
+Measure = Callable[[str], float]
+
+NOTE_WIDTH = 15.0
+"""Lines' heights: how wide notes are, where nothing else is wider."""
+
+BACKDROP: Color = (0.05, 0.06, 0.08)
+BACKDROP_OPACITY = 0.82
+TEXT: Color = (0.93, 0.94, 0.96)
+QUIET: Color = (0.68, 0.71, 0.76)
+NOTES: dict[NoteKind, Color] = {
+    NoteKind.PLAIN: QUIET,
+    NoteKind.GOOD: (0.36, 0.80, 0.64),
+    NoteKind.WARNING: (0.96, 0.74, 0.31),
+}
+
+
+@dataclass(frozen=True)
+class Words:
+    """A line of text; its upper left corner."""
+
+    x: float
+    y: float
+    text: str
+    color: Color = TEXT
+
+
+@dataclass(frozen=True)
+class Swatch:
+    """A rectangle of a colour, maybe with `stripes` of another, or, where that is None, of the colour map, which may go
+    from last to first, or that of a signed difference."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    color: Color | None
+    reverse: bool = False
+    signed: bool = False
+    stripes: Color | None = None
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The size of all, margins included, its parts, and, for lines that have a tip, (top, bottom, tip)."""
+
+    width: float
+    height: float
+    words: tuple[Words, ...]
+    swatches: tuple[Swatch, ...]
+    tips: tuple[tuple[float, float, str], ...]
+
+
+def fitting(legend: Legend, measure: Measure, line: float, width: float, height: float) -> Layout | None:
+    """The layout of as much of a legend as there is room for: notes go first, then facts, then the last column.
+
+    None where even the colours and their names are too large."""
+    shorter = replace(legend, notes=())
+    plain = replace(shorter, facts=())
+    narrow = replace(plain, columns=plain.columns[:1], entries=tuple(_cut(entry, 1) for entry in plain.entries))
+    bare = replace(narrow, columns=(), entries=tuple(_cut(entry, 0) for entry in plain.entries))
+    for one in (legend, shorter, plain, narrow, bare):
+        layout = lay_out(one, measure, line)
+        if layout.width <= width and layout.height <= height:
+            return layout
+    return None
+
+
+def _cut(entry: Entry, values: int) -> Entry:
+    return replace(entry, values=entry.values[:values])
+
+
+def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
+    """All of a legend, in lines of text so high."""
+    pad, gap, step = 0.5 * line, 0.8 * line, 1.2 * line
+    indent = 1.1 * line if any(entry.color for entry in legend.entries) else 0.0
+    rows = (*legend.entries, *legend.facts)
+    columns = max([len(legend.columns), *(len(row.values) for row in rows)])
+    table = [legend.columns, *(row.values for row in rows)]
+    widths = [max((measure(row[i]) for row in table if i < len(row)), default=0.0) for i in range(columns)]
+    names = max((_indent(row, indent) + measure(row.name) for row in rows), default=0.0)
+    inner = max(
+        names + sum(width + gap for width in widths), measure(legend.title), _scale_width(legend, measure, line)
+    )
+    inner = max(inner, NOTE_WIDTH * line if legend.notes else 0.0)
+    words, swatches, tips = [Words(pad, pad, legend.title)], [], []
+    y = pad + step
+
+    def values(texts: tuple[str, ...], color: Color) -> Iterator[Words]:
+        right = pad + inner
+        for width, text in zip(reversed(widths), reversed((*texts, *[""] * (columns - len(texts))))):
+            if text:
+                yield Words(right - measure(text), y, text, color)
+            right -= width + gap
+
+    if legend.scale is not None:
+        scale = legend.scale
+        swatches.append(Swatch(pad, y + 0.1 * line, inner, 0.7 * line, None, scale.reverse, scale.signed))
+        y += line
+        words.append(Words(pad, y, scale.low))
+        words.append(Words(pad + (inner - measure(scale.middle)) / 2.0, y, scale.middle, QUIET))
+        words.append(Words(pad + inner - measure(scale.high), y, scale.high))
+        y += step
+    if legend.columns:
+        words += values(legend.columns, QUIET)
+        y += step
+    for row in rows:
+        if row.color is not None:
+            side = 0.76 * line
+            swatches.append(Swatch(pad, y + 0.12 * line, side, side, row.color, stripes=row.stripes))
+        words.append(Words(pad + _indent(row, indent), y, row.name, TEXT if row.color is not None else QUIET))
+        words += values(row.values, QUIET if row.quiet else TEXT)
+        if row.meaning:
+            tips.append((y, y + step, row.meaning))
+        y += step
+    for note in legend.notes:
+        for text in wrapped(note.text, measure, inner):
+            words.append(Words(pad, y, text, NOTES[note.kind]))
+            y += step
+    height = y - (step - line) + pad
+    return Layout(inner + 2.0 * pad, height, tuple(words), tuple(swatches), tuple(tips))
+
+
+def _indent(row: Entry, indent: float) -> float:
+    return indent if row.color is not None else 0.0
+
+
+def _scale_width(legend: Legend, measure: Measure, line: float) -> float:
+    if legend.scale is None:
+        return 0.0
+    scale = legend.scale
+    ends = 2.0 * max(measure(scale.low), measure(scale.high)) + measure(scale.middle)
+    return max(ends + 2.0 * line, 11.0 * line)
+
+
+def wrapped(text: str, measure: Measure, width: float) -> list[str]:
+    """A text in lines that are no wider than that, as far as its words allow."""
+    lines = [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".strip()
+        if lines[-1] and measure(longer) > width:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines

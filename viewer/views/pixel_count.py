@@ -1,0 +1,46 @@
+"""How many pixels a unit covers, against the most it covered while fully rendered (§2.6 of the paper)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracer.frame import Frame
+from viewer.state.draw_options import DrawOptions
+from viewer.state.palette import GREY
+from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, per_pixel, single
+from viewer.views.legend import Entry, Legend, Scale
+from viewer.views.modes import culled_by_modes
+from viewer.views.paint import by_number
+
+
+class PixelCount(FrameView):
+    label = "Pixel count"
+    key = "7"
+    help = "Pixels a primitive covers now, against the most it covered while fully rendered."
+    of_modes = is_flat = True
+
+    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+        """Draw the ratio, logarithmic from 1 / zoom_factor to zoom_factor, where modes are no longer trusted."""
+        if not len(frame.highest_count):
+            return by_number(frame, draw, np.zeros(frame.unit.shape))
+        ratio = np.maximum(frame.pixel_count, 1) / np.maximum(frame.highest_count, 1)
+        place = 0.5 + 0.5 * np.log(ratio) / np.log(max(frame.settings.zoom_factor, 1.01))
+        unit = np.maximum(frame.unit, 0)
+        return by_number(frame, draw, place[unit], (frame.highest_count > 0)[unit], shading=draw.shading)
+
+    def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
+        zoom = frame.settings.zoom_factor
+        scale = Scale(f"1/{zoom:.3g}", f"{zoom:.3g} x", "as many")
+        entries = (Entry("never fully rendered", GREY),)
+        return Legend("Pixels now, against the highest count", (), entries, scale, culled_by_modes(frame))
+
+    def values(self, frame: Frame, draw: DrawOptions) -> Values:
+        return single(per_pixel(frame, frame.pixel_count), "pixels of the primitive", hits(frame))
+
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+        unit = frame.unit[y, x]
+        highest = int(frame.highest_count[unit])
+        return f"{int(frame.pixel_count[unit])} now", f"{highest} most" if highest else "no most"
+
+
+VIEW = PixelCount()
