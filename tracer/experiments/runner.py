@@ -106,9 +106,10 @@ class Run(ABC, Generic[Results]):
         assert self._scene is not None, "a run is done once"
         began, self._wake = time.monotonic(), wake
         self._left.mark(0, self.frames)
+        growing: Results | None = None
         try:
-            for results in self.steps(self._scene, world, lambda: self.stopping or cancel()):
-                self.results = self.copy(results)
+            for growing in self.steps(self._scene, world, lambda: self.stopping or cancel()):
+                self.results = self.copy(growing)
                 yield self.results
                 wake()
         except Cancelled:
@@ -118,6 +119,8 @@ class Run(ABC, Generic[Results]):
             raise
         finally:
             self.seconds = time.monotonic() - began
+            if growing is not None:  # once more: they may say now that the run was stopped
+                self.results = self.copy(growing)
             self._scene = None
             self.done = True
             wake()

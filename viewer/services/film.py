@@ -33,11 +33,11 @@ from viewer.services import stills
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.recipes import Recipes
 from viewer.services.runs import FileRun, Runs, check_size
-from viewer.state import flight
+from viewer.state import codec, flight
 from viewer.state.flight import Stop, Take
 from viewer.state.plans import FilmPlan, frames_within
 from viewer.state.preferences import Preferences
-from viewer.state.session import Session, Snapshot
+from viewer.state.session import Session
 from viewer.util.files import write_bytes
 
 if TYPE_CHECKING:
@@ -136,8 +136,7 @@ def _difference(path: Path, recipe: Recipe, scene: Scene) -> str:
         "version": (made.get("version"), program_version()),
         "scene": (made.get("scene"), fingerprint.of_scene(scene)),
         "size": (data.get("size"), list(recipe.size)),
-        "settings": (data.get("state"), _as_json(recipe.snapshot(scene).to_json())),
-        "way of drawing": (data.get("picture"), _as_json(recipe.to_json())),
+        "settings": (data.get("state"), _as_json(codec.state_to_json(recipe.state(), of_picture=True))),
     }
     return ", ".join(f"another {name}" for name, (old, new) in expected.items() if old != new)
 
@@ -293,7 +292,7 @@ class Films:
             recipe.settings, width=plan.size[0], height=plan.size[1], samples=plan.samples,
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()  # fmt: skip
-        place = (p.legend_x, p.legend_y) if plan.legend else None
+        place = self._session.draw.legend_at if plan.legend else None
         style = replace(recipe.style, magnified=1, caption=plan.caption, legend=place)
         history = cannot_come_back(settings, recipe.view, recipe.tells_counters)
         recipe = replace(recipe, settings=settings, style=style, repeats=0, history=history, by_gpu=False)
@@ -304,10 +303,11 @@ class Films:
     def _takes(self, scene: Scene) -> list[Take]:
         plan = self.plan
         if plan.through_bookmarks:
-            stops = [Snapshot.from_json(bookmark.get("state")) for bookmark in self._bookmarks.all]
+            states = [codec.state_from_json(bookmark.state) for bookmark in self._bookmarks.all]
+            stops = [Stop(state.time, state.camera or scene.camera_at(state.time)) for state in states]
             if len(stops) < 2:
                 raise ValueError("a flight needs two bookmarks at least; the menu Camera adds one")
-            return flight.through([Stop(stop.time, stop.camera) for stop in stops], self.count)
+            return flight.through(stops, self.count)
         first, last = self.frames
         camera = self._session.camera if plan.from_here else None
         return flight.along_path(scene, first, last, self.count if plan.seconds else None, camera)

@@ -286,7 +286,7 @@ class Runs:
             self._notices.say(f"this test was made {test.made_in(session.scene)}")
             return None
         session.playing = False
-        session.time = test.results.time
+        session.change(time=test.results.time)
         self.zoom_plan.same_start = True
         return step.camera
 

@@ -90,7 +90,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
     desk.runs.experiment_plan.frames = 5000
     desk.runs.start_experiment()
     desk.until(lambda: desk.runs.experiment.traced > 2)
-    before = (session.camera, session.time, session.settings, session.playing, session.follow)
+    before = (session.camera, session.time, session.settings, session.playing, session.on_path)
     asked: list[object] = []
     renderer.refine = lambda *arguments: asked.append(arguments)
     for disturb in (
@@ -107,7 +107,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
         disturb()
         assert desk.said == "the experiment is still under way; stop it first"
         desk.tick()
-        assert (session.camera, session.time, session.settings, session.playing, session.follow) == before
+        assert (session.camera, session.time, session.settings, session.playing, session.on_path) == before
     desk.runs.start_experiment()
     assert desk.said == "the experiment is still under way"
     desk.runs.start_zoom_test()
