@@ -14,6 +14,7 @@ from pathlib import Path
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Cancelled, Scene
+from tracer.settings import Settings
 from viewer.cli import arguments, options, pictures, processes
 from viewer.cli.arguments import INTERRUPTED, Parser, number
 from viewer.cli.console import Work, working
@@ -65,7 +66,7 @@ def parser() -> Parser:
     processes.add_processes(parser)
     pictures.add_picture(parser)
     options.add_tracing(parser)
-    options.add_verify(parser)
+    options.add_settings(parser, Settings, "verify")
     parser.set_defaults(frame=None, time=None, warmup=0, repeat=0, before=())
     return parser
 

@@ -24,7 +24,6 @@ from viewer.window.widgets import (
     clipped,
     count,
     em,
-    highest_count,
     paragraph,
     properties,
     row,
@@ -212,7 +211,8 @@ def _explain(step: Step) -> None:
     """A step in numbers and words."""
     if imgui.begin_tooltip():
         what = " (highest count while fully rendered)" if step.highest else ""
-        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {highest_count(step.highest)}{what}")
+        highest = f"highest {count(step.highest)}" if step.highest else "no highest count yet"
+        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {highest}{what}")
         imgui.text_unformatted(f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture")
         for line in changes_in_words(step.changes):
             imgui.text_unformatted(line)
