@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from typing import TypeVar
+from collections.abc import Sequence
+from itertools import product
+from typing import Any, TypeVar
 
 from tracer.geometry.accelerators import ACCELERATORS as EVERY_ACCELERATOR
 from tracer.geometry.accelerators import BVH8, KD_TREE
@@ -24,3 +26,10 @@ ACCELERATORS = cases((KD_TREE, BVH8), EVERY_ACCELERATOR)
 
 def examples(usual: int) -> int:
     return cases(usual, MORE * usual)
+
+
+def crossed(*axes: Sequence[Any]) -> list[tuple[Any, ...]]:
+    """Arguments of a test along several axes: in every run so many that each value of each axis is met, as what goes
+    wrong goes wrong by one of them; all combinations by `make test-all`."""
+    most = max(map(len, axes))
+    return cases([tuple(axis[i % len(axis)] for axis in axes) for i in range(most)], list(product(*axes)))

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 
 import tracer
+from tests.sweeps import crossed
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.same import assert_only_asked_less
 
@@ -39,8 +40,7 @@ def test_smaller_packets_give_the_same_answers_by_more_steps(method: str) -> Non
     assert 0 < steps[128] < steps[16] <= steps[1]
 
 
-@pytest.mark.parametrize("accelerator", ["bvh8", "kdtree"])
-@pytest.mark.parametrize("cache", ["cache-directions", "cache-tile"])
+@pytest.mark.parametrize(("cache", "accelerator"), crossed(["cache-directions", "cache-tile"], ["bvh8", "kdtree"]))
 def test_other_caches_change_nothing_but_what_is_asked(cache: str, accelerator: str) -> None:
     """Their counters, too, are those of any number of threads."""
     hits = 0

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import tracer
 from tests.scenes import world_of
-from tests.sweeps import ACCELERATORS
+from tests.sweeps import ACCELERATORS, crossed
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.same import assert_only_asked_less
 from tests.tracing.worlds import affine, moved, nasty_triangles, quad, quadrics, scene
@@ -109,8 +109,7 @@ def test_of_what_workers_find_the_highest_number_is_kept(workers: int, seed: int
     assert (found == -1).all()
 
 
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-@pytest.mark.parametrize("method", ["none", "paper", "cells"])
+@pytest.mark.parametrize(("method", "accelerator"), crossed(["none", "paper", "cells"], ACCELERATORS))
 def test_frames_of_random_scenes_are_those_without_a_cache(
     method: str, accelerator: str, monkeypatch: pytest.MonkeyPatch
 ):
@@ -136,8 +135,7 @@ def test_frames_of_random_scenes_are_those_without_a_cache(
     assert hits > 1000
 
 
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-@pytest.mark.parametrize("method", ["none", "paper", "cells"])
+@pytest.mark.parametrize(("method", "accelerator"), crossed(["none", "paper", "cells"], ACCELERATORS))
 def test_frames_of_kitchen_are_those_without_a_cache(bart: Path, method: str, accelerator: str):
     world = world_of(bart / "kitchen" / "kitchen.aff", accelerator)
     kitchen = world.scene

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.sweeps import ACCELERATORS, cases
+from tests.sweeps import ACCELERATORS, cases, crossed
 from tests.tracing.nasty_worlds import nasty_walk, with_lamps
 from tests.tracing.same import assert_same
 from tests.tracing.shades import going, kite
@@ -43,8 +43,7 @@ def test_rays_that_small_triangles_block_are_not_traced():
     assert shadow.culled > 0.05 * rays, "of other lamps, some samples"
 
 
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-@pytest.mark.parametrize("samples", [9, 33, 100])
+@pytest.mark.parametrize(("accelerator", "samples"), crossed(ACCELERATORS, [9, 33, 100]))
 def test_every_sample_that_is_culled_is_blocked(accelerator: str, samples: int):
     """Each is traced, and the samples that arrive are those of none."""
     settings = replace(SETTINGS, width=32, height=24, accelerator=accelerator, verify=True, record_lights=True)

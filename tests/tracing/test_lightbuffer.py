@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
-from tests.sweeps import ACCELERATORS
+from tests.sweeps import ACCELERATORS, crossed
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.shades import BEHIND, floor, going, kite, roof
@@ -64,8 +64,7 @@ def ways_around(rng: np.random.Generator, corners: np.ndarray, light: np.ndarray
     return ways[np.abs(ways).max(1) > 1e-9]
 
 
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-@pytest.mark.parametrize("longest", [2, 64])
+@pytest.mark.parametrize(("accelerator", "longest"), crossed(ACCELERATORS, [2, 64]))
 def test_what_a_cell_says_is_true_by_brute_force(accelerator: str, longest: int):
     """Nothing lies before a near plane; a far plane lies behind a hit; and between them all hits are candidates."""
     seen = dict.fromkeys(("lit", "blocked", "between", "listed"), 0)
@@ -146,8 +145,7 @@ def test_what_moves_is_no_nearer_than_depths_say():
 METHODS = ("lightbuffer", "paper+rest+lightbuffer", "certified+lightbuffer")
 
 
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("method", "accelerator"), crossed(METHODS, ACCELERATORS))
 def test_nasty_frames_are_those_of_none(method: str, accelerator: str):
     """Lights and objects that move, rest, start and stop, quadrics, and a number of threads."""
     saved = 0

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.sweeps import crossed
 from tests.tracing.brute import meet_all, primitives_there
 from tests.tracing.glassy import SCENE
 from tracer.culling.shadow_testing import LIGHT_MARGIN
@@ -49,8 +50,7 @@ def all_trees(renderer: Renderer, frame: Frame) -> list[RayTree]:
     return [ray_tree(renderer, frame, x, y) for y in range(frame.height) for x in range(frame.width)]
 
 
-@pytest.mark.parametrize("accelerator", ["kdtree", "bvh8"])
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("method", "accelerator"), crossed(METHODS, ["kdtree", "bvh8"]))
 def test_all_trees_together_are_the_frame(scene_file: Path, method: str, accelerator: str):
     renderer, frame = rendered(scene_file, method, accelerator)
     trees = all_trees(renderer, frame)

@@ -10,7 +10,7 @@ import pytest
 
 import tracer
 from tests.scenes import world_of
-from tests.sweeps import ACCELERATORS, cases
+from tests.sweeps import ACCELERATORS, cases, crossed
 from tests.tracing.same import assert_same
 
 
@@ -31,16 +31,18 @@ def render(world: tracer.World, settings: tracer.Settings, first: int, count: in
     return [renderer.render(scene.frame_time(number)) for number in range(first, first + count)]
 
 
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
+WALKS = (
+    ("kitchen/kitchen.aff", 395, cases(3, 10), cases(128, 320), "paper", False),
+    ("robot/Robot.aff", 0, 3, 96, "paper", True),
+    ("robot/Robot.aff", 0, 3, 96, "cells", True),
+    ("robot/Robot.aff", 0, 3, 96, "paper+cache", False),
+    ("museum/museum5.aff", 0, 3, 96, "paper", True),
+)
+
+
 @pytest.mark.parametrize(
-    "name, first, count, size, method, symmetric",
-    [
-        ("kitchen/kitchen.aff", 395, cases(3, 10), cases(128, 320), "paper", False),
-        ("robot/Robot.aff", 0, 3, 96, "paper", True),
-        ("robot/Robot.aff", 0, 3, 96, "cells", True),
-        ("robot/Robot.aff", 0, 3, 96, "paper+cache", False),
-        ("museum/museum5.aff", 0, 3, 96, "paper", True),
-    ],
+    ("name", "first", "count", "size", "method", "symmetric", "accelerator"),
+    [(*walk, accelerator) for walk, accelerator in crossed(WALKS, ACCELERATORS)],
 )
 def test_frames_are_the_same_for_any_number_of_threads_and_on_every_run(
     bart: Path, name: str, first: int, count: int, size: int, method: str, symmetric: bool, accelerator: str

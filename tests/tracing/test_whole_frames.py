@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
-from tests.sweeps import ACCELERATORS
+from tests.sweeps import ACCELERATORS, crossed
 from tests.tracing.naive_frame import NaiveFrame, NaiveRenderer
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.same import assert_verified
@@ -114,8 +114,7 @@ def test_frames_that_are_left_teach_what_the_naive_twin_says(method: str):
     assert seen["culled"] and seen["dynamic_only"], "no frame that was left has culled: this shows nothing"
 
 
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-@pytest.mark.parametrize("method", ["paper", "cells"])
+@pytest.mark.parametrize(("method", "accelerator"), crossed(["paper", "cells"], ACCELERATORS))
 def test_the_reference_of_random_scenes_is_the_picture_without_culling(method: str, accelerator: str):
     wrong = 0
 

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 import tracer
 from tests.scenes import loaded
+from tests.sweeps import crossed
 from tests.tracing.glassy import SCENE
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.worlds import moved, quad, scene
@@ -146,8 +147,7 @@ def test_the_fates_are_those_of_the_view_of_fates(scene_file: Path, method: str)
             assert one.fate is fate, (x, y, one)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("samples", [1, 9])
+@pytest.mark.parametrize(("method", "samples"), crossed(METHODS, [1, 9]))
 def test_of_a_lamps_rays_that_which_asked_most_is_in_the_view_of_fates(scene_file: Path, method: str, samples: int):
     lamps = {"lamp_radius": 0.3, "lamp_samples": samples}
     settings = Settings(32, 24, method=method, threads=1, depth=0, record_fates=True, **lamps)

@@ -106,10 +106,7 @@ def run(given: Namespace) -> int:
             cancelled = f"after {len(results.frames)} of {len(numbers)} frames; the table is of these"
         if not finished:
             work.note(f"cancelled {cancelled}")
-        if by_lamps:
-            failures = exports.write_files(exports.LAMP_WRITERS, lamps, wanted)
-        else:
-            failures = exports.write_files(exports.experiment_writers(given.verify), results, wanted)
+        failures = exports.write_files(lamps if by_lamps else results, wanted)
     if by_lamps:
         print_table(lamp_table(lamps, terminal_width()))
     else:

@@ -200,7 +200,7 @@ def _summary(plan: Plan, store: Store) -> list[Line]:
 
 def _plot(study: Study, lines: list[Line], path: Path) -> None:
     from viewer.output.figures import save
-    from viewer.output.sweep_figure import sweep_figure
+    from viewer.output.run_figures import sweep_figure
 
     try:
         figure = sweep_figure(study.title, lines)

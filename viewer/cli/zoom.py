@@ -114,7 +114,7 @@ def run(given: Namespace) -> int:
         results = last_of(zoom.run(scene, settings, start, *way, work.cancelled, world, on_frame))
         if done < frames:
             work.note(f"cancelled after {done} of {frames} frames; the tables are of these")
-        failures = exports.write_files(exports.ZOOM_WRITERS, results, wanted)
+        failures = exports.write_files(results, wanted)
     for approach in results.approaches:
         print_table(_steps_table(approach))
     print_table(_summary_table(results))

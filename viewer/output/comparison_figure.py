@@ -127,6 +127,8 @@ def _figure(shown: Shown) -> Figure:
     from matplotlib.figure import Figure
     from matplotlib.gridspec import GridSpec
 
+    from viewer.output import figures
+
     width, height = shown.recipe.size
     crops = list(shown.crops) or [Crop(0, 0, width, height)]
     tall = [_COLUMN * min(max(crop.height / crop.width, 0.3), 1.5) for crop in crops]
@@ -152,7 +154,7 @@ def _figure(shown: Shown) -> Figure:
         crop_number = -1
         for number, (kind, _) in enumerate(rows):
             panel = page.add_subplot(grid[number, column])
-            _bare(panel)
+            figures.bare(panel)
             if number == 0:
                 panel.set_title(method, fontsize=15.0, fontweight="bold")
             if kind == "picture":
@@ -197,14 +199,6 @@ def _row_name(kind: str, crop: int | None) -> str:
         return "picture"
     name = "picture" if crop is None and kind == "crop" else f"crop {'ABCDEF'[crop or 0]}"
     return name if kind == "crop" else "difference\nto none"
-
-
-def _bare(panel: Axes) -> None:
-    panel.set_xticks([])
-    panel.set_yticks([])
-    panel.grid(False)
-    for side in panel.spines.values():
-        side.set_visible(False)
 
 
 def _frame(panel: Axes, crop: int | None) -> None:

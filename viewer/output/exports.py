@@ -1,128 +1,149 @@
-"""Results of runs as files: every figure as JSON, the table as CSV, the plot as a picture.
+"""Results as files: every figure as JSON, tables as CSV, plots as pictures.
 
-The commands `bench` and `zoom` write them where their options say; the window under a name that tells
-what and when, and never over a file that is there.
+The commands `bench` and `zoom` write them where their options say; the window under a name that tells what and when,
+and never over a file that is there.
 """
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import threading
 from argparse import Namespace
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
 
 from tracer.experiments import experiment, lamp_experiment, zoom
 from tracer.version import program_version
 from viewer.output import reports
-from viewer.util.files import check_outputs, write_each, write_new, write_text
+from viewer.state.scene_rows import COLUMNS, Table, Values
+from viewer.util.files import check_outputs, write_each, write_new, write_text, write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from viewer.output.film import Film
 
-Results = TypeVar("Results", experiment.Results, lamp_experiment.LampResults, zoom.Results)
-Writers = Mapping[str, Callable[[Results, Path], None]]
-"""What writes each kind of file; raises OSError in one line, and ValueError where there is nothing to plot."""
+Results = experiment.Results | lamp_experiment.LampResults | zoom.Results
 
 ENDINGS = {".json": "json", ".csv": "csv", ".png": "plot"}
 """The window's files, by their endings; the commands have an option of each kind's name."""
 
+_AT_ONCE = 1 << 14  # rows
 _drawing = threading.Lock()  # matplotlib's settings are global while a figure is drawn
 
 
-def _writers(csv_text: Callable[[Results], str], figure: Callable[[Results], Figure]) -> Writers[Results]:
-    return {
-        "json": lambda results, path: write_text(path, json_text(results)),
-        "csv": lambda results, path: write_text(path, csv_text(results)),
-        "plot": lambda results, path: _plot(partial(figure, results), path),
-    }
+def write(results: Results, path: Path, kind: str = "") -> None:
+    """Write results as one of ENDINGS' kinds, by default that of the file's ending.
 
-
-def json_text(results: experiment.Results | lamp_experiment.LampResults | zoom.Results) -> str:
-    """Every figure, and which version of the program found them."""
-    return json.dumps(results.to_dict() | {"version": program_version()})
-
-
-def _plot(draw: Callable[[], Figure], path: Path) -> None:
-    from viewer.output import figures  # loads matplotlib
-
-    with _drawing:
-        figures.save(draw(), path)
-
-
-def _savings_figure(verified: bool, results: experiment.Results) -> Figure:
-    from viewer.output import figures
-
-    return figures.savings_figure(results, verified)
-
-
-def _zoom_figure(results: zoom.Results) -> Figure:
-    from viewer.output.zoom_figure import zoom_figure
-
-    return zoom_figure(results)
-
-
-def experiment_writers(verified: bool) -> Writers[experiment.Results]:
-    return _writers(reports.experiment_csv, partial(_savings_figure, verified))
-
-
-LAMP_WRITERS: Writers[lamp_experiment.LampResults] = {
-    "json": lambda results, path: write_text(path, json_text(results)),
-    "csv": lambda results, path: write_text(path, reports.lamp_csv(results)),
-}
-
-ZOOM_WRITERS: Writers[zoom.Results] = _writers(reports.zoom_csv, _zoom_figure)
-
-
-def wanted_files(options: Namespace) -> dict[str, Path]:
-    """The files of a command's options, by kind; raises ValueError or OSError where they cannot all be written."""
-    wanted = {kind: getattr(options, kind) for kind in ENDINGS.values()}
-    if wanted["plot"] is not None:
-        from viewer.output import figures  # loads matplotlib
-
-        figures.check_ending(wanted["plot"])
-    check_outputs({f"--{kind}": path for kind, path in wanted.items()})
-    return {kind: path for kind, path in wanted.items() if path is not None}
-
-
-def write_files(writers: Writers[Results], results: Results, wanted: Mapping[str, Path]) -> list[str]:
-    """Write each kind of file that is wanted; returns why some could not be."""
-    return write_each(partial(writers[kind], results, path) for kind, path in wanted.items())
-
-
-def write_experiment(results: experiment.Results, verified: bool, path: Path) -> None:
-    """Into a file of one of ENDINGS; raises OSError, and ValueError where there is nothing to plot."""
-    experiment_writers(verified)[ENDINGS[path.suffix]](results, path)
-
-
-def write_zoom_test(results: zoom.Results, path: Path) -> None:
-    """Into a file of one of ENDINGS; raises OSError, and ValueError where there is nothing to plot."""
-    ZOOM_WRITERS[ENDINGS[path.suffix]](results, path)
+    Raises OSError in one line, and ValueError where there is nothing to plot."""
+    kind = kind or ENDINGS[path.suffix]
+    if kind == "json":
+        write_text(path, json.dumps(results.to_dict() | {"version": program_version()}))
+    elif kind == "csv":
+        write_csv(path, *reports.table_of(results))
+    else:
+        _plot(lambda: _figure(results), path)
 
 
 def write_film(film: Film, results: zoom.Results, path: Path) -> None:
-    """The filmstrip of a zoom test, as a picture; raises OSError, and ValueError where there is nothing to draw."""
+    """Write the filmstrip of a zoom test, as a picture; raises as `write`."""
 
     def draw() -> Figure:
-        from viewer.output.film_figure import film_figure
+        from viewer.output.run_figures import film_figure
 
         return film_figure(film, results)
 
     _plot(draw, path)
 
 
+def _figure(results: Results) -> Figure:
+    from viewer.output import run_figures  # loads matplotlib
+
+    if isinstance(results, zoom.Results):
+        return run_figures.zoom_figure(results)
+    if isinstance(results, experiment.Results):
+        return run_figures.savings_figure(results, bool(results.settings.get("verify")))
+    raise ValueError("there is no plot of several kinds of lamps")
+
+
+def _plot(draw: Callable[[], Figure], path: Path) -> None:
+    from viewer.output import figures
+
+    with _drawing:
+        figures.save(draw(), path)
+
+
+def wanted_files(options: Namespace) -> dict[str, Path]:
+    """Return the files of a command's options, by kind; raises ValueError or OSError where they cannot all be
+    written."""
+    wanted = {kind: getattr(options, kind) for kind in ENDINGS.values()}
+    if wanted["plot"] is not None:
+        from viewer.output import figures
+
+        figures.check_ending(wanted["plot"])
+    check_outputs({f"--{kind}": path for kind, path in wanted.items()})
+    return {kind: path for kind, path in wanted.items() if path is not None}
+
+
+def write_files(results: Results, wanted: Mapping[str, Path]) -> list[str]:
+    """Write each kind of file that is wanted; returns why some could not be."""
+    return write_each(lambda kind=kind, path=path: write(results, path, kind) for kind, path in wanted.items())  # type: ignore[misc]
+
+
 def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], now: datetime | None = None) -> Path:
     """Let `write` make a new file, `name` with date, time and ending, in a folder that is made if need be; its path.
 
-    A name that is taken gets a number.  Raises OSError in one line, and what `write` raises; then no file is left.
-    """
+    A name that is taken gets a number.  Raises OSError in one line, and what `write` raises; then no file is left."""
     stem = f"{name}-{now or datetime.now():%Y-%m-%d-%H-%M-%S}"
     try:
         return write_new(folder, stem, ending, write)
     except OSError as error:
         raise OSError(f"nothing saved: {error}") from None
+
+
+# --- CSV -------------------------------------------------------------------------------------------
+
+
+def write_csv(path: Path, headings: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Write a table, row by row, as there may be millions; raises OSError in one line."""
+
+    def write(file: BinaryIO) -> None:
+        text = io.TextIOWrapper(file, "utf-8", newline="")
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(headings)
+        writer.writerows(rows)
+        text.detach()
+
+    write_whole(path, write)
+
+
+def write_rows(table: Table, rows: NDArray[np.int32], path: Path) -> None:
+    """Write these rows of a table of the scene, in their order, under its columns' titles; what is not known is empty.
+
+    Raises OSError in one line."""
+    columns = [(column.title, table.columns.get(column.name)) for column in COLUMNS[table.level]]
+    known = [(title, values) for title, values in columns if values is not None]
+
+    def cells() -> Iterator[tuple[str, ...]]:
+        for start in range(0, len(rows), _AT_ONCE):
+            some = rows[start : start + _AT_ONCE]
+            yield from zip(*(_cells(values, some) for _, values in known), strict=True)
+
+    write_csv(path, [title for title, _ in known], cells())
+
+
+def _cells(values: Values, rows: NDArray[np.int32]) -> list[str]:
+    numbers = values.numbers[rows]
+    if values.words is not None:
+        words = [*values.words, ""]  # -1 finds the last of them
+        return [words[code] for code in numbers.tolist()]
+    if numbers.dtype.kind == "f":
+        return [f"{number:.2f}" if number == number else "" for number in numbers.tolist()]
+    return [str(number) for number in numbers.tolist()]

@@ -1,9 +1,7 @@
-"""Results of experiments and zoom tests in words and as CSV, for tables, panels, plots and files alike."""
+"""Results of experiments and zoom tests in words and as rows, for tables, panels, plots and files alike."""
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, fields
@@ -129,24 +127,6 @@ def frames_in_words(results: experiment.Results) -> str:
     return text + ", stopped" * results.stopped
 
 
-def experiment_csv(results: experiment.Results) -> str:
-    """The table as CSV, parts of 1 and seconds as they are."""
-    return _csv(Row, experiment.table(results))
-
-
-def lamp_csv(results: LampResults) -> str:
-    """The table of several kinds of lamps as CSV, parts of 1 and seconds as they are."""
-    return _csv(LampRow, lamp_experiment.table(results))
-
-
-def _csv(kind: type[Row] | type[LampRow], rows: Sequence[Row] | Sequence[LampRow]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([f.name for f in fields(kind)])
-    writer.writerows(astuple(row) for row in rows)
-    return text.getvalue()
-
-
 # --- zoom tests ------------------------------------------------------------------------------------
 
 
@@ -214,16 +194,23 @@ def summary(approach: Approach) -> tuple[str, ...]:
     )
 
 
-def zoom_csv(results: zoom.Results) -> str:
-    """A line for each step of each factor, as CSV."""
+# --- tables for files -------------------------------------------------------------------------------
+
+
+def table_of(results: experiment.Results | LampResults | zoom.Results) -> tuple[list[str], list[Sequence[object]]]:
+    """Return the headings and the rows of results, parts of 1 and seconds as they are.
+
+    Of a zoom test that is a row for each step of each factor."""
+    if isinstance(results, experiment.Results):
+        return [f.name for f in fields(Row)], [astuple(row) for row in experiment.table(results)]
+    if isinstance(results, LampResults):
+        return [f.name for f in fields(LampRow)], [astuple(row) for row in lamp_experiment.table(results)]
     plain = [f.name for f in fields(Step) if f.name not in ("camera", "shadows", "changes")]
     lights = max((len(step.shadows) for approach in results.approaches for step in approach.steps), default=0)
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["factor", *plain, *(f"shadow_{light}" for light in range(lights)), "changes"])
+    rows: list[Sequence[object]] = []
     for approach in results.approaches:
         for step in approach.steps:
             values = [getattr(step, name) for name in plain]
             changes = "; ".join(changes_in_words(step.changes))
-            writer.writerow([approach.factor, *values, *(mode or "" for mode in step.shadows), changes])
-    return text.getvalue()
+            rows.append([approach.factor, *values, *(mode or "" for mode in step.shadows), changes])
+    return ["factor", *plain, *(f"shadow_{light}" for light in range(lights)), "changes"], rows

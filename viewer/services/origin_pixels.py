@@ -140,8 +140,8 @@ class OriginFinder:
     """Looks into the frames that set the modes of what was clicked, one by one; `of` is what is known."""
 
     def __init__(self, selection: Selection, history: FrameHistory, query: Ask) -> None:
-        self._selection, self._history = selection, history
-        self._newest = Newest(query, find_pixels)
+        self._selection, self._history, self._query = selection, history, query
+        self._newest = Newest()
         self._frame: Frame | None = None  # with which the newest was asked
         self._subject: tuple[object, object] | None = None
         self._known: dict[int, Found] = {}
@@ -171,7 +171,7 @@ class OriginFinder:
         record = self._next(pick)
         if record is not None:
             asked = record.number, record.time, record.camera, record.settings, pick.unit, pick.in_cells
-            self._newest.ask(self._frame, *asked)
+            self._newest.take(self._query(find_pixels, self._frame, *asked))
             if self._newest.answer is not None:
                 number, found = self._newest.answer
                 self._known[number] = found

@@ -83,7 +83,7 @@ class PixelInspector:
 
     def __init__(self, selection: Selection, query: Ask) -> None:
         self._selection, self._query = selection, query
-        self._explained = Newest(query, explain_pixel)
+        self._explained = Newest()
         self._subject: object = None
         self._why: Answer | None = None  # with the newest reasons
         self.cut: LightCut | None = None
@@ -118,7 +118,7 @@ class PixelInspector:
             self._forget()
             self._subject = subject
         if at is not None:
-            self._explained.ask(frame, *at)
+            self._explained.take(self._query(explain_pixel, frame, *at))
         answer = self.answer
         if answer is not None and answer.why is not None:
             self._why = answer

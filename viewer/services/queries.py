@@ -118,8 +118,7 @@ class Newest:
 
     `answer` stays while the next is on its way; `problem` says in one line why there is none."""
 
-    def __init__(self, query: Ask, function: Function) -> None:
-        self._query, self._function = query, function
+    def __init__(self) -> None:
         self._future: Future[Any] | None = None
         self.answer: Any = None
         self.problem = ""
@@ -129,21 +128,17 @@ class Newest:
         """Whether an answer is to come."""
         return self._future is not None and not self._future.done()
 
-    def ask(self, frame: Frame, *arguments: Hashable) -> None:
-        """Take up what has been answered, and ask this, which may have been answered already."""
-        self._take()
-        self._future = self._query(self._function, frame, *arguments)
-        self._take()
+    def take(self, newest: Future[Any]) -> None:
+        """Take up what has been answered, to what was asked last and to this."""
+        for future in (self._future, newest):
+            if future is not None and future.done() and not future.cancelled():
+                problem = future.exception()
+                self.problem = "" if problem is None else one_line(problem)
+                self.answer = self.answer if problem is not None else future.result()
+        self._future = newest
 
     def forget(self) -> None:
         """Drop the answer, and cancel what has been asked."""
         if self._future is not None:
             self._future.cancel()
         self._future, self.answer, self.problem = None, None, ""
-
-    def _take(self) -> None:
-        future = self._future
-        if future is not None and future.done() and not future.cancelled():
-            problem = future.exception()
-            self.problem = "" if problem is None else one_line(problem)
-            self.answer = self.answer if problem is not None else future.result()

@@ -249,7 +249,7 @@ class Experiment(Run[experiment.Results]):
         return replace(results, frames=list(results.frames), methods=methods)
 
     def write(self, results: experiment.Results, path: Path) -> None:
-        exports.write_experiment(results, self.settings.verify, path)
+        exports.write(results, path)
 
 
 class ZoomTest(Run[zoom.Results]):
@@ -298,7 +298,7 @@ class ZoomTest(Run[zoom.Results]):
         return replace(results, approaches=[replace(a, steps=list(a.steps)) for a in results.approaches])
 
     def write(self, results: zoom.Results, path: Path) -> None:
-        exports.write_zoom_test(results, path)
+        exports.write(results, path)
 
     def write_film(self, results: zoom.Results, path: Path) -> None:
         """The filmstrip as a picture; raises OSError in one line, and ValueError where no step is done."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -17,8 +16,8 @@ from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from tracer.scene.model import Progress
 from viewer.output import exports
-from viewer.output.rows_csv import write_rows
 from viewer.services.capture_service import CaptureService
+from viewer.services.editing import Editing
 from viewer.services.jobs import Job
 from viewer.services.render_request import Traced
 from viewer.services.selection import Selection
@@ -55,16 +54,6 @@ class _Made:
     in_order: bool
 
 
-class Hides(Protocol):
-    """The part of `Editing` that is used here."""
-
-    def hide(self, name: str) -> None: ...
-
-    def show(self, name: str) -> None: ...
-
-    def hide_primitive(self, number: int, hidden: bool = True) -> None: ...
-
-
 class SceneTable:
     """`level` is what rows are, `orders` what is asked of each level; with `all_lights` shadow modes are those for all
     lights together, else for the session's.  `held` says that the rows must not move under the pointer."""
@@ -76,25 +65,21 @@ class SceneTable:
         preferences: Preferences,
         notices: Notices,
         files: CaptureService,
-        editing: Hides,
+        editing: Editing,
         wake: Callable[[], None] = lambda: None,
     ) -> None:
         self._session, self._selection, self._wake = session, selection, wake
         self._preferences, self._notices, self._files, self._editing = preferences, notices, files, editing
         self.level = Level.OBJECTS
-        self.orders = {
-            Level.OBJECTS: Order(column="pixels", descending=True),
-            Level.PRIMITIVES: Order(column="pixels", descending=True),
-        }
+        self.orders = dict.fromkeys(Level, Order(column="pixels", descending=True))
         self.all_lights = self.visible = self.held = self._watched = False
         self._saves = False  # whether the table is to be saved as soon as it is that of the edited scene
         self.chosen = 0  # the serial of the selection that was made here last, or has been shown
         self._source: _Source | None = None  # the newest
         self._made: dict[Level, _Made] = {}
         self._job: Job[_Made] | None = None
-        self._asked: tuple[_Source, Level, Order] | None = None  # what the newest job was started for
-        self._failed: tuple[_Source, Level, Order] | None = None  # what could not be made, and is not tried again
-        self._told = ""  # and why
+        self._asked: object = None  # what the newest job was started for; where it fails, it is not tried again
+        self._told = ""  # why the last has failed
 
     @property
     def listing(self) -> Listing | None:
@@ -147,25 +132,25 @@ class SceneTable:
 
     def is_hidden(self, row: int) -> bool:
         """Whether a row's object or primitive is hidden, or is to be."""
-        edits, original = self._session.edits, self._session.original
-        if original is None:
-            return False
-        parts = parts_of(original)
-        part = row if self.level is Level.OBJECTS else int(parts.part_of[row])
-        return parts.names[part] in edits.hidden or (self.level is Level.PRIMITIVES and row in edits.hidden_primitives)
+        edits, by_number = self._session.edits, self.level is Level.PRIMITIVES
+        return self._object_of(row) in edits.hidden or (by_number and row in edits.hidden_primitives)
 
     def hide(self, row: int, hidden: bool = True) -> None:
         """Hide a row's object or primitive, or show it again, with the object that it belongs to."""
+        if self.level is Level.OBJECTS and hidden:
+            self._editing.hide(self._object_of(row))
+        elif not hidden:
+            self._editing.show(self._object_of(row))
+        if self.level is Level.PRIMITIVES:
+            self._editing.hide_primitive(row, hidden)
+
+    def _object_of(self, row: int) -> str:
+        """The name of a row's object, "" where no scene is open."""
         original = self._session.original
         if original is None:
-            return
+            return ""
         parts = parts_of(original)
-        if self.level is Level.OBJECTS:
-            (self._editing.hide if hidden else self._editing.show)(parts.names[row])
-            return
-        if not hidden:
-            self._editing.show(parts.names[int(parts.part_of[row])])
-        self._editing.hide_primitive(row, hidden)
+        return parts.names[row if self.level is Level.OBJECTS else int(parts.part_of[row])]
 
     @property
     def selection_serial(self) -> int:
@@ -205,9 +190,10 @@ class SceneTable:
         if listing is None or scene is None:
             return
         name = f"{scene.path.stem}-{listing.table.level.value.lower()}"
-
         folder, table, rows = self._preferences.picture_folder, listing.table, listing.rows
-        self._files.write(lambda: exports.save(folder, name, ".csv", lambda path: write_rows(table, rows, path)))
+        self._files.write(
+            lambda: exports.save(folder, name, ".csv", lambda path: exports.write_rows(table, rows, path))
+        )
 
     # --- one frame of the window -----------------------------------------------------------------
 
@@ -234,20 +220,17 @@ class SceneTable:
             newest = _Source(now, traced.frame, None if self.all_lights else self._session.light)
             if self._source is None or not newest.is_like(self._source):
                 self._source = newest
-        asked = None if self._source is None else (self._source, self.level, self.order)
-        if asked is not None and asked != self._failed and self._lacks(asked[0], self.held or moving):
-            self._start(*asked, self.held or moving)
+        if self._source is not None:
+            self._make(self._source, self.held or moving)
 
-    def _lacks(self, source: _Source, stays: bool) -> bool:
-        """Whether the listing is not that of the newest picture, or not in order though its rows need not stay."""
-        made = self._made.get(self.level)
-        if made is None or made.source is not source or made.listing.order != self.order:
-            return True
-        return not made.in_order and not stays
-
-    def _start(self, source: _Source, level: Level, order: Order, stays: bool) -> None:
-        before = self.listing
-        known = next((made.tables for made in self._made.values() if made.source is source), None)
+    def _make(self, source: _Source, stays: bool) -> None:
+        """Have a listing made, unless it is there or has failed: in order, or, where rows `stay`, as they are."""
+        level, order, made, before = self.level, self.order, self._made.get(self.level), self.listing
+        done = made is not None and made.source is source and made.listing.order == order
+        asked = (source, level, order, stays)
+        if asked == self._asked or (done and made is not None and (made.in_order or stays)):
+            return
+        known = next((one.tables for one in self._made.values() if one.source is source), None)
 
         def work(_: Progress) -> _Made:
             tables = known or tables_of(source.now, source.frame, source.light)
@@ -257,15 +240,14 @@ class SceneTable:
                     return _Made(source, tables, Listing(table, before.rows, order, before.problem), False)
             return _Made(source, tables, listed(table, order, before), True)
 
-        self._asked, self._job = (source, level, order), Job("The table", work, self._wake)
+        self._asked, self._job = asked, Job("The table", work, self._wake)
 
     def _take(self, job: Job[_Made]) -> None:
         if job.failure is not None:
-            self._failed = self._asked
             if job.failure.text != self._told:  # once, while pictures come that it fails for alike
                 self._notices.report(job.failure)
             self._told = job.failure.text
         made = job.result
         if made is not None and self._source is not None and made.source.now.original is self._source.now.original:
-            self._failed, self._told = None, ""
+            self._told = ""
             self._made[made.listing.table.level] = made

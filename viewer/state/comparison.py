@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from enum import StrEnum
 
@@ -156,3 +157,22 @@ class Comparison:
         if self.held:
             return True
         return self.mode is CompareMode.BLINK and int(2.0 * self.rate * seconds) % 2 == 1
+
+
+def elided(name: str, other: str, fits: Callable[[str], bool]) -> str:
+    """The name, or as much of it as fits; what it has in common with the beginning of the other goes first, from its
+    end, then what both end with, then the end of what is left."""
+    if fits(name):
+        return name
+    alike = next((n for n, pair in enumerate(zip(name, other, strict=False)) if pair[0] != pair[1]), None)
+    same = name[: min(len(name), len(other)) if alike is None else alike]
+    same = same[: max(same.rfind(mark) + 1 for mark in " ,+") if len(same) < len(name) else 0]  # whole words
+    rest = name[len(same) :]
+    for kept in range(len(same) - 1, -1, -1) if same else ():
+        if fits(same[:kept].rstrip() + "..." + rest):
+            return same[:kept].rstrip() + "..." + rest
+    front = "..." if same else ""
+    for end in range(len(rest) - 1, 0, -1):
+        if fits(front + rest[:end].rstrip() + "..."):
+            return front + rest[:end].rstrip() + "..."
+    return front + rest[:1]

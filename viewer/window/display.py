@@ -112,14 +112,11 @@ class Display(PictureTexture):
         if wanted in (self._drawn, self._failed):  # frames are equal only where they are the same
             return
         self._failed = wanted
-        self._draw(frame, draw, window)
-        self._drawn, self._failed, self.selected = wanted, None, window.selected
-
-    def _draw(self, frame: Frame, draw: DrawOptions, window: InWindow) -> None:
         pixels = colorize(frame, draw, window.highlight)
         if window.selected >= 0:
             pixels[_selected_border(frame, window, self.part_of)] = 255
         self.write(pixels, window.smooth and draw.view.shows_clipped)
+        self._drawn, self._failed, self.selected = wanted, None, window.selected
 
     def shows(self, draw: DrawOptions, window: InWindow = PLAIN) -> bool:
         """Return whether the frame is drawn like this."""

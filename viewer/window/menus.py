@@ -28,12 +28,7 @@ def handle_keys(ui: Ui) -> None:
     for command in ui.commands:
         keys = ui.keymap.of(command.name)
         if any(_pressed(ui, command, key, modifiers) for key in keys) and command.enabled():
-            run(ui, command)
-
-
-def run(ui: Ui, command: Command) -> None:
-    """Do what a command does; a mistake in it ends nothing."""
-    ui.guard.step(f"The command {command.name}", command.run)
+            ui.guard.step(f"The command {command.name}", command.run)
 
 
 Contents = Mapping[str, Callable[[], None]]
@@ -100,7 +95,7 @@ def _menu_item(ui: Ui, command: Command, separated: bool) -> None:
     if command.tip:
         tooltip(command.tip)
     if clicked:
-        run(ui, command)
+        ui.guard.step(f"The command {command.name}", command.run)
 
 
 def close_newest(ui: Ui) -> bool:
@@ -109,8 +104,6 @@ def close_newest(ui: Ui) -> bool:
     A dialog that has the keyboard to itself closes itself."""
     if imgui.is_popup_open("", ANY_POPUP):
         _close_list()
-    elif ui.tour.step is not None and ui.controller.frame is None:  # a window until there is a picture
-        ui.tour.end()
     elif ui.dialogs:
         ui.dialogs.pop()
     elif ui.fold.drawer:

@@ -19,7 +19,7 @@ from tracer.scene.model import Camera
 from viewer.__main__ import main
 from viewer.output import figures
 from viewer.output.reports import changes_in_words, happenings, modes_in_words
-from viewer.output.zoom_figure import zoom_figure
+from viewer.output.run_figures import zoom_figure
 from viewer.state.plans import MOST_FACTORS, parse_factors
 
 ROOT = Path(__file__).resolve().parents[3]

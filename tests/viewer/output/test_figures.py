@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from tracer.experiments import experiment
-from viewer.output import figures
+from viewer.output import figures, run_figures
 from viewer.output.reports import frames_in_words
 
 FRAMES = [5, 6, 7, 8]
@@ -44,7 +44,7 @@ def texts(panel) -> list[str]:
 
 
 def test_each_panel_shows_savings_their_average_and_their_maximum() -> None:
-    steps, tests = figures.savings_figure(results(), verified=False).axes
+    steps, tests = run_figures.savings_figure(results(), verified=False).axes
     for panel, work, average, most in (
         (steps, "steps", "average 25.0%", "most 60.0%, frame 6"),
         (tests, "tests", "average 16.2%", "most 50.0%, frame 8"),
@@ -61,10 +61,10 @@ def test_each_panel_shows_savings_their_average_and_their_maximum() -> None:
 
 
 def test_wrong_answers_have_a_panel_where_there_are_any() -> None:
-    *_, wrong = figures.savings_figure(results(wrong=(0, 3, 1, 0)), verified=True).axes
+    *_, wrong = run_figures.savings_figure(results(wrong=(0, 3, 1, 0)), verified=True).axes
     np.testing.assert_array_equal(wrong.lines[0].get_ydata(), [0, 3, 1, 0])
     assert texts(wrong) == ["paper, 4 (0.100%)"]
-    assert len(figures.savings_figure(results(), verified=True).axes) == 2
+    assert len(run_figures.savings_figure(results(), verified=True).axes) == 2
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_wrong_answers_have_a_panel_where_there_are_any() -> None:
     ],
 )
 def test_the_title_tells_scene_size_frames_and_whether_it_was_verified(verified: bool, wrong: int, said: str) -> None:
-    figure = figures.savings_figure(results(wrong=(wrong, 0, 0, 0)), verified)
+    figure = run_figures.savings_figure(results(wrong=(wrong, 0, 0, 0)), verified)
     assert figure.get_suptitle().endswith(f"\nhall.aff, 320 × 200 pixels, {said}")
 
 
@@ -101,7 +101,7 @@ def test_methods_differ_in_colour_and_dashes_and_their_labels_do_not_meet() -> N
     """Also where their values do: here the maxima are of one frame, and the averages within a percent."""
     near = {"steps": [1.0, 0.39, 0.75, 0.85], "tests": [1.0, 0.95, 0.9, 0.49]}
     nearer = {"steps": [1.0, 0.405, 0.75, 0.85], "tests": [1.0, 0.95, 0.9, 0.5]}
-    figure = figures.savings_figure(results((1, 0, 0, 0), symmetric=near, other=nearer), verified=True)
+    figure = run_figures.savings_figure(results((1, 0, 0, 0), symmetric=near, other=nearer), verified=True)
     figure.draw_without_rendering()
     for panel in figure.axes:
         curves = [line for line in panel.lines if len(line.get_xdata()) == len(FRAMES)]
@@ -119,7 +119,7 @@ def test_one_frame_that_saves_nothing_can_be_drawn() -> None:
     one = results()
     one.frames = [5]
     one.methods = {m: {key: values[:1] for key, values in of.items()} for m, of in one.methods.items()}
-    for panel in figures.savings_figure(one, verified=True).axes:
+    for panel in run_figures.savings_figure(one, verified=True).axes:
         assert texts(panel) == ["most 0.0%, frame 5", "paper, average 0.0%"]
         low, high = panel.get_ylim()
         assert low <= 0.0 < high
@@ -130,15 +130,15 @@ def test_nothing_to_compare_is_said() -> None:
     del alone.methods["paper"]
     for nothing in (alone, experiment.Results("s", (1, 1), methods={"none": {}, "paper": {}})):
         with pytest.raises(ValueError, match="nothing to plot"):
-            figures.savings_figure(nothing, verified=False)
+            run_figures.savings_figure(nothing, verified=False)
 
 
 @pytest.mark.parametrize("ending", [".png", ".svg", ".PDF"])
 def test_files_are_the_same_each_time_and_for_any_settings_of_a_user(tmp_path: Path, ending: str) -> None:
     paths = [tmp_path / f"{name}{ending}" for name in ("a", "b")]
-    figures.save(figures.savings_figure(results(), verified=True), paths[0])
+    figures.save(run_figures.savings_figure(results(), verified=True), paths[0])
     with matplotlib.rc_context({"lines.linewidth": 9, "savefig.facecolor": "red", "pdf.fonttype": 3, "font.size": 30}):
-        figures.save(figures.savings_figure(results(), verified=True), paths[1])
+        figures.save(run_figures.savings_figure(results(), verified=True), paths[1])
         assert matplotlib.rcParams["font.size"] == 30
     assert paths[0].read_bytes() == paths[1].read_bytes()
     start = {".png": b"\x89PNG", ".svg": b"<?xml", ".PDF": b"%PDF"}[ending]

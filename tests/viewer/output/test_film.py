@@ -13,7 +13,7 @@ from tracer.experiments.zoom import Approach, Change, Results, Step
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
 from viewer.output.film import Film
-from viewer.output.film_figure import COLUMNS, chosen_steps, film_figure
+from viewer.output.run_figures import COLUMNS, chosen_steps, film_figure
 from viewer.state.palette import WRONG
 from viewer.views.difference import Mark, ringed, wrong_marks
 

@@ -2,59 +2,53 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
+from tests.viewer.desk import Desk
 from tests.viewer.fakes import make_frame
 from tracer.culling.fate import Fate
 from tracer.explanation import NO_CERTIFICATE, Explanation, explain
 from tracer.frame import Frame
 from tracer.renderer import Renderer
-from tracer.scene.load import load_scene, scene_info
 from tracer.scene.model import Cancelled
 from tracer.why_in_words import Link
 from viewer.services import pixel_inspector
-from viewer.services.controller import Controller
 from viewer.services.origin_pixels import find_pixels
 from viewer.services.pixel_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, PixelInspector, drawn_lights, find_cut
-from viewer.services.queries import Newest, Queries, Query
+from viewer.services.queries import Queries, Query
 from viewer.state import navigation
-from viewer.state.preferences import Preferences
-from viewer.window.app import advance
 from viewer.window.panels.links import go_to
 from viewer.window.panels.overlays import BLOCKER, LIT, OCCLUDER, STOPPED, shadow_lines
 from viewer.window.panels.why import summary, unanswered
 from viewer.window.ui import Ui
 
-SIZE = (64, 48)
 
+class PixelDesk(Desk):
+    """A desk that knows a pixel in shadow and one that is lit."""
 
-class Desk:
-    """A controller at work on a scene in a file, without a window."""
-
-    def __init__(self, path: Path) -> None:
-        self.c = Controller(Preferences(dynamic_resolution=False, samples=1, threads=1))
-        scene = load_scene(path)
-        self.renderer = Renderer(scene, self.c.session.settings)
-        self.c.show(scene, self.renderer, scene_info(scene))
-        self.until(lambda: self.c.frame is not None and not self.c.active)
+    def __init__(self, path: Path, folder: Path) -> None:
+        super().__init__(path, folder)
+        self.renderer = cast(Renderer, self.c.renderer._renderer)
         self.shadow, self.lit = self._place(False), self._place(True)
 
-    def until(self, holds: Callable[[], bool], ticks: int = 5) -> None:
-        """Tick until it holds, and has for some ticks."""
-        end, held = time.monotonic() + 120.0, 0  # kernels may be compiled first
-        while held < ticks:
-            assert time.monotonic() < end, "in vain"
-            advance(self.c, SIZE)
-            held = held + 1 if holds() else 0
-            time.sleep(0.001)
+    def until(self, happens: Callable[[], object], ticks: int = 5) -> None:
+        """Tick until it happens, and has for some ticks."""
+        held = 0
+
+        def holds() -> bool:
+            nonlocal held
+            held = held + 1 if happens() else 0
+            return held >= ticks
+
+        super().until(holds)
 
     def answered(self) -> Answer:
         frame = self.c.frame
@@ -77,8 +71,8 @@ class Desk:
 
 
 @pytest.fixture
-def desk(tiny_scene_file: Path):
-    desk = Desk(tiny_scene_file)
+def desk(tiny_scene_file: Path, tmp_path: Path):
+    desk = PixelDesk(tiny_scene_file, tmp_path)
     yield desk
     assert desk.c.close()
 
@@ -87,7 +81,7 @@ def blocked(answer: Answer) -> bool:
     return any(one.blocked_at is not None for one in answer.lights)
 
 
-def test_the_pointer_is_followed_and_nothing_is_traced_for_it(desk: Desk):
+def test_the_pointer_is_followed_and_nothing_is_traced_for_it(desk: PixelDesk):
     assert desk.answer is None
     traced = desk.c.history.frames
     desk.c.selection.hovered = desk.shadow
@@ -104,7 +98,7 @@ def test_the_pointer_is_followed_and_nothing_is_traced_for_it(desk: Desk):
     assert desk.c.history.frames == traced
 
 
-def test_what_is_kept_stays_wherever_the_pointer_and_the_camera_go(desk: Desk):
+def test_what_is_kept_stays_wherever_the_pointer_and_the_camera_go(desk: PixelDesk):
     desk.c.selection.hovered = desk.lit
     desk.answered()
     desk.c.selection.select(desk.shadow)
@@ -122,7 +116,7 @@ def test_what_is_kept_stays_wherever_the_pointer_and_the_camera_go(desk: Desk):
     desk.until(lambda: desk.answer is None or desk.answer.x != again.x)
 
 
-def test_another_time_is_another_answer(desk: Desk):
+def test_another_time_is_another_answer(desk: PixelDesk):
     desk.c.selection.select(desk.shadow)
     first = desk.answered()
     desk.c.motion.step(3)
@@ -138,7 +132,7 @@ def test_another_time_is_another_answer(desk: Desk):
     assert blocked(desk.answered())
 
 
-def test_nothing_is_proven_by_a_method_that_is_not_chosen_any_more(desk: Desk):
+def test_nothing_is_proven_by_a_method_that_is_not_chosen_any_more(desk: PixelDesk):
     """Certificates that are no longer followed may be untrue by now."""
     desk.c.settings.change(method="certified")
     desk.until(lambda: not desk.c.active, ticks=20)
@@ -155,7 +149,7 @@ def test_nothing_is_proven_by_a_method_that_is_not_chosen_any_more(desk: Desk):
     assert {one.certificate for one in desk.answered().lights} == {NO_CERTIFICATE}
 
 
-def test_a_run_has_the_world_to_itself(desk: Desk):
+def test_a_run_has_the_world_to_itself(desk: PixelDesk):
     desk.c.selection.select(desk.shadow)
     desk.answered()
     desk.c.runs.experiment_plan = replace(desk.c.runs.experiment_plan, frames=400, size=(32, 24), depth=1)
@@ -166,7 +160,7 @@ def test_a_run_has_the_world_to_itself(desk: Desk):
     assert blocked(desk.answered())
 
 
-def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out(desk: Desk):
+def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out(desk: PixelDesk):
     desk.renderer.explain = lambda primitive, point, light: ("CANDIDATES", (0, 1) * 10)
     desk.c.selection.select(desk.shadow)
     answer = desk.answered()
@@ -179,7 +173,7 @@ def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out
     assert drawn.count(OCCLUDER) == MOST_OCCLUDERS - 1
 
 
-def test_reasons_come_with_the_answer_and_say_what_the_frame_did(desk: Desk):
+def test_reasons_come_with_the_answer_and_say_what_the_frame_did(desk: PixelDesk):
     desk.c.settings.change(method="paper")
     desk.until(lambda: not desk.c.active)
     desk.c.selection.select(desk.shadow)
@@ -194,7 +188,7 @@ def test_reasons_come_with_the_answer_and_say_what_the_frame_did(desk: Desk):
     desk.until(lambda: desk.c.inspector.why is None)
 
 
-def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: Desk):
+def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: PixelDesk):
     """In motion the reasons stay until the next come, but their pixels are elsewhere by then."""
     desk.c.selection.select(desk.shadow)
     answer, first, ui = desk.answered(), desk.c.frame, Ui(desk.c)
@@ -279,7 +273,9 @@ def test_clusters_are_those_of_the_pixel_and_the_picture_that_is_looked_at(monke
 # --- what fails, and what takes long ----------------------------------------------------------------
 
 
-def test_an_answer_that_fails_is_one_line_in_the_panel_and_stops_no_film(desk: Desk, monkeypatch: pytest.MonkeyPatch):
+def test_an_answer_that_fails_is_one_line_in_the_panel_and_stops_no_film(
+    desk: PixelDesk, monkeypatch: pytest.MonkeyPatch
+):
     def fail(*_: object) -> None:
         raise ValueError("no such light")
 
@@ -293,7 +289,7 @@ def test_an_answer_that_fails_is_one_line_in_the_panel_and_stops_no_film(desk: D
     assert unanswered(Ui(desk.c)) == "No answer: no such light."
 
 
-def test_a_frame_that_is_traced_once_more_for_its_pixels_gives_way_and_leaves_the_world(desk: Desk):
+def test_a_frame_that_is_traced_once_more_for_its_pixels_gives_way_and_leaves_the_world(desk: PixelDesk):
     frame, renderer, asked = desk.c.frame, desk.renderer, desk.c.frame.time
     more = 0, asked + 1.0, frame.camera, frame.settings, 0, False
     before = explain(renderer, frame, *pixel(frame, desk.shadow))
@@ -308,7 +304,7 @@ def test_a_frame_that_is_traced_once_more_for_its_pixels_gives_way_and_leaves_th
         with_query.frames.append(frame)
         return with_query.future
 
-    finder._newest = Newest(query, find_pixels)
+    finder._query = query
     traced = desk.c.traced
     finder.update(desk.c.session.scene, traced)
     assert with_query.frames == [traced.frame]

@@ -54,6 +54,10 @@ def failing(renderer, frame, cancelled):
     raise ValueError("no such light")
 
 
+def traced_so_far(renderer, frame, cancelled):
+    return len(renderer.asked)
+
+
 BEGUN = Event()
 
 
@@ -164,22 +168,23 @@ def test_a_query_that_takes_long_gives_way_to_a_picture_and_to_a_newer_query(thr
 
 
 def test_a_picture_is_asked_about_before_its_next_sample(thread):
-    renderer, answered, sampled = FakeRenderer(), Event(), Event()
+    renderer, asked, sampled = FakeRenderer(), Event(), Event()
     thread.use(renderer)
     render = renderer.render
 
     def slowly(time, camera, cancel):
         if len(renderer.asked) == 3:
             sampled.set()
-            answered.wait(0.5)
+            assert asked.wait(5.0)
         return render(time, camera, cancel)
 
     renderer.render = slowly
     frame = shown(thread, 1.0, samples=50)
     assert sampled.wait(5.0)
     assert not thread.busy, "more samples are nothing to wait for"
-    thread.query(column, frame, 1).add_done_callback(lambda _: answered.set())
-    assert answered.wait(5.0) and len(renderer.asked) < 50
+    answer = thread.query(traced_so_far, frame)
+    asked.set()
+    assert answer.result(5.0) == 4
 
 
 def test_a_query_is_answered_though_the_next_picture_makes_the_window_ask_anew(thread, monkeypatch):

@@ -121,15 +121,3 @@ def test_filters_and_folds(desk: Desk) -> None:
     assert len(rays.seen) == 1
     rays.toggle(rays.seen[0][1])
     assert len(rays.seen) == whole and len(lines(rays)) > 0
-
-
-def test_a_run_has_the_world_to_itself(desk: Desk) -> None:
-    rays = looked_at(desk)
-    desk.c.selection.select(middle(desk))
-    desk.until(lambda: rays.tree is not None)
-    desk.c.runs.experiment_plan = replace(desk.c.runs.experiment_plan, frames=400, size=(32, 24), depth=1)
-    desk.c.runs.start_experiment()
-    desk.until(lambda: rays.tree is None)
-    desk.c.runs.stop()
-    desk.until(lambda: desk.c.runs.current is None)
-    desk.until(lambda: rays.tree is not None)

@@ -11,7 +11,7 @@ import pytest
 from tests.viewer.desk import Desk
 from tests.viewer.fakes import make_frame, make_scene
 from tracer.scene.edits import Edits, edited
-from viewer.output.rows_csv import write_rows
+from viewer.output.exports import write_rows
 from viewer.services import scene_table
 from viewer.services.scene_table import Listing, Order, SceneTable, listed
 from viewer.state.scene_rows import COLUMNS, Level, Table, Values, tables_of

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from tests.viewer.fakes import make_frame
 from tracer.frame import Settings
 from tracer.statistics import FrameStatistics, ShadowCounts, WrongCounts
 from viewer.state.columns import NO_TIME, rows
-from viewer.state.comparison import CompareMode, Comparison, Side, named, sizes_in_words
+from viewer.state.comparison import CompareMode, Comparison, Side, elided, named, sizes_in_words
 from viewer.state.in_turn import LEAST, InTurn
 from viewer.state.views import View
 
@@ -88,3 +90,23 @@ def test_columns_say_what_is_shaded_so_far():
     b.statistics.part = 0.25
     first = rows(a, b)[0]
     assert (first.name, first.a, first.b) == ("Shaded pixels", 128, 32)
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "room", "shown"),
+    [
+        ("paper", "certified", 9, "paper"),
+        ("certified+cache, frame 3", "certified+cache, frame 12", 24, "certified+cache, frame 3"),
+        ("certified+cache, frame 3", "certified+cache, frame 12", 16, "certified+ca...3"),
+        ("certified+cache, frame 3", "certified+cache, frame 12", 6, "ce...3"),
+        ("certified+cache", "certified+rest", 10, "ce...cache"),
+        ("certified+cache", "certified", 8, "certi..."),
+        ("certified+cache, depth 10", "certified+cache, depth 2", 5, "...10"),
+        ("certified, frame 3", "certified, depth 3, frame 3", 12, "ce...frame 3"),
+        ("certified", "certified", 6, "cer..."),
+        ("certified", "paper", 6, "cer..."),
+    ],
+)
+def test_of_two_names_in_little_room_what_differs_is_seen(name: str, other: str, room: int, shown: str) -> None:
+    found = elided(name, other, lambda text: len(text) <= room)
+    assert found == shown and len(found) <= room

@@ -7,10 +7,9 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.frame import Frame
 from viewer.state.columns import Row, rows
-from viewer.state.comparison import RATES, CompareMode, Side, Source
+from viewer.state.comparison import RATES, CompareMode, Side, Source, elided
 from viewer.state.in_turn import InTurn
 from viewer.state.palette import LESS, MORE
-from viewer.state.told_apart import told_apart
 from viewer.window.panels.method_choice import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -214,7 +213,7 @@ def _heads(a: Side, b: Side, names: tuple[str, str]) -> None:
 def _name(name: str, other: str) -> None:
     """What A or B is, so that one sees what sets it apart from the other."""
     letter, room = name[:3], imgui.get_content_region_avail().x + 0.5
-    shown = letter + told_apart(name[3:], other[3:], lambda text: imgui.calc_text_size(letter + text).x <= room)
+    shown = letter + elided(name[3:], other[3:], lambda text: imgui.calc_text_size(letter + text).x <= room)
     imgui.text_unformatted(shown)
     if shown != name:
         tooltip(name)

@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.culling.modes import OcclusionMode
+from tracer.mode_origins import Origin
 from tracer.scene.model import Material
 from tracer.why_in_words import Link, Words
 from viewer.state.palette import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
@@ -101,6 +102,7 @@ def _wrong(answers: int, samples: int) -> str:
 
 def _modes(ui: Ui, pick: Pick) -> None:
     """The occlusion mode and the shadow mode per light, and how the pixel compares with its two reference pixels."""
+    origins = ui.controller.history.origins_of(pick)
     if imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_prop)):
         imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
         imgui.table_setup_column("mode", int(imgui.TableColumnFlags_.width_stretch), 1.5)
@@ -110,7 +112,8 @@ def _modes(ui: Ui, pick: Pick) -> None:
         for light, shadow in enumerate(() if pick.occlusion is OcclusionMode.DYNAMIC else pick.shadows):
             if shadow is not None:
                 _mode(ui.light_name(light), shadow.name, SHADOW_COLORS[shadow], SHADOW_MEANING[shadow])
-                _origin(ui, pick, light)
+                if origins is not None and light < len(origins.lights):
+                    _origin(ui, origins.lights[light], light)
         imgui.end_table()
     uncovered = sum(mode is None for mode in pick.shadows)
     if uncovered:
@@ -131,13 +134,10 @@ def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str)
     tooltip(meaning)
 
 
-def _origin(ui: Ui, pick: Pick, light: int) -> None:
+def _origin(ui: Ui, origin: Origin, light: int) -> None:
     """The pictures, numbered as in the plots, in which the primitive was first seen lit by a light and blocked from it,
     with the pixels that were."""
-    origins = ui.controller.history.origins_of(pick)
-    if origins is None or light >= len(origins.lights):
-        return
-    for lit, number in origins.lights[light].met():
+    for lit, number in origin.met():
         found, word, by = ui.controller.origins.of(number, light, lit), "lit" if lit else "blocked", ""
         if found is not None and found.pixel is not None:
             by = f" at {found.pixel[0]}, {found.pixel[1]}" + (f" and {found.count - 1} more" if found.count > 1 else "")

@@ -1,20 +1,20 @@
-"""The tour: a strip between the picture and its timeline, which covers nothing; a window with all steps while the first
-start is still compiling."""
+"""The tour: a strip between the picture and its timeline, which covers nothing."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.services.tour import STEPS, Step, Tour
+from viewer.services.tour import STEPS, Tour
 from viewer.window.ui import Ui
 from viewer.window.widgets import GOOD, QUIET, clipped, em, paragraph, tooltip_above
 
-_WIDTH = 27.0  # ems of the window
 _LEAST = 9.0  # ems of height that the picture keeps: with less room the strip lies over its lower edge
 _PADDING = ImVec2(0.6, 0.45)  # ems
+_AGAIN = "end the tour; the menu Help has it again"
 
 
 @dataclass
@@ -26,17 +26,44 @@ class TourState:
 
 
 def show(ui: Ui) -> None:
-    """The step that is next, and what to do; all steps while there is no picture yet."""
-    state = ui.state(TourState)
-    tour = ui.tour
+    """The step that is next, and what to do, in two or three lines as wide as the picture's window."""
+    state, tour = ui.state(TourState), ui.tour
     tour.update()
     if tour.step is None and not tour.last_word:
         state.height = 0.0
         return
-    if ui.controller.frame is None and ui.graphics.preview is None:
-        _all_steps(ui)
-    elif state.place is not None:
-        _strip(ui, *state.place)
+    if state.place is None:
+        return
+    left, top, width = state.place
+    padding = ImVec2(em(_PADDING.x), em(_PADDING.y))
+    wrap = max(width - 2.0 * padding.x, em(4.0))
+    texts = [tour.text(step) for step in STEPS] if tour.step is not None else [tour.last_word]
+    words = max(imgui.calc_text_size(text, False, wrap).y for text in texts)
+    state.height = imgui.get_frame_height_with_spacing() + words + 2.0 * padding.y + em(0.2)
+    imgui.set_next_window_pos(ImVec2(left, top))
+    imgui.set_next_window_size(ImVec2(width, state.height - em(0.2)))
+    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_docking
+    flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_focus_on_appearing
+    imgui.push_style_var(imgui.StyleVar_.window_padding, padding)
+    imgui.begin("Tour###tour", None, int(flags))
+    imgui.pop_style_var()
+    step = tour.step
+    if step is None:
+        text = tour.last_word
+        _head(tour, "The tour is done", wrap, ("Close", tour.end, ""))
+    else:
+        begun = ui.controller.frame is not None or ui.graphics.preview is not None
+        text = tour.text(step) if begun else "You can begin as soon as there is a picture."
+        last = tour.at == len(STEPS) - 1
+        title = f"Step {STEPS.index(step) + 1} of {len(STEPS)}:  {step.title}"
+        _head(
+            tour, title, wrap,
+            (f"{icons.ICON_FA_PLAY}  Show me", tour.show, "do this step for you"),
+            ("Finish" if last else "Skip", tour.skip, _AGAIN if last else "go on to the next step"),
+            (f"{icons.ICON_FA_XMARK}##end", tour.end, _AGAIN),
+        )  # fmt: skip
+    paragraph(text, QUIET)
+    imgui.end()
 
 
 def leave_room(ui: Ui, corner: ImVec2, room: ImVec2) -> float:
@@ -51,75 +78,28 @@ def height(ui: Ui) -> float:
     return ui.state(TourState).height if ui.tour.step is not None or ui.tour.last_word else 0.0
 
 
-def _strip(ui: Ui, left: float, top: float, width: float) -> None:
-    """The step in two or three lines, as wide as the picture's window."""
-    state = ui.state(TourState)
-    tour = ui.tour
-    padding = ImVec2(em(_PADDING.x), em(_PADDING.y))
-    wrap = max(width - 2.0 * padding.x, em(4.0))
-    texts = [tour.text(step) for step in STEPS] if tour.step is not None else [tour.last_word]
-    words = max(imgui.calc_text_size(text, False, wrap).y for text in texts)
-    state.height = imgui.get_frame_height_with_spacing() + words + 2.0 * padding.y + em(0.2)
-    imgui.set_next_window_pos(ImVec2(left, top))
-    imgui.set_next_window_size(ImVec2(width, state.height - em(0.2)))
-    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_docking
-    flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_focus_on_appearing
-    imgui.push_style_var(imgui.StyleVar_.window_padding, padding)
-    imgui.begin("Tour###tour", None, int(flags))
-    imgui.pop_style_var()
-    if tour.step is None:
-        _end(tour, wrap)
-    else:
-        _step(tour, tour.step, wrap)
-    imgui.end()
-
-
-def _end(tour: Tour, wrap: float) -> None:
-    """What is said after the last step."""
-    label, style = "Close", imgui.get_style()
-    button = imgui.calc_text_size(label).x + 2.0 * style.frame_padding.x + style.item_spacing.x
-    if imgui.begin_child("title", ImVec2(max(wrap - button, em(2.0)), imgui.get_frame_height())):
-        imgui.align_text_to_frame_padding()
-        clipped("The tour is done")
-        _marks(tour)
-    imgui.end_child()
-    imgui.same_line()
-    text = tour.last_word
-    if imgui.button(label):
-        tour.end()
-    paragraph(text, QUIET)
-
-
-def _step(tour: Tour, step: Step, wrap: float) -> None:
-    """What to do in a step, and to have it done or leave it out."""
-    last = tour.at == len(STEPS) - 1
-    labels = f"{icons.ICON_FA_PLAY}  Show me", "Finish" if last else "Skip", icons.ICON_FA_XMARK
-    style = imgui.get_style()
-    buttons = sum(
-        imgui.calc_text_size(label).x + 2.0 * style.frame_padding.x + style.item_spacing.x for label in labels
+def _head(tour: Tour, title: str, width: float, *buttons: tuple[str, Callable[[], None], str]) -> None:
+    """A line with a title, a dot for each step, and buttons: what each is called, does, and says of itself."""
+    style, clicked = imgui.get_style(), []
+    room = sum(
+        imgui.calc_text_size(label, True).x + 2.0 * style.frame_padding.x + style.item_spacing.x
+        for label, *_ in buttons
     )
-    imgui.align_text_to_frame_padding()
-    if imgui.begin_child("title", ImVec2(max(wrap - buttons, em(2.0)), imgui.get_frame_height())):
+    if imgui.begin_child("title", ImVec2(max(width - room, em(2.0)), imgui.get_frame_height())):
         imgui.align_text_to_frame_padding()
-        clipped(f"Step {STEPS.index(step) + 1} of {len(STEPS)}:  {step.title}")
+        clipped(title)
         _marks(tour)
     imgui.end_child()
-    imgui.same_line()
-    imgui.begin_disabled(tour.showing)
-    if imgui.button(labels[0]):
-        tour.show()
-    imgui.end_disabled()
-    tooltip_above("do this step for you")
-    imgui.same_line()
-    text = tour.text(step)
-    if imgui.button(labels[1]):
-        tour.skip()
-    tooltip_above("end the tour; the menu Help has it again" if last else "go on to the next step")
-    imgui.same_line()
-    if imgui.button(f"{labels[2]}##end"):
-        tour.end()
-    tooltip_above("end the tour; the menu Help has it again")
-    paragraph(text, QUIET)
+    for label, run, tip in buttons:
+        imgui.same_line()
+        imgui.begin_disabled(run == tour.show and tour.showing)
+        if imgui.button(label):
+            clicked.append(run)
+        imgui.end_disabled()
+        if tip:
+            tooltip_above(tip)
+    for run in clicked:  # when all is drawn of the step that it ends
+        run()
 
 
 def _marks(tour: Tour) -> None:
@@ -137,29 +117,3 @@ def _marks(tour: Tour) -> None:
             draw.add_circle(at, radius, imgui.get_color_u32(QUIET), 0, em(0.08))
     imgui.dummy(ImVec2(pitch * len(STEPS), imgui.get_frame_height()))
     tooltip_above(f"{len(tour.done)} of {len(STEPS)} steps are done")
-
-
-def _all_steps(ui: Ui) -> None:
-    """Under the progress of the first start."""
-    tour, area = ui.tour, imgui.get_main_viewport()
-    width = min(em(_WIDTH), 0.9 * area.work_size.x)
-    centre = area.get_work_center()
-    room = area.work_pos.y + area.work_size.y - centre.y - em(1.0)
-    wrap = width - 2.0 * imgui.get_style().window_padding.x
-    texts = [tour.text(step) for step in STEPS]
-    told = sum(imgui.calc_text_size(text, False, wrap).y + imgui.get_style().item_spacing.y for text in texts)
-    others = imgui.get_frame_height() + (len(STEPS) + 2) * imgui.get_text_line_height_with_spacing()
-    imgui.set_next_window_pos(ImVec2(centre.x - 0.5 * width, centre.y + em(0.5)))
-    imgui.set_next_window_size(ImVec2(width, 0.0))
-    flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_resize
-    flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_move
-    shown, stays = imgui.begin(f"A tour of {len(STEPS)} steps###steps", True, int(flags))
-    if shown:
-        for number, (step, text) in enumerate(zip(STEPS, texts, strict=True)):
-            paragraph(f"{number + 1}  {step.title}")
-            if told + others <= room:  # else only what the steps are called
-                paragraph(text, QUIET)
-        paragraph("You can begin as soon as there is a picture.", QUIET)
-    imgui.end()
-    if not stays:
-        tour.end()
