@@ -33,8 +33,8 @@ from viewer.output import capture, comparison_figure, exr, recipe
 from viewer.output.recipe import BUILT, CHANCE, Recipe
 from viewer.services import comparison, stills
 from viewer.services.scene_files import find_scene
+from viewer.state import codec
 from viewer.state.methods import NO_CULLING
-from viewer.state.session import Snapshot
 from viewer.state.views import View
 from viewer.util.messages import ERROR, in_one_line, printable
 
@@ -129,7 +129,9 @@ class Checker:
             return self._against_tracing_all(path, kept, wanted)
         frame, wanted = self._traced(path, wanted)
         pixels, _ = stills.draw(frame, self._open_scene, wanted)
-        return self._compared(kept, pixels, data, frame.statistics.to_dict(), wanted.by_gpu)
+        return self._compared(
+            kept, pixels, data, frame.statistics.to_dict(), bool(data.get("picture", {}).get("by_gpu"))
+        )
 
     def _against_tracing_all(self, path: Path, kept: NDArray[np.uint8], wanted: Recipe) -> Verdict:
         """What can be said of a picture whose modes nobody can learn again: where it is not that without culling."""
@@ -152,8 +154,7 @@ class Checker:
 
     def _wanted(self, data: Mapping[str, Any]) -> Recipe:
         """The recipe that a picture carries; raises ValueError in one line."""
-        snapshot, size = Snapshot.from_json(data.get("state")), capture.size_of(data.get("size"))
-        return recipe.from_json(snapshot, size, data.get("picture"))
+        return recipe.of_state(codec.picture_from_json(data))
 
     def _traced(self, path: Path, wanted: Recipe) -> tuple[Frame, Recipe]:
         """The frame of a picture, once more; raises ValueError, in one line, where that cannot be."""
@@ -200,8 +201,7 @@ class Checker:
 
     def _figure(self, path: Path, data: Mapping[str, Any], ending: str) -> bytes:
         """The file of a figure, made again."""
-        snapshot, size = Snapshot.from_json(data.get("state")), capture.size_of(data.get("size"))
-        wanted = comparison.from_json(snapshot, size, data["figure"])
+        wanted = comparison.from_json(codec.picture_from_json(data), data["figure"])
         scene, common = self._prepared(path, wanted.recipe, wanted.methods)
         wanted = replace(wanted, recipe=common)
 

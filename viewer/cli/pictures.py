@@ -213,11 +213,7 @@ def filled_in(parser: Parser, given: Namespace, words: list[str]) -> Namespace:
 
 def _defaults(path: Path) -> tuple[Recipe, dict[str, Any]]:
     """Return the recipe of a saved picture, and what it carries by the names of the options; raises CaptureError."""
-    snapshot, size = capture.read_with_size(path)
-    try:
-        saved = recipe.from_json(snapshot, size, capture.read_data(path).get("picture"))
-    except ValueError as error:
-        raise capture.CaptureError(f"{path}: cannot be restored: {error}") from None
+    saved = recipe.of_state(capture.read(path))
     saved, style = replace(saved, scene=scene_of(path)), saved.style
     kept: dict[str, Any] = {name: getattr(saved.settings, name) for name in _SETTINGS}
     kept |= {name: getattr(style, name) for name in _STYLE}
@@ -226,8 +222,7 @@ def _defaults(path: Path) -> tuple[Recipe, dict[str, Any]]:
     kept |= {"exposure": style.tone.exposure, "white": style.tone.white, "tone": style.tone.curve}
     kept |= {"mark_clipped": style.clipping, "range": style.span, "slice": style.cut}
     kept["caption"] = style.caption.replace("{", "{{").replace("}", "}}")
-    if size is not None:
-        kept["size"] = size
+    kept["size"] = saved.size
     if saved.camera is not None:
         kept["camera"] = saved.camera
     kept["view"] = ChosenView(saved.view, saved.edits.light_number(saved.light), saved.wipe, style.shares)

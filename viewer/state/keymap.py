@@ -18,10 +18,6 @@ HELD = {
     "Fly right": "D",
     "Fly up": "E",
     "Fly down": "Q",
-    "Turn left": "",
-    "Turn right": "",
-    "Turn up": "",
-    "Turn down": "",
     "Show A": "Z",
 }
 """What is done for as long as a key is held, and its key; Shift makes it faster."""

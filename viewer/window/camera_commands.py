@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 from viewer.state import camera_text, navigation
 from viewer.state.picking import extent_at, point_at
 from viewer.state.selection_lookup import looking_at, part_points, place_of, primitive_points
 from viewer.window.command import Command, Condition, scene_open, switch
+from viewer.window.setting_rows import setting_command
 from viewer.window.ui import Ui
 
 KEYED_BOOKMARKS = 9
-STEP = math.radians(15.0)
-"""Of a turn by a key."""
 
 # Name: right, up and towards us, as `navigation.looking_from` has them; and key.
 _SIDES = (
@@ -39,10 +37,10 @@ def camera(ui: Ui) -> list[Command]:
         Command("Orbit", "Camera", mode("orbit"), "O", checked=lambda: p.navigation == "orbit"),
         Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True),
         Command("Reset camera", "Camera", c.motion.reset_camera, "R", enabled=here),
-        Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.follow), "P",
-                checked=lambda: c.session.follow, enabled=here),
+        Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.on_path), "P",
+                checked=lambda: c.session.on_path, enabled=here),
         Command("Add bookmark", "Camera/Bookmarks", c.bookmarks.add, "Ctrl+B", enabled=here, separated=True),
-        *_sides(ui, here), *_turns(ui, here), *_text(ui, here), *_bookmarks(ui, here),
+        *_sides(ui, here), *_text(ui, here), *_bookmarks(ui, here),
     ]  # fmt: skip
 
 
@@ -62,7 +60,7 @@ def time(ui: Ui) -> list[Command]:
         Command("First frame", "Time", lambda: c.motion.step(-c.session.frame), "Home", enabled=moves),
         Command("Last frame", "Time", to_end, "End", enabled=moves),
         switch("Loop", "Time", p, "loop", separated=True),
-        switch("Trace every frame", "Time", p, "every_frame"),
+        setting_command(ui, "pace.every_frame", "Time"),
     ]
 
 
@@ -127,37 +125,6 @@ def _sides(ui: Ui, here: Condition) -> list[Command]:
     ]
 
 
-def _turns(ui: Ui, here: Condition) -> list[Command]:
-    c, p = ui.controller, ui.controller.preferences
-
-    def orbit(right: float, up: float) -> Callable[[], None]:
-        return lambda: c.motion.move(
-            navigation.orbit(c.session.camera, pivot_of(ui), right * STEP, up * STEP, c.motion.world_up)
-        )
-
-    def dolly(notches: float) -> Callable[[], None]:
-        return lambda: c.motion.move(navigation.dolly(c.session.camera, pivot_of(ui), notches))
-
-    def speed(factor: float) -> Callable[[], None]:
-        def change() -> None:
-            p.speed = min(max(p.speed * factor, 0.001), 1000.0)
-            c.notices.say(f"flying speed {p.speed:.3g}")
-
-        return change
-
-    menu = "Camera/Turn"
-    return [
-        Command("Orbit left", menu, orbit(-1.0, 0.0), enabled=here, repeats=True),
-        Command("Orbit right", menu, orbit(1.0, 0.0), enabled=here, repeats=True),
-        Command("Orbit up", menu, orbit(0.0, -1.0), enabled=here, repeats=True),
-        Command("Orbit down", menu, orbit(0.0, 1.0), enabled=here, repeats=True),
-        Command("Nearer", menu, dolly(1.0), enabled=here, repeats=True),
-        Command("Farther", menu, dolly(-1.0), enabled=here, repeats=True),
-        Command("Fly faster", menu, speed(2.0), repeats=True, separated=True),
-        Command("Fly slower", menu, speed(0.5), repeats=True),
-    ]
-
-
 def _text(ui: Ui, here: Condition) -> list[Command]:
     c = ui.controller
 
@@ -203,7 +170,7 @@ def _bookmarks(ui: Ui, here: Condition) -> list[Command]:
 
     def go(index: int) -> Command:
         def title() -> str:
-            return f"{index + 1}  {marks.all[index].get('name', '?')}" if index < len(marks.all) else ""
+            return f"{index + 1}  {marks.all[index].name}" if index < len(marks.all) else ""
 
         there = Condition(lambda: index < len(marks.all), "this scene has not so many bookmarks")
         return Command(f"Go to bookmark {index + 1}", "Camera/Bookmarks", lambda: c.go_to_bookmark(index),

@@ -25,10 +25,10 @@ def em(size: float) -> float:
     return hello_imgui.em_size(size)
 
 
-def centred(width: float) -> None:
-    """Put the next window, so wide, at the middle."""
+def centred(width: float, pivot: float = 0.5) -> None:
+    """Put the next window, so wide, at the middle; `pivot` is the part of its height that lies above that."""
     viewport = imgui.get_main_viewport()
-    imgui.set_next_window_pos(viewport.get_work_center(), int(imgui.Cond_.appearing), ImVec2(0.5, 0.5))
+    imgui.set_next_window_pos(viewport.get_work_center(), int(imgui.Cond_.appearing), ImVec2(0.5, pivot))
     imgui.set_next_window_size(ImVec2(min(width, 0.95 * viewport.work_size.x), 0.0))
 
 

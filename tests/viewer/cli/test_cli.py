@@ -184,7 +184,6 @@ def test_render_writes_a_picture_that_remembers(capfd: pytest.CaptureFixture[str
     assert Path(kept.scene) == room
     assert kept.time == 3.0
     assert kept.camera.to_json() == CAMERA
-    assert not kept.follow
     assert not [p for p in tmp_path.iterdir() if p.name.startswith(".")]
 
 
@@ -273,8 +272,8 @@ def test_slices_and_cells_are_drawn_by_methods_that_have_them(
     code, out, errors = render(capfd, room, "-o", path, "--view", "voxels:1", "--slice", "x:0.7", "--legend")
     assert code == 0 and "method voxels" in out, errors
     with Image.open(path) as image:
-        state = json.loads(image.text[capture.CHUNK])["state"]
-    assert (state["view"], state["light"], state["slice"]) == ("voxels", 1, [0, 0.7])
+        draw = json.loads(image.text[capture.CHUNK])["state"]["draw"]
+    assert (draw["view"], draw["light"], draw["slice"]) == ("voxels", 1, [0, 0.7])
     code, out, _ = run(capfd, "render", path, "--print-command")
     assert code == 0 and "--view voxels:1" in out and "--slice x:0.7" in out
     code, out, errors = render(capfd, room, "-o", path, "--view", "cell-lights", "--range", "0:2")
@@ -323,8 +322,8 @@ def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixtur
             drawn[view] = np.asarray(image)
             kept = json.loads(image.text[capture.CHUNK])["state"]
         assert kept["settings"]["verify"] is False
-        assert kept["view"] == view.partition(":")[0]
-    assert kept["wipe"] == 0.5
+        assert kept["draw"]["view"] == view.partition(":")[0]
+    assert kept["draw"]["wipe"] == 0.5
     wrong = (drawn["difference"] == (255, 0, 255)).all(axis=-1)
     ring = (drawn["wipe:1"] == (255, 0, 255)).all(axis=-1)
     beneath = np.abs(drawn["difference"] - BENEATH * drawn["color"])[~(ring | wrong)]

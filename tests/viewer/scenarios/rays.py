@@ -34,7 +34,7 @@ def rays(d: Driver) -> None:
     assert c.history.frames == traced, "asking has traced a frame"
     tree = c.rays.tree
     assert (tree.x, tree.y) == c.selection.pixel and tree.due > 0
-    d.frames(3)
+    d.frames(30)  # until it is known which pixels set the modes, which is listed above the rays
     drawn = _lines_drawn(d)
 
     # Filters hide rows and lines.

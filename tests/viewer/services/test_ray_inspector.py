@@ -88,7 +88,7 @@ def test_rays_follow_an_edit_of_the_scene(desk: Desk) -> None:
 def test_frame_after_frame_is_looked_into(desk: Desk) -> None:
     rays = looked_at(desk)
     desk.c.selection.select(middle(desk))
-    desk.c.preferences.keep_tracing = True
+    desk.c.session.set_pace(keep_tracing=True)
     desk.c.scheduler.trace_again()
     seen = []
 
@@ -98,7 +98,7 @@ def test_frame_after_frame_is_looked_into(desk: Desk) -> None:
         return len(seen) > 3
 
     desk.until(others)
-    desk.c.preferences.keep_tracing = False
+    desk.c.session.set_pace(keep_tracing=False)
     desk.rest()
     desk.c.motion.step(2)
     desk.until(lambda: rays.tree is not None and rays.tree.frame.time == desk.c.frame.time > seen[-1].frame.time)

@@ -23,7 +23,7 @@ def show(ui: Ui) -> None:
     if ui.graphics.preview is not None:
         _slim(ui, jobs)
         return
-    centred(em(26.0))
+    centred(em(26.0), 1.0 if ui.tour.step is not None else 0.5)  # above the tour
     flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_docking
     flags |= imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_focus_on_appearing
     imgui.begin("##progress", None, int(flags))

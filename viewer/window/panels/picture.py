@@ -49,7 +49,6 @@ _ALL_BUTTONS = int(
     | imgui.ButtonFlags_.mouse_button_middle
 )
 FASTER = 4.0  # with Shift
-TURN = 1.6  # radians per second while a key turns
 
 
 def show(ui: Ui) -> None:
@@ -137,7 +136,7 @@ def _area(ui: Ui, name: str, left: float, top: float, size: ImVec2) -> Area:
     imgui.invisible_button(name, size, _ALL_BUTTONS)
     scale = imgui.get_io().display_framebuffer_scale
     ui.picture.size = max(1, round(size.x * scale.x)), max(1, round(size.y * scale.y))
-    return Area(corner, size, ui.controller.session.zoom)
+    return Area(corner, size, ui.controller.session.draw.zoom)
 
 
 @contextmanager
@@ -263,16 +262,10 @@ def fly(ui: Ui) -> None:
         return down(plus) - down(minus)
 
     move = axis("Fly right", "Fly left"), axis("Fly up", "Fly down"), axis("Fly forward", "Fly back")
-    turn = axis("Turn right", "Turn left"), axis("Turn up", "Turn down")
-    seconds = min(io.delta_time, 0.1)
-    camera, up = c.session.camera, c.motion.world_up
     if any(move):
-        way = c.motion.pace * c.preferences.speed * seconds * (FASTER if io.key_shift else 1.0)
-        camera = navigation.fly(camera, way * move[0], way * move[1], way * move[2], up)
-    if any(turn):
-        camera = navigation.look(camera, TURN * seconds * turn[0], TURN * seconds * turn[1], up)
-    if any(move) or any(turn):
-        c.motion.move(camera)
+        way = c.motion.pace * c.preferences.speed * min(io.delta_time, 0.1) * (FASTER if io.key_shift else 1.0)
+        right, up, forward = (way * along for along in move)
+        c.motion.move(navigation.fly(c.session.camera, right, up, forward, c.motion.world_up))
 
 
 def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
@@ -288,9 +281,9 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
         text += f"   {whole_percent(frame.statistics.part)} shaded"
     elif request.samples > 1:
         text += f"   {c.scheduler.samples_shown} of {request.samples} samples"
-    if not c.session.zoom.fits:
-        text += f"   {c.session.zoom.scale:.3g} x"
-    tone = c.session.tone.in_words()
+    if not c.session.draw.zoom.fits:
+        text += f"   {c.session.draw.zoom.scale:.3g} x"
+    tone = c.session.draw.tone.in_words()
     text += f"   {tone}" if tone and c.scheduler.drawn_view.shows_picture else ""
     counter = ""
     if c.scheduler.drawn_view.needs_verify and not ui.state(LegendState).shown:
@@ -300,7 +293,7 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
         return corner.y
     pad = em(0.35)
     lower = ImVec2(corner.x + size.x + 3.0 * pad, corner.y + size.y + 2.0 * pad)
-    opacity = 0.72 if c.session.zoom.fits else 0.94  # there may be numbers beneath
+    opacity = 0.72 if c.session.draw.zoom.fits else 0.94  # there may be numbers beneath
     colors = ((0.05, 0.06, 0.08, opacity), (0.93, 0.94, 0.96, 1.0))
     back, front = (imgui.get_color_u32(ImVec4(*color)) for color in colors)
     draw = imgui.get_window_draw_list()
