@@ -75,7 +75,7 @@ def film(d: Driver) -> None:
         film.shoot(HOLD)
     d.press(KEY._9)
     for wipe in 0.5 + 0.4 * np.sin(np.linspace(0.0, 2.0 * np.pi, 17)[:-1]):
-        d.c.session.wipe = float(wipe)
+        d.c.session.set_draw(wipe=float(wipe))
         film.shoot()
     film.save(FOLDER / "loop.webp")
 
@@ -98,7 +98,7 @@ def still(d: Driver) -> None:
 
 def _begin(d: Driver) -> None:
     """Whole pictures only, from the first frame on, and the pointer out of the way, as it is drawn, too."""
-    d.c.preferences.dynamic_resolution = False
+    d.c.session.set_pace(progressive=False)
     d.context.mouse_move_to_pos((SIZE[0] - 1.0, SIZE[1] - 1.0))
     d.settle()
     d.press(KEY.home)

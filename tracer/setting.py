@@ -52,6 +52,8 @@ class Setting:
         Behind the number, as " fps". With `percent` the number is shown as per cent of 1.
     log : bool
         Whether a slider is logarithmic.
+    digits : int
+        Behind the point, on a slider.
     unset : str
         The word for None, where that is allowed.
     option : str
@@ -81,7 +83,7 @@ class Setting:
     unit: str = ""
     percent: bool = False
     log: bool = False
-    digits: int | None = None
+    digits: int = 2
     unset: str = ""
     option: str = ""
     panel: str = ""
@@ -116,6 +118,14 @@ class Setting:
     @property
     def expected(self) -> str:
         """Which values it takes, in words."""
+        return self._expected(1.0)
+
+    @property
+    def expected_shown(self) -> str:
+        """The same in the unit in which it is shown."""
+        return self._expected(100.0 if self.percent else 1.0) + (" %" if self.percent else "")
+
+    def _expected(self, scale: float) -> str:
         also = f', or "{self.unset}"' if self.optional and self.unset else ""
         if self.kind is bool:
             return "on or off"
@@ -125,8 +135,8 @@ class Setting:
             return self.kind.__name__ + also
         number = "a whole number" if self.kind is int else "a number" if self._endless else "a finite number"
         if math.isinf(self.high):
-            return f"{number} from {self.low:g} up{also}" if math.isfinite(self.low) else number + also
-        return f"{number} from {self.low:g} to {self.high:g}{also}"
+            return f"{number} from {scale * self.low:g} up{also}" if math.isfinite(self.low) else number + also
+        return f"{number} from {scale * self.low:g} to {scale * self.high:g}{also}"
 
     def problem(self, value: Any) -> str:
         """Return what is wrong with a value, in one line; empty where nothing is."""
@@ -155,8 +165,9 @@ class Setting:
         """Whether it takes an infinite number, as its default is one."""
         return self.kind is float and self.default == math.inf
 
-    def parse(self, word: str) -> Any:
-        """Return the value that somebody has typed; raises ValueError, in one line."""
+    def parse(self, word: str, shown: bool = False) -> Any:
+        """Return the value that somebody has typed, in the unit in which it is `shown` or as it is; raises ValueError,
+        in one line."""
         typed = word.strip()
         if self.optional and self.unset and typed.lower() == self.unset:
             return None
@@ -166,16 +177,19 @@ class Setting:
         elif self.choices:
             value = next((choice for choice in self.choices if str(choice).lower() == typed.lower()), None)
         elif self.kind in (int, float):
+            number = typed.removesuffix("%").removesuffix(self.unit.strip()).strip() if shown else typed
             try:
-                value = self.kind(typed)
+                value = self.kind(number)
             except ValueError:
                 value = None
+            value = value / 100.0 if value is not None and shown and self.percent else value
         else:
             value = self.kind.parse(typed) if hasattr(self.kind, "parse") else typed
         if value is None:
-            raise ValueError(f"{word or 'nothing'} is not {self.expected}")
+            raise ValueError(f"{word or 'nothing'} is not {self.expected_shown if shown else self.expected}")
         if self.problem(value):
-            raise ValueError(f"{typed} is not {self.expected}" if self.check is anything else self.problem(value))
+            expected = self.expected_shown if shown else self.expected
+            raise ValueError(f"{typed} is not {expected}" if self.check is anything else self.problem(value))
         return value
 
     # --- in words --------------------------------------------------------------------------------
@@ -189,7 +203,9 @@ class Setting:
         if self.percent:
             return f"{100.0 * value:.6g} %"
         if self.kind in (int, float):
-            return f"{value:.6g}{self.unit}"
+            return f"{value:{'+' if self.low < 0 and value else ''}.6g}{self.unit}"
+        if isinstance(value, tuple) and not hasattr(value, "in_words"):
+            return "changed"
         return value.in_words() if hasattr(value, "in_words") else str(getattr(value, "label", value))
 
     def in_words(self, value: Any) -> str:

@@ -38,8 +38,12 @@ def _clusters(settings: Settings) -> bool:
 class Settings:
     """How to render."""
 
-    width: int = setting(512, "Width", "Pixels from left to right.", low=1, high=MAX_SIDE, stored=PICTURES)
-    height: int = setting(512, "Height", "Pixels from top to bottom.", low=1, high=MAX_SIDE, stored=PICTURES)
+    width: int = setting(
+        512, "Width", "Pixels from left to right.", low=1, high=MAX_SIDE, stored=PICTURES, remembered=False
+    )
+    height: int = setting(
+        512, "Height", "Pixels from top to bottom.", low=1, high=MAX_SIDE, stored=PICTURES, remembered=False
+    )
     depth: int = setting(
         10, "Bounces", "How often a ray is reflected or refracted, at most.", low=0, high=100, slider=(0, 20),
         option="--depth", panel="Rendering",
@@ -56,7 +60,7 @@ class Settings:
     zoom_factor: float = setting(
         4.0, "Zoom factor",
         "Examine a primitive anew once it covers this many times its highest pixel count (§2.6).",
-        low=1.0, slider=(1.0, 64.0), log=True, option="--zoom-factor", panel="Culling", applies=_keeps_modes,
+        low=1.0, slider=(1.0, 64.0), log=True, digits=1, option="--zoom-factor", panel="Culling", applies=_keeps_modes,
     )  # fmt: skip
     modes: bool = setting(
         False, "Modes beside the method",

@@ -147,10 +147,10 @@ class Script:
                 raise RuntimeError("the picture does not become whole")
         elif self.state == "whole":
             if self.burst is not None and self.burst.full == 0.0 and not c.active:
-                c.preferences.dynamic_resolution = False  # a whole frame, all at once
+                c.session.set_pace(progressive=False)  # a whole frame, all at once
                 c.scheduler.trace_again()
             elif self.burst is not None and self.burst.full > 0.0 and not c.active:
-                c.preferences.dynamic_resolution = True
+                c.session.set_pace(progressive=True)
                 self.done.append(self.burst)
                 self._next(now)
 

@@ -60,7 +60,7 @@ class Soak:
         self.scenes = scenes
         self.desk = Desk(scenes[0], folder)
         self.c = self.desk.c
-        self.c.preferences.dynamic_resolution = True
+        self.c.session.set_pace(progressive=True)
         self.c.settings.change(method="certified")  # whose pictures can be compared, until another is chosen
         self.done: Counter[str] = Counter()
         self.compared = 0
@@ -122,8 +122,8 @@ class Soak:
 
     def _follow_path(self) -> None:
         scene = self.c.session.scene
-        self.c.session.free_camera = None
-        self.c.session.time = scene.frame_time(int(self.rng.integers(max(scene.frames, 1))))
+        self.c.session.change(camera=None)
+        self.c.session.change(time=scene.frame_time(int(self.rng.integers(max(scene.frames, 1)))))
 
     def _play(self) -> None:
         self.c.session.playing = self.c.session.animated and self.rng.random() < 0.7
@@ -136,9 +136,8 @@ class Soak:
         self.c.settings.set_view(views[self.rng.integers(len(views))])
 
     def _size(self) -> None:
-        p = self.c.preferences
-        p.fixed_resolution = bool(self.rng.random() < 0.7)
-        p.fixed_width, p.fixed_height = (int(side) for side in self.rng.integers(8, 160, 2))
+        width, height = (int(side) for side in self.rng.integers(8, 160, 2))
+        self.c.session.set_pace(fixed_size=bool(self.rng.random() < 0.7), width=width, height=height)
 
     def _settings(self) -> None:
         rng = self.rng

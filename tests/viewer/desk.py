@@ -26,7 +26,10 @@ class Desk:
     """A controller at work on a scene in a file, without a window."""
 
     def __init__(self, path: Path, folder: Path) -> None:
-        preferences = Preferences(dynamic_resolution=False, samples=1, threads=1, screenshot_folder=str(folder))
+        preferences = Preferences(
+            state={"pace": {"progressive": False}, "settings": {"samples": 1, "threads": 1}},
+            screenshot_folder=str(folder),
+        )
         self.c = Controller(preferences)
         self.runs = self.c.runs
         self.came: list[Frame] = []

@@ -146,8 +146,7 @@ class Driver:
 
     def fix_resolution(self, width: int, height: int) -> None:
         """Pictures of this size from now on, whatever room the window has: smaller ones take less of everything."""
-        p = self.c.preferences
-        p.fixed_resolution, p.fixed_width, p.fixed_height = True, width, height
+        self.c.session.set_pace(fixed_size=True, width=width, height=height)
 
     def slow_down(self, run: Run) -> None:
         """Let a run take its time: it is to last, not to keep the processor busy."""

@@ -41,7 +41,7 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
     if name != "touring":
         app.ui.tour.end()  # it comes by itself on the first start
     app.controller.preferences.screenshot_folder = str(Path(folder) / "pictures")
-    app.controller.preferences.dynamic_resolution = True
+    app.controller.session.set_pace(progressive=True)
     app.controller.settings.change(samples=1)  # else idle pictures go on changing
     failed: list[BaseException] = []
     parts = [SCENARIOS[name]]

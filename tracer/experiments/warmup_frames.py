@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from tracer.scene.model import Camera
 
@@ -14,8 +13,7 @@ MAX_TIME = 1e300
 """Seconds; JSON may hold numbers that are no finite float."""
 
 
-@dataclass(frozen=True)
-class WarmupFrame:
+class WarmupFrame(NamedTuple):
     """A frame's time in seconds and its camera, the scene's own at that time where that is None."""
 
     time: float

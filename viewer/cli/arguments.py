@@ -235,7 +235,7 @@ def camera(text: str) -> Camera | None:
     from viewer.services.scene_files import is_capture
 
     if is_capture(Path(text)):
-        return capture.read(Path(text)).camera
+        return capture.read_camera(Path(text))[1]
     try:
         return Camera.from_json(_json(text, "{", 1 << 20))
     except ValueError as error:

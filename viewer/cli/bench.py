@@ -17,6 +17,7 @@ from tracer.experiments.lamp_experiment import CEILING, LampResults, LampRow
 from tracer.geometry.world import World
 from tracer.method import line_up
 from tracer.scene.load import check_scene_file
+from tracer.settings import Settings
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
 from viewer.cli.console import Work, last_of, left_out, named, print_table, terminal_width, titled, width_of, working
@@ -59,7 +60,7 @@ def parser() -> Parser:
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
     options.add_size(parser)
-    options.add_verify(parser)
+    options.add_settings(parser, Settings, "verify")
     add("--json", type=Path, metavar="FILE", help="every figure of every frame")
     add("--csv", type=Path, metavar="FILE", help="the table")
     add("--plot", type=Path, metavar="FILE", help="savings per frame, drawn for a slide: a .png, .svg or .pdf")

@@ -25,6 +25,7 @@ from tracer.scene.files import read_regular
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Cancelled, Scene, SceneError
+from tracer.settings import Settings
 from tracer.version import program_version
 from viewer.cli import options
 from viewer.cli.arguments import FAILED, Parser
@@ -33,8 +34,8 @@ from viewer.output import capture, comparison_figure, exr, recipe
 from viewer.output.recipe import BUILT, CHANCE, Recipe
 from viewer.services import comparison, stills
 from viewer.services.scene_files import find_scene
+from viewer.state import codec
 from viewer.state.methods import NO_CULLING
-from viewer.state.session import Snapshot
 from viewer.state.views import View
 from viewer.util.messages import ERROR, in_one_line, printable
 
@@ -59,7 +60,7 @@ def parser() -> Parser:
     help_ = "a .png or .exr that this program saved, or a .png or .pdf of figure"
     parser.add_argument("pictures", nargs="+", type=Path, metavar="FILE", help=help_)
     options.add_folders(parser)
-    options.add_threads(parser)
+    options.add_settings(parser, Settings, "threads")
     return parser
 
 
@@ -129,7 +130,9 @@ class Checker:
             return self._against_tracing_all(path, kept, wanted)
         frame, wanted = self._traced(path, wanted)
         pixels, _ = stills.draw(frame, self._open_scene, wanted)
-        return self._compared(kept, pixels, data, frame.statistics.to_dict(), wanted.by_gpu)
+        return self._compared(
+            kept, pixels, data, frame.statistics.to_dict(), bool(data.get("picture", {}).get("by_gpu"))
+        )
 
     def _against_tracing_all(self, path: Path, kept: NDArray[np.uint8], wanted: Recipe) -> Verdict:
         """What can be said of a picture whose modes nobody can learn again: where it is not that without culling."""
@@ -152,8 +155,7 @@ class Checker:
 
     def _wanted(self, data: Mapping[str, Any]) -> Recipe:
         """The recipe that a picture carries; raises ValueError in one line."""
-        snapshot, size = Snapshot.from_json(data.get("state")), capture.size_of(data.get("size"))
-        return recipe.from_json(snapshot, size, data.get("picture"))
+        return recipe.of_state(codec.picture_from_json(data))
 
     def _traced(self, path: Path, wanted: Recipe) -> tuple[Frame, Recipe]:
         """The frame of a picture, once more; raises ValueError, in one line, where that cannot be."""
@@ -200,8 +202,7 @@ class Checker:
 
     def _figure(self, path: Path, data: Mapping[str, Any], ending: str) -> bytes:
         """The file of a figure, made again."""
-        snapshot, size = Snapshot.from_json(data.get("state")), capture.size_of(data.get("size"))
-        wanted = comparison.from_json(snapshot, size, data["figure"])
+        wanted = comparison.from_json(codec.picture_from_json(data), data["figure"])
         scene, common = self._prepared(path, wanted.recipe, wanted.methods)
         wanted = replace(wanted, recipe=common)
 

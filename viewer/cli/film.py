@@ -15,6 +15,7 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Cancelled, Scene
+from tracer.settings import Settings
 from viewer.cli import arguments, options, pictures, processes
 from viewer.cli.arguments import INTERRUPTED, Parser, number
 from viewer.cli.console import Work, working
@@ -22,11 +23,10 @@ from viewer.output import capture, movie
 from viewer.output.recipe import Recipe
 from viewer.services import filming, stills
 from viewer.services.filming import Script
-from viewer.state import flight
+from viewer.state import codec, flight
 from viewer.state.flight import Stop, Take
 from viewer.state.methods import CERTIFIED
 from viewer.state.preferences import load_preferences
-from viewer.state.session import Snapshot
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
 
@@ -66,7 +66,7 @@ def parser() -> Parser:
     processes.add_processes(parser)
     pictures.add_picture(parser)
     options.add_tracing(parser)
-    options.add_verify(parser)
+    options.add_settings(parser, Settings, "verify")
     parser.set_defaults(frame=None, time=None, warmup=0, repeat=0, before=())
     return parser
 
@@ -81,14 +81,13 @@ def run(given: Namespace) -> int:
     if video is not None:
         movie.check_video()
         check_writable(video)
-    stops = _stops(given)
     with working() as work:
         scene = options.read_scene(given.path, given, work)
         recipe = replace(pictures.recipe_of(scene, settings, given), before=())  # modes are learnt from the film alone
         stills.with_caption_filled(recipe, scene)  # or say now what is wrong with it
         pictures.check_tree(settings, recipe.view, scene)
         pictures.check_lights(recipe, scene)
-        takes = _takes(scene, stops, given)
+        takes = _takes(scene, _stops(scene, given), given)
         script = Script(takes, recipe, folder, video, given.fps)
         shared = _is_shared(recipe, given, work)
         if not shared:
@@ -179,17 +178,21 @@ def _takes(scene: Scene, stops: Sequence[Stop], given: Namespace) -> list[Take]:
     return flight.along_path(scene, first, last, count, given.camera)
 
 
-def _stops(given: Namespace) -> list[Stop]:
+def _stops(scene: Scene, given: Namespace) -> list[Stop]:
     """Return where a flight goes through, none for the scene's own path; raises ValueError in one line."""
     if sum([given.through is not None, given.bookmarks, given.frames is not None]) > 1:
         raise ValueError("film: give one of --frames, --through and --bookmarks")
     if given.through is not None:
-        found, option = [capture.read(picture) for picture in given.through], "--through"
+        found, option = [Stop(*capture.read_camera(picture)) for picture in given.through], "--through"
     elif given.bookmarks:
         kept = load_preferences()[0].bookmarks.get(str(given.path.absolute()), [])
-        found, option = [Snapshot.from_json(bookmark.get("state")) for bookmark in kept], "--bookmarks"
+        states = [codec.state_from_json(bookmark.state) for bookmark in kept]
+        found, option = (
+            [Stop(state.time, state.camera or scene.camera_at(state.time)) for state in states],
+            "--bookmarks",
+        )
     else:
         return []
     if len(found) < 2:
         raise ValueError(f"{option}: {given.path.name} has {len(found)}; a flight needs two at least")
-    return [Stop(snapshot.time, snapshot.camera) for snapshot in found]
+    return found

@@ -19,14 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, PngImagePlugin
 
+from tracer.scene.camera import Camera
 from tracer.scene.files import read_regular
 from tracer.scene.model import SceneError
 from tracer.scene.textures import open_image
-from viewer.state.session import Snapshot
+from viewer.state import codec
+from viewer.state.view_state import ViewState
 from viewer.util.files import write_new, write_whole
 
 CHUNK = "shadowcull"
-FORMAT = 1
 FIELDS = {
     "scene": "the scene's file name",
     "view": "the view's name",
@@ -73,22 +74,25 @@ def file_name(template: str, values: dict[str, Any], now: datetime | None = None
 
 
 def metadata(
-    snapshot: Snapshot,
+    state: ViewState,
+    camera: Camera,
     frame_number: int,
     size: tuple[int, int],
     statistics: dict[str, Any],
     more: Mapping[str, Any] | None = None,
 ) -> str:
-    """The JSON text that a capture carries; `more` says how it was drawn, and of what (`recipe`, `stills`)."""
+    """Return the JSON text that a capture carries; `camera` is the state's, or the scene's own in its place, and `more`
+    says how it was made."""
     data = {
-        "format": FORMAT,
-        "state": snapshot.to_json(),
+        "format": codec.FORMAT,
+        "state": codec.state_to_json(state, of_picture=True),
+        "camera": camera.to_json(),
         "frame": frame_number,
         "size": list(size),
         "statistics": statistics,
         **(more or {}),
     }
-    return json.dumps(data, default=_plain)
+    return codec.text(data)
 
 
 def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
@@ -109,17 +113,26 @@ def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
         raise CaptureError(f"no picture saved: {error}") from None
 
 
-def read(path: Path) -> Snapshot:
-    """The state that a capture carries; raises CaptureError."""
-    return read_with_size(path)[0]
+def read(path: Path) -> ViewState:
+    """Return the state that a capture carries; raises CaptureError."""
+    return state_of(read_data(path), path)
 
 
-def read_with_size(path: Path) -> tuple[Snapshot, tuple[int, int] | None]:
-    """The same, and the frame's width and height if they are known; raises CaptureError."""
+def read_camera(path: Path) -> tuple[float, Camera]:
+    """Return the time and the camera of a capture; raises CaptureError."""
     data = read_data(path)
+    state = state_of(data, path)
     try:
-        return Snapshot.from_json(data.get("state")), size_of(data.get("size"))
-    except (ValueError, AttributeError) as error:
+        return state.time, state.camera or Camera.from_json(data.get("camera") or data["state"]["camera"])
+    except (ValueError, KeyError, TypeError) as error:
+        raise CaptureError(f"{path}: cannot be restored: {error}") from None
+
+
+def state_of(data: Mapping[str, Any], path: Path) -> ViewState:
+    """Return the state in what a capture carries; raises CaptureError."""
+    try:
+        return codec.picture_from_json(data)
+    except ValueError as error:
         raise CaptureError(f"{path}: cannot be restored: {error}") from None
 
 
@@ -144,19 +157,3 @@ def read_data(path: Path) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise CaptureError(f"{path}: cannot be restored: no saved state in it")
     return data
-
-
-def size_of(value: Any) -> tuple[int, int] | None:
-    """A size as JSON has it; None for anything else."""
-    if isinstance(value, list) and len(value) == 2 and all(type(side) is int and 0 < side < 1 << 16 for side in value):
-        return value[0], value[1]
-    return None
-
-
-def _plain(value: Any) -> Any:
-    """Numbers of numpy as JSON."""
-    if isinstance(value, np.generic):
-        return value.item()
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return str(value)

@@ -10,29 +10,24 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 from tracer.experiments.warmup_frames import WarmupFrame
-from tracer.experiments.warmup_frames import from_json as earlier_from_json
-from tracer.experiments.warmup_frames import to_json as earlier_to_json
-from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.load import AFF_EXTENSIONS
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
+from viewer.state import codec
 from viewer.state import edits as scene_edits
 from viewer.state.draw_options import MIDDLE, SHADING, DrawOptions, Slice
 from viewer.state.palette import BENEATH
-from viewer.state.session import Snapshot, settings_to_json
 from viewer.state.tone import NEUTRAL, Tone
+from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
 from viewer.util import resources
-from viewer.util.json_numbers import number, whole
 from viewer.views.wipe import wipe_column
 
 MOST_BEFORE = 100_000  # frames
@@ -100,7 +95,9 @@ class Recipe:
         options = DrawOptions(
             view=self.view, light=self.light, wipe=self.wipe, slice=style.cut, beneath=style.beneath,
             shading=style.shading, tone=style.tone, outlines=style.outlines, shares=style.shares,
-            mark_wrong=style.marked, clipping=style.clipping, magnified=style.magnified,
+            mark_wrong=style.marked, clipping=style.clipping, magnified=style.magnified, savings=style.savings,
+            caption=style.caption, legend=style.legend is not None,
+            legend_at=style.legend or DrawOptions().legend_at,
         )  # fmt: skip
         return options.with_span(style.span)
 
@@ -120,32 +117,36 @@ class Recipe:
         certified = Method.parse(self.settings.method).has_certificates
         return self.settings.threads == 1 and certified and self.needs_history
 
-    def snapshot(self, scene: Scene) -> Snapshot:
-        """The state that a capture carries."""
-        camera = self.camera or scene.camera_at(self.time)
-        settings = settings_to_json(self.settings)
-        path = str(self.scene.absolute())
-        follow, style = self.camera is None, self.style
-        return Snapshot(
-            path, self.time, camera, follow, settings, self.view, self.light, self.wipe,
-            tone=style.tone, span=style.span, meshes=self.meshes, edits=self.edits, cut=style.cut,
-        )  # fmt: skip
+    def state(self) -> ViewState:
+        """Return the state that a picture carries."""
+        settings = self.settings if self.by_one_thread else replace(self.settings, threads=0)
+        warmup = Warmup(self.before, self.warmup, self.repeats, self.modes, self.history)
+        return ViewState(
+            str(self.scene.absolute()),
+            self.meshes,
+            self.edits,
+            self.time,
+            self.camera,
+            settings,
+            self.draw,
+            warmup=warmup,
+        )
 
-    def to_json(self) -> dict[str, Any]:
-        """What a capture carries beside its state."""
-        style = asdict(self.style)
-        del style["tone"], style["span"], style["cut"]  # these are of its state
-        return {
-            "accelerator": self.settings.accelerator,
-            "threads": self.settings.threads if self.by_one_thread else 0,
-            "warmup": self.warmup,
-            "repeats": self.repeats,
-            "history": self.history,
-            "by_gpu": self.by_gpu,
-            "style": style,
-            **({"before": earlier_to_json(self.before)} if self.before else {}),
-            **({"modes": self.modes} if self.modes else {}),
-        }
+
+def of_state(state: ViewState) -> Recipe:
+    """Return the inverse of `Recipe.state`."""
+    draw, warmup = state.draw, state.warmup
+    style = Style(
+        shares=draw.shares, marked=draw.mark_wrong, magnified=draw.magnified, shading=draw.shading,
+        beneath=draw.beneath, outlines=draw.outlines, legend=draw.legend_at if draw.legend else None,
+        caption=draw.caption, tone=draw.tone, clipping=draw.clipping, span=draw.span, cut=draw.slice,
+        savings=draw.savings,
+    )  # fmt: skip
+    return Recipe(
+        Path(state.scene), state.time, state.camera, state.settings, draw.view, draw.light, draw.wipe, style,
+        warmup=warmup.of_path, repeats=warmup.repeats, history=warmup.unknown, before=warmup.frames,
+        modes=warmup.modes, meshes=state.meshes, edits=state.edits,
+    )  # fmt: skip
 
 
 def needs_history(method: str, view: View, counters: bool = False) -> bool:
@@ -173,68 +174,6 @@ def cannot_come_back(settings: Settings, view: View, counters: bool = False) -> 
     if view is View.TREE:
         return BUILT
     return CHANCE if by_chance(settings, view, counters) else ""
-
-
-def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Recipe:
-    """The recipe of a capture; what it lacks, as older ones do, is as usual.  Raises ValueError in one line."""
-    if not isinstance(data, Mapping):
-        data = {}
-    accelerator = data.get("accelerator", "bvh8")
-    if accelerator not in ACCELERATORS:
-        raise ValueError(f"its accelerator is not known: {accelerator}")
-    width, height = size or (512, 512)
-    settings = replace(Settings(), **snapshot.settings, width=width, height=height, accelerator=accelerator)
-    settings = replace(settings, threads=1 if data.get("threads") == 1 else 0)
-    try:
-        return Recipe(
-            scene=Path(snapshot.scene),
-            time=snapshot.time,
-            camera=None if snapshot.follow else snapshot.camera,
-            settings=settings.validated(),
-            view=snapshot.view,
-            light=snapshot.light,
-            wipe=snapshot.wipe,
-            style=replace(_style(data.get("style", {})), tone=snapshot.tone, span=snapshot.span, cut=snapshot.cut),
-            warmup=_count(data, "warmup"),
-            repeats=_count(data, "repeats"),
-            history=str(data.get("history", "")),
-            by_gpu=bool(data.get("by_gpu", False)),
-            before=earlier_from_json(data.get("before", [])),
-            modes=str(data.get("modes", "")),
-            meshes=snapshot.meshes,
-            edits=snapshot.edits,
-        )
-    except (TypeError, AttributeError, LookupError):
-        raise ValueError("how it was drawn is damaged") from None
-
-
-def _count(data: Mapping[str, Any], name: str) -> int:
-    value = data.get(name, 0)
-    if type(value) is not int or not 0 <= value <= MOST_BEFORE:
-        raise ValueError(f"its {name} is not understood")
-    return value
-
-
-def _style(data: Mapping[str, Any]) -> Style:
-    usual = Style()
-    magnified = whole(data.get("magnified", 1))
-    shading, beneath = (number(data.get(name, getattr(usual, name))) for name in ("shading", "beneath"))
-    legend = data.get("legend")
-    place = None if legend is None else (number(legend[0]), number(legend[1]))
-    if not all(0.0 <= part <= 1.0 for part in (shading, beneath, *(place or ()))) or not 1 <= magnified <= 100:
-        raise ValueError("how it was drawn is not understood")
-    return Style(
-        shares=bool(data.get("shares", False)),
-        marked=bool(data.get("marked", True)),
-        magnified=magnified,
-        shading=shading,
-        beneath=beneath,
-        outlines=bool(data.get("outlines", False)),
-        legend=place,
-        caption=str(data.get("caption", "")),
-        clipping=bool(data.get("clipping", False)),
-        savings=None if data.get("savings") is None else str(data["savings"]),
-    )
 
 
 def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
@@ -292,7 +231,7 @@ def arguments(recipe: Recipe, scene: Scene | None, output: str) -> list[str]:
     if style.caption:
         words += [f"--caption={style.caption.replace('{', '{{').replace('}', '}}')}"]
     if recipe.before:
-        words += ["--before", json.dumps(earlier_to_json(recipe.before))]
+        words += ["--before", codec.text(recipe.before)]
     words += scene_edits.as_options(recipe.edits)
     for folder in recipe.folders:
         words += ["--folder", str(folder.absolute())]

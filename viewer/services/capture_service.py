@@ -23,7 +23,7 @@ from viewer.services import stills
 from viewer.services.jobs import Job
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
-from viewer.state.session import Session, settings_to_json
+from viewer.state.session import Session
 from viewer.views.legend import Legend
 
 
@@ -75,33 +75,32 @@ class CaptureService:
             return
         # What the picture shows: another moment than the session's where a run goes on, or a finer frame is to come.
         number = session.frame_at(frame.time)
-        follow = session.follow and frame.camera == scene.camera_at(frame.time)
+        camera = None if session.on_path and frame.camera == scene.camera_at(frame.time) else frame.camera
         height, width = pixels.shape[:2]
         values = {
             "scene": scene.path.stem,
-            "view": session.view.value,
+            "view": session.draw.view.value,
             "frame": number,
             "seconds": frame.time,
             "method": frame.settings.method,
-            "light": session.light,
+            "light": session.draw.light,
             "width": width,
             "height": height,
         }
         settings = replace(frame.settings, verify=session.settings.verify)  # a view may have verified by itself
         edits = session.edited.edits if session.edited is not None else NO_EDITS
-        snapshot = replace(
-            session.snapshot(), time=frame.time, camera=frame.camera, follow=follow,
-            settings=settings_to_json(settings), edits=edits,
-        )  # fmt: skip
+        state = replace(session.state, time=frame.time, camera=camera, settings=settings, edits=edits)
         size = (frame.width, frame.height)
-        text = capture.metadata(snapshot, number, size, frame.statistics.to_dict(), {"window": recipe is None})
+        text = capture.metadata(
+            state, frame.camera, number, size, frame.statistics.to_dict(), {"window": recipe is None}
+        )
         folder = preferences.picture_folder
         try:
             name = capture.file_name(preferences.screenshot_template, values)
         except capture.CaptureError as error:
             self._notices.say(str(error), error=True)
             return
-        place = preferences.legend_x, preferences.legend_y
+        place = session.draw.legend_at
 
         def save() -> Path:
             described = with_legend(pixels, legend, place) if legend is not None else None

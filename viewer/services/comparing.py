@@ -51,10 +51,10 @@ class Comparing:
             if second is None:
                 return None
             view = self._scheduler.drawn_view
-            return self._side(second, view if can_draw(second, view, session.light) else View.COLOR)
+            return self._side(second, view if can_draw(second, view, session.draw.light) else View.COLOR)
         kept = state.kept
-        if kept is not None and state.same_view and can_draw(kept.frame, session.view, session.light):
-            view, light = self._scheduler.drawn_view, session.light
+        if kept is not None and state.same_view and can_draw(kept.frame, session.draw.view, session.draw.light):
+            view, light = self._scheduler.drawn_view, session.draw.light
             return replace(kept, view=view, light=light, light_number=session.light_number)
         if kept is not None and not can_draw(kept.frame, kept.view, kept.light):
             return replace(kept, view=View.COLOR)  # what it showed is gone, as a tree is with its world
@@ -63,7 +63,7 @@ class Comparing:
     def _side(self, frame: Frame, view: View) -> Side:
         session = self._session
         name = session.scene.path.stem if session.scene is not None else ""
-        return Side(frame, view, session.light, name, session.frame_at(frame.time), session.light_number)
+        return Side(frame, view, session.draw.light, name, session.frame_at(frame.time), session.light_number)
 
     @property
     def sides(self) -> tuple[Side, Side] | None:
@@ -94,7 +94,7 @@ class Comparing:
 
     def difference(self, a: Side, b: Side) -> Difference | None:
         """B - A in the view of B; None where A has nothing for it."""
-        known, cut = self._difference, self._session.cut
+        known, cut = self._difference, self._session.draw.slice
         same = known is not None and known[0].frame is a.frame and known[1].frame is b.frame
         if known is not None and same and (known[1].view, known[1].light, known[2]) == (b.view, b.light, cut):
             return known[3]
@@ -112,7 +112,7 @@ class Comparing:
     def span(self, view: View) -> tuple[float, float] | None:
         """The range that maps of numbers have: chosen, or one for both pictures, so that a colour means the same in A
         and in B; None for what each frame has."""
-        chosen, sides = self._session.spans.get(view), self.sides
+        chosen, sides = replace(self._session.draw, view=view).span, self.sides
         if chosen is not None or sides is None or not view.has_range or {side.view for side in sides} != {view}:
             return chosen
         frames = sides[0].frame, sides[1].frame
@@ -146,7 +146,7 @@ class Comparing:
     def start(self, mode: CompareMode) -> None:
         """Compare in this way."""
         self.state.on, self.state.mode = True, mode
-        if self._session.view is View.WIPE:  # one line is enough
+        if self._session.draw.view is View.WIPE:  # one line is enough
             self._settings.set_view(View.COLOR)
         if self.state.source is Source.KEPT and self.state.kept is None:
             self._notices.say(self.remark)
@@ -197,7 +197,7 @@ class Comparing:
 
     def end_beside_wipe(self) -> None:
         """End the comparison where the wipe against the right picture is chosen: one line is enough."""
-        if self.state.on and self._session.view is View.WIPE:
+        if self.state.on and self._session.draw.view is View.WIPE:
             self.end()
             self._notices.say("the comparison with A has ended: this wipe compares with the right picture")
 

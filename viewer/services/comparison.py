@@ -17,8 +17,9 @@ from viewer.output import capture, recipe
 from viewer.output.comparison_figure import EDITION, Crop, Shown
 from viewer.output.recipe import Recipe
 from viewer.services import stills
-from viewer.state.session import Session, Snapshot
-from viewer.util.json_numbers import whole
+from viewer.state import codec
+from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 
 MOST_METHODS, MOST_CROPS = 6, 6
 
@@ -56,20 +57,26 @@ class Comparison:
         more: dict[str, Any] = {"marks": [list(mark) for mark in self.marks]} if self.marks else {}
         more |= {"words": self.words} if self.words else {}
         more |= {"edition": self.edition} if self.edition > 1 else {}
-        return self.recipe.to_json() | {"methods": list(self.methods), "crops": crops} | more
+        return {"methods": list(self.methods), "crops": crops} | more
 
 
-def from_json(snapshot: Snapshot, size: tuple[int, int] | None, data: Any) -> Comparison:
-    """The inverse of `to_json`; raises ValueError in one line."""
-    common = recipe.from_json(snapshot, size, data)
-    try:
-        crops = tuple(Crop(*(whole(side) for side in crop)) for crop in data["crops"])
-        marks = tuple((whole(x), whole(y)) for x, y in data.get("marks", []))
-        methods = tuple(str(method) for method in data["methods"])
-        edition = int(data.get("edition", 1))
-        return Comparison(common, methods, crops, marks, str(data.get("words", "")), edition).checked()
-    except (KeyError, TypeError, AttributeError):
-        raise ValueError("its methods or crops are damaged") from None
+def from_json(state: ViewState, data: Any) -> Comparison:
+    """Return the inverse of `to_json`; raises ValueError in one line."""
+    common = recipe.of_state(state)
+    kept = codec.from_json(data, _Kept, "its figure")
+    crops = tuple(Crop(*sides) for sides in kept.crops)
+    return Comparison(common, kept.methods, crops, kept.marks, kept.words, kept.edition).checked()
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """What a figure carries beside its state."""
+
+    methods: tuple[str, ...]
+    crops: tuple[tuple[int, int, int, int], ...]
+    marks: tuple[tuple[int, int], ...] = ()
+    words: str = ""
+    edition: int = 1
 
 
 def trace(
@@ -113,4 +120,4 @@ def text(shown: Shown, comparison: Comparison) -> str:
         "made": {"version": program_version(), "scene": fingerprint.of_scene(scene)},
     }
     number = Session(scene).frame_at(common.time)
-    return capture.metadata(common.snapshot(scene), number, common.size, statistics, more)
+    return capture.metadata(common.state(), shown.reference.camera, number, common.size, statistics, more)

@@ -44,10 +44,12 @@ from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import Undo
+from viewer.state import codec
 from viewer.state.arriving import fitting_view
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
-from viewer.state.session import Session, Snapshot
+from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 
@@ -59,7 +61,7 @@ class Controller:
     def __init__(self, preferences: Preferences) -> None:
         self.wake = wake = Wake()
         self.preferences = preferences
-        self.session = session = Session(settings=preferences.settings(), view=preferences.chosen_view())
+        self.session = session = Session(state=codec.recalled(preferences.state))
         self.notices = notices = Notices(wake)
         self.renderer = renderer = RenderThread(wake)
         self.scheduler = scheduler = FrameScheduler(session, preferences, renderer, wake)
@@ -75,10 +77,10 @@ class Controller:
         self.comparing = Comparing(session, scheduler, settings, notices)
         self.bookmarks = bookmarks = Bookmarks(session, preferences, settings, notices)
         self.undo = undo = Undo(
-            session, preferences, motion, notices, runs.refuses,
+            session, motion, notices, runs.refuses,
             lambda meshes: self.loader.read_as(meshes), lambda: self.loader.load_job is not None,
         )  # fmt: skip
-        self.presets = Presets(session, preferences, notices, runs.refuses, settings.save, undo.call_next)
+        self.presets = Presets(session, preferences, notices, runs.refuses, settings.save, undo.begin_step)
         self.inspector = PixelInspector(selection, renderer.query)
         self.rays = RayInspector(session, selection, self.inspector)
         self.origins = OriginFinder(selection, self.history, renderer.query)
@@ -87,7 +89,7 @@ class Controller:
             self.reset_modes,
         )  # fmt: skip
         self.editing = editing = Editing(
-            session, renderer, notices, runs.refuses, self._show_edited, undo.overlook, scheduler.trace_once_more
+            session, renderer, notices, runs.refuses, self._show_edited, undo.without_undo, scheduler.trace_once_more
         )
         self.table = SceneTable(session, selection, preferences, notices, captures, editing, wake)
         self.before_edits = BeforeEdits(session, editing)
@@ -124,7 +126,7 @@ class Controller:
         """Whether anything goes on."""
         working = self.renderer.busy or self.loader.busy or self.captures.busy or self.runs.current is not None
         working = working or bool(self.pictures.jobs)
-        return working or self.motion.lively
+        return working or self.motion.is_animating
 
     # --- what happens in each frame of the window (see `viewer.window.app.advance`) ---------------
 
@@ -140,10 +142,10 @@ class Controller:
             self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
             said = self._fit_view() if arrival.place is None else ""
         if arrival.place is not None:
-            self.undo.call_next("the place of a saved picture")
+            self.undo.begin_step("the place of a saved picture")
             self.restore(arrival.place)
         if flown is not None:  # while the scene was waiting for its kernels
-            self.session.move(flown)
+            self.session.change(camera=flown)
         self.notices.say(f"{arrival.text}. {said}" if said else arrival.text)
 
     def take_frame(self) -> Frame | None:
@@ -177,7 +179,7 @@ class Controller:
     def move(self) -> None:
         """Bring time and camera to where they should be now."""
         traced = self.traced
-        self.motion.follow(traced.request.time if traced is not None and traced.whole else None)
+        self.motion.advance(traced.request.time if traced is not None and traced.whole else None)
 
     def apply_edits(self) -> None:
         """Have the scene edited as is wanted, once what was edited last has been seen."""
@@ -186,7 +188,7 @@ class Controller:
 
     def inspect_pixel(self) -> None:
         """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
-        traced, moving = self.own_traced, self.motion.lively
+        traced, moving = self.own_traced, self.motion.is_animating
         frame = traced.frame if traced is not None else None
         cuts = traced is not None and traced.whole and self.scheduler.drawn_view is View.CUTS
         self.inspector.update(frame, not moving, cuts)
@@ -195,7 +197,7 @@ class Controller:
 
     def list_scene(self) -> None:
         """Fill the table of what is in the scene, while it is seen."""
-        self.table.update(self.own_traced, self.motion.lively)
+        self.table.update(self.own_traced, self.motion.is_animating)
 
     def record_light(self) -> None:
         """Have the chosen light recorded where the view needs it, unless a run has the render thread."""
@@ -224,10 +226,10 @@ class Controller:
         """Keep the newest frame where somebody waits for such a one: bookmarks, and the comparison with an edit."""
         traced, scheduler = self.own_traced, self.scheduler
         fine = traced is not None and traced.whole and traced.request.divisor == 1
-        if traced is not None and traced.whole:
-            self.bookmarks.follow(traced.frame, fine)
+        if traced is not None and fine:
+            self.bookmarks.take_pictures(traced.frame)
         if self.runs.current is None:
-            of_edits = fine and not self.motion.lively and scheduler.shows_edits
+            of_edits = fine and not self.motion.is_animating and scheduler.shows_edits
             more_comes = scheduler.awaits or scheduler.adds_samples or self.renderer.busy
             self.before_edits.take(traced.frame if traced is not None and of_edits else None, not more_comes)
 
@@ -237,22 +239,20 @@ class Controller:
         wanted = self.preferences.savings or bool(second)
         busy = self.renderer.busy or scheduler.awaits or scheduler.adds_samples or scheduler.refines_lamps
         busy = busy or self.loader.busy or self.runs.current is not None or self.editing.at_work or not wanted
-        self.baseline.update(self.traced, second, self.motion.lively, busy)
+        self.baseline.update(self.traced, second, self.motion.is_animating, busy)
 
     def keep_preferences(self) -> None:
         """Save them soon after a change, while nothing moves."""
-        if self.motion.lively:
-            return
-        if self.preferences.start_where_left and self.session.scene is not None:
-            self.preferences.last = self.session.snapshot().to_json()
-        self.settings.follow()
+        self.settings.note_method()
+        if not self.motion.is_animating:
+            self.settings.save_when_rested()
 
     def _fit_view(self) -> str:
         """Show the picture where the view has nothing to show in the scene that has just been opened; returns what is
         to be said of it, and of the method there."""
         session = self.session
-        view, said = fitting_view(session.view, session.settings, session.scene.lights if session.scene else ())
-        if view is not session.view:
+        view, said = fitting_view(session.draw.view, session.settings, session.scene.lights if session.scene else ())
+        if view is not session.draw.view:
             self.settings.set_view(view)
         return said
 
@@ -261,7 +261,7 @@ class Controller:
         session, opened = self.session, arrival.opened
         if opened is None or session.scene is None:
             return
-        here, playing = session.snapshot(), session.playing
+        here, playing = session.state, session.playing
         self.show(opened.scene, opened.renderer, opened.info)
         session.restore(here)
         session.playing = playing and session.animated
@@ -303,7 +303,7 @@ class Controller:
         """Show the scene that is open with other edits: where we are, and what was chosen, stays."""
         before = self.session.edited
         same = before is not None and before.made_as(now)
-        self.undo.overlook(lambda: self.session.take(now))
+        self.undo.without_undo(lambda: self.session.take(now))
         self.renderer.use(renderer, fresh=False)
         self.history.forget_modes(blank=False)
         self.scheduler.take_edits(same)
@@ -312,26 +312,24 @@ class Controller:
             self.selection.update_for_edits(before, now)
             self.reloaded = True
 
-    def restore(self, snapshot: Snapshot) -> None:
-        """Go back to a snapshot of the open scene."""
+    def restore(self, state: ViewState) -> None:
+        """Go back to a state of the open scene."""
         self.runs.stop()
         self.motion.halt()
-        self.session.restore(snapshot)
-        self.preferences.keep(self.session.settings)
-        self.preferences.view = self.session.view.value
+        self.session.restore(state)
 
     def go_to_bookmark(self, index: int) -> None:
         """Glide to a bookmark and take over its time and view; settings stay as they are."""
         if self.runs.refuses():
             return
-        snapshot, start = self.bookmarks.find(index), self.session.camera
+        state, start = self.bookmarks.find(index), self.session.camera
         self._bookmark = index
-        if snapshot is not None:
-            self.undo.call_next(f"going to {self.bookmarks.all[index].get('name', '?')}")
-            self.restore(snapshot)
+        if state is not None:
+            self.undo.begin_step(f"going to {self.bookmarks.all[index].name}")
+            self.restore(state)
             self.bookmarks.arrived(index)
-            if not snapshot.follow:
-                self.motion.fly_to(snapshot.camera, start)
+            if state.camera is not None:
+                self.motion.fly_to(state.camera, start)
 
     def next_bookmark(self, step: int) -> None:
         """Go to the next bookmark of the list, or with -1 to the one before; past the last comes the first."""
@@ -358,6 +356,6 @@ class Controller:
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
         if self.session.scene is not None:
-            self.preferences.last = self.session.snapshot().to_json()
+            self.preferences.last = codec.state_to_json(self.session.state)
         self.settings.save()
         return stopped

@@ -114,14 +114,14 @@ class Editing:
         notices: Notices,
         locked: Callable[[], bool],
         show: Show,
-        overlook: Callable[[Callable[[], None]], None] = lambda change: change(),
+        without_undo: Callable[[Callable[[], None]], None] = lambda change: change(),
         again: Callable[[], None] = lambda: None,
     ) -> None:
         """`show(edited, renderer)` is called with each scene when it is ready to be traced, `again()` where an edit has
         come to nothing: without another frame, nothing could be asked about what is shown.  What changes within
-        `overlook` is no step of undo."""
+        `without_undo` is no step of undo."""
         self._session, self._renderer, self._notices = session, renderer, notices
-        self._locked, self._show, self._overlook, self._again = locked, show, overlook, again
+        self._locked, self._show, self._without_undo, self._again = locked, show, without_undo, again
         self._kept: Kept | None = None
         self._task: EditTask | None = None
         self.put_aside = False
@@ -157,7 +157,8 @@ class Editing:
         """Want these edits, as far as the scene has what they name."""
         original = self._session.original
         if original is not None and not self._locked():
-            self._session.edits, self._session.light_to_come = edits.within(original), None
+            self._session.change(edits=edits.within(original))
+            self._session.light_to_come = None
 
     def hide(self, name: str) -> None:
         """Hide an object, by the name of its thing (`tracer.scene.edits.things`)."""
@@ -208,7 +209,8 @@ class Editing:
     def _give_up(self) -> None:
         self.put_aside = False
         if self._session.edited is not None:
-            self._session.edits, self._session.light_to_come = self._session.edited.edits, None
+            self._session.change(edits=self._session.edited.edits)
+            self._session.light_to_come = None
 
     def apply(self, running: bool, seen: bool) -> None:
         """Take up what has been made, and have made what is wanted now: not while a run has the render thread, and once
@@ -218,7 +220,7 @@ class Editing:
             self._task = None
             if task.problem is not None:
                 self._notices.report(task.problem)
-                self._overlook(self._give_up)
+                self._without_undo(self._give_up)
             if task.found is not None and task.scene is session.original:
                 self._show(*task.found)
                 seen = False  # of this scene, nothing yet

@@ -20,12 +20,12 @@ from viewer.services.filming import Script
 from viewer.services.recipes import Recipes
 from viewer.services.run_controller import RunController
 from viewer.services.runs import LONGEST_SIDE, Run
-from viewer.state import flight
+from viewer.state import codec, flight
 from viewer.state.flight import Stop, Take
 from viewer.state.notices import Notices
 from viewer.state.plans import FilmPlan, frames_within
 from viewer.state.preferences import Preferences
-from viewer.state.session import Session, Snapshot
+from viewer.state.session import Session
 from viewer.state.views import View
 
 
@@ -128,10 +128,8 @@ class FilmController:
             samples=plan.samples,
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()
-        p = self._preferences
-        style = replace(
-            recipe.style, magnified=1, caption=plan.caption, legend=(p.legend_x, p.legend_y) if plan.legend else None
-        )
+        p, place = self._preferences, self._session.draw.legend_at
+        style = replace(recipe.style, magnified=1, caption=plan.caption, legend=place if plan.legend else None)
         history = cannot_come_back(settings, recipe.view, recipe.tells_counters)
         recipe = replace(recipe, settings=settings, style=style, repeats=0, history=history, by_gpu=False)
         name = f"{scene.path.stem}-film-{datetime.now():%Y-%m-%d-%H-%M-%S}"
@@ -142,10 +140,12 @@ class FilmController:
     def _takes(self, scene: Scene) -> list[Take]:
         plan = self.plan
         if plan.through_bookmarks:
-            places = [Snapshot.from_json(bookmark.get("state")) for bookmark in self._bookmarks.all]
+            places = [codec.state_from_json(bookmark.state) for bookmark in self._bookmarks.all]
             if len(places) < 2:
                 raise ValueError("a flight needs two bookmarks at least; the menu Camera adds one")
-            return flight.through([Stop(place.time, place.camera) for place in places], self.count)
+            return flight.through(
+                [Stop(place.time, place.camera or scene.camera_at(place.time)) for place in places], self.count
+            )
         first, last = self.frames
         camera = self._session.camera if plan.from_here else None
         return flight.along_path(scene, first, last, self.count if plan.seconds else None, camera)

@@ -27,6 +27,7 @@ from viewer.output.movie import Video, frame_name, video
 from viewer.output.recipe import Recipe
 from viewer.services import filming, stills
 from viewer.services.filming import Script
+from viewer.state import codec
 from viewer.util.files import write_bytes
 
 _SCENE = "film"
@@ -106,8 +107,7 @@ def _otherwise(path: Path, recipe: Recipe, scene: Scene) -> str:
         "version": (made.get("version"), program_version()),
         "scene": (made.get("scene"), fingerprint.of_scene(scene)),
         "size": (data.get("size"), list(recipe.size)),
-        "settings": (data.get("state"), _as_json(recipe.snapshot(scene).to_json())),
-        "way of drawing": (data.get("picture"), _as_json(recipe.to_json())),
+        "settings": (data.get("state"), _as_json(codec.state_to_json(recipe.state(), of_picture=True))),
     }
     return ", ".join(f"another {name}" for name, (old, new) in expected.items() if old != new)
 

@@ -31,7 +31,8 @@ from viewer.state.notices import Notices
 from viewer.state.picking import Pick
 from viewer.state.preferences import Preferences
 from viewer.state.readings import has_modes_of_cells
-from viewer.state.session import Session, Snapshot, settings_to_json
+from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 from viewer.state.zooming import Zoom
 
@@ -93,15 +94,16 @@ class FrameHistory(History):
     def _record_of(self, traced: Traced, number: int) -> FrameRecord:
         session, frame = self._session, traced.frame
         scene = session.scene
-        follow = session.follow and scene is not None and frame.camera == scene.camera_at(frame.time)
-        chosen = settings_to_json(session.settings)
-        for name, value in settings_to_json(frame.settings).items():
-            if name not in ("samples", "lamp_samples", "verify", "method"):  # of these the frame may have had others
-                chosen[name] = value
-        return FrameRecord(
-            number, frame.time, frame.camera, follow, frame.settings, chosen, session.view, session.light, session.wipe,
-            traced.full_size, traced.whole, session.edited.edits if session.edited is not None else NO_EDITS,
+        on_path = session.on_path and scene is not None and frame.camera == scene.camera_at(frame.time)
+        chosen = session.settings
+        settings = replace(  # of these the frame may have had others than were chosen
+            frame.settings, samples=chosen.samples, lamp_samples=chosen.lamp_samples, verify=chosen.verify,
+            method=chosen.method,
         )  # fmt: skip
+        edits = session.edited.edits if session.edited is not None else NO_EDITS
+        camera = None if on_path else frame.camera
+        state = replace(session.state, time=frame.time, camera=camera, settings=settings, edits=edits)
+        return FrameRecord(number, state, frame.camera, frame.settings, traced.full_size, traced.whole)
 
     # --- which frame set which mode ---------------------------------------------------------------
 
@@ -148,7 +150,7 @@ class JumpTarget:
     forgotten and these frames, by time and camera, are traced before the picture, which then has one sample a pixel and
     is not refined: it stays as it was found until something is done."""
 
-    snapshot: Snapshot
+    state: ViewState
     name: str
     size: tuple[int, int]
     point: Point | None = None
@@ -169,7 +171,7 @@ class FrameNavigator:
         undo: Undo,
         selection: Selection,
         notices: Notices,
-        restore: Callable[[Snapshot], None],
+        restore: Callable[[ViewState], None],
         reset_modes: Callable[[], None],
     ) -> None:
         self._session, self._preferences, self._history, self._scheduler = session, preferences, history, tracing
@@ -185,12 +187,7 @@ class FrameNavigator:
         if record is None:
             self._notices.say(f"picture {number} is no longer kept: only the last 10,000 are")
             return
-        snapshot = replace(
-            self._session.snapshot(), time=record.time, camera=record.camera, follow=record.follow,
-            settings=dict(record.chosen), view=record.view, light=record.light, wipe=record.wipe,
-            span=self._session.spans.get(record.view), edits=record.edits, cut=self._session.cut,
-        )  # fmt: skip
-        self.go_to(JumpTarget(snapshot, f"picture {number}", record.size, point))
+        self.go_to(JumpTarget(record.state, f"picture {number}", record.size, point))
         self._notices.say(f"{self.name_of(number)}, again{self._may_differ(record)}")
 
     def go_to_experiment(self, run: Experiment, number: int) -> None:
@@ -203,26 +200,23 @@ class FrameNavigator:
             return
         settings = replace(run.settings, method=run.shown, samples=session.settings.samples)
         then = run.times[number]
-        snapshot = replace(
-            session.snapshot(), time=then, camera=scene.camera_at(then), follow=True,
-            settings=settings_to_json(settings),
-        )  # fmt: skip
-        self.go_to(JumpTarget(snapshot, f"frame {number} of the experiment", (settings.width, settings.height)))
+        state = replace(session.state, time=then, camera=None, settings=settings)
+        self.go_to(JumpTarget(state, f"frame {number} of the experiment", (settings.width, settings.height)))
         self._notices.say(self.name_in_experiment(run, number))
 
     def go_to(self, target: JumpTarget) -> None:
         """Restore a target's state, and select its point once its picture has come."""
-        self._undo.call_next(f"going to {target.name}", with_time=True)
-        self._restore(target.snapshot)
+        self._undo.begin_step(f"going to {target.name}", with_time=True)
+        self._restore(target.state)
         if target.zoom is not None:
-            self._session.zoom = target.zoom
+            self._session.set_draw(zoom=target.zoom)
         self._selection.clear()
         if target.warmup is not None or self._depends_on_modes:
             self._reset_modes()
         if target.warmup is not None:
-            p, (width, height) = self._preferences, target.size
+            width, height = target.size
             if target.size != self._scheduler.full_size:
-                p.fixed_resolution, p.fixed_width, p.fixed_height = True, width, height
+                self._session.set_pace(fixed_size=True, width=width, height=height)
             self._scheduler.freeze(target.warmup)
         camera = self._session.camera
         self._wanted = (self._session.time, camera, target.point) if target.point is not None else None
@@ -248,7 +242,7 @@ class FrameNavigator:
     def name_of(self, number: int) -> str:
         """Return what a frame is called: by its number in the plots, and in the scene's path, where it is another."""
         record = self._history.records.get(number)
-        return f"picture {number}{self._of_path(record.time) if record is not None else ''}"
+        return f"picture {number}{self._of_path(record.state.time) if record is not None else ''}"
 
     def name_in_experiment(self, run: Experiment, number: int) -> str:
         """Return what a frame of an experiment is called, and in the scene's path where the experiment has others."""
@@ -265,11 +259,11 @@ class FrameNavigator:
         if record.size != self._scheduler.full_size:
             width, height = record.size
             return f", though its picture had {width} x {height} pixels"
-        if record.view is View.TREE:
+        if record.state.draw.view is View.TREE:
             return f", though {BUILT}"
         return ": modes are learnt anew" if self._depends_on_modes else ": the same picture, bit for bit"
 
     @property
     def _depends_on_modes(self) -> bool:
         """Whether the picture depends on what was seen before it."""
-        return not Method.parse(self._session.settings.method).exact or self._session.view.of_modes
+        return not Method.parse(self._session.settings.method).exact or self._session.draw.view.of_modes

@@ -111,7 +111,7 @@ class FrameScheduler:
     def record_light(self) -> None:
         """Have the chosen light recorded for the newest frame, where the view needs it and the frame lacks it, as there
         are too many lights to record all of them in every frame."""
-        frame, view, light = self.frame, self._session.view, self._session.light
+        frame, view, light = self.frame, self._session.draw.view, self._session.draw.light
         if frame is None or not (view.needs_lights and view.of_light) or light >= frame.lights:
             return
         if not (frame.settings.record_lights or can_draw(frame, view, light)):
@@ -202,10 +202,10 @@ class FrameScheduler:
 
     def _should_refine(self) -> bool:
         """Whether, at rest, one more frame of the same view will know more about shadows."""
-        keeps_tracing = self._preferences.keep_tracing
+        keeps_tracing = self._session.pace.keep_tracing
         if self.is_frozen and not keeps_tracing:
             return False
-        return self.refinement.wants_another(self.traced, self._session.view, keeps_tracing)
+        return self.refinement.wants_another(self.traced, self._session.draw.view, keeps_tracing)
 
     def _next_request(self, coarse: bool) -> RenderRequest:
         session, (width, height) = self._session, self.full_size
@@ -241,12 +241,12 @@ class FrameScheduler:
     @property
     def _each_is_whole(self) -> bool:
         """Whether no frame is shown before all of it has been traced."""
-        return not self._preferences.dynamic_resolution or (self._session.playing and self._preferences.every_frame)
+        return not self._session.pace.progressive or (self._session.playing and self._session.pace.every_frame)
 
     @property
     def _frame_seconds(self) -> float:
         """That a frame may take until some of it is shown: half of it where each is traced twice."""
-        return (0.5 if self.inputs.second else 1.0) / self._preferences.target_fps
+        return (0.5 if self.inputs.second else 1.0) / self._session.pace.target_fps
 
     @property
     def _second(self) -> str:
@@ -272,7 +272,7 @@ class FrameScheduler:
         memory for it.
 
         Until what makes certificates is ready, still being compiled, it is traced without: the picture is the same."""
-        session, view, (width, height) = self._session, self._session.view, self.full_size
+        session, view, (width, height) = self._session, self._session.draw.view, self.full_size
         lights = len(session.scene.lights) if session.scene is not None else 0
         method = session.settings.method
         if not self.inputs.ready and Method.parse(method).has_certificates:
@@ -285,7 +285,7 @@ class FrameScheduler:
             record_lights=records_lights(view, width * height, lights),
             record_fates=records_fates(view, width * height, lights),
             modes=not Method.parse(method).clusters,  # which would look at single lights for these alone
-            certificate_seconds=self._preferences.certificate_share * self._frame_seconds,
+            certificate_seconds=self._session.pace.certificate_share * self._frame_seconds,
         )
 
     def _answers(self, made: RenderRequest, wanted: RenderRequest) -> bool:
@@ -385,8 +385,8 @@ class FrameScheduler:
     @property
     def full_size(self) -> tuple[int, int]:
         """The resolution at rest: the window's, or the fixed one (0, 0 while there is nowhere to show it)."""
-        p, size = self._preferences, self.inputs.size
-        return (p.fixed_width, p.fixed_height) if p.fixed_resolution and min(size) > 0 else size
+        pace, size = self._session.pace, self.inputs.size
+        return (pace.width, pace.height) if pace.fixed_size and min(size) > 0 else size
 
     @property
     def magnified(self) -> int:
@@ -399,13 +399,13 @@ class FrameScheduler:
     @property
     def drawn_view(self) -> View:
         """The view to draw the newest frame in: the picture while one that needs more of a frame waits for it."""
-        view = self._session.view
-        return view if self.frame is None or can_draw(self.frame, view, self._session.light) else View.COLOR
+        view = self._session.draw.view
+        return view if self.frame is None or can_draw(self.frame, view, self._session.draw.light) else View.COLOR
 
     @property
     def title(self) -> str:
         """The view, and the light where it shows one; before it what a run that is under way is at."""
-        view, wanted, run = self.drawn_view, self._session.view, self.inputs.run
+        view, wanted, run = self.drawn_view, self._session.draw.view, self.inputs.run
         title = f"{view.label}, light {self._session.light_number}" if view.of_light else view.label
         if run is not None:
             lacks = wanted is not view and run.lacks(wanted)

@@ -25,7 +25,7 @@ from viewer.state.edits import as_options
 from viewer.state.notices import Notices
 from viewer.state.plans import HuntPlan, frames_within
 from viewer.state.preferences import Preferences
-from viewer.state.session import Session, settings_to_json
+from viewer.state.session import Session
 from viewer.state.views import View
 
 
@@ -166,14 +166,14 @@ class HuntController:
             return
         self.chosen = number
         settings, size = hunt.search.settings, (hunt.search.settings.width, hunt.search.settings.height)
-        snapshot = replace(
-            self._session.snapshot(), time=find.time, camera=find.camera, follow=find.own_camera,
-            settings=settings_to_json(replace(settings, samples=self._session.settings.samples)), light=find.light,
-        )  # fmt: skip
+        wanted = replace(settings, samples=self._session.settings.samples)
+        state = replace(
+            self._session.state, time=find.time, camera=None if find.own_camera else find.camera, settings=wanted
+        ).with_draw(light=find.light)
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
         warmup = tuple((one.time, one.camera or scene.camera_at(one.time)) for one in find.before)
         zoom = zooming.around(*point, size[0] / counterexamples.crop_of(find, size).width)
-        self._navigator.go_to(JumpTarget(snapshot, f"find {number + 1}", size, point, zoom, warmup))
+        self._navigator.go_to(JumpTarget(state, f"find {number + 1}", size, point, zoom, warmup))
 
     def save_figure(self, number: int) -> None:
         """Trace and draw the figure of a find, into the folder of the pictures."""

@@ -67,11 +67,11 @@ class Motion:
     @property
     def under_way(self) -> bool:
         """Whether frames should come fast rather than fine."""
-        real_time = self._session.playing and not self._preferences.every_frame
-        return real_time or self.handled
+        real_time = self._session.playing and not self._session.pace.every_frame
+        return real_time or self.is_dragging
 
     @property
-    def handled(self) -> bool:
+    def is_dragging(self) -> bool:
         """Whether the camera is being moved, by hand or to where it was sent; time that passes does not count."""
         return self._glide is not None or time.monotonic() < self._moving_until
 
@@ -81,18 +81,18 @@ class Motion:
         return self._glide.end if self._glide is not None else None
 
     @property
-    def lively(self) -> bool:
+    def is_animating(self) -> bool:
         """Whether each of the window's frames shows something else than the last."""
         return self.under_way or self._session.playing
 
-    def follow(self, shown: float | None) -> None:
+    def advance(self, shown: float | None) -> None:
         """Bring time and camera to where they should be now; `shown` is the time of the newest whole picture."""
         now = time.monotonic()
         step, self._last = min(now - self._last, LONGEST_STEP), now
         self._play(step, shown)
         if self._glide is not None:
             t = (now - self._glide.began) / self._glide.seconds
-            self._session.move(navigation.blend(self._glide.start, self._glide.end, t))
+            self._session.change(camera=navigation.blend(self._glide.start, self._glide.end, t))
             if t >= 1.0:
                 self._glide = None
 
@@ -101,7 +101,7 @@ class Motion:
         session, preferences = self._session, self._preferences
         if not session.playing:
             return
-        if not preferences.every_frame:
+        if not session.pace.every_frame:
             session.advance(step * preferences.playback_rate, preferences.loop)
         elif shown == session.time:
             session.advance_frame(preferences.loop)
@@ -124,7 +124,7 @@ class Motion:
         if self._locked():
             return
         self.halt()
-        self._session.move(camera)
+        self._session.change(camera=camera)
         self.by_hand()
 
     def glide(self, camera: Camera, start: Camera | None = None) -> None:
@@ -148,7 +148,7 @@ class Motion:
         if self._locked():
             return
         self.halt()
-        self._session.free_camera = None if follow else self._session.camera
+        self._session.change(camera=None if follow else self._session.camera)
 
     def reset_camera(self) -> None:
         """Go back to the scene's own camera, now."""

@@ -170,7 +170,7 @@ class OriginFinder:
             self._frame = shown.frame
         record = self._next(pick)
         if record is not None:
-            asked = record.number, record.time, record.camera, record.settings, pick.unit, pick.in_cells
+            asked = record.number, record.state.time, record.camera, record.settings, pick.unit, pick.in_cells
             self._newest.take(self._query(find_pixels, self._frame, *asked))
             if self._newest.answer is not None:
                 number, found = self._newest.answer

@@ -127,13 +127,13 @@ class PictureController:
         return self._runs.begin(run)
 
     def _planned(self, recipe: Recipe, scene: Scene) -> Recipe:
-        plan, p = self.plan, self._preferences
+        plan = self.plan
         width, height = self.size
         if not 1 <= plan.multiple <= MOST_MULTIPLE or width * height > MOST_PIXELS:
             raise ValueError(f"{width} x {height} are more than {MOST_PIXELS:,} pixels; choose a smaller multiple")
         if plan.ending == exr.ENDING:
             exr.check()
-        place = (p.legend_x, p.legend_y) if plan.legend else None
+        place = self._session.draw.legend_at if plan.legend else None
         style = replace(recipe.style, magnified=1, legend=place, caption=plan.caption)
         settings = replace(recipe.settings, width=width, height=height, samples=plan.samples).validated()
         # Modes are those of a resolution, and begin anew in another; once more, and they show what they are.
@@ -159,7 +159,7 @@ class PictureController:
         """Put what is shown, (h, w, 3), on the clipboard, with its legend.
 
         With the recipe that makes it again; without one, as for two pictures, it says nothing."""
-        scene, place = self._session.scene, (self._preferences.legend_x, self._preferences.legend_y)
+        scene, place = self._session.scene, self._session.draw.legend_at
         if pixels is None or frame is None or scene is None:
             self._notices.say("there is no picture to copy yet", error=True)
             return

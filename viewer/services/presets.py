@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from typing import Any
 
-from viewer.state.choices import Choices
+from viewer.state import codec
 from viewer.state.methods import ADAPTIVE, BY_MODES, CERTIFIED, NO_CULLING
 from viewer.state.notices import Notices
-from viewer.state.preferences import Preferences
+from viewer.state.preferences import Preferences, Preset
 from viewer.state.session import Session
 from viewer.state.views import View
 
 LONGEST_NAME = 60
+OF_THE_MOMENT = {"spans", "zoom", "slice", "caption", "savings", "magnified"}
+"""Options of drawing that belong to what is shown at the time: no preset keeps them."""
 
 
 @dataclass(frozen=True)
 class BuiltIn:
-    """A preset that comes with the program: what it says nothing of stays as it is."""
+    """A preset that comes with the program: what its state says nothing of stays as it is."""
 
     name: str
     tip: str
-    settings: dict[str, Any]
-    view: View | None = None
-    looks: dict[str, Any] = field(default_factory=dict)
+    state: dict[str, dict[str, Any]]
 
 
 BUILT_IN = (
@@ -34,46 +34,51 @@ BUILT_IN = (
         "every frame of the animation is traced, each in full, at 512 x 512. (The window always traces through its "
         "fast trees; the command bench takes the paper's kd-tree.)",
         {
-            "method": BY_MODES, "symmetric": False, "zoom_factor": 4.0, "depth": 10, "samples": 1, "verify": False,
-            "lamp_radius": 0.0, "lamp_samples": None,
-        },
-        None,
-        {
-            "fixed_resolution": True, "fixed_width": 512, "fixed_height": 512, "dynamic_resolution": False,
-            "every_frame": True, "keep_tracing": False,
+            "settings": {
+                "method": BY_MODES, "symmetric": False, "zoom_factor": 4.0, "depth": 10, "samples": 1, "verify": False,
+                "lamp_radius": 0.0, "lamp_samples": None,
+            },
+            "pace": {
+                "fixed_size": True, "width": 512, "height": 512, "progressive": False, "every_frame": True,
+                "keep_tracing": False,
+            },
         },
     ),
     BuiltIn(
         "Every ray traced",
         "No culling: the picture that all others are compared with.",
-        {"method": NO_CULLING, "verify": False},
+        {"settings": {"method": NO_CULLING, "verify": False}},
     ),
     BuiltIn(
         "Quick and exact",
         "The method auto, which culls where that is quicker, in the size of the window, refined while nothing moves.",
-        {"method": ADAPTIVE, "verify": False, "samples": 16},
-        None,
-        {"fixed_resolution": False, "dynamic_resolution": True, "every_frame": False},
+        {
+            "settings": {"method": ADAPTIVE, "verify": False, "samples": 16},
+            "pace": {"fixed_size": False, "progressive": True, "every_frame": False},
+        },
     ),
     BuiltIn(
         "What the paper gets wrong",
         "The method paper with every culled ray traced as well, and pixels with a wrong shadow marked.",
-        {"method": BY_MODES, "verify": True},
-        View.DIFFERENCE,
-        {"mark_wrong": True},
+        {
+            "settings": {"method": BY_MODES, "verify": True},
+            "draw": {"view": View.DIFFERENCE.value, "mark_wrong": True},
+        },
     ),
     BuiltIn(
         "What certificates prove",
         "The method certified, which goes on proving while nothing moves, and the view of its certificates.",
-        {"method": CERTIFIED, "verify": False},
-        View.CERTIFICATE,
-        {"keep_tracing": True},
+        {
+            "settings": {"method": CERTIFIED, "verify": False},
+            "draw": {"view": View.CERTIFICATE.value},
+            "pace": {"keep_tracing": True},
+        },
     ),
 )  # fmt: skip
 
 
 class Presets:
-    """`own` are the user's, as {"name": ..., "choices": JSON of Choices}, in their order."""
+    """`own` are the user's, in their order."""
 
     def __init__(
         self,
@@ -82,37 +87,47 @@ class Presets:
         notices: Notices,
         locked: Callable[[], bool],
         save: Callable[[], None],
-        call_next: Callable[[str], None] = lambda name: None,
+        begin_step: Callable[[str], None] = lambda name: None,
     ) -> None:
-        """Nothing is applied while `locked()`, which says so itself; `save` writes the preferences, `call_next` names
+        """Nothing is applied while `locked()`, which says so itself; `save` writes the preferences, `begin_step` names
         the step of undo that follows."""
         self._session, self._preferences, self._notices = session, preferences, notices
-        self._locked, self._save, self._call_next = locked, save, call_next
+        self._locked, self._save, self._begin_step = locked, save, begin_step
 
     @property
-    def own(self) -> list[dict]:
+    def own(self) -> list[Preset]:
         return self._preferences.presets
+
+    @property
+    def _all(self) -> list[BuiltIn | Preset]:
+        return [*BUILT_IN, *self.own]
 
     @property
     def names(self) -> list[str]:
         """All, those of the program first."""
-        return [preset.name for preset in BUILT_IN] + [str(preset.get("name", "?")) for preset in self.own]
+        return [preset.name for preset in self._all]
 
     def tip(self, name: str) -> str:
-        """What a preset does."""
+        """Return what a preset does."""
         return next((preset.tip for preset in BUILT_IN if preset.name == name), "saved by you")
 
     def apply(self, name: str) -> None:
-        """Make its choices hold; a damaged one is one line and changes nothing."""
+        """Apply a preset; a damaged one is one line and changes nothing."""
         if self._locked():
             return
+        session = self._session
+        preset = next((one for one in self._all if one.name == name), None)
         try:
-            choices = self._choices(name)
-            self._call_next(f"preset {name}")
-            choices.put_into(self._session, self._preferences)
-        except (ValueError, KeyError) as error:
+            if preset is None or not preset.state:
+                raise ValueError("there is none of this name" if preset is None else "it holds no settings")
+            parts = {part: preset.state[part] for part in ("settings", "draw", "pace") if part in preset.state}
+            state = codec.state_from_json(parts, session.state)
+        except ValueError as error:
             self._notices.say(f"the preset {name} cannot be applied: {error}", error=True)
             return
+        self._begin_step(f"preset {name}")
+        lights = len(session.scene.lights) if session.scene is not None else 0
+        session.state = state.on_machine_of(session.state).with_draw(light=min(state.draw.light, max(lights - 1, 0)))
         self._notices.say(f"preset applied: {name}")
 
     def save(self, name: str) -> bool:
@@ -122,7 +137,9 @@ class Presets:
             why = "comes with the program; choose another name" if name else "give it a name"
             self._notices.say(f"preset not saved: {name + ' ' if name else ''}{why}", error=True)
             return False
-        kept = {"name": name, "choices": Choices.of(self._session, self._preferences).to_json()}
+        state = codec.state_to_json(self._session.state)
+        draw = {option: value for option, value in state["draw"].items() if option not in OF_THE_MOMENT}
+        kept = Preset(name, {"settings": state["settings"], "draw": draw, "pace": state["pace"]})
         at = self._find(name)
         if at is None:
             self.own.append(kept)
@@ -139,7 +156,7 @@ class Presets:
         if not name or self._is_built_in(name) or taken not in (None, index):
             self._notices.say(f"not renamed: {f'there is a preset {name}' if name else 'give it a name'}", error=True)
             return False
-        self.own[index]["name"] = name
+        self.own[index].name = name
         self._save()
         return True
 
@@ -147,21 +164,10 @@ class Presets:
         """Forget one of the user's."""
         gone = self.own.pop(index)
         self._save()
-        self._notices.say(f"preset deleted: {gone.get('name', '?')}")
-
-    def _choices(self, name: str) -> Choices:
-        built_in = next((preset for preset in BUILT_IN if preset.name == name), None)
-        if built_in is None:
-            at = self._find(name)
-            if at is None:
-                raise ValueError("there is none of this name")
-            return Choices.from_json(self.own[at].get("choices"))
-        now = Choices.of(self._session, self._preferences)
-        view = built_in.view or now.view
-        return replace(now, settings=now.settings | built_in.settings, view=view, looks=now.looks | built_in.looks)
+        self._notices.say(f"preset deleted: {gone.name}")
 
     def _find(self, name: str) -> int | None:
-        return next((i for i, preset in enumerate(self.own) if preset.get("name") == name), None)
+        return next((i for i, preset in enumerate(self.own) if preset.name == name), None)
 
     def _is_built_in(self, name: str) -> bool:
         return any(preset.name == name for preset in BUILT_IN)

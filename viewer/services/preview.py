@@ -36,8 +36,8 @@ class Preview:
     @property
     def flown(self) -> Camera | None:
         """Where the user has moved the camera to; None where it is as it was."""
-        seen = self._scene is not None and self._session.free_camera not in (None, self._start)
-        return self._session.free_camera if seen else None
+        seen = self._scene is not None and self._session.state.camera not in (None, self._start)
+        return self._session.state.camera if seen else None
 
     def update(self, traced: bool) -> None:
         """Begin or end; `traced` says that a traced picture is there."""
@@ -60,8 +60,9 @@ class Preview:
         if scene.primitive_count > MOST_READ:
             return
         self._scene = session.previewed = scene
-        self._start = session.free_camera = camera
-        start = session.time = scene.time_range[0] if time is None else time
+        self._start = camera
+        start = scene.time_range[0] if time is None else time
+        session.change(camera=camera, time=start)
 
         def gather(progress: Progress) -> tuple[PreviewGeometry, tuple[Corner, Corner] | None]:
             return preview_geometry(scene, start, progress), _bounds(scene)
@@ -73,7 +74,7 @@ class Preview:
             self._job.cancel()
         session = self._session
         if session.scene is None:
-            session.free_camera = None
+            session.change(camera=None)
         session.previewed = self._scene = self._start = self._job = self.geometry = None
 
 

@@ -12,11 +12,9 @@ from viewer.output import recipe
 from viewer.output.recipe import BUILT, Recipe, Style
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.scene_loader import SceneLoader
-from viewer.state.draw_options import MIDDLE
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
-from viewer.state.tone import NEUTRAL
 from viewer.state.views import View
 
 UNKNOWN = "its modes were learnt from other frames as well"
@@ -36,7 +34,7 @@ class Recipes:
         session, scene = self._session, self._session.scene
         if scene is None:
             return None
-        follow = session.follow and frame.camera == scene.camera_at(frame.time)
+        follow = session.on_path and frame.camera == scene.camera_at(frame.time)
         settings = replace(frame.settings, verify=session.settings.verify, modes=False)
         magnified = self._scheduler.magnified if view.needs_verify else 1
         style = self._style(view, magnified, self._preferences.legend_in_pictures if legend is None else legend)
@@ -46,8 +44,8 @@ class Recipes:
             camera=None if follow else frame.camera,
             settings=settings,
             view=view,
-            light=session.light,
-            wipe=session.wipe,
+            light=session.draw.light,
+            wipe=session.draw.wipe,
             style=style,
             by_gpu=view is not View.COLOR or style.outlines or not style.tone.neutral or style.clipping,
             folders=self._loader.folders,
@@ -58,21 +56,20 @@ class Recipes:
 
     def _style(self, view: View, magnified: int, legend: bool) -> Style:
         """Of tone and range, what the view has a use for."""
-        p, session = self._preferences, self._session
-        ranged = view.has_range and not (view.needs_work and p.work_shares)
+        draw = replace(self._session.draw, view=view).as_needed()
         return Style(
-            shares=p.work_shares,
-            marked=p.mark_wrong,
+            shares=draw.shares,
+            marked=draw.mark_wrong,
             magnified=magnified,
-            shading=p.shading,
-            beneath=p.beneath,
-            outlines=p.outlines,
-            legend=(p.legend_x, p.legend_y) if legend else None,
-            tone=session.tone if view.shows_picture else NEUTRAL,
-            clipping=session.clipping and view.shows_clipped,
-            span=session.spans.get(view) if ranged else None,
-            cut=session.cut if view.has_slice else MIDDLE,
-            savings="" if p.savings_in_pictures else None,
+            shading=draw.shading,
+            beneath=draw.beneath,
+            outlines=draw.outlines,
+            legend=draw.legend_at if legend else None,
+            tone=draw.tone,
+            clipping=draw.clipping,
+            span=draw.span,
+            cut=draw.slice,
+            savings="" if self._preferences.savings_in_pictures else None,
         )
 
     def _with_history(self, found: Recipe, frame: Frame) -> Recipe:
@@ -99,7 +96,7 @@ class Recipes:
             self._scheduler.settings, width=width, height=height, samples=session.settings.samples
         )
         as_wanted = replace(frame, time=session.time, camera=session.camera, settings=settings)
-        return self.of(as_wanted, session.view)
+        return self.of(as_wanted, session.draw.view)
 
     def command(self) -> str | None:
         """The command line that makes the picture again; None, and one line, where there is no picture."""

@@ -185,7 +185,7 @@ class RunController:
             self._notices.say(f"this test was made {test.made_in(session.scene)}")
             return None
         session.playing = False
-        session.time = test.results.time
+        session.change(time=test.results.time)
         self.zoom_plan.same_start = True
         return step.camera
 

@@ -21,9 +21,11 @@ from tracer.scene.studio import up_in_studio
 from viewer.output import capture
 from viewer.services import scene_files
 from viewer.services.jobs import Job
+from viewer.state import codec
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
-from viewer.state.session import Session, Snapshot
+from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.util.messages import ERROR, say
 
 PATIENCE = 0.5
@@ -36,7 +38,7 @@ class Arrival:
     and one line that says so.  `again` says that it is the scene that was open, read again: the place stays."""
 
     opened: scene_files.Opened | None
-    place: Snapshot | None
+    place: ViewState | None
     text: str
     again: bool = False
 
@@ -48,7 +50,7 @@ class _Load:
 
     job: Job[scene_files.Opened]
     meshes: MeshOptions
-    place: Snapshot | None = None
+    place: ViewState | None = None
     again: bool = False
     changed: str = ""
     files: dict[Path, Stamp] = field(default_factory=dict)
@@ -100,7 +102,7 @@ class SceneLoader:
         place = self._load.place
         if place is None:
             return self._load.seen[0], None, None
-        return self._load.seen[0], place.time, None if place.follow else place.camera
+        return self._load.seen[0], place.time, place.camera
 
     @property
     def ready(self) -> bool:
@@ -120,7 +122,7 @@ class SceneLoader:
         from `folders` besides their own. `meshes` says how meshes are read; which way is up holds for the first."""
         self.folders, self.meshes = tuple(folders), meshes
         self._given = dict(settings or {})
-        self._session.settings = replace(self._session.settings, **self._given)
+        self._session.set_settings(**self._given)
         self.compiles = not compiled_before()
         title = "Compiling the tracer (first start only)" if self.compiles else "Loading the tracer"
         self.warm_up_job = Job(title, warm_up, self._wake)
@@ -189,15 +191,15 @@ class SceneLoader:
         if not last:
             return False
         try:
-            snapshot = Snapshot.from_json(last)
+            state = codec.state_from_json(last, self._session.state)
         except ValueError as error:
             self._notices.say(f"cannot start where you left off: {error}", error=True)
             return False
-        found = scene_files.find_scene(snapshot.scene, Path(snapshot.scene))
+        found = scene_files.find_scene(state.scene, Path(state.scene))
         if found is None:
-            self._notices.say(f"cannot start where you left off: the scene is gone: {snapshot.scene}", error=True)
+            self._notices.say(f"cannot start where you left off: the scene is gone: {state.scene}", error=True)
             return False
-        self._begin(found, snapshot)
+        self._begin(found, state)
         return True
 
     def reload(self) -> None:
@@ -246,24 +248,33 @@ class SceneLoader:
     def _restore_capture(self, path: Path) -> None:
         """Bring back scene, camera, time, settings and view of a captured picture."""
         try:
-            snapshot = capture.read(path)
+            state = self._as_here(capture.read(path))
         except capture.CaptureError as error:
             self._refuse(str(error))
             return
-        found = scene_files.find_scene(snapshot.scene, path)
+        found = scene_files.find_scene(state.scene, path)
         scene = self._session.scene
         if found is None:
-            self._refuse(f"{path.name}: its scene was not found: {snapshot.scene}")
+            self._refuse(f"{path.name}: its scene was not found: {state.scene}")
         elif (
             scene is not None
             and self._load is None
             and _same_file(found, scene)
-            and snapshot.meshes == self._session.meshes
+            and state.meshes == self._session.meshes
         ):
-            self._restored = Arrival(None, snapshot, f"restored {path.name}")
+            self._restored = Arrival(None, state, f"restored {path.name}")
             self._wake()
         else:
-            self._begin(found, snapshot)
+            self._begin(found, state)
+
+    def _as_here(self, state: ViewState) -> ViewState:
+        """A state from a picture, with what the window shows around pictures, and not in them, as it is here."""
+        here = self._session.state
+        draw = here.draw
+        return replace(state, pace=here.pace).with_draw(
+            legend=draw.legend, legend_at=draw.legend_at, rays=draw.rays, smooth=draw.smooth, zoom=draw.zoom,
+            savings=draw.savings, caption=draw.caption, magnified=draw.magnified,
+        )  # fmt: skip
 
     def _refuse(self, why: str) -> None:
         self._tell_shell(why)
@@ -277,7 +288,7 @@ class SceneLoader:
     def _begin(
         self,
         path: Path,
-        place: Snapshot | None,
+        place: ViewState | None,
         again: bool = False,
         meshes: MeshOptions | None = None,
         changed: str = "",
@@ -287,7 +298,7 @@ class SceneLoader:
             self._load.job.cancel()
             self._abandoned.append(self._load.job)
         if place is not None:
-            place = replace(place, settings=place.settings | self._given)
+            place = place.with_settings(**self._given)
         self._given = {}
         if meshes is None and place is not None:
             meshes = place.meshes
@@ -324,7 +335,7 @@ class SceneLoader:
             self._notices.report(replace(job.failure, text=f"{job.failure.text}{stays}"))
         elif job.result is not None:
             opened = job.result
-            self._session.meshes = load.meshes
+            self._session.change(meshes=load.meshes)
             up = up_in_studio(opened.scene)
             standing = f", with {up} up" if up else ""
             count = len(opened.scene.warnings)

@@ -217,7 +217,7 @@ class SceneTable:
         if not self.visible or now is None or self._job is not None:
             return
         if traced is not None and traced.whole and traced.request.divisor == 1:
-            newest = _Source(now, traced.frame, None if self.all_lights else self._session.light)
+            newest = _Source(now, traced.frame, None if self.all_lights else self._session.draw.light)
             if self._source is None or not newest.is_like(self._source):
                 self._source = newest
         if self._source is not None:

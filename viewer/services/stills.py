@@ -139,8 +139,9 @@ def with_caption_filled(recipe: Recipe, scene: Scene) -> Recipe:
 def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recipe) -> str:
     """What a picture carries: its recipe, its statistics, and what they were made of; and its modes, where these cannot
     be learnt again."""
+    kept = replace(recipe, modes=kept_modes.packed(frame, recipe))
     more = {
-        "picture": replace(recipe, modes=kept_modes.packed(frame, recipe)).to_json(),
+        "picture": {"by_gpu": recipe.by_gpu},
         "made": {
             "version": program_version(),
             "scene": fingerprint.of_scene(scene),
@@ -148,4 +149,4 @@ def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recipe) 
         },
     }
     number, size = Session(scene).frame_at(frame.time), (frame.width, frame.height)
-    return capture.metadata(recipe.snapshot(scene), number, size, frame.statistics.to_dict(), more)
+    return capture.metadata(kept.state(), frame.camera, number, size, frame.statistics.to_dict(), more)

@@ -123,7 +123,7 @@ _DONE = object()
 
 def _has_flown(c: Controller) -> Iterator[None]:
     scene, start = c.session.scene, c.session.camera
-    while c.session.follow or c.session.camera == start:
+    while c.session.on_path or c.session.camera == start:
         if c.session.scene is not scene:  # another one was opened: nobody has flown there
             scene, start = c.session.scene, c.session.camera
         yield
@@ -212,7 +212,7 @@ def _has_seen_modes(c: Controller) -> Iterator[None]:
     wanted = {View.OCCLUSION, View.SHADOW}
     while wanted:
         yield
-        wanted.discard(c.session.view)
+        wanted.discard(c.session.draw.view)
 
 
 def _show_modes(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:

@@ -1,9 +1,9 @@
-"""Undo and redo of settings, view, light, tone, comparison, zoom, camera and edits of the scene.
+"""Undo and redo: a list of states.
 
-Nobody has to announce a change: what holds is compared from one of the window's frames to the next.  Changes that
-belong together are one step: all of a drag, all of a flight until the camera rests, all turns of the wheel until it
-does.  Time, and what a run does, are no steps.  How a mesh is read is one, which takes a while to be brought back: the
-mesh is read again."""
+Nobody has to announce a change: the state is compared from one of the window's frames to the next.  Changes that belong
+together are one step: all of a drag, all of a flight until the camera rests, all turns of the wheel until it does.
+Time by itself, and what a run does, are no steps.  How a mesh is read is one, which takes a while to be brought
+back: the mesh is read again."""
 
 from __future__ import annotations
 
@@ -11,33 +11,28 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.mesh_options import MeshOptions
-from tracer.scene.model import Camera
+from tracer.setting import ALWAYS, settings_of
 from viewer.services.motion import Motion
 from viewer.state import edits as scene_edits
-from viewer.state.choices import Choices, differences
+from viewer.state.comparison import Chosen
 from viewer.state.notices import Notices
-from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 
-MOST = 200
-"""Steps that are kept."""
+MOST_STEPS = 200
 _CAMERA = "camera"
-_BY_STROKES = {"tone", "zoom"}  # what the wheel or a key changes little by little
-_STROKE = 0.6  # seconds from one to the next, at most, for both to be one step
+_BY_STROKES = {"draw.tone.exposure", "draw.tone.white", "draw.zoom"}  # changed little by little, by the wheel or a key
+_STROKE_SECONDS = 0.6  # from one stroke to the next, at most, for both to be one step
 
 
 @dataclass(frozen=True)
 class Place:
-    """All that a step can bring back; `camera` is None while it follows the scene's own path, `time` where the step is
-    not about going to another time."""
+    """All that a step brings back; `with_time`, it goes to another time as well."""
 
-    choices: Choices
-    camera: Camera | None
-    meshes: MeshOptions
-    edits: Edits = NO_EDITS
-    time: float | None = None
+    state: ViewState
+    compared: Chosen
+    with_time: bool = False
 
 
 @dataclass(frozen=True)
@@ -73,7 +68,6 @@ class Undo:
     def __init__(
         self,
         session: Session,
-        preferences: Preferences,
         motion: Motion,
         notices: Notices,
         locked: Callable[[], bool],
@@ -82,16 +76,19 @@ class Undo:
     ) -> None:
         """Nothing is brought back while `locked()`, which says so itself.  `read_as` begins to read the open mesh in
         another way, and `reading()` says whether a scene is being read."""
-        self._session, self._preferences, self._motion = session, preferences, motion
-        self._notices, self._locked = notices, locked
+        self._session, self._motion, self._notices, self._locked = session, motion, notices, locked
         self._read_as, self._reading = read_as, reading
-        self._coming: _Coming | None = None
         self.held = False
+        self.clear()
+
+    def clear(self) -> None:
+        """Forget all steps, as another scene is open."""
         self._done: list[Step] = []
         self._undone: list[Step] = []
         self._open: _Open | None = None
-        self._changed_at = 0.0
+        self._coming: _Coming | None = None
         self._last: Place | None = None
+        self._changed_at = 0.0
         self._name = ""
         self._time: float | None = None  # before what is about to change, if that goes to another time
 
@@ -107,28 +104,21 @@ class Undo:
         """What would be done again; "" where there is nothing."""
         return self._undone[-1].name if self._undone and self._open is None else ""
 
-    def call_next(self, name: str, with_time: bool = False) -> None:
-        """Give a name to what is about to change, which is a step of its own; `with_time`, it brings back the time as
-        well."""
-        self.follow()
+    def begin_step(self, name: str, with_time: bool = False) -> None:
+        """Name what is about to change, which is a step of its own; `with_time`, it brings back the time as well."""
+        self.note_changes()
         self._close()
         self._name, self._time = name, self._session.time if with_time else None
 
-    def clear(self) -> None:
-        """Forget all steps, as another scene is open."""
-        self._done, self._undone, self._open, self._last, self._name = [], [], None, None, ""
-        self._time = None
-        self._coming = None
-
-    def overlook(self, change: Callable[[], None]) -> None:
+    def without_undo(self, change: Callable[[], None]) -> None:
         """Let something change that follows from a step, and is none itself."""
-        self.follow()
+        self.note_changes()
         change()
         if self._last is not None:
             self._last = self._place()
 
-    def follow(self) -> None:
-        """Take up what has changed since the last time."""
+    def note_changes(self) -> None:
+        """Take up what has changed since the last frame of the window."""
         if self._coming is not None and not self._come():
             return
         now = self._place()
@@ -137,15 +127,15 @@ class Undo:
         if self._last is None:
             self._last = now
             return
-        changed = _changes(self._last, now)
+        changed = {} if now == self._last else _changes(self._last, now)
         name, self._name = self._name, ""
         before, self._time = self._time, None
-        moved = before is not None and before != self._session.time
+        moved = before is not None and before != now.state.time
         if name and (changed or moved):
             self._close()
             then, after = self._last, now
             if moved:
-                then, after = replace(then, time=before), replace(now, time=self._session.time)
+                then, after = replace(_at(then, before), with_time=True), replace(now, with_time=True)
             self._add(Step(name, then, after))
         elif changed:
             if self._open is not None and not changed.keys() <= self._open.fields.keys():
@@ -159,41 +149,37 @@ class Undo:
 
     def undo(self) -> None:
         """Bring back what held before the newest step."""
-        if self._locked() or self._coming is not None:
-            return
-        self.follow()
-        self._close()
-        if not self._done:
-            self._notices.say("there is nothing to undo")
-            return
-        before = list(self._done), list(self._undone)
-        step = self._done.pop()
-        self._undone.append(step)
-        self._start(step.before, f"undone: {step.name}", *before)
+        self._go("undo")
 
     def redo(self) -> None:
         """Do again what was undone last."""
-        if self._locked() or self._coming is not None:
-            return
-        self.follow()
-        self._close()
-        if not self._undone:
-            self._notices.say("there is nothing to redo")
-            return
-        before = list(self._done), list(self._undone)
-        step = self._undone.pop()
-        self._done.append(step)
-        self._start(step.after, f"redone: {step.name}", *before)
+        self._go("redo")
 
     # --- inside ----------------------------------------------------------------------------------
+
+    def _go(self, way: str) -> None:
+        if self._locked() or self._coming is not None:
+            return
+        self.note_changes()
+        self._close()
+        back = way == "undo"
+        steps, others = (self._done, self._undone) if back else (self._undone, self._done)
+        if not steps:
+            self._notices.say(f"there is nothing to {way}")
+            return
+        before = list(self._done), list(self._undone)
+        step = steps.pop()
+        others.append(step)
+        self._start(step.before if back else step.after, f"{way}ne: {step.name}", *before)
 
     @property
     def _goes_on(self) -> bool:
         """Whether more may come of the step that is open."""
         if self._open is None:
             return False
-        strokes = self._open.fields.keys() <= _BY_STROKES and time.monotonic() < self._changed_at + _STROKE
-        return self.held or strokes or (_CAMERA in self._open.fields and self._motion.handled)
+        fields = self._open.fields.keys()
+        strokes = fields <= _BY_STROKES and time.monotonic() < self._changed_at + _STROKE_SECONDS
+        return self.held or strokes or (_CAMERA in fields and self._motion.is_dragging)
 
     def _close(self) -> None:
         """End the step that is open; what has come back to where it was is none."""
@@ -205,16 +191,16 @@ class Undo:
             self._add(Step(_name_of(fields), opened.before, self._last))
 
     def _add(self, step: Step) -> None:
-        self._done = [*self._done, step][-MOST:]
+        self._done = [*self._done, step][-MOST_STEPS:]
         self._undone = []
 
     def _start(self, place: Place, said: str, done: list[Step], undone: list[Step]) -> None:
         """Bring a place back, now or once its mesh is read; `done` and `undone` are the steps as they were before."""
-        if place.meshes == self._session.meshes:
+        if place.state.meshes == self._session.meshes:
             self._bring(place, said)
         else:
             self._coming = _Coming(place, said, done, undone)
-            self._read_as(place.meshes)
+            self._read_as(place.state.meshes)
 
     def _come(self) -> bool:
         """Bring back what a mesh is being read for, or forget of it where nothing has come of the reading; whether
@@ -223,25 +209,24 @@ class Undo:
         if coming is None or self._reading():
             return coming is None
         self._coming = None
-        if coming.place.meshes == self._session.meshes:
+        if coming.place.state.meshes == self._session.meshes:
             self._bring(coming.place, coming.said)
         else:
             self._done, self._undone = coming.done, coming.undone
         return True
 
     def _bring(self, place: Place, said: str) -> None:
-        session = self._session
-        place.choices.put_into(session, self._preferences)
-        if place.time is not None:
-            session.time, session.playing = place.time, False
-        if place.camera != session.free_camera:
-            start = session.camera
-            self._motion.halt()
-            session.free_camera = place.camera
-            if place.camera is not None:
-                self._motion.glide(place.camera, start)
-        session.want(place.edits, place.choices.light)
-        self._last = replace(place, edits=session.edits, time=None)
+        session, wanted, playing = self._session, place.state, self._session.playing
+        start = session.camera
+        if not place.with_time:
+            wanted = replace(wanted, time=session.time)
+        self._motion.halt()
+        session.restore(wanted)
+        session.comparison.choose(place.compared)
+        session.playing = playing and not place.with_time
+        if wanted.camera is not None and wanted.camera != start:
+            self._motion.glide(wanted.camera, start)
+        self._last = self._place()
         self._notices.say(said)
 
     def _place(self) -> Place | None:
@@ -249,18 +234,28 @@ class Undo:
         if session.scene is None:
             return None
         # On its way the camera is where it goes: a glide is one step, and one that undo began is none.
-        camera = self._motion.destination or session.free_camera
-        return Place(Choices.of(session, self._preferences), camera, session.meshes, session.edits)
+        state = replace(session.state, camera=self._motion.destination or session.state.camera)
+        return Place(state, session.comparison.chosen)
+
+
+def _at(place: Place, time: float | None) -> Place:
+    return place if time is None else replace(place, state=replace(place.state, time=time))
 
 
 def _changes(before: Place, after: Place) -> dict[str, str]:
-    changed = differences(before.choices, after.choices)
-    if before.meshes != after.meshes:
-        return changed | {"meshes": _in_words(before.meshes, after.meshes)}  # which has a first camera of its own
-    if before.camera != after.camera:
-        onto = "camera onto the scene's path" if after.camera is None else "camera"
-        changed[_CAMERA] = onto
-    return changed | scene_edits.differences(before.edits, after.edits)
+    """What has changed from the one to the other: for each field, in a few words, what it is now."""
+    old, new = before.state, after.state
+    changed = {
+        one.path: one.in_words(one.get(new))
+        for one in settings_of(ViewState)
+        if one.stored == ALWAYS and one.get(old) != one.get(new)
+    }
+    changed |= {f"comparison.{name}": said for name, said in before.compared.changes(after.compared).items()}
+    if old.meshes != new.meshes:
+        return changed | {"meshes": _meshes_in_words(old.meshes, new.meshes)}  # which has a first camera of its own
+    if old.camera != new.camera:
+        changed[_CAMERA] = "camera onto the scene's path" if new.camera is None else "camera"
+    return changed | scene_edits.differences(old.edits, new.edits)
 
 
 def _name_of(fields: dict[str, str]) -> str:
@@ -268,7 +263,7 @@ def _name_of(fields: dict[str, str]) -> str:
     return f"{first} and {len(others)} more" if len(others) > 1 else " and ".join([first, *others])
 
 
-def _in_words(before: MeshOptions, after: MeshOptions) -> str:
+def _meshes_in_words(before: MeshOptions, after: MeshOptions) -> str:
     """How a mesh is read now, where it was read in another way before."""
     if before.studio != after.studio:
         return f"studio {'on' if after.studio else 'off'}"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args, get_origin
 
 import msgspec
 import numpy as np
@@ -24,7 +24,7 @@ FORMAT = 2
 
 def to_json(value: Any) -> Any:
     """Return a value as dictionaries, lists, numbers and words."""
-    return msgspec.to_builtins(value, enc_hook=_plain, order="deterministic")
+    return _with_lists(msgspec.to_builtins(value, enc_hook=_plain, order="deterministic"))
 
 
 def from_json(data: Any, kind: type[T], what: str = "it") -> T:
@@ -49,6 +49,21 @@ def patched(value: T, data: Any, what: str = "it") -> T:
     return from_json(_onto(to_json(value), data), type(value), what)
 
 
+def forgiven(data: Any, kind: Any, default: Any) -> Any:
+    """Return what stored data has of a type: of lists and dictionaries what is right of them, else the default."""
+    try:
+        return msgspec.convert(data, kind)
+    except (msgspec.ValidationError, OverflowError, RecursionError):
+        pass
+    parts = get_args(kind)
+    if isinstance(data, list) and get_origin(kind) is list:
+        return [item for item in (forgiven(one, parts[0], None) for one in data) if item is not None]
+    if isinstance(data, dict) and get_origin(kind) is dict:
+        found = {name: forgiven(value, parts[1], None) for name, value in data.items()}
+        return {name: value for name, value in found.items() if value is not None}
+    return default
+
+
 def _onto(base: dict[str, Any], data: Mapping[str, Any]) -> dict[str, Any]:
     """Dictionaries go into dictionaries; all else takes the place of what was there."""
     inner = {
@@ -57,6 +72,13 @@ def _onto(base: dict[str, Any], data: Mapping[str, Any]) -> dict[str, Any]:
         if isinstance(value, Mapping) and isinstance(base.get(name), dict)
     }
     return {**base, **data, **inner}
+
+
+def _with_lists(data: Any) -> Any:
+    """Lists in the place of tuples, so that what is stored is equal to what is read again."""
+    if isinstance(data, dict):
+        return {name: _with_lists(value) for name, value in data.items()}
+    return [_with_lists(value) for value in data] if isinstance(data, (list, tuple)) else data
 
 
 def _plain(value: Any) -> Any:
@@ -88,14 +110,49 @@ def state_from_json(data: Any, onto: ViewState | None = None) -> ViewState:
 
 def picture_from_json(data: Mapping[str, Any]) -> ViewState:
     """Return the state that a saved picture carries, of any version; raises ValueError, in one line."""
-    state, picture, size = data.get("state"), data.get("picture"), data.get("size")
-    if isinstance(state, Mapping) and isinstance(picture, Mapping):
+    state, size = data.get("state"), data.get("size")
+    picture = data.get("picture") or data.get("figure")
+    if isinstance(state, Mapping) and isinstance(picture, Mapping) and "draw" not in state:
         state = _of_today(state, picture)
     found = state_from_json(state)
     if not isinstance(size, list):
         return found
     width, height = from_json(size, tuple[int, int], "its size")
     return found.with_settings(width=width, height=height).validated()
+
+
+def remembered(state: ViewState) -> dict[str, Any]:
+    """Return what a window that is started later takes over of a state."""
+    found = to_json(state)
+    data: dict[str, Any] = {}
+    for one in _REMEMBERED:
+        outer, inner = found, data
+        for name in one.within:
+            outer, inner = outer[name], inner.setdefault(name, {})
+        inner[one.name] = outer[one.name]
+    return data
+
+
+def recalled(data: Any) -> ViewState:
+    """Return the state that a window starts with; what is wrong with what is stored has its default."""
+    state = ViewState.in_window()
+    for one in _REMEMBERED:
+        part = data
+        for name in (*one.within, one.name):
+            part = part.get(name, _NOTHING) if isinstance(part, Mapping) else _NOTHING
+        if part is not _NOTHING:
+            nested = part
+            for name in (one.name, *reversed(one.within)):
+                nested = {name: nested}
+            try:
+                state = state_from_json(nested, state)
+            except ValueError:
+                continue
+    return state
+
+
+_NOTHING = object()
+_REMEMBERED = tuple(one for one in settings_of(ViewState) if one.remembered and one.stored != NEVER)
 
 
 def _without(data: dict[str, Any], stored: tuple[str, ...]) -> dict[str, Any]:

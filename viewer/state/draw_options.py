@@ -35,9 +35,9 @@ class Slice(NamedTuple):
     @staticmethod
     def parse(text: str) -> Slice:
         """Return the inverse of `in_words`; raises ValueError, in one line."""
-        axis, _, at = text.partition(":")
+        axis, colon, at = text.partition(":")
         try:
-            found = Slice(AXES.index(axis.strip().lower()), float(at or Slice().at))
+            found = Slice(AXES.index(axis.strip().lower()), float(at) if colon else Slice().at)
             found.check()
         except ValueError:
             raise ValueError(f"{text!r} is not a slice; give an axis and a part from 0 to 1, like y:0.25") from None
@@ -83,7 +83,7 @@ class DrawOptions:
     light: int = setting(0, "Light", "The light that the view is about.", low=0, remembered=False)
     wipe: float = setting(
         0.5, "Line", "Where the line between the two pictures is; or drag it in the picture.", low=0.0, high=1.0,
-        percent=True, panel="View", applies=in_views(lambda view: view is View.WIPE), remembered=False,
+        percent=True, digits=0, panel="View", applies=in_views(lambda view: view is View.WIPE), remembered=False,
     )  # fmt: skip
     slice: Slice = setting(
         MIDDLE, "Slice", "The plane through space that is shown: across which axis, and where along it.",
@@ -91,7 +91,7 @@ class DrawOptions:
     )  # fmt: skip
     beneath: float = setting(
         BENEATH, "Beneath", "How bright the picture is beneath the wrong pixels, or behind the slice.",
-        low=0.0, high=1.0, slider=(0.0, 0.6), percent=True, option="--beneath", panel="View",
+        low=0.0, high=1.0, slider=(0.0, 0.6), percent=True, digits=0, option="--beneath", panel="View",
         applies=in_views(lambda view: view is View.DIFFERENCE or view.has_slice),
     )  # fmt: skip
     shading: float = setting(
@@ -104,7 +104,7 @@ class DrawOptions:
         applies=lambda state: _has_span(state.draw), check=_check_spans,
     )  # fmt: skip
     legend: bool = setting(
-        False, "Legend", "What the colours mean, in the picture; drag it where you like.", option="--legend",
+        False, "Legend", "Draw into the picture what its colours mean.", option="--legend",
         panel="View", in_window=True,
     )  # fmt: skip
     legend_at: tuple[float, float] = setting(
@@ -115,7 +115,7 @@ class DrawOptions:
         False, "Outlines", "Draw the borders between primitives.", option="--outlines", panel="View"
     )
     shares: bool = setting(
-        False, "Shares",
+        False, "Shares of rays",
         "Show the share of the shadow rays due, or of the rays traced without culling, instead of counts.",
         panel="View", applies=in_views(lambda view: view.needs_work),
     )  # fmt: skip
@@ -128,7 +128,7 @@ class DrawOptions:
         "Draw stripes over pixels that are too bright for the screen, in red, and over black ones, in blue.",
         option="--mark-clipped", panel="View", applies=in_views(lambda view: view.shows_clipped), remembered=False,
     )  # fmt: skip
-    rays: bool = setting(True, "Shadow rays of the pixel", "Draw the shadow rays of the selected pixel.")
+    rays: bool = setting(True, "Draw shadow rays", "Draw the shadow rays of the clicked pixel over the picture.")
     smooth: bool = setting(True, "Smooth upscaling", "Blend the pixels of a picture that is smaller than the window.")
     savings: str | None = setting(
         None, "Savings", "Say above the picture what culling saves, with this text for steps and time, and a bar.",

@@ -1,66 +1,11 @@
-"""Edits of the scene (`tracer.scene.edits`) in words and as JSON."""
+"""Edits of the scene (`tracer.scene.edits`) in words."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 from tracer.scene.edits import NO_EDITS, Edits
-from tracer.scene.limits import LARGEST
-from viewer.util.json_numbers import finite, whole
-
-
-def to_json(edits: Edits) -> dict[str, Any]:
-    """What there is of edits; nothing for none."""
-    values: dict[str, Any] = {
-        "lights_off": sorted(edits.lights_off),
-        "moved_lights": [[number, list(place)] for number, place in edits.moved_lights],
-        "hidden": sorted(edits.hidden),
-        "hidden_primitives": sorted(edits.hidden_primitives),
-        "static": [[name, time] for name, time in edits.static],
-        "moving": sorted(edits.moving),
-    }
-    return {name: value for name, value in values.items() if value}
-
-
-def from_json(data: Any) -> Edits:
-    """The inverse of `to_json`; raises ValueError, in one line, on anything else."""
-    if not isinstance(data, Mapping) or not all(_is_list(value) for value in data.values()):
-        raise ValueError("its edits of the scene are damaged")
-    try:
-        return Edits(
-            frozenset(_number(n) for n in data.get("lights_off", ())),
-            tuple(sorted({_number(n): _place(place) for n, place in data.get("moved_lights", ())}.items())),
-            frozenset(_name(n) for n in data.get("hidden", ())),
-            frozenset(_number(n) for n in data.get("hidden_primitives", ())),
-            tuple(sorted({_name(name): finite(time) for name, time in data.get("static", ())}.items())),
-            frozenset(_name(n) for n in data.get("moving", ())),
-        )
-    except (TypeError, ValueError):
-        raise ValueError("its edits of the scene are damaged") from None
-
-
-def _is_list(value: Any) -> bool:
-    return isinstance(value, Sequence) and not isinstance(value, str)
-
-
-def _number(value: Any) -> int:
-    if whole(value) < 0:
-        raise ValueError("a number in it is below 0")
-    return whole(value)
-
-
-def _name(value: Any) -> str:
-    if type(value) is not str:
-        raise ValueError(value)
-    return value
-
-
-def _place(value: Any) -> tuple[float, float, float]:
-    x, y, z = (finite(part) for part in value)
-    if max(abs(x), abs(y), abs(z)) > LARGEST:
-        raise ValueError(value)
-    return x, y, z
 
 
 def differences(before: Edits, after: Edits) -> dict[str, str]:

@@ -8,16 +8,14 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame, Settings
-from tracer.scene.edits import NO_EDITS, Edits
-from tracer.scene.model import Camera
+from tracer.scene.camera import Camera
 from tracer.statistics import SampleCounts
-from viewer.state.views import View
+from viewer.state.view_state import ViewState
 
 CAPACITY = 600
 MOST_RECORDS = 10_000
@@ -129,22 +127,16 @@ class History:
 class FrameRecord:
     """What it takes to come back to a traced frame, by its `number` in the plots.
 
-    `settings` are those that it was traced with, `chosen` those of the user as a snapshot keeps them; `size` is that of
-    the window's picture then, of which this may be a coarser version; `whole` says that all of its pixels were shaded,
-    so that it set modes.  `edits` are those of the scene."""
+    `camera` is where it was seen from; `state` has the settings that were chosen, `settings` are those that the frame
+    was traced with; `size` is that of the window's picture then, of which this may be a coarser version; `whole` says
+    that all of its pixels were shaded, so that it set modes."""
 
     number: int
-    time: float
+    state: ViewState
     camera: Camera
-    follow: bool
     settings: Settings
-    chosen: dict[str, Any]
-    view: View
-    light: int
-    wipe: float
     size: tuple[int, int]
     whole: bool
-    edits: Edits = NO_EDITS
 
 
 class FrameRecords:

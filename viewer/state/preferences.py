@@ -11,151 +11,103 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Collection, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 import platformdirs
 
-from tracer.frame import Settings
 from tracer.method import DEFAULT_METHOD, Method
-from tracer.scene.lights import MAX_SAMPLES
+from tracer.setting import setting, settings_of
+from viewer.state import codec
 from viewer.state.merging import merged
 from viewer.state.methods import ADAPTIVE, NO_CULLING, is_method, with_base
-from viewer.state.palette import BENEATH
-from viewer.state.views import View
 from viewer.util.files import file_lock, write_text
-from viewer.util.json_numbers import finite
 
 SETTINGS_FILE = "settings.json"
-FORMAT = 2
-"""Of the file. Version 0.2 wrote none, and its default method, auto, as if it had been chosen."""
+FORMAT = 3
+"""Of the file. Version 0.2 wrote none, which is 1 here."""
 PATIENCE = 2.0  # seconds that one window waits for another to save
 RECENT_SCENES = 10
 RECENT_COMMANDS = 30
 THEMES = ("dark", "light")
 SCALES = (0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
 """Sizes of the interface that are offered."""
-MOST_CERTIFYING = 0.9
-"""Part of a frame's time that may go into certificates."""
-LONGEST_SIDE = 8192
-"""Pixels of a picture of fixed size."""
 DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
 
-# Limits of the numbers; whatever lies outside is not from this program.
-_RANGES: dict[str, tuple[float, float]] = {
-    "target_fps": (1.0, 240.0),
-    "ui_scale": (0.75, 2.0),
-    "speed": (0.001, 1000.0),
-    "playback_rate": (0.01, 100.0),
-    "fixed_width": (1, LONGEST_SIDE),
-    "fixed_height": (1, LONGEST_SIDE),
-    "zoom_factor": (1.0, 1e6),
-    "certificate_share": (0.0, MOST_CERTIFYING),
-    "depth": (0, 100),
-    "samples": (1, 64),
-    "lamp_samples": (0, MAX_SAMPLES),
-    "threads": (0, 1024),
-    "shading": (0.0, 1.0),
-    "beneath": (0.0, 0.6),
-    "legend_x": (0.0, 1.0),
-    "legend_y": (0.0, 1.0),
-}
+
+@dataclass
+class Preset:
+    """A part of a state under a name: what it says nothing of stays when it is applied."""
+
+    name: str
+    state: dict[str, Any]
+
+
+@dataclass
+class Bookmark:
+    """A place to come back to: a state, and a small picture of it as text once there is one."""
+
+    name: str
+    state: dict[str, Any]
+    picture: str = ""
 
 
 @dataclass
 class Preferences:
-    """Everything that outlives the window.  `format` is that of the file (`FORMAT`); `speed` is relative to the scene's
-    own pace, 1 by default; `method` is the one to cull by while `culling` is on, `certificate_share` the part of a
-    frame's time in motion that may go into certificates; `samples` is how many a pixel gets at idle; `lamp_samples` how
-    many each lamp has, 0 for as many as the scene says (the radius of lamps is measured in units of the scene, and not
-    kept); `savings` says that what culling saves is shown above the picture; `legend_x` and `legend_y` say where in the
-    room that the picture leaves to its legend this lies, 0 to 1 from left and top; `tour` says that the tour has not
-    been shown yet, `last` is the snapshot, as JSON, to start from where that is asked for; `keys` are
-    those that the user has chosen, by the names of commands, and `used` what the command palette ran last, newest
-    first."""
+    """Everything that outlives the window.
+
+    `state` is what the window starts with (`codec.remembered`), `last` the state to start from where that is asked for;
+    `method` is the one to cull by while culling is on.  `speed` is relative to the scene's own pace.  `savings` says
+    that what culling saves is shown above the picture.  `tour` says that the tour has not been shown yet; `habits`
+    names the program that the viewer is steered like, `keys` are those that the user has chosen, by the names of
+    commands, and `used` what the command palette ran last, newest first."""
 
     format: int = FORMAT
-    target_fps: float = 15.0
-    dynamic_resolution: bool = True
-    fixed_resolution: bool = False
-    fixed_width: int = 512
-    fixed_height: int = 512
-    smooth_upscaling: bool = True
+    state: dict[str, Any] = field(default_factory=dict)
+    method: str = setting(DEFAULT_METHOD, "Method", "What culls while culling is on.", check=Method.parse)
     navigation: str = "fly"
-    speed: float = 1.0
+    speed: float = setting(1.0, "Speed", "How fast the camera flies: 1 crosses the scene in about eight seconds.",
+                           low=0.001, high=1000.0, slider=(0.05, 20.0), log=True, unit=" x",
+                           panel="Camera")  # fmt: skip
     loop: bool = True
-    every_frame: bool = False
-    playback_rate: float = 1.0
-    keep_tracing: bool = False
-    culling: bool = True
-    method: str = DEFAULT_METHOD
-    certificate_share: float = 0.15
-    symmetric: bool = False
-    zoom_factor: float = 4.0
-    depth: int = 10
-    samples: int = 16
-    lamp_samples: int = 0
-    threads: int = 0
-    verify: bool = False
-    view: str = "color"
-    shading: float = 0.35
-    outlines: bool = False
-    mark_wrong: bool = True
-    beneath: float = BENEATH
-    work_shares: bool = False
+    playback_rate: float = setting(1.0, "Rate", "How fast time passes: 1 is the scene's own time.", low=0.01,
+                                   high=100.0, slider=(0.1, 10.0), log=True, unit=" x", panel="Camera")  # fmt: skip
     savings: bool = True
-    legend: bool = True
-    legend_x: float = 0.0
-    legend_y: float = 1.0
-    legend_in_pictures: bool = False
-    savings_in_pictures: bool = False
+    legend_in_pictures: bool = setting(
+        False, "Legend in saved pictures", "Draw the legend of the view into them.", panel="Saving"
+    )
+    savings_in_pictures: bool = setting(
+        False, "Savings in saved pictures", "Say above them what culling saves.", panel="Saving"
+    )
     pixel_values: bool = True
-    draw_explanation: bool = True
     screenshot_folder: str = ""
     screenshot_template: str = DEFAULT_TEMPLATE
     tev: str = "127.0.0.1:14158"
     tour: bool = True
-    theme: str = "dark"
-    ui_scale: float = 1.0
+    theme: str = setting("dark", "Theme", "The colours of the interface.", choices=THEMES)
+    ui_scale: float = setting(1.0, "Size of the interface", "How large its letters are.", low=0.75, high=2.0,
+                              percent=True, panel="Window")  # fmt: skip
     start_where_left: bool = False
-    last: dict = field(default_factory=dict)
+    last: dict[str, Any] = field(default_factory=dict)
     watch_scene: bool = True
+    pads: bool = True
+    pad_dead_zone: float = setting(0.15, "Dead zone of sticks", "How far a stick moves before it counts.", low=0.0,
+                                   high=0.9, percent=True)  # fmt: skip
+    habits: str = "Shadowcull"
     keys: dict[str, list[str]] = field(default_factory=dict)
     used: list[str] = field(default_factory=list)
-    presets: list[dict] = field(default_factory=list)
+    presets: list[Preset] = field(default_factory=list)
     recent: list[str] = field(default_factory=list)
-    bookmarks: dict[str, list[dict]] = field(default_factory=dict)
-
-    def settings(self) -> Settings:
-        """Settings to trace with; the defaults where these do not go together."""
-        method = self.method if self.culling else NO_CULLING
-        names = ("symmetric", "zoom_factor", "depth", "samples", "threads", "verify")
-        try:
-            values = {name: getattr(self, name) for name in names}
-            return Settings(method=method, lamp_samples=self.lamp_samples or None, **values).validated()
-        except ValueError:
-            return Settings()
-
-    def keep(self, settings: Settings) -> None:
-        """Remember what was chosen to trace with."""
-        s = settings
-        self.culling = Method.parse(s.method).culls
-        self.method = s.method if self.culling else self.method
-        self.symmetric, self.zoom_factor = s.symmetric, s.zoom_factor
-        self.depth, self.samples, self.threads, self.verify = s.depth, s.samples, s.threads, s.verify
-        self.lamp_samples = s.lamp_samples or 0
+    bookmarks: dict[str, list[Bookmark]] = field(default_factory=dict)
 
     @property
     def picture_folder(self) -> Path:
         """Where pictures and results are saved."""
         return Path(self.screenshot_folder or default_screenshot_folder()).expanduser()
 
-    def chosen_view(self) -> View:
-        return View(self.view) if self.view in set(View) else View.COLOR
-
     def reset(self, kept: Collection[str]) -> None:
-        """Everything as it was at first, but for these fields."""
+        """Make everything as it was at first, but for these fields."""
         for item in fields(self):
             if item.name not in kept:
                 setattr(self, item.name, getattr(Preferences(), item.name))
@@ -184,13 +136,13 @@ def load_preferences(folder: Path | None = None) -> tuple[Preferences, str | Non
 
 
 def save_preferences(
-    preferences: Preferences, folder: Path | None = None, base: Mapping[str, Any] | None = None
+    preferences: Preferences | Mapping[str, Any], folder: Path | None = None, base: Mapping[str, Any] | None = None
 ) -> str | None:
     """Write the preferences in one step; returns None, or one line saying why they could not be written.
 
     With a `base`, what they were made from, as a dictionary, changes that another window has stored meanwhile stay."""
     folder = folder or config_folder()
-    path, mine = folder / SETTINGS_FILE, asdict(preferences)
+    path, mine = folder / SETTINGS_FILE, codec.to_json(preferences)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with file_lock(path, PATIENCE):
@@ -225,58 +177,70 @@ def _read(path: Path) -> tuple[Mapping[str, Any] | None, str | None]:
 
 
 def _from_json(data: Mapping[str, Any]) -> Preferences:
+    """The preferences that are stored: what is wrong with a value, or beyond what there may be, is left out."""
     preferences = Preferences(tour=False)  # who has a file without a word of it has used the program before
+    hints, declared = get_type_hints(Preferences), {one.name: one for one in settings_of(Preferences)}
     for item in fields(Preferences):
         if item.name in data:
-            default = getattr(preferences, item.name)
-            value = checked(item.name, data[item.name], default)
-            setattr(preferences, item.name, value)
+            value = codec.forgiven(data[item.name], hints[item.name], getattr(preferences, item.name))
+            if item.name not in declared or not declared[item.name].problem(value):
+                setattr(preferences, item.name, value)
+    preferences.format = FORMAT
+    preferences.recent, preferences.used = preferences.recent[:RECENT_SCENES], preferences.used[:RECENT_COMMANDS]
     return preferences
 
 
+# Where the fields of formats 1 and 2 are in a state, by the names of today.
+_MOVED = {
+    "symmetric": "settings.symmetric", "zoom_factor": "settings.zoom_factor", "depth": "settings.depth",
+    "samples": "settings.samples", "threads": "settings.threads", "verify": "settings.verify", "view": "draw.view",
+    "shading": "draw.shading", "outlines": "draw.outlines", "mark_wrong": "draw.mark_wrong", "beneath": "draw.beneath",
+    "work_shares": "draw.shares", "legend": "draw.legend", "draw_explanation": "draw.rays",
+    "smooth_upscaling": "draw.smooth", "fixed_resolution": "pace.fixed_size", "fixed_width": "pace.width",
+    "fixed_height": "pace.height", "dynamic_resolution": "pace.progressive", "target_fps": "pace.target_fps",
+    "keep_tracing": "pace.keep_tracing", "every_frame": "pace.every_frame",
+    "certificate_share": "pace.certificate_share",
+}  # fmt: skip
+
+
 def _of_today(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """What is stored, with the default method in the place of the one that version 0.2 has written unasked; what is
-    added to it was chosen."""
-    method = data.get("method")
-    if "format" in data or not isinstance(method, str) or not is_method(method):
+    """What is stored, in the format of today.  The default method of version 0.2, which it has written unasked, becomes
+    that of today; what is added to it was chosen."""
+    written = data.get("format", 1)
+    if written == FORMAT:
         return data
-    if Method.parse(method).base == ADAPTIVE:
-        return {**data, "method": with_base(method, DEFAULT_METHOD)}
-    return data
-
-
-def checked(name: str, value: Any, default: Any) -> Any:
-    """The value of a field if it is of the default's kind and in its range, else the default."""
-    if isinstance(default, bool) or isinstance(value, bool):
-        return value if isinstance(value, bool) and isinstance(default, bool) else default
-    if isinstance(default, int | float):
-        low, high = _RANGES.get(name, (float("-inf"), float("inf")))
-        try:
-            return type(default)(value) if low <= finite(value) <= high else default
-        except ValueError:
-            return default
-    if name == "method":
-        return value if isinstance(value, str) and is_method(value) and Method.parse(value).culls else default
-    listed = isinstance(value, list)
-    if name == "theme":
-        return value if value in THEMES else default
-    if name == "recent":
-        return [v for v in value if isinstance(v, str)][:RECENT_SCENES] if listed else default
-    if name == "keys":
-        return _keys(value) if isinstance(value, dict) else default
-    if name == "used":
-        return [v for v in value if isinstance(v, str)][:RECENT_COMMANDS] if listed else default
-    if name == "presets":
-        return [v for v in value if isinstance(v, dict) and isinstance(v.get("name"), str)] if listed else default
-    if name == "bookmarks":
-        if not isinstance(value, dict) or not all(isinstance(v, list) for v in value.values()):
-            return default
-        return {scene: [mark for mark in marks if isinstance(mark, dict)] for scene, marks in value.items()}
-    return value if isinstance(value, type(default)) else default
-
-
-def _keys(data: Mapping[str, Any]) -> dict[str, list[str]]:
-    """Lists of keys alone; which keys there are is the window's to know."""
+    method, state = data.get("method"), _nested(data, _MOVED)
+    if written == 1 and isinstance(method, str) and is_method(method) and Method.parse(method).base == ADAPTIVE:
+        method = with_base(method, DEFAULT_METHOD)
+    state["settings"]["method"] = method if data.get("culling", True) else NO_CULLING
+    if data.get("lamp_samples"):
+        state["settings"]["lamp_samples"] = data["lamp_samples"]
+    if "legend_x" in data and "legend_y" in data:
+        state["draw"]["legend_at"] = [data["legend_x"], data["legend_y"]]
+    presets = data.get("presets")
     return {
-        name: [key for key in keys if isinstance(key, str)] for name, keys in data.items() if isinstance(keys, list)
+        **data,
+        "format": FORMAT,
+        "method": method,
+        "state": state,
+        "presets": [_preset_of_today(one) for one in presets] if isinstance(presets, list) else [],
     }
+
+
+def _preset_of_today(data: Any) -> Any:
+    """A preset of formats 1 and 2: its `looks` were fields of the preferences."""
+    choices = data.get("choices") if isinstance(data, Mapping) else None
+    if not isinstance(choices, Mapping):
+        return data
+    state, looks = _nested(looks if isinstance(looks := choices.get("looks"), Mapping) else {}, _MOVED), choices
+    state["draw"] |= {name: looks[name] for name in ("view", "light", "wipe", "tone", "clipping") if name in looks}
+    return {"name": data.get("name"), "state": {**state, "settings": choices.get("settings", {})}}
+
+
+def _nested(data: Mapping[str, Any], places: Mapping[str, str]) -> dict[str, dict[str, Any]]:
+    state: dict[str, dict[str, Any]] = {"settings": {}, "draw": {}, "pace": {}}
+    for name, place in places.items():
+        if name in data:
+            part, _, field_name = place.partition(".")
+            state[part][field_name] = data[name]
+    return state

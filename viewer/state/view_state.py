@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.camera import Camera
 from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.limits import LARGEST
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
-from tracer.setting import AS_DEFAULT, Setting, check_all, setting, settings_of
+from tracer.setting import ALWAYS, AS_DEFAULT, Setting, check_all, setting, settings_of
 from tracer.settings import Settings
 from viewer.state.draw_options import DrawOptions
 
@@ -45,28 +46,23 @@ class Pace:
     )  # fmt: skip
     target_fps: float = setting(
         15.0, "In motion", "Frames per second to aim at.", low=1.0, high=240.0, slider=(2.0, 60.0), unit=" fps",
-        panel="Rendering", applies=lambda state: state.pace.progressive,
+        digits=0, panel="Rendering", applies=lambda state: state.pace.progressive,
     )  # fmt: skip
     keep_tracing: bool = setting(
         False, "Keep tracing when idle",
         "Trace frame after frame, to watch how modes are set and certificates made.", panel="Culling",
     )  # fmt: skip
     every_frame: bool = setting(
-        False, "Every frame", "Trace every frame of the animation while it plays, however long each takes."
+        False,
+        "Trace every frame",
+        "Play every frame of the animation, each traced in full, however long it takes; otherwise play in real time.",
     )
     certificate_share: float = setting(
         0.15, "Certificate budget",
         "The share of each frame's time for certificates while anything moves; when idle they get more.",
-        low=0.0, high=MOST_CERTIFYING, percent=True, panel="Culling",
+        low=0.0, high=MOST_CERTIFYING, percent=True, digits=0, panel="Culling",
         applies=lambda state: Method.parse(state.settings.method).has_certificates,
     )  # fmt: skip
-
-
-class WarmupFrame(NamedTuple):
-    """A frame that was traced before a picture: its time in seconds and its camera, None for the scene's own."""
-
-    time: float
-    camera: Camera | None = None
 
 
 @dataclass(frozen=True)
@@ -120,6 +116,13 @@ class ViewState:
     def with_settings(self, **settings: Any) -> ViewState:
         """Return it with other settings of tracing."""
         return replace(self, settings=replace(self.settings, **settings))
+
+    def on_machine_of(self, other: ViewState) -> ViewState:
+        """Return it with the settings of another that belong to its machine: threads, tree, size."""
+        state = self
+        for one in settings_of(ViewState):
+            state = state if one.stored == ALWAYS else one.put(state, one.get(other))
+        return state
 
     def validated(self) -> ViewState:
         """Return it, checked; raises ValueError, in one line, where a value is out of range."""

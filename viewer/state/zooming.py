@@ -27,6 +27,10 @@ class Zoom:
         """Whether all of the picture is shown."""
         return self.scale <= 1.0
 
+    def in_words(self) -> str:
+        """Return how closely it looks."""
+        return "to the whole picture" if self.fits else f"to {self.scale:.3g} x"
+
     @property
     def left(self) -> float:
         return self.x - 0.5 / self.scale

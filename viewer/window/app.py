@@ -68,7 +68,7 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Previewing the scene", lambda: c.preview.update(traced=c.frame is not None))
     # The state: time, camera, edits, and the steps of undo.
     step("Moving", c.move)
-    step("Noting what can be undone", c.undo.follow)
+    step("Noting what can be undone", c.undo.note_changes)
     step("Editing the scene", c.apply_edits)
     step("Comparing", c.comparing.end_beside_wipe)
     # The scheduler: queries about the newest frame are answered before the next.
@@ -267,7 +267,7 @@ class App:
     def _set_frame_rate(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
         idling = self.params.fps_idling
-        lively = self.controller.motion.lively or self.controller.comparing.blinks()
+        lively = self.controller.motion.is_animating or self.controller.comparing.blinks()
         by_processor = lively and self.drawn_by_processor
         idling.enable_idling = by_processor or not lively
         idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE

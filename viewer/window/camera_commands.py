@@ -8,6 +8,7 @@ from viewer.state import camera_text, navigation
 from viewer.state.picking import extent_at, point_at
 from viewer.state.selection_lookup import looking_at, part_points, place_of, primitive_points
 from viewer.window.command import Command, Condition, scene_open, switch
+from viewer.window.setting_rows import setting_command
 from viewer.window.ui import Ui
 
 KEYED_BOOKMARKS = 9
@@ -36,8 +37,8 @@ def camera(ui: Ui) -> list[Command]:
         Command("Orbit", "Camera", mode("orbit"), "O", checked=lambda: p.navigation == "orbit"),
         Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True),
         Command("Reset camera", "Camera", c.motion.reset_camera, "R", enabled=here),
-        Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.follow), "P",
-                checked=lambda: c.session.follow, enabled=here),
+        Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.on_path), "P",
+                checked=lambda: c.session.on_path, enabled=here),
         Command("Add bookmark", "Camera/Bookmarks", c.bookmarks.add, "Ctrl+B", enabled=here, separated=True),
         *_sides(ui, here), *_text(ui, here), *_bookmarks(ui, here),
     ]  # fmt: skip
@@ -59,7 +60,7 @@ def time(ui: Ui) -> list[Command]:
         Command("First frame", "Time", lambda: c.motion.step(-c.session.frame), "Home", enabled=moves),
         Command("Last frame", "Time", to_end, "End", enabled=moves),
         switch("Loop", "Time", p, "loop", separated=True),
-        switch("Trace every frame", "Time", p, "every_frame"),
+        setting_command(ui, "pace.every_frame", "Time"),
     ]
 
 
@@ -169,7 +170,7 @@ def _bookmarks(ui: Ui, here: Condition) -> list[Command]:
 
     def go(index: int) -> Command:
         def title() -> str:
-            return f"{index + 1}  {marks.all[index].get('name', '?')}" if index < len(marks.all) else ""
+            return f"{index + 1}  {marks.all[index].name}" if index < len(marks.all) else ""
 
         there = Condition(lambda: index < len(marks.all), "this scene has not so many bookmarks")
         return Command(f"Go to bookmark {index + 1}", "Camera/Bookmarks", lambda: c.go_to_bookmark(index),

@@ -36,13 +36,8 @@ def read_key(ui: Ui) -> None:
 
 def draw_options(ui: Ui) -> DrawOptions:
     """Return how the newest frame is drawn: in the view that it can be drawn in, with a range for both pictures."""
-    c, p, s = ui.controller, ui.controller.preferences, ui.controller.session
-    view = c.scheduler.drawn_view
-    options = DrawOptions(
-        view=view, light=s.light, shading=p.shading, outlines=p.outlines, mark_wrong=p.mark_wrong,
-        magnified=c.scheduler.magnified, wipe=s.wipe, shares=p.work_shares, beneath=p.beneath, tone=s.tone,
-        clipping=s.clipping, slice=s.cut,
-    )  # fmt: skip
+    c, view = ui.controller, ui.controller.scheduler.drawn_view
+    options = replace(c.session.draw, view=view, magnified=c.scheduler.magnified)
     return options.with_span(c.comparing.span(view))
 
 
@@ -60,7 +55,7 @@ def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
     if found is not None:
         compared.draw_difference(found, comparing.limit(found))
     if found is None or comparing.state.held:
-        spans = options.spans if a.view is b.view else tuple(ui.controller.session.spans.items())
+        spans = options.spans if a.view is b.view else ui.controller.session.draw.spans
         of_a = replace(options, view=a.view, light=a.light, spans=spans)
         compared.a.draw(a.frame, of_a, InWindow(smooth=smooth, highlight=Highlight(line=False)))
 
@@ -89,7 +84,7 @@ def difference(ui: Ui) -> Difference | None:
 
 def marked(ui: Ui) -> tuple[Spot, ...]:
     """Return the pixels of a signed difference that have rings."""
-    found = difference(ui) if ui.controller.preferences.mark_wrong else None
+    found = difference(ui) if ui.controller.session.draw.mark_wrong else None
     return () if found is None else found.worst
 
 
@@ -112,7 +107,7 @@ def filling(ui: Ui) -> PictureTexture | None:
 
 def magnify(ui: Ui, options: DrawOptions, smooth: bool) -> None:
     """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
-    magnifier, size, zoom = ui.graphics.magnifier, ui.picture.size, ui.controller.session.zoom
+    magnifier, size, zoom = ui.graphics.magnifier, ui.picture.size, ui.controller.session.draw.zoom
     if magnifier is None or min(size) < 1:
         return
     seen, compared = shown(ui), ui.graphics.compared
@@ -166,4 +161,4 @@ def composed_picture(ui: Ui, b: Pixels) -> Pixels:
         return b
     if seen[2] is CompareMode.DIFFERENCE and not shows_a(ui):
         return with_rings(compared.difference.read(), marked(ui))
-    return composed(compared.a.read(), b, seen[2], ui.controller.session.wipe, shows_a(ui))
+    return composed(compared.a.read(), b, seen[2], ui.controller.session.draw.wipe, shows_a(ui))

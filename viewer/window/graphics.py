@@ -110,7 +110,7 @@ def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
 def in_window(ui: Ui) -> InWindow:
     """Return what the window adds to the picture, but for what is selected."""
     c = ui.controller
-    smooth, view = c.preferences.smooth_upscaling and c.session.zoom.fits, c.scheduler.drawn_view
+    smooth, view = c.session.draw.smooth and c.session.draw.zoom.fits, c.scheduler.drawn_view
     line = view is not View.WIPE or not c.scheduler.becoming_finer  # of few pixels it would be thick
     return InWindow(smooth=smooth, highlight=Highlight(ui.fate_shown if view is View.FATE else None, line))
 
@@ -121,13 +121,13 @@ def capture(ui: Ui) -> None:
     if wanted not in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD):
         ui.graphics.capture_view = None
         return
-    view = ui.graphics.capture_view = ui.graphics.capture_view or c.session.view
-    why = _why_none(c) if view is c.session.view else "another view was chosen before it came"
+    view = ui.graphics.capture_view = ui.graphics.capture_view or c.session.draw.view
+    why = _why_none(c) if view is c.session.draw.view else "another view was chosen before it came"
     if why:
         ui.capture_wanted = ui.graphics.capture_view = None
         c.notices.say(f"no picture of the view {view.label}: {why}", error=True)
         return
-    shown = c.scheduler.drawn_view is c.session.view
+    shown = c.scheduler.drawn_view is c.session.draw.view
     ready = shown and not c.scheduler.becoming_finer  # else the picture is saved when it has come
     if ui.graphics.display is not None and ready:
         ui.capture_wanted = ui.graphics.capture_view = None
@@ -150,12 +150,12 @@ def capture(ui: Ui) -> None:
 
 def _why_none(c: Controller) -> str:
     """Why there is no picture in the chosen view, and none is on its way; nothing where there is, or may be."""
-    frame, view, run = c.frame, c.session.view, c.runs.current
+    frame, view, run = c.frame, c.session.draw.view, c.runs.current
     if frame is None or c.scheduler.drawn_view is view:
         return ""
     if run is not None and (lacks := run.lacks(view)):
         return f"the {run.name} {lacks}"
     if run is None and (c.scheduler.awaits or c.renderer.busy):
         return ""
-    found = missing(view, frame, c.preferences.work_shares)
+    found = missing(view, frame, c.session.draw.shares)
     return found.text if found is not None else ""

@@ -9,6 +9,7 @@ from viewer.state.pixels import Point
 from viewer.state.tone import NEUTRAL, brighter
 from viewer.state.zooming import FIT, MOST, STEP, zoomed
 from viewer.window.command import Command, Condition, switch
+from viewer.window.setting_rows import setting_command
 from viewer.window.ui import Ui
 
 _STOPS = 0.5  # of exposure by a key
@@ -54,19 +55,19 @@ def looking(ui: Ui) -> list[Command]:
 
     def expose(stops: float) -> Callable[[], None]:
         def change() -> None:
-            session.tone = brighter(session.tone, stops)
-            ui.controller.notices.say(f"exposure {session.tone.exposure:+.3g} stops")
+            session.set_draw(tone=brighter(session.draw.tone, stops))
+            ui.controller.notices.say(f"exposure {session.draw.tone.exposure:+.3g} stops")
 
         return change
 
     def clear_region() -> None:
         ui.pixels.region = None
 
-    larger = Condition(lambda: session.zoom.scale < MOST, f"it is enlarged {MOST:.0f} times, which is the most")
-    enlarged = Condition(lambda: not session.zoom.fits, "the whole picture is shown")
+    larger = Condition(lambda: session.draw.zoom.scale < MOST, f"it is enlarged {MOST:.0f} times, which is the most")
+    enlarged = Condition(lambda: not session.draw.zoom.fits, "the whole picture is shown")
     watching = Condition(lambda: bool(watched), "no pixel is watched")
     chosen = Condition(lambda: ui.pixels.region is not None, "no region is chosen")
-    toned = Condition(lambda: not session.tone.neutral, "colours are shown as traced")
+    toned = Condition(lambda: not session.draw.tone.neutral, "colours are shown as traced")
     return [
         Command("Zoom in", "Picture", lambda: zoom_by(ui, STEP, _at(ui)), "Equal", repeats=True,
                 enabled=larger, other_keys=("Shift+Equal", "KeypadAdd")),
@@ -79,15 +80,15 @@ def looking(ui: Ui) -> list[Command]:
         Command("Clear region", "Picture", clear_region, enabled=chosen),
         Command("Brighter", "Picture", expose(_STOPS), "RightBracket", repeats=True, separated=True),
         Command("Darker", "Picture", expose(-_STOPS), "LeftBracket", repeats=True),
-        Command("Colours as traced", "Picture", lambda: setattr(session, "tone", NEUTRAL),
+        Command("Colours as traced", "Picture", lambda: session.set_draw(tone=NEUTRAL),
                 enabled=toned),
-        switch("Mark clipped pixels", "Picture", session, "clipping", "Shift+M"),
+        setting_command(ui, "draw.clipping", "Picture", "Shift+M"),
     ]  # fmt: skip
 
 
 def _at(ui: Ui) -> tuple[float, float]:
     """Where the pointer is in the picture's room, else its middle."""
-    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.zoom
+    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.draw.zoom
     if hovered is None:
         return 0.5, 0.5
     return (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale
@@ -96,7 +97,7 @@ def _at(ui: Ui) -> tuple[float, float]:
 def zoom_by(ui: Ui, factor: float, at: Point = (0.5, 0.5)) -> None:
     """Enlarge the picture; `at`, 0 to 1 in the room that it has, stays where it is."""
     session = ui.controller.session
-    session.zoom = zoomed(session.zoom, factor, at)
+    session.set_draw(zoom=zoomed(session.draw.zoom, factor, at))
 
 
 def offer(ui: Ui, panel: str) -> None:
@@ -127,4 +128,4 @@ def pin_what_is_pointed_at(ui: Ui) -> None:
 
 def fit(ui: Ui) -> None:
     """Show all of the picture."""
-    ui.controller.session.zoom = FIT
+    ui.controller.session.set_draw(zoom=FIT)

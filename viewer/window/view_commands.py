@@ -13,6 +13,7 @@ from viewer.state.scene_rows import Level
 from viewer.state.views import View
 from viewer.views import view_of
 from viewer.window.command import Command, Condition, switch
+from viewer.window.setting_rows import setting_command
 from viewer.window.ui import Ui
 
 
@@ -33,14 +34,14 @@ def view(ui: Ui) -> list[Command]:
 
     def show(view: View) -> Command:
         return Command(view.label, "View", lambda: c.settings.set_view(view), view.key, also=view.declared.also,
-                       checked=lambda: c.session.view is view)  # fmt: skip
+                       checked=lambda: c.session.draw.view is view)  # fmt: skip
 
     def light(step: int) -> Callable[[], None]:
-        return lambda: c.settings.set_light(c.session.light + step)
+        return lambda: c.settings.set_light(c.session.draw.light + step)
 
     def another(step: int) -> Callable[[], None]:
         views = list(View)
-        return lambda: c.settings.set_view(views[(views.index(c.session.view) + step) % len(views)])
+        return lambda: c.settings.set_view(views[(views.index(c.session.draw.view) + step) % len(views)])
 
     lit = Condition(
         lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "there are not several lights"
@@ -54,14 +55,14 @@ def view(ui: Ui) -> list[Command]:
         *_space(ui),
         switch("What culling saves", "View", p, "savings", "Shift+B", separated=True,
                tip="one sentence above the picture, and a bar of the shadow rays by what became of them"),
-        switch("Legend", "View", p, "legend", "N"),
-        switch("Outlines", "View", p, "outlines", "B"),
-        switch("Mark wrong pixels", "View", p, "mark_wrong", "M"),
-        switch("Shares of rays", "View", p, "work_shares", "U"),
+        setting_command(ui, "draw.legend", "View", "N"),
+        setting_command(ui, "draw.outlines", "View", "B"),
+        setting_command(ui, "draw.mark_wrong", "View", "M"),
+        setting_command(ui, "draw.shares", "View", "U"),
         Command("Rays of the clicked pixel", "View", ui.show_rays, "X", separated=True),
         *_find(ui),
-        switch("Draw shadow rays", "View", p, "draw_explanation", "I"),
-        switch("Smooth upscaling", "View", p, "smooth_upscaling"),
+        setting_command(ui, "draw.rays", "View", "I"),
+        setting_command(ui, "draw.smooth", "View"),
         *_interface(ui),
         switch("Hide panels", "View", ui.fold, "hidden", "Tab", separated=True),
         switch("Full screen", "View", ui.full_screen, "wanted", "F11"),
@@ -77,12 +78,13 @@ def _space(ui: Ui) -> list[Command]:
     c, s = ui.controller, ui.controller.session
 
     def step(layers: int) -> None:
-        layer = view_of(s.view).layer(c.frame, s.cut) if c.frame is not None else None
+        layer = view_of(s.draw.view).layer(c.frame, s.draw.slice) if c.frame is not None else None
         if layer is not None:
-            s.cut = layer.goes_to(s.cut, layer.number + layers)
+            s.set_draw(slice=layer.goes_to(s.draw.slice, layer.number + layers))
 
     def turn() -> None:
-        s.cut = s.cut._replace(axis=(s.cut.axis + 1) % len(AXES))
+        cut = s.draw.slice
+        s.set_draw(slice=cut._replace(axis=(cut.axis + 1) % len(AXES)))
 
     return [
         Command("Next layer of the slice", "View", lambda: step(1), "Shift+RightBracket", enabled=sliced,
@@ -148,11 +150,7 @@ def _interface(ui: Ui) -> list[Command]:
 
 def culling(ui: Ui) -> list[Command]:
     """The menu Culling: the methods, and what they have learnt."""
-    c, p = ui.controller, ui.controller.preferences
-
-    def toggle_tracing() -> None:
-        p.keep_tracing = not p.keep_tracing
-        c.scheduler.trace_again()
+    c = ui.controller
 
     s = lambda: c.session.settings  # noqa: E731
     method = lambda: Method.parse(s().method)  # noqa: E731
@@ -173,10 +171,9 @@ def culling(ui: Ui) -> list[Command]:
         *[addition(kind) for kind in additions()],
         Command("Shadow culling", "Culling", c.settings.toggle_culling, "C", checked=lambda: method().culls,
                 separated=True),
-        Command("Symmetric occlusion test", "Culling", lambda: c.settings.change(symmetric=not s().symmetric), "Y",
-                checked=lambda: s().symmetric),
-        Command("Verify", "Culling", lambda: c.settings.change(verify=not s().verify), "V", checked=lambda: s().verify),
+        setting_command(ui, "settings.symmetric", "Culling", "Y"),
+        setting_command(ui, "settings.verify", "Culling", "V"),
         Command("Reset modes", "Culling", c.reset_modes, "Backspace", separated=True),
         Command("Trace again", "Culling", c.scheduler.trace_again, "T"),
-        Command("Keep tracing when idle", "Culling", toggle_tracing, "K", checked=lambda: p.keep_tracing),
+        setting_command(ui, "pace.keep_tracing", "Culling", "K"),
     ]  # fmt: skip

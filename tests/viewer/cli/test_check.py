@@ -100,17 +100,15 @@ def test_what_culling_saves_stands_above_the_picture_and_comes_back(
 def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> None:
     assert run(capfd, "render", "room.aff", "-o", "a.png", *SIZE)[0] == 0
     data = capture.read_data(Path("a.png"))
-    unknown = data["picture"] | {"history": "its modes were learnt elsewhere"}
+    state = data["state"]
+    unknown = state | {"warmup": {"unknown": "its modes were learnt elsewhere"}, "draw": {"view": "occlusion"}}
     for name, change in (
         ("window", {"window": True}),
-        ("unknown", {"picture": unknown, "state": data["state"] | {"view": "occlusion"}}),
-        ("gone", {"state": data["state"] | {"scene": "/gone/gone.aff"}}),
-        ("damaged", {"picture": data["picture"] | {"warmup": "many"}}),
+        ("unknown", {"state": unknown}),
+        ("gone", {"state": state | {"scene": "/gone/gone.aff"}}),
+        ("damaged", {"state": state | {"warmup": {"of_path": "many"}}}),
         ("figure", {"figure": {}}),
-        (
-            "drawn",
-            {"picture": data["picture"] | {"style": data["picture"]["style"] | {"annotations": [{"kind": "box"}]}}},
-        ),
+        ("drawn", {"picture": {"style": {"annotations": [{"kind": "box"}]}}}),
     ):
         png.write(Path(f"{name}.png"), pixels("a.png"), json.dumps(data | change))
     Image.new("RGB", (4, 4)).save("plain.png")
@@ -119,9 +117,9 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
         "window.png": "panels",
         "unknown.png": "learnt elsewhere",
         "gone.png": "its scene is gone",
-        "damaged.png": "its warmup is not understood",
+        "damaged.png": "warmup.of_path: expected `int`, got `str`",
         "drawn.png": "drawn on it",
-        "figure.png": "methods or crops are damaged",
+        "figure.png": "its figure is damaged",
         "plain.png": "not one captured",
         "other.pdf": "not a figure",
     }

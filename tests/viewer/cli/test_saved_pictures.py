@@ -41,10 +41,10 @@ def test_a_saved_picture_is_rendered_anew(saved: Path, capfd: pytest.CaptureFixt
 def test_options_change_what_they_name(saved: Path, capfd: pytest.CaptureFixture[str]) -> None:
     options = ("--frame", 7, "--view", "depth", "--size", "20x10", "--method", "paper")
     assert run(capfd, "render", saved, "-o", "other.png", *options)[0] == 0
-    was, now = capture.read_with_size(saved)[0], capture.read_with_size(Path("other.png"))
-    assert now[1] == (20, 10) and now[0].time == 7.0 and now[0].view == "depth"
-    assert now[0].settings["method"] == "paper" and now[0].settings["depth"] == was.settings["depth"] == 2
-    assert now[0].camera == was.camera and not now[0].follow
+    was, now = capture.read(saved), capture.read(Path("other.png"))
+    assert (now.settings.width, now.settings.height) == (20, 10) and now.time == 7.0 and now.draw.view == "depth"
+    assert now.settings.method == "paper" and now.settings.depth == was.settings.depth == 2
+    assert now.camera == was.camera is not None
     assert run(capfd, "render", saved, "--buffers", "b.npz")[0] == 0
     assert not Path("saved-rendered.png").exists()
 
@@ -55,7 +55,7 @@ def test_its_lamps_come_back(room: Path, capfd: pytest.CaptureFixture[str]) -> N
     assert run(capfd, "render", "lamps.png", "-o", "again.png")[0] == 0
     assert run(capfd, "render", "lamps.png", "-o", "points.png", "--lamp-radius", 0)[0] == 0
     kept = [capture.read(Path(name)).settings for name in ("lamps.png", "again.png", "points.png")]
-    assert [(s["lamp_radius"], s["lamp_samples"]) for s in kept] == [(0.5, 4), (0.5, 4), (0.0, 4)]
+    assert [(s.lamp_radius, s.lamp_samples) for s in kept] == [(0.5, 4), (0.5, 4), (0.0, 4)]
 
 
 def test_its_scene_is_told_of(saved: Path, room: Path, capfd: pytest.CaptureFixture[str]) -> None:
@@ -66,7 +66,7 @@ def test_its_scene_is_told_of(saved: Path, room: Path, capfd: pytest.CaptureFixt
 def test_its_camera_is_taken_alone(saved: Path, room: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert run(capfd, "render", room, "-o", "other.png", "--size", "20x10", "--camera", saved)[0] == 0
     other = capture.read(Path("other.png"))
-    assert other.camera.to_json() == CAMERA and other.time == 0.0 and other.view == "color"
+    assert other.camera.to_json() == CAMERA and other.time == 0.0 and other.draw.view == "color"
     tests = ("--primitive", 0, "--size", "32x32", "--steps", 2, "--camera", saved)
     assert run(capfd, "zoom", room, *tests)[0] == 0
 
@@ -104,7 +104,7 @@ def test_its_tone_and_its_range_come_back_where_the_view_has_any(room: Path, cap
     assert np.array_equal(pixels["toned"], pixels["again"]) and (pixels["toned"] != pixels["plain"]).any()
     assert np.array_equal(pixels["distances"], pixels["distances-again"])
     kept = {name: capture.read(Path(f"{name}.png")) for name in pixels}
-    assert kept["again"].tone.in_words() == "+1.5 EV, white 3, filmic" and kept["plain"].tone.neutral
+    assert kept["again"].draw.tone.in_words() == "+1.5 EV, white 3, filmic" and kept["plain"].draw.tone.neutral
     printed = {
         name: run(capfd, "render", f"{name}.png", "--print-command")[1] for name in ("toned", "plain", "distances")
     }
@@ -118,4 +118,8 @@ def test_its_tone_and_its_range_come_back_where_the_view_has_any(room: Path, cap
     assert np.array_equal(np.asarray(Image.open("frames/0000.png")), pixels["toned"])
     code, _, said = run(capfd, "film", room, "-o", "none", *film, "--view", "normal")
     assert code == 1 and "--view normal shows none" in said
-    assert kept["distances"].span == (2.0, 9.0) and kept["distances"].tone.neutral and kept["normals"].span is None
+    assert (
+        kept["distances"].draw.span == (2.0, 9.0)
+        and kept["distances"].draw.tone.neutral
+        and kept["normals"].draw.span is None
+    )

@@ -11,8 +11,10 @@ from PIL import Image, PngImagePlugin
 
 from tests.viewer.fakes import make_frame
 from tracer.scene.model import Camera
+from tracer.settings import Settings
 from viewer.output import capture
-from viewer.state.session import Snapshot
+from viewer.state.draw_options import DrawOptions
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 NOW = datetime(2024, 5, 31, 14, 5, 9)
@@ -21,18 +23,20 @@ VALUES = {"scene": "kitchen", "view": "shadow", "frame": 7, "seconds": 1.25, "me
 PIXELS = np.arange(4 * 6 * 3, dtype=np.uint8).reshape(4, 6, 3)
 
 
-def snapshot() -> Snapshot:
-    camera = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
-    return Snapshot("/scenes/kitchen.aff", 1.25, camera, False, {"method": "none"}, View.SHADOW, 2)
+CAMERA = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
+STATE = ViewState(
+    "/scenes/kitchen.aff", time=1.25, camera=CAMERA, settings=Settings(6, 4, method="none"),
+    draw=DrawOptions(View.SHADOW, 2),
+)  # fmt: skip
 
 
 def text() -> str:
-    return capture.metadata(snapshot(), 7, (6, 4), make_frame().statistics.to_dict())
+    return capture.metadata(STATE, CAMERA, 7, (6, 4), make_frame().statistics.to_dict())
 
 
 def test_a_picture_brings_back_its_state_and_its_pixels(tmp_path: Path):
     path = capture.save(PIXELS, tmp_path / "new" / "folder", "a.png", text())
-    assert capture.read(path) == snapshot()
+    assert capture.read(path) == STATE
     with Image.open(path) as image:
         assert np.array_equal(np.asarray(image), PIXELS)
         assert '"statistics"' in image.text["shadowcull"]

@@ -47,7 +47,7 @@ def test_all_buffers_are_in_it(capfd: pytest.CaptureFixture[str]) -> None:
         assert np.array_equal(channels[f"shadow_mode.{light}"], np.where(mode == 255, 0xFFFFFFFF, mode))
     assert np.allclose(np.hypot(np.hypot(channels["N.X"], channels["N.Y"]), channels["N.Z"])[channels["Z"] < np.inf], 1)
     data = json.loads(header["shadowcull"])
-    assert data["state"]["settings"]["method"] == "paper" and data["picture"]["warmup"] == 3
+    assert data["state"]["settings"]["method"] == "paper" and data["state"]["warmup"]["of_path"] == 3
     assert data["statistics"]["shadow"]["due"] > 0
 
 

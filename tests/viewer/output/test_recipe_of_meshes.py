@@ -12,7 +12,8 @@ from viewer.cli.main import viewer_parser
 from viewer.cli.options import mesh_arguments, mesh_options
 from viewer.output import recipe
 from viewer.output.recipe import Recipe
-from viewer.state.session import Session, Snapshot
+from viewer.state import codec
+from viewer.state.view_state import ViewState
 
 
 @pytest.mark.parametrize("meshes", [AS_IN_FILE, IN_STUDIO, MeshOptions(True, "-z", 12.5), MeshOptions(False, "x", 0.0)])
@@ -33,14 +34,12 @@ def test_a_dash_and_an_axis_are_a_value() -> None:
 
 
 def test_a_state_keeps_them_and_one_without_had_no_studio(tmp_path: Path) -> None:
-    from tracer.scene.load import load_scene
 
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    session = Session(load_scene(tmp_path / "a.obj"), meshes=MeshOptions(True, "-x", 3.0))
-    data = session.snapshot().to_json()
-    assert Snapshot.from_json(data).meshes == MeshOptions(True, "-x", 3.0)
-    assert Snapshot.from_json({k: v for k, v in data.items() if k != "meshes"}).meshes == AS_IN_FILE
+    data = codec.state_to_json(ViewState(meshes=MeshOptions(True, "-x", 3.0)))
+    assert codec.state_from_json(data).meshes == MeshOptions(True, "-x", 3.0)
+    assert codec.state_from_json({k: v for k, v in data.items() if k != "meshes"}).meshes == AS_IN_FILE
     for bad in (5, {"up": 3}, {"up": "w"}, {"crease": "x"}, {"crease": 1e9}):
-        with pytest.raises(ValueError, match="mesh|axis|crease") as error:
-            Snapshot.from_json(data | {"meshes": bad})
+        with pytest.raises(ValueError, match="mesh|axis|up|crease") as error:
+            codec.state_from_json(data | {"meshes": bad})
         assert "\n" not in str(error.value)

@@ -35,7 +35,7 @@ def _palette(d: Driver) -> None:
     assert imgui.is_popup_open("", ANY_POPUP)
     before = d.c.session.camera
     d.press(KEY.enter)
-    assert d.c.session.view is View.OCCLUSION and not imgui.is_popup_open("", ANY_POPUP)
+    assert d.c.session.draw.view is View.OCCLUSION and not imgui.is_popup_open("", ANY_POPUP)
     assert d.c.session.camera == before, "letters that were typed flew"
     find(d, "bounces")
     d.press(KEY.enter)
@@ -73,10 +73,10 @@ def _undo(d: Driver) -> None:
     slider = d.context.item_info("//View/view/##shading").rect_full
     middle, shading = (0.5 * (slider.min.x + slider.max.x), 0.5 * (slider.min.y + slider.max.y)), 0.35
     d.drag(middle, (40.0, 0.0))
-    assert d.c.preferences.shading != shading and d.c.undo.undoes.startswith("shading")
+    assert d.c.session.draw.shading != shading and d.c.undo.undoes.startswith("shading")
     d.context.menu_click("//##MainMenuBar/Edit/###Undo")
     d.frames(2)
-    assert d.c.preferences.shading == shading, "a drag is one step"
+    assert d.c.session.draw.shading == shading, "a drag is one step"
     assert d.c.notices.message.text.startswith("undone: shading") and d.c.undo.undoes == "camera"
     flights = 0
     while d.c.undo.undoes == "camera":  # several where the machine is slow: the camera rests between them
@@ -89,9 +89,9 @@ def _undo(d: Driver) -> None:
     for _ in range(3):
         d.press(CTRL | int(KEY.z))
     d.settle()
-    assert d.c.session.settings.depth == 10 and d.c.session.view is View.COLOR and not d.c.undo.undoes
+    assert d.c.session.settings.depth == 10 and d.c.session.draw.view is View.COLOR and not d.c.undo.undoes
     d.press(CTRL | SHIFT | int(KEY.z))
-    assert d.c.session.view is View.OCCLUSION
+    assert d.c.session.draw.view is View.OCCLUSION
     d.settle()
 
 
@@ -146,13 +146,13 @@ def _reloading(d: Driver) -> None:
     scene, path = d.c.session.scene, Path(d.c.session.scene.path)
     d.hold(KEY.d, 0.1)
     d.settle()
-    here, picture = d.c.session.snapshot(), d.shown()
+    here, picture = d.c.session.state, d.shown()
     good = path.read_text()
     _write(path, good.replace("l 3 5 4", "l -6 5 4"))
     d.wait(lambda: d.c.session.scene is not scene, "the scene that has changed", 30.0)
     assert d.ui.graphics.display.texture_id is not None
     d.settle()
-    assert d.c.session.snapshot() == here and d.c.notices.message.text.endswith("tiny.aff changed")
+    assert d.c.session.state == here and d.c.notices.message.text.endswith("tiny.aff changed")
     assert np.abs(d.shown().astype(int) - picture).max() > 20, "another picture"
     scene = d.c.session.scene
     _write(path, good + "\np 3\n0 0\n")

@@ -19,14 +19,15 @@ def closeup(d: Driver) -> None:
     d.resize(*SMALL)
     p = d.c.preferences
     d.fix_resolution(320, 240)
-    p.pixel_values = p.legend = False
+    p.pixel_values = False
+    d.c.session.set_draw(legend=False)
     d.settle()
     camera, traced, speed = d.c.session.camera, d.c.history.frames, d.c.preferences.speed
     shown = picture(d.c.frame)
     for number, (u, v) in enumerate(((0.3, 0.4), (0.003, 0.5), (0.71, 0.998))):
         x, y = _point_at(d, u, v)
         _wheel(d, 12 if number % 2 == 0 else 7)
-        assert abs(d.c.session.zoom.scale - (64.0 if number % 2 == 0 else 2.0**3.5)) < 1e-6
+        assert abs(d.c.session.draw.zoom.scale - (64.0 if number % 2 == 0 else 2.0**3.5)) < 1e-6
         assert d.c.selection.hovered is not None and _pixel(d) == (x, y), "the pixel has moved away from the pointer"
         d.context.mouse_click(0)
         d.frames(3)
@@ -41,12 +42,12 @@ def closeup(d: Driver) -> None:
             _crisp(d, shown, x, y)
             _panned(d, x, y)
         d.press(int(KEY.f) | SHIFT)
-        assert d.c.session.zoom.fits
+        assert d.c.session.draw.zoom.fits
     assert d.c.session.camera == camera and d.c.history.frames == traced and d.c.preferences.speed == speed
     d.press(KEY.equal, 3)
-    assert abs(d.c.session.zoom.scale - 2.0**1.5) < 1e-9
+    assert abs(d.c.session.draw.zoom.scale - 2.0**1.5) < 1e-9
     d.press(KEY.minus, 3)
-    assert d.c.session.zoom.fits
+    assert d.c.session.draw.zoom.fits
     _numbers(d)
     _watched(d)
     _region(d)
@@ -80,7 +81,7 @@ def _crisp(d: Driver, shown: np.ndarray, x: int, y: int) -> None:
     """A pixel is a rectangle of its colour, and its neighbours begin where it ends."""
     window, (left, top, right, bottom) = d.window(), d.picture_edges()
     size = np.array([right - left, bottom - top]) * 64.0 / (d.c.frame.width, d.c.frame.height)
-    zoom = d.c.session.zoom
+    zoom = d.c.session.draw.zoom
     for dx, dy in ((0, 0), (1, 0), (0, 2), (3, 1)):
         middle = (
             (np.array([x + dx + 0.5, y + dy + 0.5]) / (d.c.frame.width, d.c.frame.height)) - (zoom.left, zoom.top)
@@ -103,7 +104,7 @@ def _panned(d: Driver, x: int, y: int) -> None:
     d.context.key_up(KEY.mod_ctrl)
     d.frames(2)
     assert d.c.selection.hovered == (abs_near(u), abs_near(v)), "what was under the pointer has not come along"
-    assert d.c.session.zoom.scale == 64.0 and d.c.selection.picked is None
+    assert d.c.session.draw.zoom.scale == 64.0 and d.c.selection.picked is None
 
 
 class abs_near(float):
@@ -176,10 +177,10 @@ def _region(d: Driver) -> None:
     depth = depth[np.isfinite(depth)]
     d.context.item_click("//Pixels/**/Use as the range of colours")
     d.frames(3)
-    assert np.allclose(d.c.session.spans[View.DEPTH], (depth.min(), depth.max()))
-    expected = picture(d.c.frame, View.DEPTH, span=d.c.session.spans[View.DEPTH])
+    assert np.allclose(d.c.session.draw.span, (depth.min(), depth.max()))
+    expected = picture(d.c.frame, View.DEPTH, span=d.c.session.draw.span)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
-    d.c.session.spans.clear()
+    d.c.session.set_draw(spans=())
     d.c.settings.set_view(View.COLOR)
     d.ui.pixels.region = None
     d.settle()
@@ -190,17 +191,17 @@ def _exposed(d: Driver) -> None:
     traced = d.c.history.frames
     d.press(KEY.right_bracket, 2)
     d.press(int(KEY.m) | SHIFT)
-    assert d.c.session.tone.exposure == 1.0 and d.c.session.clipping
-    expected = picture(d.c.frame, tone=d.c.session.tone, clipping=True)
+    assert d.c.session.draw.tone.exposure == 1.0 and d.c.session.draw.clipping
+    expected = picture(d.c.frame, tone=d.c.session.draw.tone, clipping=True)
     assert np.abs(d.shown().astype(int) - expected).max() <= 1
     d.press(KEY.left_bracket)
     d.press(int(KEY.m) | SHIFT)
-    assert d.c.session.tone.exposure == 0.5
+    assert d.c.session.draw.tone.exposure == 0.5
     d.context.menu_click("//##MainMenuBar/Picture/Colours as traced")
     d.frames(2)
-    assert d.c.session.tone.neutral and np.array_equal(d.shown(), picture(d.c.frame)), "bit for bit as it was"
+    assert d.c.session.draw.tone.neutral and np.array_equal(d.shown(), picture(d.c.frame)), "bit for bit as it was"
     d.press(int(KEY.z) | CTRL)
-    assert d.c.session.tone.exposure == 0.5, "colours as traced can be undone"
+    assert d.c.session.draw.tone.exposure == 0.5, "colours as traced can be undone"
     d.press(int(KEY.z) | CTRL | SHIFT)
-    assert d.c.session.tone.neutral
+    assert d.c.session.draw.tone.neutral
     assert d.c.history.frames == traced

@@ -26,7 +26,6 @@ SMALL = 1024, 620  # a window that is quickly drawn, and just does not fold its 
 def comparing(d: Driver) -> None:
     """What was kept stays as it was, and is seen in each way beside what is changed since; saved as it is seen."""
     d.resize(*SMALL)
-    p = d.c.preferences
     d.fix_resolution(160, 120)
     d.c.settings.change(method="none")
     d.settle()
@@ -55,9 +54,9 @@ def comparing(d: Driver) -> None:
             shown = with_rings(signed_picture(found.pixels, found.stats.limit), found.worst)
             assert np.abs(saved.astype(int) - shown).max() <= 1 and found.worst, "with its rings"
             assert seen.legend(d.ui).entries[0].values == (str(len(found.worst)),)
-            p.mark_wrong = False
+            d.c.session.set_draw(mark_wrong=False)
             assert seen.marked(d.ui) == () and not seen.legend(d.ui).entries
-            p.mark_wrong = True
+            d.c.session.set_draw(mark_wrong=True)
         elif way is not CompareMode.BLINK:  # which may show either
             assert np.array_equal(saved, composed(a, b, way, 0.5, shows_a=False))
         if way is CompareMode.SIDE:
@@ -77,18 +76,21 @@ def comparing(d: Driver) -> None:
     d.frames(3)
     assert not seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.graphics.display
     _line(d, a, b)
-    d.c.session.tone = Tone(-1.0, 1.0, Curve.SRGB)
+    d.c.session.set_draw(tone=Tone(-1.0, 1.0, Curve.SRGB))
     d.frames(2)
     expected = composed(
-        *(picture(f, tone=d.c.session.tone) for f in (kept, d.c.frame)), CompareMode.WIPE, d.c.session.wipe, False
+        *(picture(f, tone=d.c.session.draw.tone) for f in (kept, d.c.frame)),
+        CompareMode.WIPE,
+        d.c.session.draw.wipe,
+        False,
     )
     assert np.abs(_saved(d, "toned.png").astype(int) - expected).max() <= 1, "both have the tone"
     d.press(KEY._9)
     d.settle()
     assert not state.on and d.ui.graphics.compared.a.texture_id is None, "one line at a time"
     d.press(KEY._1)
-    d.c.session.tone = Tone()
-    p.fixed_width, p.fixed_height = 80, 60
+    d.c.session.set_draw(tone=Tone())
+    d.c.session.set_pace(width=80, height=60)
     d.settle()
     d.c.comparing.start(CompareMode.FLIP)
     d.settle()
@@ -125,23 +127,23 @@ def _watches_from_a(d: Driver) -> None:
 def _line(d: Driver, a: np.ndarray, b: np.ndarray) -> None:
     """The line between A and B is dragged as that of the other wipe; closely looked at, it waits at the edge."""
     d.c.comparing.start(CompareMode.WIPE)
-    d.c.session.wipe = 0.5
+    d.c.session.set_draw(wipe=0.5)
     d.settle()
     left, top, right, bottom = d.picture_edges()
     camera, middle = d.c.session.camera, (top + bottom) / 2.0
     d.drag(((left + right) / 2.0, middle), (0.2 * (right - left), 3.0))
-    assert abs(d.c.session.wipe - 0.7) < 0.02 and d.c.session.camera == camera
-    column = wipe_column(b.shape[1], d.c.session.wipe)
+    assert abs(d.c.session.draw.wipe - 0.7) < 0.02 and d.c.session.camera == camera
+    column = wipe_column(b.shape[1], d.c.session.draw.wipe)
     saved = _saved(d, "dragged.png")
     assert np.array_equal(saved[:, :column], a[:, :column]) and np.array_equal(
         saved[:, column + 1 :], b[:, column + 1 :]
     )
-    d.c.session.zoom = type(d.c.session.zoom)(4.0, 0.2, 0.5)
+    d.c.session.set_draw(zoom=type(d.c.session.draw.zoom)(4.0, 0.2, 0.5))
     d.frames(3)
     d.drag((right - 1.0, middle), (-0.5 * (right - left), 0.0))
-    assert abs(d.c.session.wipe - 0.2) < 0.02 and d.c.session.camera == camera
+    assert abs(d.c.session.draw.wipe - 0.2) < 0.02 and d.c.session.camera == camera
     d.press(int(KEY.f) | SHIFT)
-    assert d.c.session.zoom.fits
+    assert d.c.session.draw.zoom.fits
 
 
 def _two_methods(d: Driver) -> None:
@@ -173,7 +175,7 @@ def _two_methods(d: Driver) -> None:
     assert times["Frame"].a > times["  shading"].a > 0.0 and times["Frame"].b > times["  shading"].b > 0.0
     d.press(KEY.h)
     d.settle()
-    assert d.c.session.view is View.SAVED and d.c.traced.second.settings.method == "certified"
+    assert d.c.session.draw.view is View.SAVED and d.c.traced.second.settings.method == "certified"
     assert d.c.comparing.span(View.SAVED)[1] >= max(one.saved.max() for one in (d.c.frame, d.c.traced.second)) * 0.5
     d.press(KEY.space)
     moments = set()

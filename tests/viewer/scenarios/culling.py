@@ -59,7 +59,7 @@ def certifying(d: Driver) -> None:
         for key, view in ((KEY._2, View.OCCLUSION), (KEY._3, View.SHADOW), (KEY._7, View.PIXEL_COUNT)):
             d.press(key)
             assert d.c.scheduler.drawn_view is view and d.c.history.frames == traced
-            assert np.abs(d.shown().astype(int) - picture(d.c.frame, view, d.c.session.light)).max() <= 2
+            assert np.abs(d.shown().astype(int) - picture(d.c.frame, view, d.c.session.draw.light)).max() <= 2
         seen = [row.name for row in classes_in(d.c.frame, View.OCCLUSION) if row.pixels]
         assert "FULLY_RENDERED" in seen, seen
         said = d.c.frame.statistics.by_modes_in_all
@@ -70,7 +70,7 @@ def certifying(d: Driver) -> None:
         d.settle()
         assert d.c.frame.settings.method == "paper"
     d.press(KEY._0)
-    assert d.c.session.view is View.CERTIFICATE and d.c.frame.certificates is None
+    assert d.c.session.draw.view is View.CERTIFICATE and d.c.frame.certificates is None
     assert d.c.scheduler.drawn_view is View.COLOR
     d.certify()
     d.context.item_click("//Picture/**/Use certified##instead")
@@ -85,7 +85,7 @@ def certifying(d: Driver) -> None:
     d.settle()
     assert d.c.frame.settings.method == "certified+cache" == d.c.preferences.method
     assert d.c.frame.certificates is not None
-    expected = picture(d.c.frame, View.CERTIFICATE, shading=d.c.preferences.shading)
+    expected = picture(d.c.frame, View.CERTIFICATE, shading=d.c.session.draw.shading)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.press(KEY.c)
     d.settle()
@@ -96,7 +96,7 @@ def certifying(d: Driver) -> None:
     for key in ("H", "Shift+H"):
         d.press(chord(key))
         d.settle()
-        assert d.c.scheduler.drawn_view is d.c.session.view and not d.c.scheduler.outdated
+        assert d.c.scheduler.drawn_view is d.c.session.draw.view and not d.c.scheduler.outdated
     _clusters(d)
     _space(d)
 
@@ -131,7 +131,7 @@ def _space(d: Driver) -> None:
         d.context.item_click(f"//Picture/**/Use {name}##instead")
         d.settle()
         assert d.c.frame.settings.method.startswith(name) and d.c.scheduler.drawn_view is view
-        expected = picture(d.c.frame, view, beneath=d.c.preferences.beneath, slice=d.c.session.cut)
+        expected = picture(d.c.frame, view, beneath=d.c.session.draw.beneath, slice=d.c.session.draw.slice)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
         if view is View.VOXELS:
             _slice(d)
@@ -147,12 +147,14 @@ def _tree(d: Driver) -> None:
     assert d.c.frame.settings.accelerator == "kdtree-lazy" and d.c.scheduler.drawn_view is View.TREE
     d.c.settings.change(method="none")
     d.settle()
-    at = d.c.session.cut
+    at = d.c.session.draw.slice
     assert "all that has been seen" in d.c.recipes.now().history
-    expected = picture(d.c.frame, View.TREE, shading=d.c.preferences.shading, beneath=d.c.preferences.beneath, slice=at)
+    expected = picture(
+        d.c.frame, View.TREE, shading=d.c.session.draw.shading, beneath=d.c.session.draw.beneath, slice=at
+    )
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.press(chord("Shift+RightBracket"))
-    assert layer_of(d.c.session.cut) == layer_of(at) + 1
+    assert layer_of(d.c.session.draw.slice) == layer_of(at) + 1
     d.press(chord("Shift+LeftBracket"))
     home = d.c.session.camera
     x, y, z = home.direction
@@ -168,15 +170,15 @@ def _tree(d: Driver) -> None:
 def _slice(d: Driver) -> None:
     """Keys and the panel go from layer to layer, and say what the pointer is on."""
     states, before = d.c.frame.structures["voxels"], d.shown()
-    layer, traced = d.c.session.cut.layer(states.shape), d.c.history.frames
+    layer, traced = d.c.session.draw.slice.layer(states.shape), d.c.history.frames
     d.press(chord("Shift+RightBracket"))
-    assert d.c.session.cut.layer(states.shape) == layer + 1
+    assert d.c.session.draw.slice.layer(states.shape) == layer + 1
     d.press(chord("Shift+LeftBracket"))
-    assert d.c.session.cut.layer(states.shape) == layer
+    assert d.c.session.draw.slice.layer(states.shape) == layer
     d.context.item_click("//View/**/z##slice")
     d.context.item_input_value("//View/**/##layer", states.shape[2] // 2)
     d.frames(3)
-    cut = d.c.session.cut
+    cut = d.c.session.draw.slice
     assert (cut.axis, cut.layer(states.shape)) == (2, states.shape[2] // 2)
     assert (d.shown() != before).any() and d.c.history.frames == traced, "another slice has traced"
     seen = np.argwhere(slice_seen(d.c.frame, states.grid, cut).numbers >= 0)
@@ -231,7 +233,7 @@ def explaining(d: Driver) -> None:
     d.frames(3)
     drawn = _lines_drawn(d)
     d.press(KEY.i)
-    assert not d.c.preferences.draw_explanation and _lines_drawn(d) < drawn - 50
+    assert not d.c.session.draw.rays and _lines_drawn(d) < drawn - 50
     d.press(KEY.i)
     assert _lines_drawn(d) == drawn
     d.press(KEY.escape)

@@ -28,24 +28,24 @@ def views(d: Driver) -> None:
     d.press(KEY.t)
     d.settle()
     traced = d.c.history.frames
-    d.c.preferences.shading = 0.35
+    d.c.session.set_draw(shading=0.35)
     for view in View:
         if view in (View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.TREE):  # of some frames (`culling`)
             continue
         before = d.c.history.frames
         d.press(chord(view.key))
-        assert d.c.session.view is view
+        assert d.c.session.draw.view is view
         assert view.needs_more or d.c.history.frames == before, "changing the view has traced"
         d.settle()
         shown = d.shown().astype(int)
-        expected = picture(d.c.frame, view, d.c.session.light).astype(int)
+        expected = picture(d.c.frame, view, d.c.session.draw.light).astype(int)
         difference = np.abs(shown - expected)
         assert difference.max() <= 2, f"{view}: off by {difference.max()} at {np.argwhere(difference > 2)[:3]}"
     d.press(KEY._3)
     d.press(KEY.l)
-    assert d.c.session.light == 1
+    assert d.c.session.draw.light == 1
     d.press(int(KEY.l) | int(KEY.mod_shift))
-    assert d.c.session.light == 0
+    assert d.c.session.draw.light == 0
     d.press(KEY.h)
     d.press(KEY.u)
     d.settle()
@@ -66,7 +66,7 @@ def difference(d: Driver) -> None:
     of_wrong = np.round(np.multiply(255.0, WRONG))
 
     def dimmed() -> np.ndarray:
-        return d.c.preferences.beneath * picture(d.c.frame).astype(float)
+        return d.c.session.draw.beneath * picture(d.c.frame).astype(float)
 
     d.settle()
     d.press(KEY._8)
@@ -84,12 +84,12 @@ def difference(d: Driver) -> None:
     assert np.array_equal((marked == of_wrong).all(axis=-1), wrong)
     assert np.count_nonzero(np.abs(marked - dimmed()).max(axis=-1) > 1) > np.count_nonzero(wrong), "no rings"
     d.press(KEY.m)
-    assert not d.c.preferences.mark_wrong
+    assert not d.c.session.draw.mark_wrong
     assert np.abs(d.shown() - dimmed())[~wrong].max() <= 1, "the picture, dimmed, where every answer is right"
-    d.c.preferences.beneath = 0.0
+    d.c.session.set_draw(beneath=0.0)
     d.frames(2)
     assert np.array_equal(d.shown().any(axis=-1), wrong), "black beneath, if so chosen"
-    d.c.preferences.beneath = 0.5
+    d.c.session.set_draw(beneath=0.5)
     d.press(KEY.m)
     y, x = np.argwhere(wrong)[0]
     d.c.selection.select(((x + 0.5) / 128, (y + 0.5) / 128))
@@ -108,7 +108,7 @@ def wiping(d: Driver) -> None:
     """The line of the wipe is dragged by the pointer and nothing else moves; elsewhere a drag turns the camera."""
     d.settle()
     figure4(d, 20)
-    d.c.preferences.mark_wrong = False
+    d.c.session.set_draw(mark_wrong=False)
     d.press(KEY._9)
     d.settle()
     frame = d.c.frame
@@ -119,31 +119,34 @@ def wiping(d: Driver) -> None:
     def drag_line(start: float, end: float, height: float) -> None:
         x = left + start * (right - left)
         d.drag((x, height), ((end - start) * (right - left), 7.0))
-        assert abs(d.c.session.wipe - end) < 0.02
+        assert abs(d.c.session.draw.wipe - end) < 0.02
         assert d.c.session.camera == camera and d.ui.picture.pivot is pivot and d.c.selection.picked is None
 
     drag_line(0.5, 0.3, middle)
-    assert np.abs(d.shown().astype(int) - picture(frame, View.WIPE, mark_wrong=False, wipe=d.c.session.wipe)).max() <= 1
+    assert (
+        np.abs(d.shown().astype(int) - picture(frame, View.WIPE, mark_wrong=False, wipe=d.c.session.draw.wipe)).max()
+        <= 1
+    )
     drag_line(0.3, 0.9, top + 0.2 * (bottom - top))
-    pixels, column = d.shown(), wipe_column(128, d.c.session.wipe)
+    pixels, column = d.shown(), wipe_column(128, d.c.session.draw.wipe)
     assert np.array_equal(pixels[:, :column], picture(frame)[:, :column]), "left of the line is the traced picture"
-    x = left + d.c.session.wipe * (right - left)
+    x = left + d.c.session.draw.wipe * (right - left)
     d.drag((x, middle), (2.0 * (right - left), 0.0))
-    assert d.c.session.wipe == 1.0, "past the edge it stays on it"
+    assert d.c.session.draw.wipe == 1.0, "past the edge it stays on it"
     d.drag((right - 1.0, middle), (-(right - left) - 30.0, 0.0))
-    assert d.c.session.wipe == 0.0
+    assert d.c.session.draw.wipe == 0.0
     pixels = d.shown()
     right_one = picture(replace(frame, color=frame.reference))
     assert np.array_equal(pixels[:, 1:], right_one[:, 1:]), "right of the line is the reference"
     assert d.c.frame is frame and d.c.session.camera == camera, "dragging the line has traced"
     traced = d.c.history.frames
     d.drag((left + 0.7 * (right - left), middle), (60.0, 0.0))
-    assert d.c.session.wipe == 0.0 and d.c.session.camera != camera, "elsewhere a drag turns the camera"
+    assert d.c.session.draw.wipe == 0.0 and d.c.session.camera != camera, "elsewhere a drag turns the camera"
     d.settle()
     assert d.c.history.frames > traced and d.c.frame.settings.verify
-    d.c.session.wipe = 0.5
+    d.c.session.set_draw(wipe=0.5)
     camera = d.c.session.camera
     x = (left + right) / 2.0
     d.drag((x, middle), (90.0, 0.0), 1)
-    assert d.c.session.wipe == 0.5 and d.c.session.camera != camera, "only the left button takes the line"
+    assert d.c.session.draw.wipe == 0.5 and d.c.session.camera != camera, "only the left button takes the line"
     d.settle()

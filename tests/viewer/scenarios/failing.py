@@ -56,14 +56,14 @@ def failing(d: Driver) -> None:
     notices.dismiss_faults()
     display.write = write
     d.press(KEY._6)
-    expected = picture(frame, View.NORMAL, shading=d.c.preferences.shading)
+    expected = picture(frame, View.NORMAL, shading=d.c.session.draw.shading)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     most, display.context.info["GL_MAX_TEXTURE_SIZE"] = display.context.info["GL_MAX_TEXTURE_SIZE"], 16
     d.fix_resolution(120, 90)
     d.settle()
     assert "120 x 90 is too large for this GPU" in notices.newest_fault.text
     display.context.info["GL_MAX_TEXTURE_SIZE"] = most
-    d.c.preferences.fixed_resolution = False
+    d.c.session.set_pace(fixed_size=False)
     d.settle()
     assert display.size == (d.c.frame.width, d.c.frame.height)
     notices.dismiss_faults()

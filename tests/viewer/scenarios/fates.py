@@ -57,12 +57,12 @@ def fates(d: Driver) -> None:
     d.settle()
     d.press(chord(View.MOVING_SHADOW.key))
     d.settle()
-    _shows_what_is_drawn(d, View.MOVING_SHADOW, d.c.session.light)
+    _shows_what_is_drawn(d, View.MOVING_SHADOW, d.c.session.draw.light)
 
 
 def _shows_what_is_drawn(d: Driver, view: View, light: int) -> None:
-    expected = picture(d.c.frame, view, light, shading=d.c.preferences.shading).astype(int)
-    assert d.c.session.light == light and np.abs(d.shown() - expected).max() <= 2
+    expected = picture(d.c.frame, view, light, shading=d.c.session.draw.shading).astype(int)
+    assert d.c.session.draw.light == light and np.abs(d.shown() - expected).max() <= 2
 
 
 def _legend_counts_what_is_drawn(frame: Frame) -> None:

@@ -47,7 +47,7 @@ def figure1(d: Driver) -> None:
         ("primary rays", View.PRIMITIVE),
     ):
         _click(d, name)
-        assert d.c.session.view is view, name
+        assert d.c.session.draw.view is view, name
         d.settle()
     d.c.settings.set_view(View.COLOR)
 
@@ -61,7 +61,7 @@ def figure1(d: Driver) -> None:
     said = {words.text for words in _drawing(d).words}
     assert "Certificates" in said and not any("mode setting" in text for text in said)
     _click(d, "Certificates")
-    assert d.c.session.view is View.CERTIFICATE
+    assert d.c.session.draw.view is View.CERTIFICATE
     d.c.settings.set_view(View.COLOR)
 
 

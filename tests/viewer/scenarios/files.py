@@ -50,7 +50,7 @@ def capturing(d: Driver) -> None:
     assert d.c.session.camera != camera
     d.drop(pictures / files[1])
     assert d.c.session.camera == camera
-    assert d.c.session.view is View.OCCLUSION and d.c.session.settings.method == "none"
+    assert d.c.session.draw.view is View.OCCLUSION and d.c.session.settings.method == "none"
     d.c.preferences.screenshot_template = "moving.png"
     d.hold(KEY.d, 0.3)
     d.press(KEY.f12)
@@ -105,7 +105,7 @@ def dropping(d: Driver) -> None:
     d.c.settings.set_view(View.SHADOW)
     d.drop(dark)
     d.wait(lambda: d.c.session.scene.path.name == "dark.nff", "the scene without lights")
-    assert d.c.session.view is View.COLOR and d.c.preferences.view == View.COLOR.value
+    assert d.c.session.draw.view is View.COLOR
     assert "The view is Colour, not Shadow mode, as there are no lights." in d.c.notices.message.text
     d.settle()
     d.press(KEY._3)
@@ -134,7 +134,7 @@ def reopening(d: Driver) -> None:
         d.c.renderer.take = lambda: None  # the first frame of the scene is long in coming
         d.drop(d.folder / "pictures" / f"{view}.png")
         d.wait(lambda: d.c.session.scene.path == first, "the picture's scene")
-        assert d.c.session.view is view and d.c.frame is None
+        assert d.c.session.draw.view is view and d.c.frame is None
         for key in ("8", "9", "H", "Shift+H", "0", "3", view.key):
             d.press(chord(key))
         d.press(KEY.f12)
@@ -142,7 +142,7 @@ def reopening(d: Driver) -> None:
         d.c.renderer.take = take
         d.settle()
         assert d.c.scheduler.drawn_view is view
-        expected = picture(d.c.frame, view, shading=d.c.preferences.shading)
+        expected = picture(d.c.frame, view, shading=d.c.session.draw.shading)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2
 
 

@@ -96,7 +96,7 @@ def _ways_back(d: Driver) -> None:
     assert d.ui.screening is None
     show(42)
     d.press(KEY._2)
-    assert d.ui.screening is None and d.c.session.view is View.OCCLUSION
+    assert d.ui.screening is None and d.c.session.draw.view is View.OCCLUSION
     show(42)
     d.hold(KEY.d, 0.1)
     assert d.ui.screening is None

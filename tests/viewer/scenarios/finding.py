@@ -77,7 +77,7 @@ def finding(d: Driver) -> None:
     # F goes to what is selected, wherever it is.
     camera = c.session.camera
     d.press(KEY.f)
-    d.wait(lambda: not c.motion.handled, "the end of the flight", 20.0)
+    d.wait(lambda: not c.motion.is_dragging, "the end of the flight", 20.0)
     d.settle()
     assert c.session.camera != camera and c.selection.pixel is not None
     assert c.frame.primitive[c.selection.pixel[1], c.selection.pixel[0]] == last

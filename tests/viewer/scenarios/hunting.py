@@ -52,6 +52,7 @@ def _point_at_sample(d: Driver, number: int) -> None:
     d.context.mouse_move_to_pos((window.pos.x + 0.2 * window.size.x, window.pos.y + 0.6 * window.size.y))
     d.frames(2)
     for place in np.linspace(0.02, 0.98, 97):  # the plot says itself which frame the pointer is on
+        d.ui.state(PlotsState).pointed = None
         d.context.mouse_move_to_pos((window.pos.x + place * window.size.x, window.pos.y + 0.6 * window.size.y))
         d.frames(2)
         if d.ui.state(PlotsState).pointed == number:
@@ -61,7 +62,7 @@ def _point_at_sample(d: Driver, number: int) -> None:
 
 def _from_the_inspector(d: Driver) -> None:
     c = d.c
-    c.preferences.fixed_resolution = False
+    c.session.set_pace(fixed_size=False)
     d.ui.show_panel("Inspector")
     d.press(KEY.right_arrow)
     d.settle()
@@ -100,7 +101,7 @@ def _to_a_find(d: Driver) -> None:
     assert (picked.x, picked.y) == (find.x, find.y) and picked.wrong > 0
     assert tuple(c.frame.color[find.y, find.x].tolist()) == find.color
     assert c.frame.settings.samples == 1 and c.session.settings.samples == 4, "refined, it is not as it was found"
-    left, top, right, bottom = c.session.zoom.shown()
+    left, top, right, bottom = c.session.draw.zoom.shown()
     assert right - left < 0.3 and left < find.x / 96 < right and top < find.y / 96 < bottom, "its pixel is too small"
     d.wait(lambda: c.inspector.why is not None, "what the lights do there", 20.0)
     reasons, answer = c.inspector.why.reasons, c.inspector.answer

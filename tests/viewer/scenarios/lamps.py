@@ -22,7 +22,7 @@ KEY = imgui.Key
 def lamps(d: Driver) -> None:
     """Soft shadows come step by step, and are those of the renderer; many lights are listed as they are looked for."""
     d.fix_resolution(320, 220)
-    d.c.preferences.target_fps = 240.0  # there is to be no time for many samples in motion
+    d.c.session.set_pace(target_fps=240.0)  # there is to be no time for many samples in motion
     d.settle()
     hard = d.c.frame.color
     d.ui.show_panel("Rendering")
@@ -51,15 +51,15 @@ def lamps(d: Driver) -> None:
     assert np.array_equal(frame.color, alone.color) and not np.array_equal(frame.color, hard)
 
     d.press(KEY.j)
-    assert d.c.session.view is View.PENUMBRA
+    assert d.c.session.draw.view is View.PENUMBRA
     d.settle()
     frame = d.c.frame
-    between = np.isin(arrivals(frame, d.c.session.light), (2, 3))
+    between = np.isin(arrivals(frame, d.c.session.draw.light), (2, 3))
     assert between.any() and frame.asked.max() == 64
     assert d.c.history.values("penumbra")[-1] > between.sum() / 2, "it is plotted"
     assert d.c.history.values("samples_due")[-1] > d.c.history.values("samples_reached")[-1] > 0
     shown = d.shown().astype(int)
-    assert np.abs(shown - picture(frame, View.PENUMBRA, d.c.session.light).astype(int)).max() <= 2
+    assert np.abs(shown - picture(frame, View.PENUMBRA, d.c.session.draw.light).astype(int)).max() <= 2
     shift = int(KEY.mod_shift)
     d.press(int(KEY.j) | shift)
     assert d.c.scheduler.drawn_view is View.LIGHTS and d.c.frame is frame, "nothing is traced for it"
@@ -71,9 +71,9 @@ def lamps(d: Driver) -> None:
     y, x = np.argwhere(between)[between.sum() // 2]
     d.c.selection.select(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
     d.wait(lambda: d.c.inspector.answer is not None, "an answer about the penumbra", 20.0)
-    one = d.c.inspector.answer.lights[d.c.session.light]
-    reached = int(frame.reached[y, x, d.c.session.light])
-    assert (one.reached, one.samples) == (reached, int(frame.asked[y, x, d.c.session.light]))
+    one = d.c.inspector.answer.lights[d.c.session.draw.light]
+    reached = int(frame.reached[y, x, d.c.session.draw.light])
+    assert (one.reached, one.samples) == (reached, int(frame.asked[y, x, d.c.session.draw.light]))
     d.frames(3)
     d.c.selection.picked = None
 
@@ -109,7 +109,7 @@ def _one_of_too_many(d: Driver) -> None:
         d.press(KEY.j)
         for _ in range(2):
             d.press(KEY.l)
-            light = d.c.session.light
+            light = d.c.session.draw.light
             d.wait(lambda: d.c.scheduler.drawn_view is View.PENUMBRA, "one light", 20.0)
             assert d.c.frame.only_light == light and d.c.history.frames == traced
             assert np.array_equal(arrivals(d.c.frame, light), arrivals(expected, light))

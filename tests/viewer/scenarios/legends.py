@@ -25,7 +25,7 @@ def legends(d: Driver) -> None:
             d.c.settings.set_view(view)
             d.settle()
             assert d.ui.state(LegendState).shown == (
-                view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.light)
+                view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.draw.light)
             ), view
             if d.ui.state(LegendState).shown:
                 _legend(d)
@@ -54,7 +54,7 @@ def _dragged(d: Driver) -> None:
     """About the picture, and into two corners; nothing but the legend moves, and a click on it selects nothing."""
     d.c.settings.set_view(View.OCCLUSION)
     d.settle()
-    p, camera, frame = d.c.preferences, d.c.session.camera, d.c.frame
+    camera, frame = d.c.session.camera, d.c.frame
     left, top, right, bottom = d.picture_edges()
 
     def drag_to(x: float, y: float) -> tuple[float, float, float, float]:
@@ -69,9 +69,9 @@ def _dragged(d: Driver) -> None:
     d.frames(2)
     assert d.c.selection.picked is None and d.c.session.camera == camera and d.c.frame is frame
     area = drag_to(left, top)
-    assert (p.legend_x, p.legend_y) == (0.0, 0.0) and area[0] - left < 20.0
+    assert d.c.session.draw.legend_at == (0.0, 0.0) and area[0] - left < 20.0
     area = drag_to(right - (area[2] - area[0]) / 2.0 - 20.0, bottom - (area[3] - area[1]) / 2.0 - 20.0)
-    assert (p.legend_x, p.legend_y) == (1.0, 1.0) and right - area[2] < 20.0 and bottom - area[3] < 20.0
+    assert d.c.session.draw.legend_at == (1.0, 1.0) and right - area[2] < 20.0 and bottom - area[3] < 20.0
     assert d.c.session.camera == camera and d.c.frame is frame and d.c.selection.picked is None
 
 
@@ -85,7 +85,7 @@ def _off_and_on(d: Driver) -> None:
 
     with_legend = panel()
     d.press(KEY.n)
-    assert not d.c.preferences.legend and not d.ui.state(LegendState).shown
+    assert not d.c.session.draw.legend and not d.ui.state(LegendState).shown
     assert panel() > with_legend + 60.0
     d.press(KEY.n)
     assert d.ui.state(LegendState).shown and panel() == with_legend
@@ -99,7 +99,7 @@ def _in_saved_pictures(d: Driver) -> None:
         p.screenshot_template = f"{name}.png"
         d.press(KEY.f12)
         d.wait(lambda: not d.c.captures.busy, "the picture to be written")
-        assert capture.read(folder / f"{name}.png").view is d.c.session.view
+        assert capture.read(folder / f"{name}.png").draw.view is d.c.session.draw.view
         with Image.open(folder / f"{name}.png") as image:
             return np.asarray(image)
 

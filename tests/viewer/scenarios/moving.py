@@ -62,7 +62,7 @@ def flying(d: Driver) -> None:
     assert d.c.selection.picked is not None and d.c.session.camera == before, "a click only inspects"
 
     d.press(KEY.r)
-    assert d.c.session.follow
+    assert d.c.session.on_path
     d.wait(lambda: d.c.session.camera == home, "the scene's own camera")
     d.c.go_to_bookmark(0)
     d.wait(lambda: not d.c.motion.under_way, "the glide to the bookmark")
@@ -77,7 +77,7 @@ def orbiting(d: Driver) -> None:
     assert d.c.preferences.navigation == "orbit"
     d.drag(d.picture_centre(), (90.0, 40.0))
     pivot, camera = d.ui.picture.pivot, d.c.session.camera
-    assert pivot is not None and not d.c.session.follow
+    assert pivot is not None and not d.c.session.on_path
     d.settle()
     d.drag(d.picture_centre(), (0.0, 0.0))
     distance = math.dist(camera.position, pivot)
@@ -111,7 +111,7 @@ def playing(d: Driver) -> None:
     d.press(KEY.left_arrow)
     d.press(KEY.home)
     assert d.c.session.frame == 0
-    d.c.preferences.every_frame = True
+    d.c.session.set_pace(every_frame=True)
     d.c.preferences.loop = False
     d.settle()
     d.c.history.clear()

@@ -36,8 +36,8 @@ def _bookmarks(d: Driver) -> None:
         d.settle()
         places.append(d.c.session.camera)
     marks = d.c.bookmarks.all
-    pictures = [from_text(mark.get("picture")) for mark in marks]
-    assert all(picture is not None for picture in pictures) and marks[0]["picture"] != marks[1]["picture"]
+    pictures = [from_text(mark.picture) for mark in marks]
+    assert all(picture is not None for picture in pictures) and marks[0].picture != marks[1].picture
     d.press(ALT | int(KEY._1))
     assert d.c.motion.under_way
     d.wait(lambda: d.c.session.camera == places[0], "the flight to the first bookmark", 30.0)

@@ -34,20 +34,20 @@ def panels(d: Driver) -> None:
     d.frames(4)
     assert d.ui.dialogs == [Dialog.OPEN_FILE]
     d.frames(2)
-    before = d.c.session.view
+    before = d.c.session.draw.view
     d.context.key_press(KEY._5)
     d.frames(2)
-    assert d.c.session.view is before, "a key reached the window behind a dialog"
+    assert d.c.session.draw.view is before, "a key reached the window behind a dialog"
     d.press(KEY.escape)
     assert not d.ui.dialogs
     d.context.menu_click("//##MainMenuBar/View/Depth")
     d.frames(2)
-    assert d.c.session.view is View.DEPTH
-    d.c.preferences.keep_tracing = True
+    assert d.c.session.draw.view is View.DEPTH
+    d.c.session.set_pace(keep_tracing=True)
     traced = d.c.history.frames
     d.c.scheduler.trace_again()
     d.wait(lambda: d.c.history.frames >= traced + 3, "frames at idle")
-    d.c.preferences.keep_tracing = False
+    d.c.session.set_pace(keep_tracing=False)
 
 
 def closing_panels(d: Driver) -> None:
@@ -91,7 +91,7 @@ def looks(d: Driver) -> None:
     assert p.ui_scale == 1.5 and abs(imgui.get_font_size() - 1.5 * small) <= 1.0
     d.press(int(KEY._0) | int(KEY.mod_ctrl))
     d.frames(4)
-    assert p.ui_scale == 1.0 and imgui.get_font_size() == small and d.c.session.view is View.COLOR
+    assert p.ui_scale == 1.0 and imgui.get_font_size() == small and d.c.session.draw.view is View.COLOR
     d.press(int(KEY.minus) | int(KEY.mod_ctrl))
     d.press(KEY._4)
     for answer, after in (("Keep them", "light"), ("Reset", "dark")):
@@ -100,7 +100,7 @@ def looks(d: Driver) -> None:
         d.context.item_click(f"//Reset all settings?###question/{answer}")
         d.frames(4)
         assert p.theme == after
-    assert p.ui_scale == 1.0 and d.c.session.view is View.COLOR and brightness() < 60.0
+    assert p.ui_scale == 1.0 and d.c.session.draw.view is View.COLOR and brightness() < 60.0
     assert p.recent and d.c.bookmarks.all[0]["name"] == "here" and d.c.presets.own
     d.c.questions.before_resetting(d.c.settings.reset)
     d.frames(3)
@@ -114,7 +114,7 @@ def looks(d: Driver) -> None:
     d.hold(KEY.d, 0.2)
     d.settle()
     camera, path = d.c.session.camera, d.c.session.scene.path
-    place = d.c.session.snapshot().to_json()
+    place = d.c.session.state.to_json()
     d.press(KEY.r)
     d.settle()
     assert p.start_where_left and d.c.session.camera != camera
@@ -146,7 +146,7 @@ def hiding(d: Driver) -> None:
     d.settle()
     assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.scheduler.inputs.size[0] > 1200
     d.hold(KEY.d, 0.1)
-    assert not d.c.session.follow, "keys fly while the panels are hidden"
+    assert not d.c.session.on_path, "keys fly while the panels are hidden"
     d.press(KEY.tab)
     d.frames(5)
     assert _places_of_panels() == before, (

@@ -51,11 +51,11 @@ def reviving(d: Driver) -> Callable[[Driver], Any]:
 
 def _state(d: Driver) -> tuple[Any, ...]:
     size = glfw.get_window_size(glfw_utils.glfw_window_hello_imgui())
-    return d.c.session.snapshot(), d.c.session.view, d.c.selection.picked, d.c.preferences.theme, tuple(size)
+    return d.c.session.state, d.c.session.draw.view, d.c.selection.picked, d.c.preferences.theme, tuple(size)
 
 
 def _revived(d: Driver, state: tuple[Any, ...], picture: np.ndarray, frame: Frame) -> None:
-    assert _state(d) == state and d.c.session.view is View.OCCLUSION
+    assert _state(d) == state and d.c.session.draw.view is View.OCCLUSION
     assert (d.c.frame.width, d.c.frame.height) == (frame.width, frame.height)
     assert np.array_equal(d.shown(), picture)
     assert d.c.notices.message.text.startswith("the graphics driver was reset: the window was made anew")

@@ -39,7 +39,7 @@ def experimenting(d: Driver) -> None:
     d.press(KEY.c)
     assert d.c.session.settings.method == method
     d.press(KEY._2)
-    assert d.c.session.view is View.OCCLUSION, "a view can be chosen any time"
+    assert d.c.session.draw.view is View.OCCLUSION, "a view can be chosen any time"
     d.context.item_click(f"//Experiment/**/{icons.ICON_FA_STOP}  Stop")
     d.wait(lambda: runs.current is None, "the experiment to stop", 20.0)
     assert 3 <= len(run.results.frames) < 3000 and "what was done is kept" in d.c.notices.message.text

@@ -89,8 +89,8 @@ def _saved(d: Driver) -> None:
     saved, frame = next(folder.glob("*.png")), d.c.frame
     with Image.open(saved) as picture:
         assert picture.width == frame.width and frame.height < picture.height < 1.5 * frame.height
-    style = capture.read_data(saved)["picture"]["style"]
-    assert " steps, " in style["savings"] and "fast as none (" in style["savings"], style
+    said = capture.read(saved).draw.savings
+    assert " steps, " in said and "fast as none (" in said
     p.savings_in_pictures = False
 
 
@@ -106,7 +106,7 @@ def _pixels(d: Driver) -> None:
     d.context.item_click("//Picture/culled##savings")
     d.frames(2)
     assert d.ui.fate_shown is Fate.CULLED
-    culled, now = d.c.frame.fate(d.c.session.light) == Fate.CULLED, d.shown().astype(int).sum(-1)
+    culled, now = d.c.frame.fate(d.c.session.draw.light) == Fate.CULLED, d.shown().astype(int).sum(-1)
     others = (d.c.frame.primitive >= 0) & ~culled
     assert (
         culled.any()

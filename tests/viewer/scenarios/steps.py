@@ -17,8 +17,8 @@ KEY = imgui.Key
 def figure4(d: Driver, frame: int) -> None:
     """The paper's Figure 4 up to a frame, as it is described there: 128 x 128 pixels, frame by frame."""
     p = d.c.preferences
-    p.dynamic_resolution, p.fixed_resolution, p.fixed_width, p.fixed_height = False, True, 128, 128
-    p.every_frame = p.loop = False
+    d.c.session.set_pace(progressive=False, fixed_size=True, width=128, height=128, every_frame=False)
+    p.loop = False
     d.c.settings.change(method="paper")
     d.drop(embedded_scenes()["figure4"])
     d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the scene of Figure 4")

@@ -101,15 +101,15 @@ def _save_as(d: Driver) -> None:
     with Image.open(path) as image:
         assert image.width == 288 and image.height > 192
     d.c.settings.set_view(View.COLOR)
-    d.c.session.tone = Tone(1.0, 2.0, Curve.REINHARD)
+    d.c.session.set_draw(tone=Tone(1.0, 2.0, Curve.REINHARD))
     d.settle()
     plan.multiple, plan.samples, plan.caption = 1, 1, ""
     assert d.c.pictures.save()
     d.wait(lambda: d.c.runs.current is None, "the toned picture")
     (path,) = (d.folder / "pictures").glob("tiny-color-96x64*")
     with Image.open(path) as image:
-        assert np.array_equal(np.asarray(image), picture(d.c.frame, tone=d.c.session.tone))
-    assert capture.read(path).tone == d.c.session.tone
+        assert np.array_equal(np.asarray(image), picture(d.c.frame, tone=d.c.session.draw.tone))
+    assert capture.read(path).tone == d.c.session.draw.tone
 
 
 def _copy(d: Driver) -> None:
@@ -145,5 +145,5 @@ def _copy(d: Driver) -> None:
         a = d.shown()
         assert np.array_equal(np.asarray(image), composed(a, a, CompareMode.SIDE, 0.5, False))
     d.c.comparing.forget()
-    d.c.session.tone = Tone()
+    d.c.session.set_draw(tone=Tone())
     d.settle()

@@ -67,7 +67,7 @@ def _tour(d: Driver) -> None:
     d.context.item_click(show)
     d.wait(lambda: tour.at == 4, "a shadow that was clicked", 60.0)
     assert d.c.selection.picked is not None
-    chosen = d.c.inspector.why.reasons[d.c.session.light]
+    chosen = d.c.inspector.why.reasons[d.c.session.draw.light]
     words = plain(Words(d.c.session.scene, d.c.inspector.why).answer(chosen))
     assert words.startswith("In shadow: blocked by "), f"it says which light is blocked, and by what: {words}"
     d.c.runs.zoom_plan.steps, d.c.runs.zoom_plan.size = 3, (32, 32)
@@ -104,7 +104,7 @@ def _tour(d: Driver) -> None:
     assert d.c.session.settings.method == "paper"
     d.context.item_click(show)
     d.wait(lambda: tour.at == 3, "the modes", 90.0)
-    assert d.c.session.view is View.COLOR
+    assert d.c.session.draw.view is View.COLOR
     d.frames(5)
     assert tour.at == 3
     d.context.item_click(skip)

@@ -45,7 +45,7 @@ def _culled(d: Driver) -> None:
     d.frames(3)
     d.context.item_click(f"//Inspector/$${one.light}/{d.ui.light_name(one.light)}##light")
     d.frames(3)
-    assert d.c.session.light == one.light
+    assert d.c.session.draw.light == one.light
     assert _said(d, one) == "Culled: fully rendered, and every shadow ray so far was blocked (§2.4)."
     assert one.fate is Fate.CULLED and not one.lit
     blocker = f"//Inspector/answer/{_named(d, one.blocker)}##0"

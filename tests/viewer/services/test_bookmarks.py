@@ -13,6 +13,7 @@ from tracer.scene.model import Camera
 from viewer.output.thumbnail import from_text
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.settings_controller import SettingsController
+from viewer.state import codec
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -23,45 +24,44 @@ AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 class Parts:
     def __init__(self) -> None:
         self.preferences, notices = Preferences(), Notices()
-        self.session = Session(settings=self.preferences.settings())
+        self.session = Session(state=codec.recalled({}))
         self.session.open(make_scene())
         settings = SettingsController(self.session, self.preferences, notices, lambda: False)
         self.marks = Bookmarks(self.session, self.preferences, settings, notices)
 
-    def comes(self, whole: bool = True) -> None:
+    def comes(self) -> None:
         """A frame of where we are."""
-        self.marks.follow(make_frame(time=self.session.time, camera=self.session.camera), whole)
+        self.marks.take_pictures(make_frame(time=self.session.time, camera=self.session.camera))
 
     @property
     def names(self) -> list[str]:
-        return [mark["name"] for mark in self.marks.all]
+        return [mark.name for mark in self.marks.all]
 
     @property
     def pictured(self) -> list[bool]:
-        return [from_text(mark.get("picture")) is not None for mark in self.marks.all]
+        return [from_text(mark.picture) is not None for mark in self.marks.all]
 
 
 @pytest.fixture
 def parts() -> Parts:
     parts = Parts()
     for x in range(3):
-        parts.session.move(replace(AWAY, position=(float(x), 0.0, 0.0)))
+        parts.session.change(camera=replace(AWAY, position=(float(x), 0.0, 0.0)))
         parts.marks.add()
     return parts
 
 
 def test_a_picture_is_of_a_whole_frame_from_there(parts: Parts, own_settings: Path):
     here = parts.session.camera
-    parts.marks.follow(make_frame(camera=AWAY), True)
-    parts.comes(whole=False)
+    parts.marks.take_pictures(make_frame(camera=AWAY))
     assert parts.pictured == [False, False, False]
     parts.comes()
     assert parts.pictured == [False, False, True]
-    parts.session.move(replace(here, position=(0.0, 0.0, 0.0)))
+    parts.session.change(camera=replace(here, position=(0.0, 0.0, 0.0)))
     parts.comes()
     assert parts.pictured == [True, False, True], "who comes back takes the picture that was missed"
     (kept,) = json.loads((own_settings / "settings.json").read_text())["bookmarks"].values()
-    assert kept == parts.marks.all
+    assert kept == codec.to_json(parts.marks.all)
 
 
 def test_names_are_new_and_can_be_changed(parts: Parts):
@@ -83,7 +83,7 @@ def test_order_and_deletion(parts: Parts):
 
 def test_one_can_be_put_elsewhere(parts: Parts):
     parts.comes()
-    parts.session.move(AWAY)
+    parts.session.change(camera=AWAY)
     parts.marks.replace(2)
     assert parts.marks.find(2).camera == AWAY and parts.pictured == [False, False, False]
     parts.comes()

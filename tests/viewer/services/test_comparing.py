@@ -64,7 +64,7 @@ def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
 
 
 def test_maps_of_both_have_one_range(desk: Desk) -> None:
-    comparing, spans = desk.c.comparing, desk.c.session.spans
+    comparing, session = desk.c.comparing, desk.c.session
     desk.c.settings.set_view(View.DEPTH)
     keep(desk)
     alone = comparing.span(View.DEPTH)
@@ -75,7 +75,7 @@ def test_maps_of_both_have_one_range(desk: Desk) -> None:
     both = comparing.span(View.DEPTH)
     hit = [side.frame.depth[np.isfinite(side.frame.depth)] for side in (a, b)]
     assert alone is None and both[0] <= min(np.median(d) for d in hit) and both[1] >= max(np.median(d) for d in hit)
-    spans[View.DEPTH] = (1.0, 2.0)
+    session.change(draw=session.draw.with_span((1.0, 2.0), View.DEPTH))
     assert comparing.span(View.DEPTH) == (1.0, 2.0), "a range that was chosen is kept"
     assert comparing.span(View.COLOR) is None
 
@@ -101,7 +101,7 @@ def test_one_wipe_at_a_time(desk: Desk) -> None:
     keep(desk)
     desk.c.settings.set_view(View.WIPE)
     comparing.start(CompareMode.WIPE)
-    assert desk.c.session.view is View.COLOR
+    assert desk.c.session.draw.view is View.COLOR
     desk.rest()
     assert comparing.state.on
     desk.c.settings.set_view(View.WIPE)
@@ -168,7 +168,7 @@ def test_a_difference_is_that_of_the_chosen_slice(desk: Desk) -> None:
         Side(with_tree(make_frame(settings)), View.TREE, 0, "", 0) for settings in (Settings(), Settings(samples=2))
     )
     for cut in (Slice(1, 0.25), Slice(0, 0.6)):
-        desk.c.session.cut = cut
+        desk.c.session.set_draw(slice=cut)
         found = comparing.difference(a, b)
         assert found is not None and comparing.difference(a, b) is found
         expected = values_in(b.frame, View.TREE, slice=cut)

@@ -256,21 +256,21 @@ def test_a_light_chosen_after_a_step_was_taken_back_stays(desk: Desk):
     session, editing = desk.c.session, desk.c.editing
     session.want(Edits(hidden=frozenset({"ball"})), 0)  # as undo does
     editing.show("ball")
-    session.light = 1
+    session.set_draw(light=1)
     edit(desk, lambda: editing.hide("car"))
-    assert session.light == 1
+    assert session.draw.light == 1
     session.want(Edits(), 0)
     editing._give_up()
     assert session.light_to_come is None and session.edits == Edits(hidden=frozenset({"car"}))
     # It is for what was wanted, not for what is made on the way to that.
-    session.light = 1
+    session.set_draw(light=1)
     editing.hide("ball")
     desk.tick()
     session.want(Edits(hidden_primitives=frozenset({0})), 0)
     desk.until(lambda: "ball" in session.edited.edits.hidden)
-    assert session.light == 1
+    assert session.draw.light == 1
     desk.until(lambda: not editing.under_way)
-    assert session.light == 0
+    assert session.draw.light == 0
 
 
 def test_edits_stay_when_the_scene_is_read_again_as_far_as_it_has_their_targets(desk: Desk):

@@ -53,7 +53,7 @@ def test_an_exact_picture_comes_back_bit_for_bit(desk: Desk, method: str) -> Non
     seen, c = flown(desk, method), desk.c
     for number, frame in seen.items():
         moment = c.history.records.get(number)
-        assert moment is not None and (moment.time, moment.camera) == (frame.time, frame.camera)
+        assert moment is not None and (moment.state.time, moment.camera) == (frame.time, frame.camera)
         c.navigator.go(number)
         of_path = c.session.frame_at(frame.time)
         assert desk.said == f"picture {number}, frame {of_path} of the path, again: the same picture, bit for bit"
@@ -61,7 +61,7 @@ def test_an_exact_picture_comes_back_bit_for_bit(desk: Desk, method: str) -> Non
         assert (c.session.time, c.session.camera) == (frame.time, frame.camera)
         assert (c.session.settings.method, c.session.settings.depth) == (method, frame.settings.depth)
         assert np.array_equal(c.frame.color.view(np.uint32), frame.color.view(np.uint32))
-    assert {c.history.records.get(number).view for number in seen} == {View.COLOR, View.DEPTH}
+    assert {c.history.records.get(number).state.draw.view for number in seen} == {View.COLOR, View.DEPTH}
 
 
 def test_frames_of_an_experiment_are_told_from_those_of_the_path(desk: Desk) -> None:
@@ -74,15 +74,15 @@ def test_frames_of_an_experiment_are_told_from_those_of_the_path(desk: Desk) -> 
 
 def test_going_back_can_be_undone_with_its_time(desk: Desk) -> None:
     seen, c = flown(desk, "paper"), desk.c
-    here = c.session.snapshot()
+    here = c.session.state
     number = list(seen)[1]
     c.navigator.go(number)
     desk.rest()
-    assert c.session.time == seen[number].time != here.time and c.session.view is View.COLOR
+    assert c.session.time == seen[number].time != here.time and c.session.draw.view is View.COLOR
     assert c.undo.undoes == f"going to picture {number}"
     c.undo.undo()
     desk.rest()
-    assert c.session.snapshot() == here
+    assert c.session.state == here
     c.undo.redo()
     desk.rest()
     assert c.session.time == seen[number].time and c.session.settings.depth == 3
@@ -109,7 +109,7 @@ def test_a_frozen_picture_knows_what_its_warmup_frames_teach_and_no_more(desk: D
     desk.rest()
     scene, settings = c.session.scene, c.session.settings
     warmup = tuple((scene.frame_time(n), scene.camera_at(scene.frame_time(n))) for n in range(3))
-    snapshot = replace(c.session.snapshot(), time=scene.frame_time(3))
+    snapshot = replace(c.session.state, time=scene.frame_time(3))
     c.navigator.go_to(JumpTarget(snapshot, "a find", (32, 24), warmup=warmup))
     desk.rest()
     own = tracer.Renderer(scene, replace(c.frame.settings, samples=1))
@@ -162,7 +162,7 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
     for n in learnt:
         moment = words[n]
         again.settings = moment.settings
-        word = again.render(moment.time, moment.camera).modes[picked.unit]
+        word = again.render(moment.state.time, moment.camera).modes[picked.unit]
         for light in range(2):
             for lit, bit in ((False, modes.FULL_SHADOW), (True, modes.NON_SHADOW)):
                 if int(modes.shadow_mode(word, light)) & bit:
@@ -175,7 +175,7 @@ def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> Non
             found, moment = c.origins.of(n, light, lit), words[n]
             assert found is not None
             exact = replace(moment.settings, method="none", record_lights=True, verify=False)
-            frame = tracer.Renderer(c.session.scene, exact, world=world).render(moment.time, moment.camera)
+            frame = tracer.Renderer(c.session.scene, exact, world=world).render(moment.state.time, moment.camera)
             here = (frame.primitive == picked.primitive) & (frame.asked[..., light] > 0)
             here &= (frame.reached[..., light] > 0) == lit
             if found.pixel is not None:

@@ -18,6 +18,7 @@ from viewer.services.jobs import Wake
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 from viewer.window.app import advance
 
@@ -48,9 +49,10 @@ class Pictures:
 
 def test_pictures_are_asked_for_once_and_again_after_a_run():
     """A run drops what was asked for, and leaves the world at its own last frame."""
-    pictures, session = Pictures(), Session(settings=Settings(method="none", samples=1))
+    pictures, session = Pictures(), Session(state=ViewState(settings=Settings(method="none", samples=1)))
+    session.set_pace(progressive=False)
     session.open(make_scene())
-    scheduler = FrameScheduler(session, Preferences(dynamic_resolution=False), pictures)
+    scheduler = FrameScheduler(session, Preferences(), pictures)
     here = FrameInputs(size=(16, 8))
     for _ in range(3):
         scheduler.request(here)
@@ -65,18 +67,19 @@ def test_pictures_are_asked_for_once_and_again_after_a_run():
 
 
 def test_until_certificates_can_be_made_pictures_come_without():
-    session = Session(settings=Settings(method="certified+rest"))
+    session = Session(state=ViewState(settings=Settings(method="certified+rest")))
     scheduler = FrameScheduler(session, Preferences(), Pictures())
     assert scheduler.settings.method == "certified+rest"
     scheduler.request(FrameInputs(ready=False))
     assert scheduler.settings.method == "none+rest"
-    session.settings = replace(session.settings, method="paper")
+    session.change(settings=replace(session.settings, method="paper"))
     assert scheduler.settings.method == "paper"
 
 
 def test_a_hand_that_falters_starves_no_picture():
     """While something moves, each picture that has begun is shown, however often the camera stands still in between."""
-    controller, renderer = Controller(Preferences(dynamic_resolution=False, samples=1)), FakeRenderer()
+    preferences = Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}})
+    controller, renderer = Controller(preferences), FakeRenderer()
     controller.show(make_scene(), renderer, {})
     trace, size = renderer.refine, (16, 8)
 

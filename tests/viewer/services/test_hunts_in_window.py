@@ -26,7 +26,7 @@ def study(tmp_path: Path) -> Iterator[Desk]:
 
 def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
     c = study.c
-    here = c.session.snapshot()
+    here = c.session.state
     c.hunts.start()
     run = c.hunts.hunt
     assert run is not None and c.runs.current is run
@@ -44,7 +44,7 @@ def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
         assert tuple(frame.color[find.y, find.x].tolist()) == find.color
         assert tuple(frame.reference[find.y, find.x].tolist()) == find.reference
         assert picked is not None and (picked.x, picked.y) == (find.x, find.y) and picked.wrong > 0
-        assert c.session.follow == find.own_camera and c.session.light == find.light
+        assert c.session.on_path == find.own_camera and c.session.draw.light == find.light
         assert c.session.settings.method == "paper" and c.session.settings.verify
         if find.bounces == 0:
             taught = c.history.origins_of(picked)
@@ -54,7 +54,7 @@ def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
     for _ in range(2):
         c.undo.undo()
         study.rest()
-    assert c.session.snapshot() == here and not c.preferences.fixed_resolution
+    assert c.session.state == here and not c.session.pace.fixed_size
 
 
 def test_the_figure_of_a_find_is_saved(study: Desk) -> None:
@@ -67,7 +67,7 @@ def test_the_figure_of_a_find_is_saved(study: Desk) -> None:
     (picture,), (told,) = folder.glob("*.png"), folder.glob("*.json")
     find, data = c.hunts.found.finds[0], capture.read_data(picture)
     assert data["figure"]["marks"] == [[find.x, find.y]] and data["figure"]["methods"] == ["none", "paper"]
-    assert json.loads(told.read_text())["before"] == data["figure"]["before"]
+    assert json.loads(told.read_text())["before"] == data["state"]["warmup"]["frames"]
     assert str(picture) in study.said
 
 

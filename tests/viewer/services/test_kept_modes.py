@@ -51,10 +51,10 @@ def check(capfd: pytest.CaptureFixture[str], path: Path) -> tuple[int, str]:
     return code, out.strip()
 
 
-def changed(path: Path, name: str, **picture: object) -> Path:
+def changed(path: Path, name: str, **warmup: object) -> Path:
     """A copy of a picture whose recipe says something else."""
     data = capture.read_data(path)
-    data["picture"] |= picture
+    data["state"]["warmup"] |= warmup
     with Image.open(path) as image:
         png.write(path.with_name(name), np.asarray(image.convert("RGB")), json.dumps(data))
     return path.with_name(name)
@@ -73,7 +73,7 @@ def test_a_picture_after_others_in_motion_of_which_some_pixels_taught_is_made_ag
     desk: Desk, capfd: pytest.CaptureFixture[str]
 ) -> None:
     c = desk.c
-    c.preferences.dynamic_resolution, c.preferences.target_fps = True, 5000.0
+    c.session.set_pace(progressive=True, target_fps=5000.0)
     c.settings.change(method="paper")
     c.session.playing = True
     desk.came.clear()
@@ -112,7 +112,7 @@ def test_modes_that_are_damaged_or_of_another_scene_are_said_to_be(
     for name, modes, why in (
         ("letters", "no base64!", "damaged"),
         ("bytes", "aGVsbG8=", "damaged"),
-        ("short", capture.read_data(path)["picture"]["modes"][:-8], "damaged"),
+        ("short", capture.read_data(path)["state"]["warmup"]["modes"][:-8], "damaged"),
         ("empty", "eJwDAAAAAAE=", "not those of"),
     ):
         code, said = check(capfd, changed(path, f"{name}.png", modes=modes))
@@ -121,7 +121,7 @@ def test_modes_that_are_damaged_or_of_another_scene_are_said_to_be(
 
 def test_views_of_modes_say_how_to_save_what_can_be_made_again(desk: Desk, capfd: pytest.CaptureFixture[str]) -> None:
     path = saved(desk, View.OCCLUSION, "modes.png")
-    assert "modes" not in capture.read_data(path)["picture"], "such a picture shows what comes of more than these"
+    assert not capture.read_data(path)["state"]["warmup"]["modes"], "such a picture shows what comes of more than these"
     code, said = check(capfd, path)
     assert code == 1 and "cannot be made again" in said and "Backspace" in said
 

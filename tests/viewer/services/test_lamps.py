@@ -19,6 +19,7 @@ from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.preferences import Preferences
 from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 HERE = FrameInputs(size=(16, 8))
@@ -46,10 +47,14 @@ def test_samples_are_those_of_the_lamp_that_has_the_most(kinds: str, radius: flo
         "r": Light("c", (0, 0, 0), kind="rectangle", edges=((1, 0, 0), (0, 1, 0)), samples=16),
         "d": Light("d", (0, 0, 0), kind="dome", radius=1.0, edges=((0, 1, 0),), samples=25),
     }
-    lights, session = tuple(known[kind] for kind in kinds), Session(settings=Settings(lamp_radius=radius))
+    lights, session = (
+        tuple(known[kind] for kind in kinds),
+        Session(state=ViewState(settings=Settings(lamp_radius=radius))),
+    )
     lamps, table = as_lamps(lights, radius, samples), LampSamples(session)
     session.open(replace(make_scene(), lights=lights))
-    session.settings = settings = Settings(lamp_radius=radius, lamp_samples=samples)
+    settings = Settings(lamp_radius=radius, lamp_samples=samples)
+    session.change(settings=settings)
     for _ in range(2):
         assert table.most(settings) == max((len(lamp.offsets()) for lamp in lamps), default=1)
         assert table.any == has_lamps(lights, settings) == any(lamp.kind != "point" for lamp in lamps)
@@ -85,7 +90,8 @@ class Window:
     """Tracing as the window drives it, of a scene with lamps."""
 
     def __init__(self, scene: Scene | None = None, **settings: int | float) -> None:
-        self.session, self.renders = Session(settings=Settings(method="none", samples=2, **settings)), Renders()
+        state = ViewState(settings=Settings(method="none", samples=2, **settings))
+        self.session, self.renders = Session(state=state), Renders()
         self.session.open(scene or make_scene())
         self.scheduler = FrameScheduler(self.session, Preferences(), self.renders)
 
@@ -100,7 +106,7 @@ class Window:
     def move(self) -> None:
         camera = self.session.camera
         x, y, z = camera.position
-        self.session.move(replace(camera, position=(x + 1.0, y, z)))
+        self.session.change(camera=replace(camera, position=(x + 1.0, y, z)))
 
 
 def test_at_idle_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_for_twice():
@@ -108,12 +114,12 @@ def test_at_idle_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_fo
     assert window.rest() == [(4, 1), (16, 1), (64, 2), (64, 2)], "the last knows more about shadows"
     assert window.rest() == []
     assert not window.scheduler.refines_lamps and window.scheduler.lamp_samples_shown == 64
-    window.session.settings = replace(window.session.settings, lamp_samples=256)
+    window.session.change(settings=replace(window.session.settings, lamp_samples=256))
     assert window.scheduler.refines_lamps
     assert window.rest() == [(256, 2), (256, 2)], "what there is goes on"
-    window.session.settings = replace(window.session.settings, lamp_samples=1)
+    window.session.change(settings=replace(window.session.settings, lamp_samples=1))
     assert window.rest() == [(1, 2), (1, 2)]
-    window.session.settings = replace(window.session.settings, lamp_samples=16, lamp_radius=0.25)
+    window.session.change(settings=replace(window.session.settings, lamp_samples=16, lamp_radius=0.25))
     assert window.rest() == [(4, 1), (16, 2), (16, 2)], "lamps of another size"
 
 
@@ -153,7 +159,7 @@ def test_points_have_one_sample_and_whole_pictures_all_of_them():
     sphere = Light("lamp", (0.0, 5.0, 0.0), kind="sphere", radius=1.0, samples=16)
     window = Window(replace(make_scene(), lights=(sphere,)))
     assert window.rest() == [(4, 1), (None, 2), (None, 2)], "as the scene says"
-    window.scheduler._preferences.dynamic_resolution = False
+    window.session.set_pace(progressive=False)
     window.move()
     assert set(window.rest(MOVING, 3)) == {(None, 2)}
 
@@ -181,9 +187,9 @@ def test_pixels_cost_by_the_samples_of_lamps():
 def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it():
     window = Window(lamp_radius=0.5, lamp_samples=16)
     window.rest()
-    window.session.view = View.PENUMBRA
+    window.session.set_draw(view=View.PENUMBRA)
     assert window.rest() == [(16, 2)] and window.renders.asked[-1].settings.record_lights
-    window.session.view = View.COLOR
+    window.session.set_draw(view=View.COLOR)
     assert window.rest() == [], "there is more than the picture needs"
     many = make_scene(lights=3)
     window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
@@ -192,7 +198,7 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
         (View.LIGHTS, "Lights due: none here, colour shown"),
         (View.FATE, "Fate of shadow rays: none here, colour shown"),
     ):
-        window.session.view = view
+        window.session.set_draw(view=view)
         window.rest()
         asked = window.renders.asked[-1].settings
         assert not asked.record_lights and not asked.record_fates
@@ -212,12 +218,12 @@ def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
     window.rest()
     scheduler.record_light()
     assert not asked, "the picture needs none"
-    window.session.view = View.PENUMBRA
+    window.session.set_draw(view=View.PENUMBRA)
     for _ in range(3):
         scheduler.record_light()
     ((frame, light, _),) = asked
     assert (frame, light) == (scheduler.frame, 0)
-    window.session.light = 1
+    window.session.set_draw(light=1)
     scheduler.record_light()
     *_, (frame, _, future) = asked
     first = with_lamps(frame)
@@ -227,7 +233,7 @@ def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
     assert scheduler.frame.only_light == 1 and scheduler.drawn_view is View.PENUMBRA
     scheduler.record_light()
     assert len(asked) == 2
-    window.session.light = 2
+    window.session.set_draw(light=2)
     scheduler.record_light()
     assert scheduler.drawn_view is View.COLOR and len(asked) == 3, "another light"
     asked[-1][2].set_exception(ValueError("no memory"))
@@ -255,7 +261,7 @@ def test_between_steps_it_is_known_that_more_is_to_come():
 
 def test_samples_of_pixels_come_after_certificates():
     window = Window()
-    window.session.settings = replace(window.session.settings, method="certified", samples=4)
+    window.session.change(settings=replace(window.session.settings, method="certified", samples=4))
     scheduler = window.scheduler
     scheduler.request(HERE)
     assert scheduler.awaits and not scheduler.certifies, "there is no picture yet"
@@ -272,7 +278,7 @@ def test_samples_of_pixels_come_after_certificates():
     scheduler.traced = None
     assert scheduler.awaits
     window = Window()
-    window.session.settings = replace(window.session.settings, method="auto")
+    window.session.change(settings=replace(window.session.settings, method="auto"))
     window.scheduler.request(HERE)
     window.scheduler.take()
     window.scheduler.request(HERE)

@@ -49,21 +49,21 @@ def test_a_hand_that_moves_the_camera_is_motion_for_a_moment(moving: Moving, clo
     moving.motion.move(ELSEWHERE)
     assert moving.session.camera == ELSEWHERE and moving.motion.under_way
     clock.now += IDLE_AFTER
-    assert not moving.motion.under_way and not moving.motion.lively
+    assert not moving.motion.under_way and not moving.motion.is_animating
 
 
 def test_a_glide_ends_where_it_goes_and_a_hand_ends_it(moving: Moving, clock: Clock):
     start = moving.session.camera
     for halt in (False, True):
-        moving.session.move(start)
+        moving.session.change(camera=start)
         moving.motion.glide(ELSEWHERE)
         clock.now += 0.5 * GLIDE_SECONDS
-        moving.motion.follow(None)
+        moving.motion.advance(None)
         assert moving.session.camera not in (start, ELSEWHERE) and moving.motion.under_way
         if halt:
             moving.motion.move(start)
         clock.now += GLIDE_SECONDS
-        moving.motion.follow(None)
+        moving.motion.advance(None)
         assert moving.session.camera == (start if halt else ELSEWHERE)
 
 
@@ -72,13 +72,13 @@ def test_time_is_played_as_it_passes_or_frame_by_frame(moving: Moving, clock: Cl
     moving.preferences.playback_rate = 2.0
     motion.toggle_play()
     clock.now += 0.1
-    motion.follow(None)
+    motion.advance(None)
     assert session.time == pytest.approx(0.2) and motion.under_way
     session.go_to_frame(0)
-    moving.preferences.every_frame = True
-    motion.follow(None)
-    assert session.frame == 0 and motion.lively and not motion.under_way, "this frame has not been traced yet"
-    motion.follow(session.time)
+    moving.session.set_pace(every_frame=True)
+    motion.advance(None)
+    assert session.frame == 0 and motion.is_animating and not motion.under_way, "this frame has not been traced yet"
+    motion.advance(session.time)
     assert session.frame == 1
     motion.step(-1)
     assert session.frame == 0 and not session.playing
@@ -95,8 +95,8 @@ def test_nothing_moves_while_it_is_locked(moving: Moving):
     moving.motion.follow_path(False)
     moving.motion.step(1)
     moving.motion.toggle_play()
-    moving.motion.follow(None)
-    assert (session.camera, session.time) == before and session.follow and not session.playing
+    moving.motion.advance(None)
+    assert (session.camera, session.time) == before and session.on_path and not session.playing
 
 
 def test_a_scene_without_animation_says_so(moving: Moving):
@@ -123,8 +123,8 @@ def test_a_window_that_slept_on_the_way_has_arrived(moving: Moving, clock: Clock
     moving.motion.fly_to(far)
     for _ in range(3):
         clock.now += 0.05
-        moving.motion.follow(None)
+        moving.motion.advance(None)
     assert moving.motion.under_way
     clock.now += 3600.0
-    moving.motion.follow(None)
+    moving.motion.advance(None)
     assert moving.session.camera == far and not moving.motion.under_way

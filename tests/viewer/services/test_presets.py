@@ -10,17 +10,18 @@ import pytest
 from tests.viewer.fakes import make_scene
 from viewer.services.presets import BUILT_IN, Presets
 from viewer.services.settings_controller import SettingsController
-from viewer.state.choices import Choices
+from viewer.state import codec
 from viewer.state.notices import Notices
-from viewer.state.preferences import Preferences, load_preferences
+from viewer.state.preferences import Preferences, Preset, load_preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 
 class Parts:
     def __init__(self) -> None:
         self.preferences, self.notices = Preferences(), Notices()
-        self.session = Session(settings=self.preferences.settings())
+        self.session = Session(state=codec.recalled({}))
         self.session.open(make_scene(lights=3))
         self.locked, self.named = False, []
         lock = lambda: self.locked  # noqa: E731
@@ -30,8 +31,8 @@ class Parts:
         )
 
     @property
-    def now(self) -> Choices:
-        return Choices.of(self.session, self.preferences)
+    def now(self) -> ViewState:
+        return self.session.state
 
 
 @pytest.fixture
@@ -43,12 +44,12 @@ def test_as_in_the_paper_is_what_the_paper_says(parts: Parts):
     parts.settings.change(method="certified", symmetric=True, zoom_factor=9.0, depth=2, lamp_radius=0.5)
     parts.settings.set_view(View.DEPTH)
     parts.presets.apply("As in the paper")
-    s, p = parts.session.settings, parts.preferences
+    s, pace = parts.session.settings, parts.session.pace
     assert (s.method, s.symmetric, s.zoom_factor, s.depth, s.samples) == ("paper", False, 4.0, 10, 1)
     assert s.lamp_radius == 0.0, "point lights"
-    assert (p.fixed_resolution, p.fixed_width, p.fixed_height, p.dynamic_resolution) == (True, 512, 512, False)
-    assert p.every_frame, "frame-to-frame coherence is that of one frame and the next"
-    assert parts.session.view is View.DEPTH, "it says nothing of the view"
+    assert (pace.fixed_size, pace.width, pace.height, pace.progressive) == (True, 512, 512, False)
+    assert pace.every_frame, "frame-to-frame coherence is that of one frame and the next"
+    assert parts.session.draw.view is View.DEPTH, "it says nothing of the view"
     assert parts.named == ["preset As in the paper"] and parts.notices.message.text.endswith("As in the paper")
 
 
@@ -61,7 +62,7 @@ def test_all_of_the_program_can_be_applied(parts: Parts, name: str):
 def test_one_is_saved_and_applied_again_by_another_window(parts: Parts, own_settings: Path):
     parts.settings.change(method="paper+rest", depth=4, lamp_samples=64)
     parts.settings.set_view(View.PENUMBRA)
-    parts.preferences.outlines = True
+    parts.session.set_draw(outlines=True)
     kept = parts.now
     assert parts.presets.save("  soft   shadows ")
     assert json.loads((own_settings / "settings.json").read_text())["presets"][0]["name"] == "soft shadows"
@@ -74,8 +75,8 @@ def test_one_is_saved_and_applied_again_by_another_window(parts: Parts, own_sett
 def test_names_are_unique(parts: Parts):
     assert parts.presets.save("one") and parts.presets.save("two")
     parts.settings.change(depth=1)
-    assert parts.presets.save("one") and [p["name"] for p in parts.presets.own] == ["one", "two"]
-    assert parts.presets.own[0]["choices"]["settings"]["depth"] == 1, "replaced"
+    assert parts.presets.save("one") and [p.name for p in parts.presets.own] == ["one", "two"]
+    assert parts.presets.own[0].state["settings"]["depth"] == 1, "replaced"
     for taken in ("two", "", "As in the paper"):
         assert not parts.presets.rename(0, taken)
     assert not parts.presets.save("Every ray traced") and not parts.presets.save(" ")
@@ -86,7 +87,7 @@ def test_names_are_unique(parts: Parts):
 
 
 def test_a_damaged_one_changes_nothing_and_says_so(parts: Parts):
-    parts.preferences.presets = [{"name": "odd", "choices": {"settings": {"method": "fast"}}}, {"name": "empty"}]
+    parts.preferences.presets = [Preset("odd", {"settings": {"method": "fast"}}), Preset("empty", {})]
     before = parts.now
     for name in ("odd", "empty", "none such"):
         parts.notices.message = None

@@ -42,7 +42,7 @@ def fresh(desk: Desk) -> None:
 
 def shown(desk: Desk) -> np.ndarray:
     """The picture as the window's recipe draws the frame that is there."""
-    recipe = desk.c.recipes.of(desk.c.frame, desk.c.session.view)
+    recipe = desk.c.recipes.of(desk.c.frame, desk.c.session.draw.view)
     return stills.draw(desk.c.frame, desk.c.session.scene, recipe)[0]
 
 
@@ -62,39 +62,40 @@ def exactly(desk: Desk) -> None:
 
 
 def later(desk: Desk) -> None:
-    desk.c.session.time = 1.2345678901234567
-    desk.c.preferences.outlines = True
+    desk.c.session.change(time=1.2345678901234567)
+    desk.c.session.set_draw(outlines=True)
 
 
 def elsewhere(desk: Desk) -> None:
     desk.c.motion.move(ELSEWHERE)
-    desk.c.session.settings = replace(desk.c.session.settings, samples=3, depth=2)
+    desk.c.session.change(settings=replace(desk.c.session.settings, samples=3, depth=2))
 
 
 def soft(desk: Desk) -> None:
-    desk.c.session.settings = replace(desk.c.session.settings, lamp_radius=0.7, lamp_samples=4, samples=1)
+    desk.c.session.change(settings=replace(desk.c.session.settings, lamp_radius=0.7, lamp_samples=4, samples=1))
     desk.c.settings.set_view(View.PENUMBRA)
     desk.c.settings.set_light(1)
 
 
 def toned(desk: Desk) -> None:
-    desk.c.session.tone, desk.c.session.clipping = Tone(-1.25, 0.7, Curve.FILMIC), True
+    desk.c.session.set_draw(tone=Tone(-1.25, 0.7, Curve.FILMIC), clipping=True)
 
 
 def ranged(desk: Desk) -> None:
     """By a range of its own; tone and stripes are for other views."""
-    desk.c.session.spans[View.DEPTH] = (1e-7, 9.5)
+    desk.c.session.change(draw=desk.c.session.draw.with_span((1e-7, 9.5), View.DEPTH))
     desk.c.settings.set_view(View.DEPTH)
 
 
 def by_modes(view: View) -> Callable[[Desk], None]:
     def change(desk: Desk) -> None:
-        desk.c.session.settings = replace(desk.c.session.settings, method="paper", symmetric=True, zoom_factor=2.5)
+        desk.c.session.change(
+            settings=replace(desk.c.session.settings, method="paper", symmetric=True, zoom_factor=2.5)
+        )
         desk.c.settings.set_view(view)
-        desk.c.session.wipe = 0.3
+        desk.c.session.set_draw(wipe=0.3)
         desk.c.preferences.legend_in_pictures = view is View.SHADOW
-        desk.c.preferences.legend_x, desk.c.preferences.shading = 0.25, 0.7
-        desk.c.preferences.work_shares = True
+        desk.c.session.set_draw(legend_at=(0.25, 1.0), shading=0.7, shares=True)
         desk.rest()
         fresh(desk)
 
@@ -118,7 +119,7 @@ def test_what_cannot_be_brought_back_is_said(odd: Desk) -> None:
     assert "may differ" in odd.said and "other frames" in odd.said and "Backspace" in odd.said
     fresh(odd)
     assert odd.c.recipes.command() is not None and odd.said.startswith("copied: ")
-    odd.c.session.settings = replace(odd.c.session.settings, method="certified")
+    odd.c.session.change(settings=replace(odd.c.session.settings, method="certified"))
     odd.c.settings.set_view(View.CERTIFICATE)
     odd.rest()
     fresh(odd)

@@ -86,7 +86,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
     desk.runs.experiment_plan.frames = 5000
     desk.runs.start_experiment()
     desk.until(lambda: desk.runs.experiment.traced > 2)
-    before = (session.camera, session.time, session.settings, session.playing, session.follow)
+    before = (session.camera, session.time, session.settings, session.playing, session.on_path)
     asked: list[object] = []
     renderer.refine = lambda *arguments: asked.append(arguments)
     for disturb in (
@@ -103,7 +103,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
         disturb()
         assert desk.said == "the experiment is still under way; stop it first"
         desk.tick()
-        assert (session.camera, session.time, session.settings, session.playing, session.follow) == before
+        assert (session.camera, session.time, session.settings, session.playing, session.on_path) == before
     desk.runs.start_experiment()
     assert desk.said == "the experiment is still under way"
     desk.runs.start_zoom_test()
@@ -124,7 +124,7 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
 def test_a_plan_that_is_no_good_is_one_line(desk: Desk) -> None:
     desk.runs.experiment_plan.size = (0, 10)
     desk.runs.start_experiment()
-    assert desk.c.notices.message.error and "width and height" in desk.said
+    assert desk.c.notices.message.error and "width is a whole number" in desk.said
     desk.c.selection.select((0.5, 0.5))
     desk.runs.experiment_plan.size = desk.runs.zoom_plan.size = (64, 4097)
     for start in (desk.runs.start_experiment, desk.runs.start_zoom_test):

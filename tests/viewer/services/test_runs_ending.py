@@ -62,11 +62,11 @@ def test_a_run_that_is_overtaken_by_another_scene_does_not_trace_it(desk: Desk) 
 
 
 def test_restoring_a_place_ends_a_run(desk: Desk) -> None:
-    snapshot = desk.c.session.snapshot()
+    snapshot = desk.c.session.state
     desk.runs.experiment_plan.frames = 5000
     desk.runs.start_experiment()
     desk.until(lambda: desk.runs.experiment.traced > 2)
-    desk.c.restore(replace(snapshot, camera=ELSEWHERE, follow=False))
+    desk.c.restore(replace(snapshot, camera=ELSEWHERE))
     desk.run_to_its_end()
     assert desk.c.frame.camera == ELSEWHERE
 
@@ -87,7 +87,7 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
         raise AttributeError("no world")
 
     monkeypatch.setattr(experiment, "run", fail)
-    controller = Controller(Preferences(dynamic_resolution=False, samples=1))
+    controller = Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}}))
     controller.show(make_scene(), FakeRenderer(), {})
     controller.runs.experiment_plan.frames = 2
     controller.runs.start_experiment()

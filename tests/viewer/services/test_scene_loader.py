@@ -97,7 +97,7 @@ def door_opened(door: Door, path: Path):
 
 def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(door: Door, tiny_scene_file: Path, tmp_path: Path):
     door.session.open(door_opened(door, tiny_scene_file))
-    door.session.view = View.DEPTH
+    door.session.set_draw(view=View.DEPTH)
     frame = make_frame(time=1.0)
     door.captures.capture(frame, np.zeros((8, 16, 3), np.uint8))
     (job,) = door.captures.saving
@@ -108,7 +108,7 @@ def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(door: Door, tiny_sce
     door.loader.open(picture)
     arrival = door.arrival()
     assert arrival.opened is None and arrival.text == f"restored {picture.name}"
-    assert (arrival.place.time, arrival.place.view) == (1.0, View.DEPTH)
+    assert (arrival.place.time, arrival.place.draw.view) == (1.0, View.DEPTH)
     door.session.scene = None
     door.loader.open(picture)
     arrival = door.arrival()
@@ -126,10 +126,10 @@ def test_settings_from_the_command_line_win_over_the_first_picture_alone(
     door.session.scene = None
     door.loader.start(picture, {"lamp_radius": 0.5})
     first = door.arrival().place
-    assert first.settings["lamp_radius"] == 0.5 and first.settings["lamp_samples"] is None
+    assert first.settings.lamp_radius == 0.5 and first.settings.lamp_samples is None
     assert door.session.settings.lamp_radius == 0.5, "also where a scene is opened that says nothing of it"
     door.loader.open(picture)
-    assert door.arrival().place.settings["lamp_radius"] is None
+    assert door.arrival().place.settings.lamp_radius is None
 
 
 def test_a_load_that_cannot_stop_is_left_to_itself_when_it_is_cancelled(

@@ -119,15 +119,15 @@ def test_a_scene_is_read_again_in_its_place_and_a_broken_one_is_not(desk: Desk, 
     desk.rest()
     c.settings.change(method="paper", depth=3)
     c.motion.move(c.session.camera)
-    c.session.time = 0.5
+    c.session.change(time=0.5)
     desk.rest()
-    here, good, undoes = c.session.snapshot(), tiny_scene_file.read_text(), c.undo.undoes
+    here, good, undoes = c.session.state, tiny_scene_file.read_text(), c.undo.undoes
 
     write(tiny_scene_file, good + "\nl 0 9 0  0.1 0.1 0.1\n")
     desk.until(lambda: len(c.session.scene.lights) == 3)
     desk.rest()
     assert "tiny.aff reloaded" in desk.said and desk.said.endswith(": tiny.aff changed")
-    assert c.session.snapshot() == here and c.undo.undoes == undoes, "place and steps are kept"
+    assert c.session.state == here and c.undo.undoes == undoes, "place and steps are kept"
     scene = c.session.scene
 
     write(tiny_scene_file, good + "\nl 0 nine\n")
@@ -136,7 +136,7 @@ def test_a_scene_is_read_again_in_its_place_and_a_broken_one_is_not(desk: Desk, 
     assert f"tiny.aff:{line}" in desk.said and "\n" not in desk.said and c.session.scene is scene
     write(tiny_scene_file, good)
     desk.until(lambda: c.session.scene is not scene)
-    assert len(c.session.scene.lights) == 2 and c.session.snapshot() == here
+    assert len(c.session.scene.lights) == 2 and c.session.state == here
     c.preferences.watch_scene = False
     now = c.session.scene
     write(tiny_scene_file, good + "\n")

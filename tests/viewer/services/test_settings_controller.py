@@ -8,7 +8,8 @@ from pathlib import Path
 from tests.viewer.fakes import make_scene
 from tracer.scene.model import Camera
 from viewer.services.bookmarks import Bookmarks
-from viewer.services.settings_controller import RESTED, SettingsController
+from viewer.services.settings_controller import REST_SECONDS, SettingsController
+from viewer.state import codec
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -18,14 +19,18 @@ from viewer.state.views import View
 class Parts:
     def __init__(self) -> None:
         self.preferences, self.notices = Preferences(), Notices()
-        self.session = Session(settings=self.preferences.settings())
+        self.session = Session(state=codec.recalled({}))
         self.session.open(make_scene(lights=3))
         self.locked = False
         self.settings = SettingsController(self.session, self.preferences, self.notices, lambda: self.locked)
         self.bookmarks = Bookmarks(self.session, self.preferences, self.settings, self.notices)
 
+    def change(self, **changes: object) -> None:
+        self.settings.change(**changes)
+        self.settings.note_method()  # as in each frame of the window
+
     def follow_settings(self) -> None:
-        self.settings.follow()
+        self.settings.save_when_rested()
         if self.settings._writer is not None:
             self.settings._writer.join(30.0)
 
@@ -33,10 +38,10 @@ class Parts:
 def test_a_setting_is_changed_and_remembered_unless_it_is_no_good_or_locked():
     parts = Parts()
     parts.settings.change(depth=3, symmetric=True)
-    assert parts.session.settings.depth == parts.preferences.depth == 3 and parts.preferences.symmetric
+    assert parts.session.settings.depth == 3 and parts.session.settings.symmetric
     for wrong in ({"depth": -1}, {"method": "fast"}):
         parts.settings.change(**wrong)
-        assert parts.session.settings.depth == 3 and parts.session.settings.method == parts.preferences.method
+        assert parts.session.settings.depth == 3 and parts.session.settings.method == "paper"
         assert parts.notices.current.error
     parts.locked = True
     parts.settings.change(depth=5)
@@ -46,9 +51,9 @@ def test_a_setting_is_changed_and_remembered_unless_it_is_no_good_or_locked():
 
 def test_culling_is_turned_off_and_on_as_it_was():
     parts = Parts()
-    parts.settings.change(method="paper+rest")
+    parts.change(method="paper+rest")
     parts.settings.toggle_culling()
-    assert parts.session.settings.method == "none" and not parts.preferences.culling
+    assert parts.session.settings.method == "none"
     parts.settings.toggle_culling()
     assert parts.session.settings.method == "paper+rest"
 
@@ -58,6 +63,7 @@ def test_what_was_added_while_culling_was_off_stays():
     parts.settings.change(method="none+rest")
     parts.settings.toggle_culling()
     assert parts.session.settings.method == "paper+rest"
+    parts.settings.note_method()
     parts.settings.toggle_culling()
     parts.settings.toggle_culling()
     assert parts.session.settings.method == "paper+rest"
@@ -67,7 +73,7 @@ def test_lights_are_counted_around():
     parts = Parts()
     for light, chosen in ((2, 2), (3, 0), (-1, 2)):
         parts.settings.set_light(light)
-        assert parts.session.light == chosen
+        assert parts.session.draw.light == chosen
 
 
 def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
@@ -76,9 +82,9 @@ def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
     parts.settings.set_view(View.DEPTH)
     parts.settings.change(depth=3)
     parts.settings.reset(["bookmarks"])
-    assert parts.session.view is View.COLOR and parts.session.settings.depth == Preferences().depth
+    assert parts.session.draw.view is View.COLOR and parts.session.settings.depth == 10
     stored = json.loads((own_settings / "settings.json").read_text())
-    assert stored["view"] == "color" and len(stored["bookmarks"]) == 1
+    assert stored["state"]["draw"]["view"] == "color" and len(stored["bookmarks"]) == 1
 
 
 def test_settings_that_cannot_be_written_are_one_line(own_settings: Path):
@@ -90,16 +96,16 @@ def test_settings_that_cannot_be_written_are_one_line(own_settings: Path):
 
 def test_bookmarks_are_found_again_without_settings_and_a_damaged_one_is_one_line():
     parts, place = Parts(), Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
-    parts.session.move(place)
+    parts.session.change(camera=place)
     parts.bookmarks.add()
     parts.bookmarks.add("  named ")
-    assert [mark["name"] for mark in parts.bookmarks.all] == ["frame 0", "named"]
+    assert [mark.name for mark in parts.bookmarks.all] == ["frame 0", "named"]
     found = parts.bookmarks.find(0)
-    assert found.camera == place and not found.follow and found.settings == {}
-    parts.bookmarks.all[1]["state"] = {"time": "noon"}
+    assert found.camera == place and found.settings == parts.session.settings
+    parts.bookmarks.all[1].state = {"time": "noon"}
     assert parts.bookmarks.find(1) is None and parts.notices.current.text.startswith("this bookmark is damaged")
     parts.bookmarks.forget(0)
-    assert [mark["name"] for mark in parts.bookmarks.all] == ["named"]
+    assert [mark.name for mark in parts.bookmarks.all] == ["named"]
     parts.session.open(make_scene(path="other.aff"))
     assert parts.bookmarks.all == []
 
@@ -107,7 +113,7 @@ def test_bookmarks_are_found_again_without_settings_and_a_damaged_one_is_one_lin
 def test_the_radius_of_lamps_is_that_of_the_scene_and_their_samples_are_kept():
     parts = Parts()
     parts.settings.change(lamp_radius=0.25, lamp_samples=64)
-    assert parts.preferences.lamp_samples == 64
+    assert codec.remembered(parts.session.state)["settings"]["lamp_samples"] == 64
     parts.settings.change(lamp_radius=-1.0)
     assert parts.session.settings.lamp_radius == 0.25 and parts.notices.current.error
     parts.session.open(make_scene())
@@ -123,7 +129,7 @@ def test_a_change_that_rests_is_saved_and_other_windows_changes_stay(own_setting
     saved = own_settings / "settings.json"
 
     def pass_time() -> None:
-        now[0] += RESTED
+        now[0] += REST_SECONDS
         for parts in (one, other):
             parts.follow_settings()
 
@@ -134,11 +140,11 @@ def test_a_change_that_rests_is_saved_and_other_windows_changes_stay(own_setting
     pass_time()
     assert not saved.exists(), "it may change on"
     pass_time()
-    other.preferences.depth = 3
+    other.settings.change(depth=3)
     pass_time()
     pass_time()
     read = json.loads(saved.read_text())
-    assert (read["theme"], read["depth"]) == ("light", 3)
+    assert (read["theme"], read["state"]["settings"]["depth"]) == ("light", 3)
 
 
 def test_preferences_that_cannot_be_saved_are_said_once(own_settings: Path, monkeypatch):
@@ -147,9 +153,9 @@ def test_preferences_that_cannot_be_saved_are_said_once(own_settings: Path, monk
     own_settings.write_text("a file is in its place")
     parts = Parts()
     for depth in (3, 4):
-        parts.preferences.depth = depth
+        parts.settings.change(depth=depth)
         for _ in range(4):
-            now[0] += RESTED
+            now[0] += REST_SECONDS
             parts.follow_settings()
     said = [entry.text for entry in parts.notices.log.entries()]
     assert len(said) == 1 and said[0].startswith("settings not saved"), said

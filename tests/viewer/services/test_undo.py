@@ -12,7 +12,8 @@ from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Camera
 from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
 from viewer.services.settings_controller import SettingsController
-from viewer.services.undo import MOST, Undo
+from viewer.services.undo import MOST_STEPS, Undo
+from viewer.state import codec
 from viewer.state.comparison import CompareMode
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -31,7 +32,7 @@ class Desk:
         self.now = 100.0
         monkeypatch.setattr(time, "monotonic", lambda: self.now)
         self.preferences, self.notices = Preferences(), Notices()
-        self.session = Session(settings=self.preferences.settings())
+        self.session = Session(state=codec.recalled({}))
         self.session.open(make_scene(lights=3))
         self.locked = False
         lock = lambda: self.locked  # noqa: E731
@@ -44,14 +45,14 @@ class Desk:
             self.read.append(meshes)
             self.reading = True
 
-        self.undo = Undo(self.session, self.preferences, self.motion, self.notices, lock, read_as, lambda: self.reading)
+        self.undo = Undo(self.session, self.motion, self.notices, lock, read_as, lambda: self.reading)
         self.frame()
 
     def frame(self, seconds: float = 0.02) -> None:
         """One of the window's frames."""
         self.now += seconds
-        self.motion.follow(None)
-        self.undo.follow()
+        self.motion.advance(None)
+        self.undo.note_changes()
 
     def rest(self) -> None:
         self.frame(IDLE_AFTER + GLIDE_SECONDS)
@@ -61,7 +62,7 @@ class Desk:
         """The mesh has been read so, and is seen from its first camera."""
         self.reading = False
         self.session.open(self.session.scene)
-        self.session.meshes = meshes
+        self.session.change(meshes=meshes)
         self.frame()
 
     @property
@@ -81,10 +82,10 @@ def test_each_change_is_a_step_with_a_name(desk: Desk):
     desk.frame()
     assert desk.undo.undoes == "view Depth" and desk.undo.redoes == ""
     desk.undo.undo()
-    assert desk.said == "undone: view Depth" and desk.session.view is View.COLOR
-    assert desk.session.settings.method == "certified" and desk.preferences.view == "color"
+    assert desk.said == "undone: view Depth" and desk.session.draw.view is View.COLOR
+    assert desk.session.settings.method == "certified"
     desk.undo.undo()
-    assert desk.session.settings.method == desk.preferences.method == "paper" and desk.undo.undoes == ""
+    assert desk.session.settings.method == "paper" and desk.undo.undoes == ""
     desk.undo.redo()
     assert desk.said == "redone: method certified" and desk.session.settings.method == "certified"
     assert desk.undo.redoes == "view Depth"
@@ -124,9 +125,9 @@ def test_a_flight_is_one_step_and_glides_back(desk: Desk):
         desk.frame(0.1)
     far = desk.session.camera
     desk.rest()
-    assert desk.undo.undoes == "camera" and desk.session.free_camera == far
+    assert desk.undo.undoes == "camera" and desk.session.state.camera == far
     desk.undo.undo()
-    assert desk.session.follow and desk.session.camera == home and desk.undo.undoes == ""
+    assert desk.session.on_path and desk.session.camera == home and desk.undo.undoes == ""
     desk.undo.redo()
     desk.frame(0.5 * GLIDE_SECONDS)
     assert desk.session.camera not in (home, far)
@@ -151,13 +152,13 @@ def test_a_view_chosen_in_flight_is_a_step_of_its_own(desk: Desk):
 def test_a_step_is_undone_while_it_goes_on(desk: Desk):
     desk.motion.move(AWAY)
     desk.undo.undo()
-    assert desk.session.follow and desk.undo.redoes == "camera"
+    assert desk.session.on_path and desk.undo.redoes == "camera"
 
 
 def test_time_is_no_step_and_stays(desk: Desk):
     desk.settings.set_light(1)
     desk.frame()
-    desk.session.time = 5.0
+    desk.session.change(time=5.0)
     desk.frame()
     assert desk.undo.undoes == "light 1"
     desk.undo.undo()
@@ -165,7 +166,7 @@ def test_time_is_no_step_and_stays(desk: Desk):
 
 
 def test_what_is_named_is_one_step_with_that_name(desk: Desk):
-    desk.undo.call_next("preset mine")
+    desk.undo.begin_step("preset mine")
     desk.settings.change(method="certified", depth=2)
     desk.settings.set_view(View.DEPTH)
     desk.frame()
@@ -175,7 +176,7 @@ def test_what_is_named_is_one_step_with_that_name(desk: Desk):
 
 
 def test_a_name_for_nothing_names_nothing_else(desk: Desk):
-    desk.undo.call_next("preset mine")
+    desk.undo.begin_step("preset mine")
     desk.frame()
     desk.settings.change(depth=2)
     desk.frame()
@@ -201,7 +202,7 @@ def test_how_a_mesh_is_read_comes_back_with_what_was_seen_of_it(desk: Desk):
     desk.arrive(IN_STUDIO)
     desk.undo.clear()
     desk.frame()
-    desk.session.free_camera = AWAY
+    desk.session.change(camera=AWAY)
     desk.rest()
     for meshes, name in (
         (MeshOptions(True, "x"), "x up"),
@@ -209,7 +210,7 @@ def test_how_a_mesh_is_read_comes_back_with_what_was_seen_of_it(desk: Desk):
         (MeshOptions(False, "x", 20.0), "studio off"),
     ):
         desk.arrive(meshes)
-        assert desk.undo.undoes == name and desk.session.free_camera is None
+        assert desk.undo.undoes == name and desk.session.state.camera is None
     desk.undo.undo()
     desk.frame()
     desk.undo.undo()  # while it is being read: too early
@@ -222,11 +223,11 @@ def test_how_a_mesh_is_read_comes_back_with_what_was_seen_of_it(desk: Desk):
     desk.undo.undo()
     desk.arrive(IN_STUDIO)
     desk.rest()
-    assert desk.said == "undone: x up" and desk.session.free_camera == AWAY and desk.undo.undoes == "camera"
+    assert desk.said == "undone: x up" and desk.session.state.camera == AWAY and desk.undo.undoes == "camera"
     desk.undo.redo()
     desk.arrive(MeshOptions(True, "x"))
     desk.rest()
-    assert desk.said == "redone: x up" and desk.session.free_camera is None
+    assert desk.said == "redone: x up" and desk.session.state.camera is None
 
 
 def test_a_mesh_that_could_not_be_read_again_leaves_the_steps_as_they_were(desk: Desk):
@@ -240,10 +241,10 @@ def test_a_mesh_that_could_not_be_read_again_leaves_the_steps_as_they_were(desk:
 
 
 def test_memory_is_bounded(desk: Desk):
-    for number in range(MOST + 20):
+    for number in range(MOST_STEPS + 20):
         desk.settings.change(depth=number % 50)
         desk.frame()
-    for _ in range(MOST):
+    for _ in range(MOST_STEPS):
         assert desk.undo.undoes
         desk.undo.undo()
     assert desk.undo.undoes == ""
@@ -251,45 +252,44 @@ def test_memory_is_bounded(desk: Desk):
 
 def test_turns_of_the_wheel_are_one_step_and_a_rest_begins_another(desk: Desk):
     for scale in (2.0, 4.0, 8.0):
-        desk.session.zoom = Zoom(scale)
+        desk.session.set_draw(zoom=Zoom(scale))
         desk.frame(0.2)
     desk.frame(1.0)
-    desk.session.zoom = Zoom(16.0)
+    desk.session.set_draw(zoom=Zoom(16.0))
     desk.frame(1.0)
     assert desk.undo.undoes == "zoom to 16 x"
     desk.undo.undo()
-    assert desk.session.zoom == Zoom(8.0) and desk.undo.undoes == "zoom to 8 x"
+    assert desk.session.draw.zoom == Zoom(8.0) and desk.undo.undoes == "zoom to 8 x"
     desk.undo.undo()
-    assert desk.session.zoom.fits and desk.undo.undoes == ""
+    assert desk.session.draw.zoom.fits and desk.undo.undoes == ""
 
 
 def test_strokes_of_other_kinds_are_steps_of_their_own(desk: Desk):
-    desk.session.tone = Tone(0.5)
+    desk.session.set_draw(tone=Tone(0.5))
     desk.frame()
-    desk.session.zoom = Zoom(2.0)
+    desk.session.set_draw(zoom=Zoom(2.0))
     desk.frame()
     desk.undo.undo()
-    assert desk.session.zoom.fits and desk.session.tone == Tone(0.5) and desk.undo.undoes == "tone +0.5 EV"
+    assert (
+        desk.session.draw.zoom.fits and desk.session.draw.tone == Tone(0.5) and desk.undo.undoes == "exposure +0.5 EV"
+    )
     desk.undo.undo()
-    assert desk.session.tone.neutral
+    assert desk.session.draw.tone.neutral
     desk.undo.redo()
-    assert desk.session.tone == Tone(0.5)
+    assert desk.session.draw.tone == Tone(0.5)
 
 
 def test_ranges_and_stripes_come_back(desk: Desk):
-    desk.session.spans[View.DEPTH] = (1.0, 2.0)
+    desk.session.change(draw=desk.session.draw.with_span((1.0, 2.0), View.DEPTH))
     desk.frame()
-    desk.session.clipping = True
+    desk.session.set_draw(clipping=True)
     desk.frame()
-    assert desk.undo.undoes == "marks of clipped pixels on"
+    assert desk.undo.undoes == "mark clipped pixels on"
     desk.undo.undo()
     desk.undo.undo()
-    assert not desk.session.spans and not desk.session.clipping
+    assert not desk.session.draw.spans and not desk.session.draw.clipping
     desk.undo.redo()
-    desk.session.spans.clear()
-    desk.frame()
-    desk.undo.undo()
-    assert desk.session.spans == {View.DEPTH: (1.0, 2.0)}, "what is kept is no reference to what holds now"
+    assert desk.session.draw.spans == ((View.DEPTH, (1.0, 2.0)),) and desk.undo.undoes == "range changed"
 
 
 def test_a_comparison_is_a_step_but_what_is_kept_stays(desk: Desk):

@@ -14,8 +14,8 @@ from tracer.experiments import experiment
 from tracer.scene.model import Camera
 from viewer.services.controller import Controller
 from viewer.services.render_request import RenderRequest, Traced
+from viewer.state import codec
 from viewer.state.preferences import Preferences
-from viewer.state.session import Snapshot
 from viewer.state.views import View
 from viewer.window.app import advance
 
@@ -43,7 +43,7 @@ class Desk:
 
 @pytest.fixture
 def desk():
-    controller = Controller(Preferences(dynamic_resolution=False, samples=1))
+    controller = Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}}))
     yield Desk(controller)
     assert controller.close()
 
@@ -85,7 +85,7 @@ def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(des
         desk.c.settings.set_view(other)
         assert not desk.c.scheduler.outdated
         assert desk.rest() == []
-    assert not desk.c.session.settings.verify and not desk.c.preferences.verify
+    assert not desk.c.session.settings.verify
 
 
 def test_only_frames_of_such_a_view_are_verified(desk: Desk):
@@ -143,7 +143,7 @@ def test_what_a_run_cut_short_is_traced_after_it_though_it_showed_no_frame(desk:
 def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: Desk, tmp_path):
     own = desk.c.session.scene.camera
     elsewhere = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
-    assert desk.c.session.follow and desk.c.session.frame == 0
+    assert desk.c.session.on_path and desk.c.session.frame == 0
     desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "{frame:04d}.png"
     for camera, follow in ((elsewhere, False), (own, True)):
         frame = make_frame(time=7.0, camera=camera)
@@ -153,16 +153,16 @@ def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: 
         assert desk.c.captures.saving.pop().join(10.0)
         with Image.open(tmp_path / name) as image:
             kept = json.loads(image.text["shadowcull"])
-        snapshot = Snapshot.from_json(kept["state"])
-        assert (kept["frame"], snapshot.time, snapshot.follow) == (7, 7.0, follow)
-        desk.c.restore(snapshot)
+        state = codec.picture_from_json(kept)
+        assert (kept["frame"], state.time, state.camera is None) == (7, 7.0, follow)
+        desk.c.restore(state)
         assert (desk.c.session.camera, desk.c.session.frame) == (camera, 7)
         desk.c.motion.reset_camera()
 
 
 def test_a_capture_keeps_the_users_setting_and_the_line(desk: Desk, tmp_path):
     desk.c.settings.set_view(View.WIPE)
-    desk.c.session.wipe = 0.25
+    desk.c.session.set_draw(wipe=0.25)
     desk.rest()
     desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "wipe.png"
     desk.c.captures.capture(desk.c.frame, np.zeros((8, 16, 3), np.uint8))
@@ -170,5 +170,5 @@ def test_a_capture_keeps_the_users_setting_and_the_line(desk: Desk, tmp_path):
     with Image.open(tmp_path / "wipe.png") as image:
         kept = json.loads(image.text["shadowcull"])
     assert kept["statistics"]["shadow"]["wrong"] == 3
-    snapshot = Snapshot.from_json(kept["state"])
-    assert (snapshot.view, snapshot.wipe, snapshot.settings["verify"]) == (View.WIPE, 0.25, False)
+    state = codec.picture_from_json(kept)
+    assert (state.draw.view, state.draw.wipe, state.settings.verify) == (View.WIPE, 0.25, False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tracer.experiments.experiment import with_reference
 from tracer.method import DEFAULT_METHOD, Method, additions, bases, in_order
 from tracer.settings import Settings
+from viewer.state import codec
 from viewer.state.methods import (
     ADAPTIVE,
     BY_MODES,
@@ -17,7 +18,6 @@ from viewer.state.methods import (
     toggled,
     with_base,
 )
-from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
 
@@ -30,7 +30,7 @@ def test_methods_that_are_chosen_by_name_can_do_what_they_are_chosen_for():
 
 
 def test_one_method_is_the_default_everywhere_that_has_something_to_show():
-    assert DEFAULT_METHOD == Settings().method == Session().settings.method == Preferences().settings().method
+    assert DEFAULT_METHOD == Settings().method == Session().settings.method == codec.recalled({}).settings.method
     assert Method.parse(DEFAULT_METHOD).uses_modes and Method.parse(DEFAULT_METHOD).culls
     assert {view: default_for(view) for view in View if default_for(view) != DEFAULT_METHOD} == SHOWN_BY
 

@@ -12,7 +12,7 @@ from tracer.frame import Settings
 from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.scene.model import Camera
 from viewer.state.history import FrameRecord, FrameRecords
-from viewer.state.views import View
+from viewer.state.view_state import ViewState
 
 UNITS = 600
 
@@ -71,14 +71,14 @@ def test_frames_are_kept_by_their_numbers() -> None:
     records, camera = FrameRecords(5), Camera((0, 0, 0), (0, 0, 1))
 
     def put(number: int, time: float = 0.0) -> None:
-        records.put(FrameRecord(number, time, camera, True, Settings(), {}, View.COLOR, 0, 0.5, (8, 8), True))
+        records.put(FrameRecord(number, ViewState(time=time), camera, Settings(), (8, 8), True))
 
     for number in range(8):
         put(number)
     assert records.get(2) is None and records.get(8) is None
     assert [records.get(number).number for number in range(3, 8)] == [3, 4, 5, 6, 7]
     put(7, 1.5)
-    assert records.get(7).time == 1.5 and records.get(3).number == 3
+    assert records.get(7).state.time == 1.5 and records.get(3).number == 3
     put(9)
     assert records.get(9).number == 9 and records.get(8) is None and records.get(7).number == 7
     put(0)

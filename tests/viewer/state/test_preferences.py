@@ -4,30 +4,39 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
-from tracer.frame import Settings
+from viewer.state import codec
 from viewer.state import preferences as prefs
-from viewer.state.preferences import Preferences, load_preferences, save_preferences
+from viewer.state.preferences import Bookmark, Preferences, Preset, load_preferences, save_preferences
+from viewer.state.tone import Tone
+from viewer.state.view_state import ViewState
+from viewer.state.views import View
 
 
 def test_what_was_saved_is_read(tmp_path: Path):
-    mine = Preferences(target_fps=30.0, fixed_resolution=True, fixed_width=300, view="depth", recent=["/a.aff"])
-    mine.bookmarks["/a.aff"] = [{"name": "here", "state": {}}]
+    mine = Preferences(
+        state={"pace": {"target_fps": 30.0}, "draw": {"view": "depth"}}, recent=["/a.aff"], theme="light"
+    )
+    mine.bookmarks["/a.aff"] = [Bookmark("here", {"time": 1.0})]
+    mine.presets = [Preset("mine", {"settings": {"depth": 3}})]
     assert save_preferences(mine, tmp_path) is None
     assert load_preferences(tmp_path) == (mine, None)
 
 
-def test_the_method_to_cull_by_is_kept_while_culling_is_off(tmp_path: Path):
-    mine = Preferences()
-    mine.keep(Settings(method="certified+cache"))
-    mine.keep(Settings(method="none"))
-    save_preferences(mine, tmp_path)
-    read, _ = load_preferences(tmp_path)
-    assert (read.culling, read.method, read.settings().method) == (False, "certified+cache", "none")
+def test_what_a_window_starts_with_is_what_the_last_one_remembered():
+    state = ViewState.in_window().with_settings(depth=3, threads=2, lamp_samples=64, lamp_radius=0.5)
+    state = state.with_draw(outlines=True, light=2, tone=Tone(1.0))
+    found = codec.recalled(json.loads(json.dumps(codec.remembered(state))))
+    assert (found.settings.depth, found.settings.threads, found.settings.lamp_samples) == (3, 2, 64)
+    assert found.settings.lamp_radius is None, "it is in another scene's units"
+    assert found.draw.outlines and found.draw.light == 0 and found.draw.tone.neutral
+    odd = {"settings": {"depth": -1, "zoom_factor": 9.0}, "draw": {"view": 7, "outlines": True}, "pace": []}
+    found = codec.recalled(odd)
+    assert (found.settings.depth, found.settings.zoom_factor) == (10, 9.0)
+    assert found.draw.view is View.COLOR and found.draw.outlines and found.pace == ViewState.in_window().pace
 
 
 @pytest.mark.parametrize(
@@ -44,21 +53,31 @@ def test_the_default_method_of_version_0_2_was_not_chosen(tmp_path: Path, stored
     """That version has written `auto` whether anybody chose it or not; since then, what is stored was chosen."""
     (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(stored))
     read, problem = load_preferences(tmp_path)
-    assert (read.method, problem) == (found, None)
-    save_preferences(read, tmp_path, base=asdict(read))
+    assert (read.method, codec.recalled(read.state).settings.method, problem) == (found, found, None)
+    save_preferences(read, tmp_path, base=codec.to_json(read))
     assert load_preferences(tmp_path)[0].method == found, "nor is it when two windows' changes are put together"
-    read.keep(Settings(method="auto"))
-    save_preferences(read, tmp_path, base=asdict(load_preferences(tmp_path)[0]))
-    assert load_preferences(tmp_path)[0].method == "auto"
 
 
-def test_samples_of_lamps_are_kept(tmp_path: Path):
-    for samples in (64, None):
-        mine = Preferences()
-        mine.keep(Settings(lamp_samples=samples, lamp_radius=0.5))
-        save_preferences(mine, tmp_path)
-        read, _ = load_preferences(tmp_path)
-        assert (read.settings().lamp_samples, read.settings().lamp_radius) == (samples, None), "another scene's units"
+def test_formats_1_and_2_are_read(tmp_path: Path):
+    old = {
+        "format": 2, "method": "certified", "culling": False, "depth": 4, "outlines": True, "legend_x": 0.25,
+        "legend_y": 0.5, "work_shares": True, "fixed_resolution": True, "fixed_width": 300, "lamp_samples": 16,
+        "keep_tracing": True, "view": "depth", "theme": "light",
+        "presets": [{"name": "mine", "choices": {
+            "settings": {"depth": 2}, "view": "normal", "light": 1, "wipe": 0.5, "looks": {"every_frame": True}}}],
+        "bookmarks": {"/a.aff": [{"name": "here", "state": {"time": 1.0}}]},
+    }  # fmt: skip
+    (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(old))
+    read, problem = load_preferences(tmp_path)
+    state = codec.recalled(read.state)
+    assert problem is None and (read.method, read.theme, read.format) == ("certified", "light", prefs.FORMAT)
+    assert (state.settings.method, state.settings.depth, state.settings.lamp_samples) == ("none", 4, 16)
+    assert (state.draw.outlines, state.draw.legend_at, state.draw.shares) == (True, (0.25, 0.5), True)
+    assert (state.pace.fixed_size, state.pace.width, state.pace.keep_tracing) == (True, 300, True)
+    (preset,) = read.presets
+    draw = {"view": "normal", "light": 1, "wipe": 0.5}
+    assert preset == Preset("mine", {"settings": {"depth": 2}, "draw": draw, "pace": {"every_frame": True}})
+    assert read.bookmarks == {"/a.aff": [Bookmark("here", {"time": 1.0})]}
 
 
 def test_without_a_file_there_are_defaults(tmp_path: Path):
@@ -66,12 +85,12 @@ def test_without_a_file_there_are_defaults(tmp_path: Path):
 
 
 def test_odd_values_keep_their_defaults_and_the_rest_is_read(tmp_path: Path):
-    odd = {"target_fps": 1e9, "loop": "yes", "fixed_width": True, "depth": 3, "unknown": 1, "recent": [1, "/b"],
-           "bookmarks": [], "speed": 2, "view": 7, "method": "telepathy"}  # fmt: skip
+    odd = {"loop": "yes", "theme": "pink", "unknown": 1, "recent": [1, "/b"], "presets": [{"name": 3}, 5],
+           "bookmarks": [], "speed": 2, "ui_scale": 1e9, "method": "telepathy", "format": 3}  # fmt: skip
     (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(odd))
     read, problem = load_preferences(tmp_path)
     assert problem is None
-    assert read == Preferences(depth=3, recent=["/b"], speed=2.0, tour=False), "who has settings has used the program"
+    assert read == Preferences(recent=["/b"], speed=2.0, tour=False), "who has settings has used the program"
 
 
 @pytest.mark.parametrize("content", [b"{", b"[1]", b"\x00\xff", b""])
@@ -85,16 +104,16 @@ def test_a_damaged_file_is_kept_aside_and_told_of(tmp_path: Path, content: bytes
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    save_preferences(Preferences(depth=5), tmp_path)
+    save_preferences(Preferences(speed=5.0), tmp_path)
 
     def full(*_args):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "replace", full)
-    problem = save_preferences(Preferences(depth=9), tmp_path)
+    problem = save_preferences(Preferences(speed=9.0), tmp_path)
     assert problem is not None and "No space left" in problem
     monkeypatch.undo()
-    assert load_preferences(tmp_path)[0].depth == 5
+    assert load_preferences(tmp_path)[0].speed == 5.0
     assert [p.name for p in tmp_path.iterdir() if p.suffix != ".lock"] == [prefs.SETTINGS_FILE]
 
 

@@ -82,7 +82,7 @@ def test_no_panel_opens_by_itself_where_it_would_cover_the_picture(ui):
 def test_views_are_chosen_and_ticked(ui):
     by_name = {c.name: c for c in ui.commands}
     by_name[View.SHADOW.label].run()
-    assert ui.controller.session.view is View.SHADOW
+    assert ui.controller.session.draw.view is View.SHADOW
     assert by_name[View.SHADOW.label].checked() and not by_name[View.COLOR.label].checked()
     assert by_name[View.SHADOW.label].key == "3"
 
@@ -91,15 +91,14 @@ def test_culling_is_switched(ui):
     culling = next(c for c in ui.commands if c.name == "Shadow culling")
     assert culling.checked()
     culling.run()
-    assert ui.controller.session.settings.method == "none" and not ui.controller.preferences.culling
+    assert ui.controller.session.settings.method == "none"
     culling.run()
     assert ui.controller.session.settings.method == DEFAULT_METHOD
     ui.controller.settings.change(method="cells+cache")
     culling.run()
     assert ui.controller.session.settings.method == "none"
-    assert ui.controller.preferences.settings().method == "none"
     culling.run()
-    assert ui.controller.session.settings.method == "cells+cache" == ui.controller.preferences.settings().method
+    assert ui.controller.session.settings.method == "cells+cache"
 
 
 def test_the_keys_of_views_are_those_of_their_commands(ui):

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 from tests.viewer.fakes import make_frame
 from tracer.frame import Settings
+from viewer.state.draw_options import DrawOptions
 from viewer.state.views import View
 from viewer.window.panels.culling import trust, wrong_answers
 from viewer.window.widgets import ERROR
@@ -15,7 +16,7 @@ def test_wrong_answers_are_those_of_the_method_that_is_shown():
     settings = Settings(16, 8, method="paper", verify=True)
     c = SimpleNamespace(
         frame=make_frame(settings), scheduler=SimpleNamespace(settings=settings), runs=SimpleNamespace(current=None),
-        session=SimpleNamespace(settings=settings, view=View.DIFFERENCE),
+        session=SimpleNamespace(settings=settings, draw=DrawOptions(View.DIFFERENCE)),
     )  # fmt: skip
     text, color = wrong_answers(c)
     assert text.startswith("3 wrong answers (") and color == ERROR

@@ -66,7 +66,7 @@ def _idle(**changes: object) -> SimpleNamespace:
     c = SimpleNamespace(
         loader=SimpleNamespace(warm_up_job=None, load_job=None, method_job=None, compiles=False),
         frame=None, runs=SimpleNamespace(current=None), scheduler=tracing, renderer=SimpleNamespace(busy=False),
-        motion=SimpleNamespace(under_way=False, lively=False),
+        motion=SimpleNamespace(under_way=False, is_animating=False),
         session=SimpleNamespace(scene=object(), playing=False, settings=SimpleNamespace(method="lie", samples=1)),
         selection=SimpleNamespace(picked=None, pixel=None), inspector=SimpleNamespace(problem=""),
     )  # fmt: skip
@@ -91,7 +91,7 @@ def test_what_was_asked_says_what_it_waits_for() -> None:
         ({"adds_samples": True}, "answered after this sample"),
         ({"refines_lamps": True}, "answered after the samples of lamps"),
         ({"renderer": SimpleNamespace(busy=True)}, "answered after this picture"),
-        ({"motion": SimpleNamespace(lively=True)}, "answered when nothing moves"),
+        ({"motion": SimpleNamespace(is_animating=True)}, "answered when nothing moves"),
     ):
         assert unanswered(SimpleNamespace(controller=_idle(**changes))) == said
 

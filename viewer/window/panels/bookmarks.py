@@ -8,6 +8,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.output.thumbnail import from_text
+from viewer.state.preferences import Bookmark
 from viewer.window.camera_commands import KEYED_BOOKMARKS
 from viewer.window.panels.names import NameField, begin_edit, edit_name
 from viewer.window.ui import Ui
@@ -59,7 +60,7 @@ def _line(ui: Ui, index: int) -> bool:
     """One bookmark; returns whether the list has changed."""
     c = ui.controller
     mark = c.bookmarks.all[index]
-    name, height = str(mark.get("name", "?")), em(_HEIGHT)
+    name, height = mark.name, em(_HEIGHT)
     corner, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
     buttons = em(4.2)
     clicked = imgui.selectable("##go", False, 0, ImVec2(room - buttons, height))[0]
@@ -95,10 +96,10 @@ def _line(ui: Ui, index: int) -> bool:
     return changed
 
 
-def _picture(ui: Ui, mark: dict, corner: ImVec2, height: float) -> float:
+def _picture(ui: Ui, mark: Bookmark, corner: ImVec2, height: float) -> float:
     """The small picture, or an empty place; returns its width."""
     room, draw = 1.6 * height, imgui.get_window_draw_list()
-    text = mark.get("picture")
+    text = mark.picture
     picture = ui.cached(f"picture of {id(mark)}", mark, text, lambda: from_text(text))
     texture = (
         ui.graphics.shots.texture_id(picture, True) if picture is not None and ui.graphics.shots is not None else None
@@ -119,7 +120,7 @@ def _reorder(ui: Ui, index: int) -> bool:
     """Dragging the line onto another; returns whether that has happened."""
     if imgui.begin_drag_drop_source():
         imgui.set_drag_drop_payload_py_id(_DRAGGED, index)
-        imgui.text_unformatted(str(ui.controller.bookmarks.all[index].get("name", "?")))
+        imgui.text_unformatted(ui.controller.bookmarks.all[index].name)
         imgui.end_drag_drop_source()
     moved = False
     if imgui.begin_drag_drop_target():
@@ -135,7 +136,7 @@ def _more(ui: Ui, index: int) -> bool:
     """The menu of a bookmark; returns whether the list has changed."""
     marks, last = ui.controller.bookmarks, len(ui.controller.bookmarks.all) - 1
     if imgui.menu_item("Rename", "", False)[0]:
-        begin_edit(ui, (LIST, index), str(marks.all[index].get("name", "?")))
+        begin_edit(ui, (LIST, index), marks.all[index].name)
     if imgui.menu_item("Let it be this place", "", False)[0]:
         marks.replace(index)
     for label, to, possible in (("Move up", index - 1, index > 0), ("Move down", index + 1, index < last)):

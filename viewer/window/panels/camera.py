@@ -10,6 +10,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.state import navigation
 from viewer.window.camera_commands import focus
 from viewer.window.panels import bookmarks
+from viewer.window.setting_rows import ALL, setting_row, setting_switch
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
@@ -77,9 +78,7 @@ def _moving(ui: Ui) -> None:
             if imgui.radio_button("Orbit", p.navigation == "orbit"):
                 p.navigation = "orbit"
             tooltip(f"drag to turn around the point that was clicked{ui.key('Orbit')}")
-            row("Speed", "1 crosses the scene in about eight seconds")
-            flags = int(imgui.SliderFlags_.logarithmic)
-            _, p.speed = imgui.slider_float("##speed", p.speed, 0.01, 20.0, "%.2f", flags)
+            setting_row(ui, ALL["speed"])
 
 
 def _path(ui: Ui) -> None:
@@ -91,17 +90,15 @@ def _path(ui: Ui) -> None:
         return
     checkbox(
         "Follow the scene's path",
-        c.session.follow,
+        c.session.on_path,
         c.motion.follow_path,
         "until the camera is moved by hand" + ui.key("Follow the scene's path"),
     )
     checkbox("Loop", p.loop, lambda on: setattr(p, "loop", on))
-    same_line_for("Every frame")
-    tip = "play every frame of the animation, each traced in full, however long it takes; otherwise play in real time"
-    checkbox("Every frame", p.every_frame, lambda on: setattr(p, "every_frame", on), tip)
-    if not p.every_frame:
+    every_frame = ALL["pace.every_frame"]
+    same_line_for(every_frame.label)
+    setting_switch(ui, every_frame)
+    if not c.session.pace.every_frame:
         with properties("rate", 5.0) as shown:
             if shown:
-                row("Rate", "1 is the scene's own time")
-                flags = int(imgui.SliderFlags_.logarithmic)
-                _, p.playback_rate = imgui.slider_float("##rate", p.playback_rate, 0.1, 10.0, "%.2f x", flags)
+                setting_row(ui, ALL["playback_rate"])

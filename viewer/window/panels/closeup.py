@@ -63,8 +63,8 @@ def drag(ui: Ui, area: Area) -> bool:
     if not state.gesture or not (imgui.is_item_active() or released):
         return False
     if state.gesture == "pan":
-        s = ui.controller.session
-        s.zoom = panned(s.zoom, io.mouse_delta.x / area.size.x, io.mouse_delta.y / area.size.y)
+        session, by = ui.controller.session, io.mouse_delta
+        session.set_draw(zoom=panned(session.draw.zoom, by.x / area.size.x, by.y / area.size.y))
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
     else:
         start, here = state.gesture_at, area.to_picture(io.mouse_pos.x, io.mouse_pos.y)

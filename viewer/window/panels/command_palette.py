@@ -12,7 +12,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state.preferences import RECENT_COMMANDS
 from viewer.util.resources import embedded_scenes
-from viewer.window import setting_entries
+from viewer.window import setting_rows
 from viewer.window.command import Command
 from viewer.window.finder import Finder, Item, Kind
 from viewer.window.menus import ANY_POPUP
@@ -175,7 +175,7 @@ def _row(item: Item, marked: bool, height: float) -> bool:
 
 def items(ui: Ui) -> list[Item]:
     """Everything, as it is now; commands first, in the order of the menus."""
-    return [*_commands(ui), *setting_entries.items(ui), *_presets(ui), *_panels(ui), *_bookmarks(ui), *_scenes(ui)]
+    return [*_commands(ui), *setting_rows.entries(ui), *_presets(ui), *_panels(ui), *_bookmarks(ui), *_scenes(ui)]
 
 
 def _commands(ui: Ui) -> Iterator[Item]:
@@ -218,7 +218,7 @@ def _bookmarks(ui: Ui) -> Iterator[Item]:
     for number, mark in enumerate(c.bookmarks.all):
         yield Item(
             f"bookmark {number}",
-            str(mark.get("name", "?")),
+            mark.name,
             Kind.BOOKMARK,
             partial(c.go_to_bookmark, number),
             "go there",

@@ -130,9 +130,9 @@ def _limit(ui: Ui) -> None:
 
 def _rings(ui: Ui) -> None:
     """Whether the signed difference marks where it is largest."""
-    p = ui.controller.preferences
+    session = ui.controller.session
     row("Rings", f"around the pixels that differ most{ui.key('Mark wrong pixels')}")
-    checkbox("##rings", p.mark_wrong, lambda on: setattr(p, "mark_wrong", on))
+    checkbox("##rings", session.draw.mark_wrong, lambda on: session.set_draw(mark_wrong=on))
 
 
 def _kept(ui: Ui) -> None:

@@ -9,16 +9,15 @@ from imgui_bundle import ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.method import Method
-from tracer.settings import MAX_NODES
+from tracer.setting import Setting
 from viewer.services.controller import Controller
-from viewer.state import terms, verified
-from viewer.state.preferences import MOST_CERTIFYING
+from viewer.state import verified
 from viewer.window.panels.method_choice import method_list
+from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
     QUIET,
-    checkbox,
     paragraph,
     properties,
     row,
@@ -28,87 +27,49 @@ from viewer.window.widgets import (
 
 _PALE = 0.55
 """How much is left of what does nothing to the pictures of the chosen method."""
+_OF_MODES = ("settings.symmetric", "settings.zoom_factor")
 
 
 def show(ui: Ui) -> None:
-    """The panel."""
+    """Show the panel."""
     c = ui.controller
-    s, p = c.session.settings, c.preferences
+    method = Method.parse(c.session.settings.method)
     _method(ui)
     paragraph(trust(c), QUIET)
-    clusters = Method.parse(s.method).clusters
-    if not clusters:  # which keep no modes
-        tip = "test two neighbouring pixels both ways: each one's ray against the other's primitive"
-        tip += ui.key("Symmetric occlusion test")
-        with _of_modes(s.method) as besides:
-            checkbox("Symmetric occlusion test", s.symmetric, lambda on: c.settings.change(symmetric=on), tip + besides)
-        same_line_for("Verify")
-    tip = f"trace every culled shadow ray as well, and count wrong answers{ui.key('Verify')}"
-    checkbox("Verify", s.verify, lambda on: c.settings.change(verify=on), tip)
-    with properties("culling", 8.2 if Method.parse(s.method).has_certificates else 6.5) as shown:
-        if shown and not clusters:
-            with _of_modes(s.method) as besides:
-                tip = "a primitive that covers this many times its highest pixel count is examined again"
-                row("Zoom factor", tip + besides)
-                flags = int(imgui.SliderFlags_.logarithmic)
-                changed, factor = imgui.slider_float("##zoom", s.zoom_factor, 1.0, 64.0, "%.1f", flags)
-            if changed:
-                c.settings.change(zoom_factor=factor)
-        if shown and clusters:
-            row(
-                "Error of clusters",
-                "the part of a point's light that a cluster of lights may be wrong by; 0: no clusters",
-            )
-            flags = int(imgui.SliderFlags_.logarithmic)
-            changed, error = imgui.slider_float("##cuts", 100.0 * s.lightcuts_error, 0.0, 100.0, "%.2f %%", flags)
-            if changed:
-                c.settings.change(lightcuts_error=max(error, 0.0) / 100.0)
-            row("Clusters at most", "of lights, for a point: as many as this where the error would ask for more")
-            changed, most = imgui.slider_int("##nodes", s.lightcuts_nodes, 1, MAX_NODES, "%d", flags)
-            if changed:
-                c.settings.change(lightcuts_nodes=min(max(most, 1), MAX_NODES))
-        if shown and Method.parse(s.method).has_certificates:
-            made = terms.things(terms.made(s.method)[0])
-            row(
-                "Certificate budget",
-                f"the share of each frame's time for {made} while anything moves; when idle they get more",
-            )
-            share = 100.0 * p.certificate_share
-            changed, share = imgui.slider_float("##share", share, 1.0, 100.0 * MOST_CERTIFYING, "%.0f %%")
-            if changed:
-                p.certificate_share = min(max(share / 100.0, 0.0), MOST_CERTIFYING)
-    if wide_button(
-        f"{icons.ICON_FA_ERASER}  Reset modes", f"forget all modes and certificates{ui.key('Reset modes')}", 2
-    ):
+
+    def note(one: Setting) -> str:
+        if one.path in _OF_MODES and not method.uses_modes:
+            return f"\n{c.session.settings.method} does not cull by modes: it changes those kept for the views alone."
+        return ""
+
+    settings = in_panel(ui, "Culling")
+    for place, one in enumerate(one for one in settings if one.kind is bool and one.within == ("settings",)):
+        if place:
+            same_line_for(one.label)
+        with _pale_if(bool(note(one))):
+            setting_switch(ui, one, note(one))
+    with properties("culling", 8.2 if method.has_certificates else 6.5) as shown:
+        for one in settings if shown else ():
+            if one.kind is not bool:
+                with _pale_if(bool(note(one))):
+                    setting_row(ui, one, note(one))
+    forget = f"Forget all modes and certificates{ui.key('Reset modes')}."
+    if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", forget, 2):
         c.reset_modes()
     imgui.same_line()
-    if wide_button(
-        f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again",
-        f"trace the same frame once more, with what is known after the last one{ui.key('Trace again')}",
-    ):
+    again = f"Trace the same frame once more, with what is known after the last one{ui.key('Trace again')}."
+    if wide_button(f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again", again):
         c.scheduler.trace_again()
-
-    def keep(on: bool) -> None:
-        p.keep_tracing = on
-        c.scheduler.trace_again()
-
-    checkbox(
-        "Keep tracing when idle",
-        p.keep_tracing,
-        keep,
-        f"trace frame after frame, to watch how modes are set and certificates made{ui.key('Keep tracing when idle')}",
-    )
+    setting_switch(ui, ALL["pace.keep_tracing"])
     said = wrong_answers(c)
     if said is not None:  # at the end, where it moves nothing
         paragraph(*said)
 
 
 @contextmanager
-def _of_modes(method: str) -> Iterator[str]:
-    """What concerns modes alone: pale where the method does not cull by them; yields what its tip says of that."""
-    culls_by_them = Method.parse(method).uses_modes
-    imgui.push_style_var(imgui.StyleVar_.alpha, imgui.get_style().alpha * (1.0 if culls_by_them else _PALE))
-    yield "" if culls_by_them else f"\n{method} does not cull by modes: it changes those kept for the views alone"
+def _pale_if(pale: bool) -> Iterator[None]:
+    imgui.push_style_var(imgui.StyleVar_.alpha, imgui.get_style().alpha * (_PALE if pale else 1.0))
+    yield
     imgui.pop_style_var()
 
 
@@ -144,4 +105,4 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
     said, color = verified.in_words(c.frame.statistics), ERROR if verified.is_wrong(c.frame.statistics) else QUIET
     if not c.scheduler.settings.verify or c.session.settings.verify:
         return said, color
-    return f"{said} (verified for the view {c.session.view.label})", color
+    return f"{said} (verified for the view {c.session.draw.view.label})", color

@@ -29,7 +29,7 @@ def show_step(ui: Ui, test: ZoomTest, factor: float, number: int) -> None:
 def _live(ui: Ui) -> object:
     """What the user does with the traced picture: once that is something else, it is what they want to see."""
     s = ui.controller.session
-    return s.scene, s.camera, s.time, s.view, s.light, s.playing
+    return s.scene, s.camera, s.time, s.draw.view, s.draw.light, s.playing
 
 
 def strip(ui: Ui, test: ZoomTest, approach: Approach, name: str, size: ImVec2) -> None:

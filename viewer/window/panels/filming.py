@@ -106,7 +106,7 @@ def _tell(ui: Ui, films: FilmController) -> None:
         return
     if films.count:
         seconds = films.count / films.plan.fps
-        method, view = c.session.settings.method, c.session.view.label
+        method, view = c.session.settings.method, c.session.draw.view.label
         paragraph(f"{films.count} frames, {duration(seconds)}; method {method}, view {view}", QUIET)
     elif films.plan.through_bookmarks:
         text = f"A flight needs two bookmarks at least: add one where the camera is{ui.key('Add bookmark')}."

@@ -67,8 +67,8 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """Over the picture from `corner` to `end`: where it was put, and always inside."""
     state = ui.state(LegendState)
     state.shown, state.place = False, None
-    legend, p = of_picture(ui), ui.controller.preferences
-    if legend is None or not p.legend:
+    legend, options = of_picture(ui), ui.controller.session.draw
+    if legend is None or not options.legend:
         return
     width, height = end.x - corner.x, end.y - corner.y
     layout = fitting(legend, _width_of, imgui.get_text_line_height(), _MOST * width, _MOST * height)
@@ -79,7 +79,8 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     least = ImVec2(corner.x + margin, corner.y + margin + imgui.get_text_line_height() + em(0.7))  # below the title
     room = ImVec2(end.x - margin - layout.width - least.x, end.y - margin - layout.height - least.y)
     room = ImVec2(max(room.x, 1.0), max(room.y, 1.0))
-    at = ImVec2(round(least.x + p.legend_x * room.x), round(least.y + p.legend_y * room.y))
+    across, down = options.legend_at
+    at = ImVec2(round(least.x + across * room.x), round(least.y + down * room.y))
     imgui.set_cursor_screen_pos(at)
     imgui.invisible_button("legend", ImVec2(layout.width, layout.height))
     _drag(ui, at, least, room)
@@ -96,7 +97,7 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
 def _drag(ui: Ui, at: ImVec2, least: ImVec2, room: ImVec2) -> None:
     """Follow the pointer that holds it; let go near an edge, it lies at that edge."""
     state = ui.state(LegendState)
-    p, mouse = ui.controller.preferences, imgui.get_io().mouse_pos
+    mouse = imgui.get_io().mouse_pos
     if imgui.is_item_activated():
         state.held = mouse.x - at.x, mouse.y - at.y
     released = imgui.is_item_deactivated()
@@ -105,9 +106,10 @@ def _drag(ui: Ui, at: ImVec2, least: ImVec2, room: ImVec2) -> None:
     if not (imgui.is_item_active() or released):
         return
     left, top = mouse.x - state.held[0] - least.x, mouse.y - state.held[1] - least.y
-    p.legend_x, p.legend_y = (min(max(way / free, 0.0), 1.0) for way, free in ((left, room.x), (top, room.y)))
+    across, down = (min(max(way / free, 0.0), 1.0) for way, free in ((left, room.x), (top, room.y)))
     if released:
-        p.legend_x, p.legend_y = _caught(p.legend_x, room.x), _caught(p.legend_y, room.y)
+        across, down = _caught(across, room.x), _caught(down, room.y)
+    ui.controller.session.set_draw(legend_at=(across, down))
 
 
 def _caught(part: float, room: float) -> float:

@@ -89,7 +89,7 @@ def table(ui: Ui) -> None:
 
 def combo(ui: Ui) -> None:
     """The light that the view shows, to choose another."""
-    if imgui.begin_combo("##light", ui.light_name(ui.controller.session.light)):
+    if imgui.begin_combo("##light", ui.light_name(ui.controller.session.draw.light)):
         if imgui.is_window_appearing():
             ui.state(LightFilters).texts["combo"] = ""
         shown = found(ui, "combo")
@@ -158,7 +158,7 @@ def _rows(ui: Ui, numbers: Sequence[int], described: bool) -> bool:
             _color(index, light)
             imgui.same_line()
             clicked, _ = imgui.selectable(f"{ui.light_name(index)}{_remarks(index, light)}##{index}",
-                                          c.session.light == index)  # fmt: skip
+                                          c.session.draw.light == index)  # fmt: skip
             if described:
                 tooltip(description(light))
             if clicked:

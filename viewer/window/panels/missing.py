@@ -17,8 +17,8 @@ _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """A note in the middle of the picture, below its upper third."""
     c = ui.controller
-    frame, shares = c.frame, c.preferences.work_shares
-    found = missing(c.session.view, frame, shares, c.renderer.busy) if frame is not None else None
+    frame, shares = c.frame, c.session.draw.shares
+    found = missing(c.session.draw.view, frame, shares, c.renderer.busy) if frame is not None else None
     left, right = _free(ui, corner.x, end.x)
     room = right - left - em(2.0)
     if found is None or room < em(_LEAST):
@@ -57,5 +57,5 @@ def _free(ui: Ui, left: float, right: float) -> tuple[float, float]:
     """From where to where across the picture a note may lie: on the wider side of the wipe's line, where that is."""
     if ui.controller.scheduler.drawn_view is not View.WIPE:
         return left, right
-    line = left + ui.controller.session.wipe * (right - left)
+    line = left + ui.controller.session.draw.wipe * (right - left)
     return (left, line) if line - left > right - line else (line, right)

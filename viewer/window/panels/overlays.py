@@ -50,7 +50,7 @@ def show(ui: Ui, area: Area) -> None:
         picked, answer = c.selection.picked, c.inspector.answer
         if c.rays.visible:  # it shows the same rays, and more
             ray_overlay.draw(ui, made, frame, BESIDE_CLUSTERS if c.inspector.cut is not None else 1.0)
-        elif picked is not None and answer is not None and c.preferences.draw_explanation:
+        elif picked is not None and answer is not None and c.session.draw.rays:
             _shadow_rays(ui, made, frame, answer, pointed)
         _why(ui, made, frame)
         _occluded_selection(ui, made, frame)
@@ -108,7 +108,7 @@ def _why(ui: Ui, made: Pen, frame: Frame) -> None:
     state = ui.state(Pointed)
     link, state.link = state.link, None  # the panel says so in each frame
     found, in_place = c.inspector.why, c.inspector.names_pixels_of(frame)
-    if c.selection.picked is not None and c.preferences.draw_explanation and found is not None:
+    if c.selection.picked is not None and c.session.draw.rays and found is not None:
         by = None if found.coverage is None else found.coverage.occluded
         if by is not None and not by.at_edge and by.primitive >= 0:
             _outline(ui, made, frame, by.primitive, _HIDER, "occluder")

@@ -136,7 +136,7 @@ def _area(ui: Ui, name: str, left: float, top: float, size: ImVec2) -> Area:
     imgui.invisible_button(name, size, _ALL_BUTTONS)
     scale = imgui.get_io().display_framebuffer_scale
     ui.picture.size = max(1, round(size.x * scale.x)), max(1, round(size.y * scale.y))
-    return Area(corner, size, ui.controller.session.zoom)
+    return Area(corner, size, ui.controller.session.draw.zoom)
 
 
 @contextmanager
@@ -281,9 +281,9 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
         text += f"   {whole_percent(frame.statistics.part)} shaded"
     elif request.samples > 1:
         text += f"   {c.scheduler.samples_shown} of {request.samples} samples"
-    if not c.session.zoom.fits:
-        text += f"   {c.session.zoom.scale:.3g} x"
-    tone = c.session.tone.in_words()
+    if not c.session.draw.zoom.fits:
+        text += f"   {c.session.draw.zoom.scale:.3g} x"
+    tone = c.session.draw.tone.in_words()
     text += f"   {tone}" if tone and c.scheduler.drawn_view.shows_picture else ""
     counter = ""
     if c.scheduler.drawn_view.needs_verify and not ui.state(LegendState).shown:
@@ -293,7 +293,7 @@ def _overlay(ui: Ui, corner: ImVec2, end: ImVec2) -> float:
         return corner.y
     pad = em(0.35)
     lower = ImVec2(corner.x + size.x + 3.0 * pad, corner.y + size.y + 2.0 * pad)
-    opacity = 0.72 if c.session.zoom.fits else 0.94  # there may be numbers beneath
+    opacity = 0.72 if c.session.draw.zoom.fits else 0.94  # there may be numbers beneath
     colors = ((0.05, 0.06, 0.08, opacity), (0.93, 0.94, 0.96, 1.0))
     back, front = (imgui.get_color_u32(ImVec4(*color)) for color in colors)
     draw = imgui.get_window_draw_list()

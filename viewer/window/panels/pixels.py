@@ -49,11 +49,13 @@ def _watched(ui: Ui) -> None:
     tip = "numbers in the pixels, and a grid, where the picture is enlarged enough"
     checkbox("Values in pixels", p.pixel_values, lambda on: setattr(p, "pixel_values", on), tip)
     imgui.same_line(0.0, em(1.0))
-    if not c.session.zoom.fits:
+    if not c.session.draw.zoom.fits:
         if imgui.small_button("Fit"):
             picture_commands.fit(ui)
         imgui.same_line()
-    clipped("all of the picture" if c.session.zoom.fits else f"enlarged {c.session.zoom.scale:.3g} times", QUIET)
+    clipped(
+        "all of the picture" if c.session.draw.zoom.fits else f"enlarged {c.session.draw.zoom.scale:.3g} times", QUIET
+    )
     frame = c.frame
     if frame is None or not ui.pixels.watched:
         text = "Ctrl+wheel zooms into the picture, Ctrl+drag moves it. Watch the pixel under the pointer"
@@ -100,7 +102,7 @@ def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Sid
     clipped(" ".join(f"{channel:.{digits}f}" for channel in frame.color[y, x]))
     if c.scheduler.drawn_view not in (View.COLOR, View.WIPE):
         imgui.table_next_column()
-        clipped(_value(ui, frame, c.scheduler.drawn_view, c.session.light, x, y))
+        clipped(_value(ui, frame, c.scheduler.drawn_view, c.session.draw.light, x, y))
     if a is not None:
         imgui.table_next_column()
         there = pixel_at(a.frame, *point)
@@ -152,9 +154,10 @@ def _histogram(ui: Ui) -> None:
         if imgui.small_button("Use as the range of colours"):
             c.comparing.state.limit = max(-found.least[0], found.largest[0])
         tooltip("the colours go as far to both sides of 0 as the difference does here")
-    elif view.has_range and not (view.needs_work and c.preferences.work_shares):
+    elif view.has_range and not (view.needs_work and c.session.draw.shares):
         if imgui.small_button("Use as the range of colours"):
-            c.session.spans[view] = (min(found.least), max(max(found.largest), min(found.least) + 1e-6))
+            span = min(found.least), max(max(found.largest), min(found.least) + 1e-6)
+            c.session.change(draw=c.session.draw.with_span(span, view))
         tooltip("the first and the last colour of the map stand for the least and the largest value here")
     _plot(found, values.names)
 

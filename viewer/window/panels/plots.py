@@ -216,7 +216,7 @@ def _go_to_frame(ui: Ui, number: int | None, values: list[str]) -> None:
     ui.state(PlotsState).pointed = number
     width, height, part = record.settings.width, record.settings.height, c.history.shaded_of(number)
     shaded = f", {whole_percent(part)} shaded" if part < 1.0 else ""
-    said = f"{record.time:.3f} s, {record.settings.method}, {width} x {height}{shaded}"
+    said = f"{record.state.time:.3f} s, {record.settings.method}, {width} x {height}{shaded}"
     if _clicked([c.navigator.name_of(number), said, *values]):
         c.navigator.go(number)
 

@@ -64,7 +64,7 @@ def _save(ui: Ui) -> None:
 def _own(ui: Ui) -> None:
     presets = ui.controller.presets
     for index, preset in enumerate(presets.own):
-        name = str(preset.get("name", "?"))
+        name = preset.name
         imgui.push_id(index)
         room = imgui.get_content_region_avail().x - em(4.4)
         if ui.state(NameField).place == (LIST, index):

@@ -8,10 +8,10 @@ from viewer.output.ray_rows import Row, Shown, totals
 from viewer.services.ray_inspector import RayInspector
 from viewer.window.panels import lights
 from viewer.window.panels.ray_overlay import MOST_DRAWN
+from viewer.window.setting_rows import ALL, setting_switch
 from viewer.window.ui import RaysState, Ui
 from viewer.window.widgets import (
     QUIET,
-    checkbox,
     clipped,
     em,
     fitted,
@@ -41,7 +41,7 @@ _SHOWN_TIPS = {
 def section(ui: Ui) -> None:
     """A part of the panel that folds; rays are listed, and drawn in the picture, where it is open."""
     state = ui.state(RaysState)
-    rays, p = ui.controller.rays, ui.controller.preferences
+    rays = ui.controller.rays
     wanted, state.unfold = state.unfold, max(state.unfold - 1, 0)
     imgui.dummy(ImVec2(0.0, em(0.15)))
     if wanted:
@@ -52,7 +52,7 @@ def section(ui: Ui) -> None:
         imgui.set_scroll_here_y(0.0)
     if opened:
         _section(ui, rays)
-    checkbox("Draw shadow rays", p.draw_explanation, lambda on: setattr(p, "draw_explanation", on), _DRAWN)
+    setting_switch(ui, ALL["draw.rays"])
 
 
 def _section(ui: Ui, rays: RayInspector) -> None:

@@ -65,7 +65,7 @@ def show(ui: Ui, width: float) -> None:
     frame = c.frame
     if frame is None or c.session.scene is None:
         return
-    if c.session.view is not View.FATE:
+    if c.session.draw.view is not View.FATE:
         ui.fate_shown = None
     start, lines = imgui.get_cursor_pos(), _lines(ui, width)
     told = sentence(frame, standing(c))

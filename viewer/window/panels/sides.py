@@ -44,7 +44,7 @@ def draw_a(ui: Ui, area: Area, seen: Seen) -> None:
         or ui.graphics.compared.a.texture_id is None
     ):
         return
-    draw_picture(ui, comparing.OF_A, ui.graphics.compared.a.texture_id, area, ui.controller.session.wipe)
+    draw_picture(ui, comparing.OF_A, ui.graphics.compared.a.texture_id, area, ui.controller.session.draw.wipe)
 
 
 def show_names(ui: Ui, area: Area, seen: Seen, top: float) -> None:
@@ -109,7 +109,7 @@ def handle(ui: Ui, area: Area) -> bool:
         state.held = True
     held = state.held
     if held:
-        c.session.wipe = min(max(area.to_picture(imgui.get_io().mouse_pos.x, 0.0)[0], 0.0), 1.0)
+        c.session.set_draw(wipe=min(max(area.to_picture(imgui.get_io().mouse_pos.x, 0.0)[0], 0.0), 1.0))
         state.held = imgui.is_item_active()
     if held or (imgui.is_item_hovered() and not imgui.is_item_active() and _near(ui, area)):
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
@@ -135,7 +135,7 @@ def _names(ui: Ui) -> tuple[str, str]:
 
 def _place(ui: Ui, area: Area) -> float:
     """Where the line is on the screen: at an edge where it lies beyond what is shown."""
-    return min(max(area.to_screen(ui.controller.session.wipe, 0.0).x, area.corner.x), area.end.x)
+    return min(max(area.to_screen(ui.controller.session.draw.wipe, 0.0).x, area.corner.x), area.end.x)
 
 
 def _near(ui: Ui, area: Area) -> bool:
@@ -164,7 +164,7 @@ def show(ui: Ui, area: Area) -> None:
         start = x + 2.0 * pad if side > 0.0 else x - 2.0 * pad - width
         if corner.x <= start and start + width <= end.x:
             lower = ImVec2(start + width, top + text + 2.0 * pad)
-            draw.add_rect_filled(ImVec2(start, top), lower, dark if c.session.zoom.fits else ground, em(0.3))
+            draw.add_rect_filled(ImVec2(start, top), lower, dark if c.session.draw.zoom.fits else ground, em(0.3))
             draw.add_text(ImVec2(start + pad, top + pad), light, name)
     draw.pop_clip_rect()
 

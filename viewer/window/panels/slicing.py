@@ -26,32 +26,33 @@ from viewer.window.widgets import count, em, percent, row
 
 def rows(ui: Ui) -> None:
     """Rows of the panel's table."""
-    s = ui.controller.session
+    session = ui.controller.session
+    cut = session.draw.slice
     row("Slice", "across which axis space is cut")
     for axis, name in enumerate(AXES):
         if axis:
             imgui.same_line(0.0, em(0.6))
-        if imgui.radio_button(f"{name}##slice", s.cut.axis == axis):
-            s.cut = s.cut._replace(axis=axis)
+        if imgui.radio_button(f"{name}##slice", cut.axis == axis):
+            session.set_draw(slice=cut._replace(axis=axis))
     frame = ui.controller.frame
-    layer = view_of(s.view).layer(frame, s.cut) if frame is not None else None
+    layer = view_of(session.draw.view).layer(frame, cut) if frame is not None else None
     if layer is None:
         return
     row("Layer", "along the axis; Ctrl+click to type one")
-    flags, shown = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[s.cut.axis]} = {layer.place:.4g})"
+    flags, shown = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[cut.axis]} = {layer.place:.4g})"
     changed, number = imgui.slider_int("##layer", layer.number, 0, layer.many - 1, shown, flags)
     if changed:
-        s.cut = layer.goes_to(s.cut, number)
+        session.set_draw(slice=layer.goes_to(cut, number))
 
 
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     """What a pixel of the newest frame shows of space, in a view of that; nothing where it shows none."""
     c = ui.controller
-    frame, view, light = c.frame, c.scheduler.drawn_view, c.session.light
+    frame, view, light = c.frame, c.scheduler.drawn_view, c.session.draw.light
     if frame is None:
         return []
     if view is View.VOXELS:
-        states, cut = voxels_of(frame), c.session.cut
+        states, cut = voxels_of(frame), c.session.draw.slice
         seen = ui.cached("slice", frame, cut, lambda: slice_seen(frame, states.grid, cut))
         number = int(seen.numbers[y, x])
         if number < 0:
@@ -62,7 +63,7 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
         named = "{}, {}, {}".format(*found.place)
         return [f"voxel {named}: {STATE_NAMES[found.state]}", *([block] if block else []), inside]
     if view is View.TREE:
-        tree, cut = tree_of(frame), c.session.cut
+        tree, cut = tree_of(frame), c.session.draw.slice
         part = part_seen(frame, tree, cut, x, y)
         return [] if part is None else list(part_words(part, tree.owner))
     lit = c.inspector.cut

@@ -33,7 +33,7 @@ def show(ui: Ui) -> None:
         c.motion.toggle_play()
     if _button(icons.ICON_FA_FORWARD_STEP + "##forward", f"one frame on{ui.key('Step forward')}"):
         c.motion.step(1)
-    following = session.follow
+    following = session.on_path
     if following:
         imgui.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(imgui.Col_.button_active))
     if _button(

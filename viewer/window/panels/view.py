@@ -1,66 +1,54 @@
-"""The view: what is shown of the frame, and what its colours mean."""
+"""The view: what is shown of the frame, what its colours mean, and how it is drawn."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from imgui_bundle import imgui
 
+from viewer.state.readings import can_draw
+from viewer.state.tone import MID_GREY, NEUTRAL
 from viewer.state.views import View
-from viewer.window.panels import legend, lights, slicing, tone
+from viewer.window.panels import legend, lights, slicing
+from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, right, row
+from viewer.window.widgets import QUIET, WARNING, em, paragraph, properties, right, row, tooltip
 
 
 def show(ui: Ui) -> None:
-    """The panel."""
-    c = ui.controller
-    p = c.preferences
+    """Show the panel."""
+    draw = ui.controller.session.draw
+    settings = in_panel(ui, "View") + in_panel(ui, "Tone")
     with properties("view", 5.0) as shown:
         if shown:
-            row("View", "what is shown of the frame; the key of each view stands beside it in the list")
+            row("View", "What is shown of the frame; the key of each view stands beside it in the list.")
             _views(ui)
-            if c.session.view.of_light and c.session.scene is not None and c.session.scene.lights:
-                row("Light", f"the light that the view is about{ui.keys('Next light', 'Previous light')}")
+            if draw.view.of_light and ui.controller.session.scene is not None and ui.controller.session.scene.lights:
+                row("Light", "The light that the view is about (L and Shift+L).")
                 lights.combo(ui)
-            if c.session.view is View.WIPE:
-                row("Line", "where it is; or drag it in the picture")
-                changed, at = imgui.slider_float("##wipe", 100.0 * c.session.wipe, 0.0, 100.0, "%.0f %%")
-                c.session.wipe = min(max(at / 100.0, 0.0), 1.0) if changed else c.session.wipe
-            if c.session.view.has_slice:
+            if draw.view.has_slice:
                 slicing.rows(ui)
-            if c.session.view is View.DIFFERENCE or c.session.view.has_slice:
-                row("Beneath", "how bright the picture is beneath the wrong pixels, or behind the slice")
-                changed, percents = imgui.slider_float("##beneath", 100.0 * p.beneath, 0.0, 60.0, "%.0f %%")
-                p.beneath = min(max(percents / 100.0, 0.0), 0.6) if changed else p.beneath
-            if c.session.view.is_flat:
-                row("Shading", "how much of the picture's light and shade shows under the colours")
-                changed, shading = imgui.slider_float("##shading", p.shading, 0.0, 1.0, "%.2f")
-                p.shading = min(max(shading, 0.0), 1.0) if changed else p.shading
-            tone.rows(ui)
-    checkbox(
-        "Legend",
-        p.legend,
-        lambda on: setattr(p, "legend", on),
-        f"in the picture{ui.key('Legend')}; drag it where you like",
-    )
-    imgui.same_line(0.0, em(1.0))
-    checkbox(
-        "Outlines", p.outlines, lambda on: setattr(p, "outlines", on), f"borders between primitives{ui.key('Outlines')}"
-    )
-    if c.session.view.needs_work:
-        tip = "the share of the shadow rays due, or of the rays traced without culling, instead of counts"
-        tip += ui.key("Shares of rays")
-        checkbox("Shares", p.work_shares, lambda on: setattr(p, "work_shares", on), tip)
-    if c.session.view.needs_verify:
-        tip = f"rings around pixels with wrong shadow answers, so that a lone one is found{ui.key('Mark wrong pixels')}"
-        checkbox("Mark wrong pixels", p.mark_wrong, lambda on: setattr(p, "mark_wrong", on), tip)
-    tone.ticks(ui)
+            for one in settings:
+                if one.kind is not bool:
+                    setting_row(ui, one, _mid_grey(ui) if one.path == "draw.tone.curve" else "")
+            _range(ui)
+    for one in settings:
+        if one.kind is bool:
+            setting_switch(ui, one)
+    if draw.view.shows_picture and not draw.tone.neutral and imgui.button("Reset tone", (-1.0, 0.0)):
+        ui.controller.session.set_draw(tone=NEUTRAL)
     legend.in_panel(ui)
     _explanation(ui)
 
 
+def _mid_grey(ui: Ui) -> str:
+    tone = ui.controller.session.draw.tone
+    return f"\nMid grey, {MID_GREY:g}, becomes {tone.mid_grey:.2f} with exposure, white and curve as they are."
+
+
 def _views(ui: Ui) -> None:
     """All views to choose from, each with its key."""
-    chosen = ui.controller.session.view
+    chosen = ui.controller.session.draw.view
     if not imgui.begin_combo("##view", chosen.label, int(imgui.ComboFlags_.height_largest)):
         return
     for view in View:
@@ -75,10 +63,32 @@ def _views(ui: Ui) -> None:
     imgui.end_combo()
 
 
+def _range(ui: Ui) -> None:
+    """What has the first and the last colour: as the frame has it, or as it was set."""
+    c = ui.controller
+    draw, frame = c.session.draw, c.frame
+    spans = ALL["draw.spans"]
+    if not c.session.state.applies(spans) or frame is None or not can_draw(frame, draw.view, draw.light):
+        return
+    low, high = c.comparing.span(draw.view) or draw.view.declared.span(frame)
+    row(spans.label, f"{spans.help} Drag, or Ctrl+click to type.")
+    imgui.set_next_item_width(-em(4.2))
+    speed = max((high - low) / 200.0, 1e-6)
+    changed, low, high = imgui.drag_float_range2("##range", low, high, speed, 0.0, 0.0, "%.4g", "%.4g")
+    if changed and low < high:
+        c.session.state = replace(c.session.state, draw=draw.with_span((low, high)))
+    imgui.same_line(0.0, em(0.3))
+    imgui.begin_disabled(draw.span is None)
+    if imgui.button("Fit##range", (-1.0, 0.0)):
+        c.session.state = replace(c.session.state, draw=draw.with_span(None))
+    imgui.end_disabled()
+    tooltip("Let the range follow what each frame has.")
+
+
 def _explanation(ui: Ui) -> None:
     """What the view shows, and what it costs."""
     c = ui.controller
-    view, run, text = c.session.view, c.runs.current, c.session.view.help
+    view, run, text = c.session.draw.view, c.runs.current, c.session.draw.view.help
     lacks = run.lacks(view) if run is not None else ""
     if lacks:
         paragraph(f"This run {lacks}.", WARNING)

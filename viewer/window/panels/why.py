@@ -30,7 +30,7 @@ def show(ui: Ui) -> None:
     words = Words(scene, found)
     if not found.reasons:
         paragraph("The scene has no lights.", QUIET)
-    chosen = min(c.session.light, len(found.reasons) - 1)
+    chosen = min(c.session.draw.light, len(found.reasons) - 1)
     for one in found.reasons[chosen : chosen + 1]:
         _chosen(ui, words, one)
     many = len(found.reasons) > lights.FEW
@@ -58,7 +58,7 @@ def unanswered(ui: Ui) -> str:
         return "The clicked point is not visible from here. Its shadow rays are explained when it is in view again."
     if c.inspector.problem:
         return f"No answer: {c.inspector.problem}."
-    if c.motion.lively:
+    if c.motion.is_animating:
         return "answered when nothing moves"
     before = traced_before_an_answer(c)
     return f"answered after {before}" if before else "tracing its shadow rays ..."

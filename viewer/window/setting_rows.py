@@ -1,0 +1,159 @@
+"""Settings in the window: rows of panels, switches of menus and entries of the palette, all made from declarations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from imgui_bundle import imgui
+
+from tracer.setting import Setting, settings_of
+from viewer.state.preferences import Preferences
+from viewer.state.view_state import ViewState
+from viewer.window.command import Command
+from viewer.window.finder import Item, Kind
+from viewer.window.ui import Ui
+from viewer.window.widgets import checkbox, properties, row, tooltip
+
+ALL = {one.path: one for one in (*settings_of(ViewState), *settings_of(Preferences))}
+"""All settings of the window, by their paths: "draw.outlines"."""
+
+
+def value_of(ui: Ui, one: Setting) -> Any:
+    """Return what a setting is now."""
+    c = ui.controller
+    return one.get(c.session.state if one.within else c.preferences)
+
+
+def in_panel(ui: Ui, panel: str) -> list[Setting]:
+    """List the settings of a panel that do something as things are."""
+    state = ui.controller.session.state
+    return [one for one in ALL.values() if one.panel == panel and (not one.within or state.applies(one))]
+
+
+def setting_rows(ui: Ui, panel: str, width: float, note: Callable[[Setting], str] = lambda one: "") -> None:
+    """Show the settings of a panel: a table of names and values, and the switches below it; `note` is added to what a
+    tooltip says."""
+    settings = in_panel(ui, panel)
+    with properties(panel, width) as shown:
+        for one in settings:
+            if shown and one.kind is not bool:
+                setting_row(ui, one, note(one))
+    for one in settings:
+        if one.kind is bool:
+            setting_switch(ui, one, note(one))
+
+
+def setting_switch(ui: Ui, one: Setting, note: str = "") -> None:
+    """Show a tick of a setting that is on or off."""
+    tip = f"{one.help}{ui.key(one.label)}{note}"
+    checkbox(one.label, value_of(ui, one), lambda on: ui.controller.settings.set(one, on), tip)
+
+
+def setting_row(ui: Ui, one: Setting, note: str = "") -> None:
+    """Show a row of `properties`: a setting's name, and its value to be changed."""
+    row(one.label, f"{one.help}{note}")
+    now = value_of(ui, one)
+    if one.choices:
+        _choice(ui, one, now)
+    elif one.kind in (int, float):
+        value = _slider(one, now)
+        if value is not None and value != now:
+            ui.controller.settings.set(one, value)
+
+
+def _choice(ui: Ui, one: Setting, now: Any) -> None:
+    if imgui.begin_combo(f"##{one.path}", one.text(now)):
+        for choice, meaning in one.choices.items():
+            if imgui.selectable(one.text(choice), choice == now)[0]:
+                ui.controller.settings.set(one, choice)
+            if meaning:
+                tooltip(meaning)
+        imgui.end_combo()
+    elif one.choices[now]:
+        tooltip(one.choices[now])
+
+
+def _slider(one: Setting, now: Any) -> Any:
+    """A slider; returns what was chosen, or None.  More than it covers can be typed."""
+    scale = 100.0 if one.percent else 1.0
+    low, high = one.slider or (one.low, one.high)
+    flags = int(imgui.SliderFlags_.logarithmic) if one.log else 0
+    if one.kind is int:
+        changed, number = imgui.slider_int(f"##{one.path}", now, int(low), int(high), f"%d{one.unit}", flags)
+        return number if changed else None
+    unit = " %%" if one.percent else one.unit
+    shown = f"%{'+' if low < 0.0 else ''}.{one.digits}f{unit}"
+    changed, value = imgui.slider_float(f"##{one.path}", scale * now, scale * low, scale * high, shown, flags)
+    return value / scale if changed else None
+
+
+# --- menus and the palette -------------------------------------------------------------------------
+
+
+def setting_command(ui: Ui, path: str, menu: str, key: str = "", **more: Any) -> Command:
+    """Return the command that switches a setting on or off."""
+    one = ALL[path]
+
+    def flip() -> None:
+        ui.controller.settings.set(one, not value_of(ui, one))
+
+    return Command(one.label, menu, flip, key, checked=lambda: bool(value_of(ui, one)), tip=one.help, **more)
+
+
+def entries(ui: Ui) -> Iterator[Item]:
+    """Return the settings that have a value, and switches that no menu has, for the palette."""
+    c = ui.controller
+    refused = "a run is under way" if c.runs.current is not None else ""
+    commands = {command.name for command in ui.commands}
+    for one in ALL.values():
+        locked = refused if one.within == ("settings",) else ""
+        if not one.panel or one.label in commands:
+            continue
+        if one.choices:
+            yield from _choices(ui, one, locked)
+        elif one.kind is bool:
+            flip = partial(c.settings.set, one, not value_of(ui, one))
+            yield _entry(ui, one, locked, run=flip, checked=value_of(ui, one), also="on off switch")
+        else:
+            yield _typed(ui, one, value_of(ui, one), partial(c.settings.set, one), locked)
+    if c.session.animated and c.session.scene is not None:
+        frame = Setting("Frame", "", 0, c.session.scene.frames - 1, kind=int, panel="Time", name="frame")
+        yield _typed(ui, frame, c.session.frame, lambda number: c.motion.step(number - c.session.frame))
+    lights = len(c.session.scene.lights) if c.session.scene is not None else 0
+    if lights > 1:
+        light = replace(ALL["draw.light"], high=lights - 1, panel="View")
+        yield _typed(ui, light, c.session.draw.light, c.settings.set_light)
+
+
+def _entry(ui: Ui, one: Setting, refused: str, **more: Any) -> Item:
+    return Item(
+        f"setting {one.label}", more.pop("label", one.label), Kind.SETTING, more.pop("run", lambda: None), one.panel,
+        enabled=not refused, why_not=refused, hint=more.pop("hint", one.help), **more,
+    )  # fmt: skip
+
+
+def _typed(ui: Ui, one: Setting, now: Any, change: Callable[[Any], None], refused: str = "") -> Item:
+    """An entry whose value is typed."""
+
+    def take(typed: str) -> str:
+        try:
+            change(one.parse(typed, shown=True))
+        except ValueError as error:
+            return f"{one.label}: {error}"
+        return ""
+
+    hint = f"{one.expected_shown}. {one.help}".strip()
+    return _entry(ui, one, refused, also="set value", value=one.text(now), take=take, hint=hint)
+
+
+def _choices(ui: Ui, one: Setting, refused: str) -> Iterator[Item]:
+    """An entry for each value of a setting."""
+    now, change = value_of(ui, one), ui.controller.settings.set
+    for choice, meaning in one.choices.items():
+        text, hint = one.text(choice), meaning or one.help
+        named = replace(one, label=f"{one.label} {text}")
+        yield _entry(ui, named, refused, label=f"{one.label}: {text}", run=partial(change, one, choice),
+                     checked=choice == now, hint=hint)  # fmt: skip
