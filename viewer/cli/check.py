@@ -25,6 +25,7 @@ from tracer.scene.files import read_regular
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Cancelled, Scene, SceneError
+from tracer.settings import Settings
 from tracer.version import program_version
 from viewer.cli import options
 from viewer.cli.arguments import FAILED, Parser
@@ -59,7 +60,7 @@ def parser() -> Parser:
     help_ = "a .png or .exr that this program saved, or a .png or .pdf of figure"
     parser.add_argument("pictures", nargs="+", type=Path, metavar="FILE", help=help_)
     options.add_folders(parser)
-    options.add_threads(parser)
+    options.add_settings(parser, Settings, "threads")
     return parser
 
 

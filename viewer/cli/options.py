@@ -11,17 +11,18 @@ from pathlib import Path
 from typing import Any
 
 from tracer.compilation import compiled_before, make_ready, warm_up
-from tracer.geometry.accelerators import ACCELERATORS
+from tracer.geometry.accelerators import BVH8
 from tracer.kernel_cache import outlives_process
 from tracer.method import Method, additions, bases
 from tracer.scene.edits import Edits, edited
-from tracer.scene.lights import MAX_SAMPLES
 from tracer.scene.limits import LARGEST
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
 from tracer.scene.things import things
-from tracer.settings import MAX_NODES, Settings
+from tracer.setting import Setting, setting_of, settings_of
+from tracer.settings import Settings
+from tracer.similar import did_you_mean
 from viewer.cli.arguments import UPS, Parser, before, count, number, several, size, whole
 from viewer.cli.console import Work
 from viewer.services import stills
@@ -245,54 +246,64 @@ def add_size(parser: Parser) -> None:
     parser.add_argument("--size", type=size, default=(512, 512), metavar="WxH", help=help_)
 
 
-def add_threads(parser: Parser) -> None:
-    parser.add_argument("--threads", type=count(0, 1024), default=0, metavar="N", help="0, the default: one per core")
+def add_settings(parser: argparse.ArgumentParser, holder: type, *names: str, **defaults: Any) -> None:
+    """Add the options of settings, as these are declared; `defaults` are those of the command where they differ."""
+    for one in settings_of(holder):
+        if one.name in names:
+            add_setting(parser, one, defaults.get(one.name, one.default))
 
 
-def add_verify(parser: Parser) -> None:
-    help_ = "trace every culled shadow ray as well, and count wrong answers"
-    parser.add_argument("--verify", action="store_true", help=help_)
+def add_setting(
+    parser: argparse.ArgumentParser,
+    one: Setting,
+    default: Any,
+    parse: Callable[[str], Any] | None = None,
+    more: str = "",
+) -> None:
+    """Add the option of one setting, whose value has the setting's name in the namespace."""
+    help_ = f"{one.help[:1].lower()}{one.help[1:].rstrip('.')}{more}"
+    if one.kind is bool:
+        kept: dict[str, Any] = {"action": "store_const", "const": not one.default}
+        help_ = f"do not {help_}" if one.default else help_
+    else:
+        kept = {"type": parse or _asking(one), "metavar": _METAVARS.get(one.kind, one.name.upper())}
+        told = str(getattr(default, "value", default)) if one.choices or one.kind in (int, float) else one.text(default)
+        told = f"as the {one.unset} says" if default is None else told.removesuffix(".0")
+        help_ += f"{': ' if one.choices else ''}{', '.join(map(str, one.choices))} (default: {told})"
+    parser.add_argument(one.option, dest=one.name, default=default, help=help_.replace("%", "%%"), **kept)
 
 
-def add_tracing(parser: Parser, accelerator: str = "bvh8", many_lamps: bool = False, zoom_factor: bool = True) -> None:
+def _asking(one: Setting) -> Callable[[str], Any]:
+    """Let a setting read its value, and ask what may have been meant where that is one of few."""
+
+    def parse(text: str) -> Any:
+        try:
+            return one.parse(text)
+        except ValueError as error:
+            raise ValueError(f"{error}{did_you_mean(text, map(str, one.choices))}") from None
+
+    return parse
+
+
+_METAVARS: dict[type, str] = {int: "N", float: "X"}
+
+
+def add_tracing(parser: Parser, accelerator: str = BVH8, many_lamps: bool = False, zoom_factor: bool = True) -> None:
     """Add what all commands that trace have in common, with the structure that is theirs by default.
 
     `many_lamps`: several kinds of lamps are taken; `zoom_factor`: it is an option."""
-    add = parser.add_argument
-    help_ = f"the tree that rays are traced through (default: {accelerator})"
-    add("--accelerator", choices=ACCELERATORS, default=accelerator, help=help_)
-    add_threads(parser)
-    add("--depth", type=count(0, 100), default=10, metavar="D", help="the most bounces (default: 10)")
-    add("--symmetric", action="store_true", help="test occlusion in both directions between neighbouring pixels")
+    common = "threads", "accelerator", "depth", "symmetric", "lightcuts_error", "lightcuts_nodes"
+    add_settings(parser, Settings, *common, *(["zoom_factor"] if zoom_factor else []), accelerator=accelerator)
     add_lamps(parser, many_lamps)
-    help_ = "the part of a point's light that a cluster of lights may be wrong by (default: 0.02; 0: no clusters)"
-    add("--lightcuts-error", type=number(0.0, 1e9), default=0.02, metavar="E", help=help_)
-    help_ = "clusters of lights for a point, at most (default: 1000)"
-    add("--lightcuts-nodes", type=count(1, MAX_NODES), default=1000, metavar="N", help=help_)
-    if zoom_factor:
-        help_ = "examine a primitive again once it covers F times its highest pixel count (default: 4)"
-        add("--zoom-factor", type=number(1.0, 1e9), default=4.0, metavar="F", help=help_)
     add_meshes(parser)
 
 
 def add_lamps(parser: Parser, many: bool = False) -> None:
     """Add what makes lamps of a scene's lights; without it, they are as the scene, or a saved picture, says."""
-    add = parser.add_argument
-    radius: Callable[[str], object] = number(0.0, 1e9)
-    samples: Callable[[str], object] = count(1, MAX_SAMPLES)
-    more = "; several, with commas, are measured one after another" if many else ""
-    if many:
-        radius, samples = several(radius), several(samples)
-    help_ = "make every point light and sphere a sphere of this radius, in the scene's units; 0 makes them points"
-    add("--lamp-radius", type=radius, metavar="R,..." if many else "R", help=help_ + more)
-    help_ = "points from which each lamp shines (default: as the scene says, and 16 for what --lamp-radius makes)"
-    add("--lamp-samples", type=samples, metavar="N,..." if many else "N", help=help_ + more)
-
-
-_OF_SETTINGS = (
-    "depth", "symmetric", "zoom_factor", "lamp_radius", "lamp_samples", "lightcuts_error", "lightcuts_nodes", "verify",
-    "threads", "accelerator", "samples", "method",
-)  # fmt: skip
+    for name in ("lamp_radius", "lamp_samples"):
+        one = setting_of(Settings, name)
+        more = "; several, with commas, are measured one after another" if many else ""
+        add_setting(parser, one, None, several(one.parse) if many else None, more)
 
 
 def tracing_settings(options: Namespace, **more: Any) -> Settings:
@@ -300,10 +311,9 @@ def tracing_settings(options: Namespace, **more: Any) -> Settings:
     width, height = options.size
     if width * height > MOST_PIXELS:
         raise ValueError(f"--size {width}x{height}: more than {MOST_PIXELS:,} pixels")
-    given = {name: getattr(options, name, None) for name in _OF_SETTINGS}
-    return Settings(
-        **{"width": width, "height": height} | {n: v for n, v in given.items() if v is not None} | more
-    ).validated()
+    given = {one.name: getattr(options, one.name, None) for one in settings_of(Settings) if one.option}
+    given = {"width": width, "height": height} | {name: value for name, value in given.items() if value is not None}
+    return Settings(**given | more).validated()
 
 
 def prepare_kernels(work: Work, lights: int, accelerator: str, *methods: str) -> None:

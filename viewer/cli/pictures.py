@@ -11,20 +11,22 @@ from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import LARGE
 from tracer.method import DEFAULT_METHOD, Method
 from tracer.scene.model import Scene
+from tracer.setting import settings_of
 from tracer.settings import Settings
 from viewer.cli import arguments, options
-from viewer.cli.arguments import ChosenView, Parser, count, number
+from viewer.cli.arguments import ChosenView, Parser
 from viewer.output import capture, recipe
 from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
 from viewer.services.scene_files import find_scene, is_capture
-from viewer.state.draw_options import MIDDLE
+from viewer.state.draw_options import MIDDLE, DrawOptions
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
-from viewer.state.palette import BENEATH
-from viewer.state.tone import MOST_EXPOSURE, NEUTRAL, WHITES, Curve, Tone
+from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
 
 LOWER_LEFT = 0.0, 1.0
+_DRAWN = "outlines", "mark_wrong", "clipping", "legend", "shading", "beneath", "slice", "magnified"
+_TONE = "exposure", "white", "curve"
 OR_PICTURE = ", or a saved picture, for its scene, settings and view"
 
 
@@ -32,7 +34,7 @@ def add_picture(parser: Parser) -> None:
     """Add what one picture is to be like."""
     add = parser.add_argument
     options.add_size(parser)
-    add("--samples", type=count(1, 4096), default=1, metavar="N", help="rays per pixel, averaged (default: 1)")
+    options.add_settings(parser, Settings, "samples")
     help_ = (
         f"how shadow rays are culled: {options.method_names()} (default: {DEFAULT_METHOD}, or the method that a view "
         "belongs to: certified, lightcuts, voxels or lie-exact)"
@@ -44,42 +46,17 @@ def add_picture(parser: Parser) -> None:
         "moving-shadow:LIGHT, saved or cost, as counts of rays or as shares like saved:share (default: color)"
     )
     add("--view", type=arguments.view, default="color", metavar="V", help=help_)
-    stops = number(-MOST_EXPOSURE, MOST_EXPOSURE)
-    add("--exposure", type=stops, default=0.0, metavar="STOPS", help="brighter by so many stops (default: 0)")
-    help_ = "the colour, once exposed, that becomes white (default: 1)"
-    add("--white", type=number(*WHITES), default=1.0, metavar="W", help=help_)
-    curves = ", ".join(Curve)
-    add("--tone", type=_curve, default=Curve.NONE, metavar="CURVE", help=f"the tone curve: {curves} (default: none)")
-    add("--mark-clipped", action="store_true", help="stripes over pixels that are too bright, or black")
+    options.add_settings(parser, DrawOptions, *_DRAWN, *_TONE)
     help_ = "what has the first and the last colour in the views depth, saved, cost and lights (default: as they come)"
     add("--range", type=arguments.value_range, metavar="LOW:HIGH", help=help_)
-    add("--no-marks", action="store_true", help="no rings around wrong pixels in the views difference and wipe")
-    add("--legend", action="store_true", help="draw the view's legend into the picture")
     help_ = "where the legend is: 0,0 is the upper left (default: 0,1)"
     add("--legend-at", type=arguments.place, metavar="X,Y", help=help_)
-    help_ = (
-        "above the picture, what culling saves: a sentence, with TEXT for what is known of steps and time, and a bar"
-    )
+    help_ = "above the picture, what culling saves: a sentence, with TEXT about steps and time, and a bar"
     add("--savings", nargs="?", const="", metavar="TEXT", help=help_)
-    add("--caption", default="", metavar="TEXT", help="a line below the picture, like '{scene}, frame {frame}'")
-    add("--outlines", action="store_true", help="draw the borders between primitives")
-    help_ = "how much of the light shows under flat colours, 0 to 1 (default: 0.35)"
-    add("--shading", type=number(0.0, 1.0), default=0.35, metavar="S", help=help_)
-    help_ = "the slice of the views voxels and tree: across which axis, and where along it, 0 to 1 (default: y:0.25)"
-    add("--slice", type=arguments.slice_, default=MIDDLE, metavar="AXIS:PART", help=help_)
-    help_ = f"brightness of the picture beneath the difference, and behind a slice, 0 to 1 (default: {BENEATH:g})"
-    add("--beneath", type=number(0.0, 1.0), default=BENEATH, metavar="B", help=help_)
-    help_ = "draw rings for a picture that is shown N times as large (default: 1)"
-    add("--magnified", type=count(1, 100), default=1, metavar="N", help=help_)
+    help_ = "a line below the picture, like '{scene}, frame {frame}'"
+    add("--caption", default="", metavar="TEXT", help=help_)
     add("--camera", type=arguments.camera, metavar="JSON", help=f"another camera: {options.CAMERA}")
     options.add_edits(parser)
-
-
-def _curve(text: str) -> Curve:
-    try:
-        return Curve(text.strip().lower())
-    except ValueError:
-        raise ValueError(f"{text!r} is no tone; there is {', '.join(Curve)}") from None
 
 
 def picture_settings(given: Namespace) -> Settings:
@@ -100,7 +77,7 @@ def recipe_of(scene: Scene, settings: Settings, given: Namespace) -> Recipe:
         light = options.light_index(given, f"--view {view.value}:", light, scene)
     style = Style(
         shares=shares,
-        marked=not given.no_marks,
+        marked=given.mark_wrong,
         magnified=given.magnified,
         shading=given.shading,
         beneath=given.beneath,
@@ -108,7 +85,7 @@ def recipe_of(scene: Scene, settings: Settings, given: Namespace) -> Recipe:
         legend=(given.legend_at or LOWER_LEFT) if given.legend else None,
         caption=given.caption,
         tone=_tone(given),
-        clipping=given.mark_clipped,
+        clipping=given.clipping,
         span=given.range,
         cut=given.slice,
         savings=given.savings,
@@ -125,7 +102,7 @@ def recipe_of(scene: Scene, settings: Settings, given: Namespace) -> Recipe:
 
 
 def _tone(given: Namespace) -> Tone:
-    return Tone(given.exposure, given.white, given.tone)
+    return Tone(given.exposure, given.white, given.curve)
 
 
 def check_display(given: Namespace) -> None:
@@ -133,7 +110,7 @@ def check_display(given: Namespace) -> None:
     view, shares = given.view.view, given.view.shares
     if not view.shows_picture and not _tone(given).neutral:
         raise ValueError(f"--exposure, --white and --tone are for pictures: --view {view.value} shows none")
-    if given.mark_clipped and not view.shows_clipped:
+    if given.clipping and not view.shows_clipped:
         raise ValueError(f"--mark-clipped is for the views color and wipe, not {view.value}")
     if given.slice != MIDDLE and not view.has_slice:
         raise ValueError(f"--slice is for the views voxels and tree, not {view.value}")
@@ -181,10 +158,7 @@ def check_lights(wanted: Recipe, scene: Scene) -> None:
 
 # --- saved pictures --------------------------------------------------------------------------------
 
-_SETTINGS = (
-    "method", "samples", "depth", "symmetric", "zoom_factor", "verify", "lamp_radius", "lamp_samples", "accelerator",
-    "lightcuts_error", "lightcuts_nodes",
-)  # fmt: skip
+_SETTINGS = [one.name for one in settings_of(Settings) if one.option and one.name != "threads"]
 _STYLE = ("magnified", "shading", "beneath", "outlines", "savings")
 
 
@@ -200,8 +174,8 @@ def filled_in(parser: Parser, given: Namespace, words: list[str]) -> Namespace:
     given.path = saved.scene
     view, tone = given.view.view, saved.style.tone  # a view that has no use for something takes none of the picture's
     if not view.shows_picture and _tone(given) == tone:
-        given.exposure, given.white, given.tone = NEUTRAL.exposure, NEUTRAL.white, NEUTRAL.curve
-    given.mark_clipped &= view.shows_clipped or not saved.style.clipping
+        given.exposure, given.white, given.curve = NEUTRAL.exposure, NEUTRAL.white, NEUTRAL.curve
+    given.clipping &= view.shows_clipped or not saved.style.clipping
     if given.range == saved.style.span and (view is not saved.view or given.view.shares):
         given.range = None
     if given.frame is None and given.time is None:
@@ -218,9 +192,9 @@ def _defaults(path: Path) -> tuple[Recipe, dict[str, Any]]:
     kept: dict[str, Any] = {name: getattr(saved.settings, name) for name in _SETTINGS}
     kept |= {name: getattr(style, name) for name in _STYLE}
     kept |= {"before": saved.before, "warmup": saved.warmup, "repeat": saved.repeats}
-    kept |= {"no_marks": not style.marked, "legend": style.legend is not None, "legend_at": style.legend}
-    kept |= {"exposure": style.tone.exposure, "white": style.tone.white, "tone": style.tone.curve}
-    kept |= {"mark_clipped": style.clipping, "range": style.span, "slice": style.cut}
+    kept |= {"mark_wrong": style.marked, "legend": style.legend is not None, "legend_at": style.legend}
+    kept |= {"exposure": style.tone.exposure, "white": style.tone.white, "curve": style.tone.curve}
+    kept |= {"clipping": style.clipping, "range": style.span, "slice": style.cut}
     kept["caption"] = style.caption.replace("{", "{{").replace("}", "}}")
     kept["size"] = saved.size
     if saved.camera is not None:

@@ -97,7 +97,7 @@ def parser() -> Parser:
     help_ = "the paper's Figure 1 with the numbers of this frame, for slides"
     add("--figure1", type=Path, metavar="FILE.svg", help=help_)
     options.add_tracing(parser)
-    options.add_verify(parser)
+    options.add_settings(parser, Settings, "verify")
     return parser
 
 

@@ -22,8 +22,7 @@ from tracer.scene.model import Camera
 from viewer.output.recipe import BUILT
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.render_request import RenderRequest, Traced, Warmup
-from viewer.services.run_controller import RunController
-from viewer.services.runs import Experiment
+from viewer.services.runs import Experiment, Runs
 from viewer.services.selection import Point, Selection
 from viewer.services.undo import Undo
 from viewer.state.history import FrameRate, FrameRecord, FrameRecords, History
@@ -167,7 +166,7 @@ class FrameNavigator:
         preferences: Preferences,
         history: FrameHistory,
         tracing: FrameScheduler,
-        runs: RunController,
+        runs: Runs,
         undo: Undo,
         selection: Selection,
         notices: Notices,

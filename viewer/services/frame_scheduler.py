@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from tracer.experiments.runner import Run
 from tracer.frame import Frame, Settings
 from tracer.method import Method
 from tracer.one_light import with_light
@@ -21,7 +22,7 @@ from viewer.services.frame_budget import AT_ONCE, FrameBudget, Plan, divided
 from viewer.services.refinement import LampSamples, Refinement
 from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.render_thread import RenderThread
-from viewer.services.runs import Run
+from viewer.services.runs import missing_in, shown_of
 from viewer.state.learnt import Learnt
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.preferences import Preferences
@@ -408,8 +409,8 @@ class FrameScheduler:
         view, wanted, run = self.drawn_view, self._session.draw.view, self.inputs.run
         title = f"{view.label}, light {self._session.light_number}" if view.of_light else view.label
         if run is not None:
-            lacks = wanted is not view and run.lacks(wanted)
-            return f"{run.showing}   {title}{f' (this run {lacks})' if lacks else ''}"
+            lacks = wanted is not view and missing_in(run, wanted)
+            return f"{shown_of(run)}   {title}{f' (this run {lacks})' if lacks else ''}"
         if wanted is view:
             return title
         settings = self.settings

@@ -104,7 +104,7 @@ class DrawOptions:
         applies=lambda state: _has_span(state.draw), check=_check_spans,
     )  # fmt: skip
     legend: bool = setting(
-        False, "Legend", "What the colours mean, in the picture; drag it where you like.", option="--legend",
+        False, "Legend", "Draw into the picture what its colours mean.", option="--legend",
         panel="View", in_window=True,
     )  # fmt: skip
     legend_at: tuple[float, float] = setting(
