@@ -8,6 +8,7 @@ from dataclasses import replace
 import moderngl
 
 from viewer.services.controller import Controller
+from viewer.services.runs import missing_in
 from viewer.state.missing import missing
 from viewer.state.parts import parts_of
 from viewer.state.preview_geometry import PreviewGeometry
@@ -153,7 +154,7 @@ def _why_none(c: Controller) -> str:
     frame, view, run = c.frame, c.session.draw.view, c.runs.current
     if frame is None or c.scheduler.drawn_view is view:
         return ""
-    if run is not None and (lacks := run.lacks(view)):
+    if run is not None and (lacks := missing_in(run, view)):
         return f"the {run.name} {lacks}"
     if run is None and (c.scheduler.awaits or c.renderer.busy):
         return ""

@@ -13,7 +13,6 @@ from tracer.scene.load import load_scene
 from tracer.settings import Settings
 from viewer.output.recipe import Recipe, cannot_come_back
 from viewer.services import stills
-from viewer.services.films_elsewhere import filmed_alone
 from viewer.state.readings import can_draw
 from viewer.state.views import View
 
@@ -46,7 +45,7 @@ def test_what_becomes_of_rays_depends_on_what_an_exact_method_has_learnt(view: V
                 Recipe(Path("a.aff"), 0.0, None, Settings(method=method, threads=threads), shown)
                 for shown in (view, View.SAVED)
             )
-            assert one.needs_history and not filmed_alone(one)
+            assert one.needs_history and (one).needs_history
             assert one.by_one_thread == work.by_one_thread
             assert cannot_come_back(one.settings, view) == cannot_come_back(work.settings, View.SAVED)
-    assert filmed_alone(Recipe(Path("a.aff"), 0.0, None, Settings(method="none"), view))
+    assert not Recipe(Path("a.aff"), 0.0, None, Settings(method="none"), view).needs_history

@@ -30,7 +30,7 @@ def filmstrip(d: Driver) -> None:
     d.wait(lambda: runs.current is None, "the zoom test")
     d.settle()
     test = runs.zoom_test
-    assert test.whole and [len(test.film.of(factor)) for factor in (4.0, 64.0)] == [43, 43]
+    assert test.whole and [len(test.filmstrip.of(factor)) for factor in (4.0, 64.0)] == [43, 43]
     camera = d.c.session.camera
     for _ in d.sizes():
         for factor in (4.0, 64.0):
