@@ -55,7 +55,7 @@ def _controls(ui: Ui) -> None:
     comparing, state = c.comparing, c.comparing.state
     if wide_button(
         f"{icons.ICON_FA_THUMBTACK}  Keep as A",
-        f"Keep the picture that is shown, to compare others with it{ui.key('Keep as A')}.",
+        f"Keep this picture, to compare others with it{ui.key('Keep as A')}.",
         2,
     ):
         comparing.keep()
