@@ -17,7 +17,7 @@ from tests.viewer.fakes import make_frame
 from tracer.frame import Frame, Settings
 from viewer.output import capture, exports, exr, figures, png
 from viewer.output.movie import video
-from viewer.services.picture_controller import JPEG, write_picture
+from viewer.services.pictures import JPEG, write_picture
 from viewer.state.preferences import SETTINGS_FILE, Bookmark, Preferences, save_preferences
 from viewer.util.files import write_new, write_text, write_whole
 from viewer.window import layout_file

@@ -15,7 +15,8 @@ import glfw  # after imgui_bundle, which brings the library that both must share
 
 from tests.sweeps import cases
 from tests.viewer.fakes import with_certificates
-from viewer.services.runs import Run
+from tracer.experiments.runner import Run
+from tracer.frame import Frame
 from viewer.window.app import App
 
 PATIENCE = 240.0  # a first run compiles the kernels
@@ -150,13 +151,13 @@ class Driver:
 
     def slow_down(self, run: Run) -> None:
         """Let a run take its time: it is to last, not to keep the processor busy."""
-        count = run._count
+        progressed = run.progressed
 
-        def count_slowly(label: str) -> None:
+        def slowly(label: str, frame: Frame | None = None) -> None:
             time.sleep(0.05)
-            count(label)
+            progressed(label, frame)
 
-        run._count = count_slowly  # type: ignore[method-assign]
+        run.progressed = slowly  # type: ignore[method-assign]
 
     def resize(self, width: int, height: int) -> None:
         """Give the window another size, and wait until its panels have taken their places."""

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from tracer.experiments.runner import Run
 from tracer.frame import Frame, Settings
 from tracer.geometry.accelerators import LAZY
 from tracer.geometry.world import World
@@ -350,3 +351,42 @@ def run(
             results.build_seconds.setdefault(name, []).append(frame.statistics.phases.get("certification", 0.0))
             results.memory_bytes.setdefault(name, []).append(renderers[name].memory_bytes)
         yield results
+
+
+class Experiment(Run[Results]):
+    """An experiment as a run; the frames of the method `shown` are to be looked at meanwhile.
+
+    Raises ValueError for a method that does not exist or a setting out of range."""
+
+    name = "experiment"
+
+    def __init__(
+        self, scene: Scene, settings: Settings, methods: list[str], times: list[float], numbers: range | None = None
+    ) -> None:
+        self.settings, self.times = settings.validated(), times
+        self.methods = with_reference(methods)
+        self.numbers = range(len(times)) if numbers is None else numbers
+        self.shown, self.verifies = self.methods[-1], settings.verify
+        super().__init__(scene, len(self.methods) * len(self.numbers))
+
+    @property
+    def done_of(self) -> tuple[int, int]:
+        return len(self.results.frames) if self.results is not None else 0, len(self.numbers)
+
+    def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Results]:
+        def on_frame(number: int, method: str, frame: Frame) -> None:
+            label = f"frame {number - self.numbers.start + 1} of {len(self.numbers)}, {method}"
+            self.progressed(label, frame if method == self.shown else None)
+
+        fits = world is not None and world.accelerator == self.settings.accelerator
+        return run(
+            scene, self.settings, self.methods, self.times, self.numbers, cancel=cancel,
+            world=world if fits else None, on_frame=on_frame,
+        )  # fmt: skip
+
+    def copy(self, results: Results) -> Results:
+        methods = {
+            method: {name: list(values) for name, values in figures.items()}
+            for method, figures in results.methods.items()
+        }
+        return replace(results, frames=list(results.frames), methods=methods)

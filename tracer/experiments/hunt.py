@@ -17,6 +17,7 @@ import numpy as np
 
 from tracer.experiments import counterexample
 from tracer.experiments.counterexample import AROUND, PATH, Counterexample, counterexample_in
+from tracer.experiments.runner import Run
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch
@@ -122,6 +123,22 @@ def run(
     except Cancelled:
         return
     yield results
+
+
+class Hunt(Run[Results]):
+    """A hunt as a run."""
+
+    name = "hunt"
+
+    def __init__(self, scene: Scene, search: Search) -> None:
+        self.search, self.settings = search, search.settings.validated()
+        super().__init__(scene, search.frames)
+
+    def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Results]:
+        return run(scene, self.search, cancel, world, self.progressed)
+
+    def copy(self, results: Results) -> Results:
+        return replace(results, finds=list(results.finds))
 
 
 class _History:

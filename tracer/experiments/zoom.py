@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode, occlusion_mode, shadow_mode
+from tracer.experiments.runner import Run
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
@@ -279,6 +280,41 @@ def run(
                 on_frame(test.zoom_factor, number, frame)
             approach.steps.append(_step(frame, start, number, approach.steps))
             yield results
+
+
+class ZoomTest(Run[Results]):
+    """A zoom test as a run, of which every frame is to be seen; `record` is called with the factor, the number and the
+    picture of each.  Raises ValueError for numbers out of range, or a primitive that cannot be tested."""
+
+    name = "zoom test"
+    each_is_seen = True
+
+    def __init__(
+        self,
+        scene: Scene,
+        settings: Settings,
+        start: Aim,
+        factors: Sequence[float] = (4.0, 16.0),
+        steps: int = 30,
+        ratio: float = 0.94,
+        record: Callable[[float, int, Frame], None] = lambda factor, number, frame: None,
+    ) -> None:
+        settings_of_tests(settings, factors, steps, ratio)
+        check_primitive(scene, start.primitive)
+        self.settings, self.start, self.factors, self.ratio = settings, start, factors, ratio
+        self.steps_each, self._record = steps + STILL_FRAMES, record
+        super().__init__(scene, len(factors) * self.steps_each)
+
+    def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Results]:
+        def on_frame(factor: float, number: int, frame: Frame) -> None:
+            self._record(factor, number, frame)
+            self.progressed(f"zoom factor {factor:g}, step {number} of {self.steps_each - 1}", frame)
+
+        steps = self.steps_each - STILL_FRAMES
+        return run(scene, self.settings, self.start, self.factors, steps, self.ratio, cancel, world, on_frame)
+
+    def copy(self, results: Results) -> Results:
+        return replace(results, approaches=[replace(a, steps=list(a.steps)) for a in results.approaches])
 
 
 def _step(frame: Frame, start: Aim, number: int, before: list[Step]) -> Step:

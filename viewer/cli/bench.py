@@ -12,15 +12,15 @@ from pathlib import Path
 from rich.table import Table
 
 from tracer.experiments import experiment, lamp_experiment
-from tracer.experiments.experiment import REFERENCE, Results, Row
-from tracer.experiments.lamp_experiment import CEILING, LampResults, LampRow
+from tracer.experiments.experiment import REFERENCE, Experiment, Results, Row
+from tracer.experiments.lamp_experiment import CEILING, LampExperiment, LampResults, LampRow
 from tracer.geometry.world import World
 from tracer.method import line_up
 from tracer.scene.load import check_scene_file
 from tracer.settings import Settings
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
-from viewer.cli.console import Work, last_of, left_out, named, print_table, terminal_width, titled, width_of, working
+from viewer.cli.console import left_out, named, print_table, terminal_width, titled, width_of, working
 from viewer.output import exports
 from viewer.output.reports import SPEED_UP, WRONG, caveats, frames_in_words, leaders, lines
 from viewer.state import terms
@@ -92,17 +92,11 @@ def run(given: Namespace) -> int:
         world = World(scene, times[0], settings.accelerator, work.progress)
         if by_lamps:
             kinds = lamp_experiment.kinds_of_lamps(scene, radii, samples)
-            tell = _Teller(work, list(dict.fromkeys([*methods, CEILING])), len(numbers), len(kinds))
-            lamps = last_of(
-                lamp_experiment.run_lamps(scene, settings, methods, kinds, times, numbers, work.cancelled, world, tell)
-            )
+            lamps = work.perform(LampExperiment(scene, settings, methods, kinds, times, numbers), world)
             finished = len(lamps.runs) == len(kinds) and len(lamps.runs[-1].frames) == len(numbers)
             cancelled = f"in lamps {len(lamps.runs)} of {len(kinds)}; the table is of the frames that are done"
         else:
-            tell = _Teller(work, methods, len(numbers))
-            results = last_of(
-                experiment.run(scene, settings, methods, times, numbers, None, work.cancelled, world, tell)
-            )
+            results = work.perform(Experiment(scene, settings, methods, times, numbers), world)
             finished = len(results.frames) == len(numbers)
             cancelled = f"after {len(results.frames)} of {len(numbers)} frames; the table is of these"
         if not finished:
@@ -117,24 +111,6 @@ def run(given: Namespace) -> int:
     if failures:
         raise OSError("; ".join(failures))
     return 0 if finished else INTERRUPTED
-
-
-class _Teller:
-    """Shows which frame of which method is traced; called after each."""
-
-    def __init__(self, work: Work, methods: list[str], frames: int, lamps: int = 1) -> None:
-        self._work, self._methods, self._frames, self._lamps = work, experiment.with_reference(methods), frames, lamps
-        self._done = -1
-        self()
-
-    def __call__(self, *_: object) -> None:
-        self._done += 1
-        total = self._lamps * self._frames * len(self._methods)
-        place, turn = divmod(min(self._done, total - 1), len(self._methods))
-        lamps, frame = divmod(place, self._frames)
-        which = f"lamps {lamps + 1} of {self._lamps}, " if self._lamps > 1 else ""
-        method = experiment.in_turn(self._methods, frame)[turn]
-        self._work.count(f"{which}frame {frame + 1} of {self._frames}, {method}", self._done, total)
 
 
 def frame_range(text: str | None, count: int) -> range:

@@ -8,8 +8,7 @@ progress; a second one ends it at once.
 from __future__ import annotations
 
 import signal
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
 from typing import TypeVar
@@ -19,6 +18,8 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 from rich.table import Table
 from rich.text import Text
 
+from tracer.experiments.runner import Results, Run
+from tracer.geometry.world import World
 from tracer.scene.model import Cancelled
 from viewer.util.messages import in_one_line, printable, say
 
@@ -54,6 +55,21 @@ class Work:
     def cancelled(self) -> bool:
         return self.stopped
 
+    def perform(self, run: Run[Results], world: World | None = None) -> Results:
+        """Do a run and show how far it is; return its results, those that are done where it was cancelled.
+
+        Raises Cancelled where it was cancelled before there were any."""
+
+        def show() -> None:
+            self.count(run.label, run.traced, run.frames)
+
+        show()
+        for _ in run.each(world, self.cancelled, show):
+            pass
+        if run.results is None:
+            raise Cancelled("cancelled")
+        return run.results
+
     def note(self, line: str) -> None:
         """Print one line above the bar."""
         if self._bar is None:
@@ -65,16 +81,6 @@ class Work:
         if self.stopped:
             raise KeyboardInterrupt
         self.stopped = True
-
-
-def last_of(grown: Iterable[T]) -> T:
-    """Let the work go on to its end, and return its results as they are then.
-
-    Raises Cancelled where it was cancelled before there were any."""
-    found = deque(grown, maxlen=1)
-    if not found:
-        raise Cancelled("cancelled")
-    return found[0]
 
 
 @contextmanager

@@ -11,7 +11,6 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
-from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Cancelled, Scene
@@ -20,8 +19,10 @@ from viewer.cli import arguments, options, pictures, processes
 from viewer.cli.arguments import INTERRUPTED, Parser, number
 from viewer.cli.console import Work, working
 from viewer.output import capture, movie
-from viewer.services import filming, stills
-from viewer.services.filming import Script
+from viewer.output.commands import needs_history
+from viewer.services import film as films
+from viewer.services import stills
+from viewer.services.film import Script
 from viewer.state import codec, flight
 from viewer.state.flight import Stop, Take
 from viewer.state.methods import CERTIFIED
@@ -77,7 +78,7 @@ def run(given: Namespace) -> int:
     settings = pictures.picture_settings(given)
     if given.output is None:
         raise ValueError("film: nothing to write; give -o FOLDER, or -o film.mp4")
-    folder, video = filming.places(given.output)
+    folder, video = films.places(given.output)
     if video is not None:
         movie.check_video()
         check_writable(video)
@@ -93,7 +94,7 @@ def run(given: Namespace) -> int:
         script = Script(takes, recipe, folder, video, given.fps)
         shared = _is_shared(recipe, given, work)
         if not shared:
-            filming.check_folder(folder)
+            films.check_folder(folder)
         if given.scheduler is None or not shared:
             options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
         done = _by_processes(scene, script, given, work) if shared else _in_turn(scene, script, work)
@@ -110,15 +111,10 @@ def _in_turn(scene: Scene, script: Script, work: Work) -> int:
     """Trace frame after frame; returns how many there are, fewer than all where that was cancelled."""
     renderer = Renderer(scene, script.recipe.settings, work.progress)
     done, count = 0, len(script.takes)
-
-    def on_frame(number: int, frame: Frame) -> None:
-        nonlocal done
-        done = number + 1
-        work.count(f"frame {done} of {count}", done, count)
-
     work.count(f"frame 1 of {count}", 0, count)
     with suppress(Cancelled):
-        for _ in filming.shoot(renderer, script, work.cancelled, on_frame, work.note):
+        for done in films.write(script, films.in_turn(renderer, script, work.cancelled), note=work.note):
+            work.count(f"frame {done} of {count}", done, count)
             if work.stopped and done < count:
                 break
     return done
@@ -129,43 +125,38 @@ def _is_shared(recipe: ViewState, given: Namespace, work: Work) -> bool:
     if given.workers is None and given.scheduler is None:
         return False
     from tracer.experiments.cluster import check_dask
-    from viewer.services.films_elsewhere import filmed_alone
 
     check_dask()
-    if filmed_alone(recipe):
+    if not needs_history(recipe):
         return True
     settings = recipe.settings
     exact = replace(recipe, settings=replace(settings, method=CERTIFIED))
     work.note(
         f"pictures by {settings.method} in the view {recipe.draw.view.value} depend on the frames before them: one "
         "process "
-        f"traces them all, in turn{f'; give --method {CERTIFIED} to share them' if filmed_alone(exact) else ''}"
+        f"traces them all, in turn{f'; give --method {CERTIFIED} to share them' if not needs_history(exact) else ''}"
     )
     return False
 
 
 def _by_processes(scene: Scene, script: Script, given: Namespace, work: Work) -> int:
     """Trace what is missing of a film; returns how many pictures there are, fewer than all where that was cancelled."""
-    from viewer.services import films_elsewhere
-
-    filming.make_folder(script.folder)
-    kept, count = films_elsewhere.kept_pictures(script, scene), len(script.takes)
+    kept, count = films.kept_pictures(script, scene), len(script.takes)
     done = len(kept)
     if kept:
         work.note(f"{done} of {count} pictures are there already; going on from there")
     with processes.cluster_of(given, count - done) as cluster:
         watch = processes.Watch(cluster, work)
 
-        def on_progress(now: int) -> None:
-            nonlocal done
-            done = now
+        def show() -> None:
             watch.look()
-            work.count(f"frame {min(now + 1, count)} of {count}, {watch}", now, count)
+            work.count(f"frame {min(done + 1, count)} of {count}, {watch}", done, count)
 
-        on_progress(done)
+        show()
+        pictures_ = films.by_processes(cluster, scene, script, kept, work.cancelled, show)
         with suppress(Cancelled):
-            for _ in films_elsewhere.shoot(cluster, scene, script, kept, work.cancelled, on_progress, work.note):
-                pass
+            for done in films.write(script, pictures_, kept, work.note):  # noqa: B007 `show` tells it
+                show()
     return done
 
 

@@ -11,15 +11,15 @@ from pathlib import Path
 from rich.table import Table
 
 from tracer.experiments import counterexample, hunt
-from tracer.experiments.hunt import Search
-from tracer.frame import Frame, Settings
+from tracer.experiments.hunt import Hunt, Search
+from tracer.frame import Settings
 from tracer.geometry.world import World
 from tracer.scene.lights import number_of
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
-from viewer.cli.console import Work, last_of, print_table, titled, working
+from viewer.cli.console import Work, print_table, titled, working
 from viewer.services import counterexamples
 from viewer.state import flight
 from viewer.state.methods import NO_CULLING
@@ -84,18 +84,11 @@ def run(given: Namespace) -> int:
             counterexamples.check_folder(given.output)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method, NO_CULLING)
         world = World(scene, search.times[0], settings.accelerator, work.progress)
-        done = 0
-
-        def on_frame(label: str, frame: Frame) -> None:
-            nonlocal done
-            done += 1
-            work.count(label, done, search.frames)
-
-        work.count(f"frame 1 of {len(search.times)}", 0, search.frames)
-        found = last_of(hunt.run(scene, search, work.cancelled, world, on_frame))
+        search_run = Hunt(scene, search)
+        found = work.perform(search_run, world)
         whole = not work.stopped
         if not whole:
-            work.note(f"cancelled after {done} of {search.frames} pictures; the table is of these")
+            work.note(f"cancelled after {search_run.traced} of {search.frames} pictures; the table is of these")
         written = _write(found, scene, search, world, given, work) if given.output is not None else []
     if found.finds:
         print_table(_table(found, scene))

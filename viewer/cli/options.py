@@ -22,6 +22,7 @@ from tracer.scene.model import Scene
 from tracer.scene.things import things
 from tracer.setting import Setting, setting_of, settings_of
 from tracer.settings import Settings
+from tracer.similar import did_you_mean
 from viewer.cli.arguments import UPS, Parser, before, count, number, several, size, whole
 from viewer.cli.console import Work
 from viewer.services import stills
@@ -265,11 +266,23 @@ def add_setting(
         kept: dict[str, Any] = {"action": "store_const", "const": not one.default}
         help_ = f"do not {help_}" if one.default else help_
     else:
-        kept = {"type": parse or one.parse, "metavar": _METAVARS.get(one.kind, one.name.upper())}
+        kept = {"type": parse or _asking(one), "metavar": _METAVARS.get(one.kind, one.name.upper())}
         told = str(getattr(default, "value", default)) if one.choices or one.kind in (int, float) else one.text(default)
         told = f"as the {one.unset} says" if default is None else told.removesuffix(".0")
         help_ += f"{': ' if one.choices else ''}{', '.join(map(str, one.choices))} (default: {told})"
     parser.add_argument(one.option, dest=one.name, default=default, help=help_.replace("%", "%%"), **kept)
+
+
+def _asking(one: Setting) -> Callable[[str], Any]:
+    """Let a setting read its value, and ask what may have been meant where that is one of few."""
+
+    def parse(text: str) -> Any:
+        try:
+            return one.parse(text)
+        except ValueError as error:
+            raise ValueError(f"{error}{did_you_mean(text, map(str, one.choices))}") from None
+
+    return parse
 
 
 _METAVARS: dict[type, str] = {int: "N", float: "X"}

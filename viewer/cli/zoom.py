@@ -12,15 +12,15 @@ from pathlib import Path
 from rich.table import Table
 
 from tracer.experiments import zoom
-from tracer.experiments.zoom import Aim, Approach, Results
-from tracer.frame import Frame, Settings
+from tracer.experiments.zoom import Aim, Approach, Results, ZoomTest
+from tracer.frame import Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
-from viewer.cli.console import Work, last_of, print_table, titled, working
+from viewer.cli.console import Work, print_table, titled, working
 from viewer.output import exports
 from viewer.output.reports import (
     NEVER_WHOLE,
@@ -102,18 +102,10 @@ def run(given: Namespace) -> int:
         options.prepare_kernels(work, len(scene.lights), given.accelerator, zoom.METHOD)
         world = World(scene, time, settings.accelerator, work.progress)
         start = _aim(scene, settings, world, time, given, work)
-        frames, done = len(given.factors) * (given.steps + zoom.STILL_FRAMES), 0
-
-        def on_frame(factor: float, number: int, frame: Frame) -> None:
-            nonlocal done
-            done += 1
-            work.count(f"towards primitive {start.primitive}, zoom factor {factor:g}, step {number}", done, frames)
-
-        work.count(f"towards primitive {start.primitive}", 0, frames)
-        way = (given.factors, given.steps, given.ratio)
-        results = last_of(zoom.run(scene, settings, start, *way, work.cancelled, world, on_frame))
-        if done < frames:
-            work.note(f"cancelled after {done} of {frames} frames; the tables are of these")
+        test = ZoomTest(scene, settings, start, given.factors, given.steps, given.ratio)
+        results = work.perform(test, world)
+        if not test.whole:
+            work.note(f"cancelled after {test.traced} of {test.frames} frames; the tables are of these")
         failures = exports.write_files(results, wanted)
     for approach in results.approaches:
         print_table(_steps_table(approach))
@@ -122,7 +114,7 @@ def run(given: Namespace) -> int:
         say(f"primitive {results.primitive}: {NEVER_WHOLE}")
     if failures:
         raise OSError("; ".join(failures))
-    return 0 if done == frames else INTERRUPTED
+    return 0 if test.whole else INTERRUPTED
 
 
 def _aim(scene: Scene, settings: Settings, world: World, time: float, given: Namespace, work: Work) -> Aim:

@@ -14,7 +14,7 @@ from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,7 @@ from viewer.util.files import check_outputs, write_each, write_new, write_text, 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from viewer.output.film import Film
+    from viewer.output.filmstrip import Filmstrip
 
 Results = experiment.Results | lamp_experiment.LampResults | zoom.Results
 
@@ -45,14 +45,19 @@ def write(results: Results, path: Path, kind: str = "") -> None:
     Raises OSError in one line, and ValueError where there is nothing to plot."""
     kind = kind or ENDINGS[path.suffix]
     if kind == "json":
-        write_text(path, json.dumps(results.to_dict() | {"version": program_version()}))
+        write_json(path, results.to_dict())
     elif kind == "csv":
         write_csv(path, *reports.table_of(results))
     else:
         _plot(lambda: _figure(results), path)
 
 
-def write_film(film: Film, results: zoom.Results, path: Path) -> None:
+def write_json(path: Path, figures: Mapping[str, Any]) -> None:
+    """Write figures, and which version of the program found them; raises OSError in one line."""
+    write_text(path, json.dumps(dict(figures) | {"version": program_version()}))
+
+
+def write_film(film: Filmstrip, results: zoom.Results, path: Path) -> None:
     """Write the filmstrip of a zoom test, as a picture; raises as `write`."""
 
     def draw() -> Figure:

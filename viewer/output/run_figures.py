@@ -15,7 +15,7 @@ from matplotlib.ticker import FuncFormatter, LogFormatter, MaxNLocator, NullLoca
 from tracer.experiments import zoom
 from tracer.experiments.experiment import REFERENCE, Results, Row, table
 from viewer.output.figures import COLORS, DASHES, MARKS, SIZE, bare, label_right, look, page, styled
-from viewer.output.film import Film, Shot
+from viewer.output.filmstrip import Filmstrip, Shot
 from viewer.output.reports import (
     NEVER_WHOLE,
     WRONG_PIXELS,
@@ -238,7 +238,7 @@ COLUMNS = 8
 
 
 @styled
-def film_figure(film: Film, results: zoom.Results) -> Figure:
+def film_figure(film: Filmstrip, results: zoom.Results) -> Figure:
     """Draw up to COLUMNS recorded pictures of each factor's way, as the paper's Figure 4.
 
     The steps are the same for all: those where something happens first.

@@ -21,14 +21,14 @@ from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
 from viewer.services.editing import Editing
-from viewer.services.film_controller import FilmController
+from viewer.services.film import Films
 from viewer.services.frame_history import FrameHistory, FrameNavigator
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
-from viewer.services.hunt_controller import HuntController
+from viewer.services.hunts import Hunts
 from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
 from viewer.services.origin_pixels import OriginFinder
-from viewer.services.picture_controller import PictureController
+from viewer.services.pictures import Pictures
 from viewer.services.pixel_inspector import PixelInspector
 from viewer.services.presets import Presets
 from viewer.services.preview import Preview
@@ -37,7 +37,7 @@ from viewer.services.ray_inspector import RayInspector
 from viewer.services.recipes import Recipes
 from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
-from viewer.services.run_controller import RunController
+from viewer.services.runs import Runs
 from viewer.services.scene_loader import Arrival, SceneLoader
 from viewer.services.scene_table import SceneTable
 from viewer.services.scene_watcher import SceneWatcher
@@ -68,7 +68,7 @@ class Controller:
         self.history = FrameHistory(session)
         self.selection = selection = Selection(session, lambda: self.frame)
         self.captures = captures = CaptureService(session, preferences, notices, wake)
-        self.runs = runs = RunController(
+        self.runs = runs = Runs(
             session, selection, renderer, preferences, notices, captures, wake, lambda: self.editing.under_way
         )
         self.baseline = Baseline(renderer)
@@ -96,10 +96,10 @@ class Controller:
         self.questions = questions = Questions(runs, captures, wake)
         self.loader = loader = SceneLoader(session, preferences, notices, questions.before_opening, wake)
         self.preview = Preview(session, loader, motion, notices, wake)
-        self.recipes = recipes = Recipes(session, preferences, scheduler, loader, notices)
-        self.films = FilmController(session, preferences, runs, recipes, bookmarks, notices, wake)
-        self.pictures = PictureController(session, preferences, runs, recipes, notices, wake)
-        self.hunts = HuntController(session, preferences, runs, navigator, recipes, notices, wake)
+        self.recipes = recipes = Recipes(session, preferences, scheduler, self.history, loader, notices)
+        self.films = Films(session, preferences, runs, recipes, bookmarks)
+        self.pictures = Pictures(session, preferences, runs, recipes, notices, wake)
+        self.hunts = Hunts(session, preferences, runs, navigator, recipes, notices)
         self.watcher = SceneWatcher(preferences, lambda: loader.files, self._may_reload, loader.reload_changed, wake)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last
@@ -148,8 +148,8 @@ class Controller:
             self.session.change(camera=flown)
         self.notices.say(f"{arrival.text}. {said}" if said else arrival.text)
 
-    def take_frame(self) -> Frame | None:
-        """Take the newest frame, of a run that is under way or else as it was asked for; returns it, once."""
+    def take_frame(self) -> None:
+        """Take the newest frame, of a run that is under way or else as it was asked for."""
         for complaint in self.renderer.take_complaints():
             self.notices.report(complaint)
         failed = self.renderer.take_failure()
@@ -164,17 +164,14 @@ class Controller:
             self.scheduler.show(run.picture)
             frame = run.picture.frame
         else:
-            newest, learnt = self.scheduler.take(), self.renderer.take_learnt()
-            for traced in learnt:
-                self.scheduler.learnt.add(traced.frame)
-            self.history.take(learnt, newest, self.drawn_seconds)
+            newest = self.scheduler.take()
+            self.history.take(self.renderer.take_learnt(), newest, self.drawn_seconds)
             if newest is None:
-                return None
+                return
             frame = newest.frame
         self.reloaded = False
         self.motion.look_around(frame)
         self.selection.refresh(frame)
-        return frame
 
     def move(self) -> None:
         """Bring time and camera to where they should be now."""

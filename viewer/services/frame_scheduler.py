@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from tracer.experiments.runner import Run
 from tracer.frame import Frame, Settings
 from tracer.method import Method
 from tracer.one_light import with_light
@@ -21,8 +22,7 @@ from viewer.services.frame_budget import AT_ONCE, FrameBudget, Plan, divided
 from viewer.services.refinement import LampSamples, Refinement
 from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.render_thread import RenderThread
-from viewer.services.runs import Run
-from viewer.state.learnt import Learnt
+from viewer.services.runs import missing_in, shown_of
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.preferences import Preferences
 from viewer.state.readings import can_draw, records_fates, records_lights
@@ -75,7 +75,6 @@ class FrameScheduler:
         self.budget = budget or FrameBudget()
         self.refinement = Refinement()
         self.lamps = LampSamples(session)
-        self.learnt = Learnt()
         self._serial = 0
         self._frozen: FrozenFrame | None = None
         self._refines = False  # whether the last frame was asked for to refine what is known
@@ -137,7 +136,6 @@ class FrameScheduler:
         if not same:
             self.traced = None
         self._asked = None
-        self.learnt.confuse()
         self.refinement.forget()
         self.trace_once_more()
 
@@ -152,7 +150,6 @@ class FrameScheduler:
 
     def forget_modes(self) -> None:
         """Note that nothing is known about shadows any more."""
-        self.learnt.forget()
         self.refinement.forget()
         self.trace_once_more()
 
@@ -408,8 +405,8 @@ class FrameScheduler:
         view, wanted, run = self.drawn_view, self._session.draw.view, self.inputs.run
         title = f"{view.label}, light {self._session.light_number}" if view.of_light else view.label
         if run is not None:
-            lacks = wanted is not view and run.lacks(wanted)
-            return f"{run.showing}   {title}{f' (this run {lacks})' if lacks else ''}"
+            lacks = wanted is not view and missing_in(run, wanted)
+            return f"{shown_of(run)}   {title}{f' (this run {lacks})' if lacks else ''}"
         if wanted is view:
             return title
         settings = self.settings

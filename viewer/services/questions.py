@@ -8,11 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from viewer.output.exports import ENDINGS
+from tracer.experiments.runner import Run
 from viewer.services.capture_service import CaptureService
 from viewer.services.jobs import Job
-from viewer.services.run_controller import RunController
-from viewer.services.runs import Run
+from viewer.services.runs import Runs
 
 _KEPT = "They are kept, and can still be saved from its panel."
 _SAVED = "Their figures, table and plot can be saved beside the pictures."
@@ -34,7 +33,7 @@ class Question:
 class Questions:
     """`question` is the one to be answered now; a newer one takes its place."""
 
-    def __init__(self, runs: RunController, captures: CaptureService, wake: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, runs: Runs, captures: CaptureService, wake: Callable[[], None] = lambda: None) -> None:
         self._runs, self._captures, self._wake = runs, captures, wake
         self.question: Question | None = None
         self._leave: Callable[[], None] | None = None  # how to quit once the run's results are written
@@ -64,7 +63,7 @@ class Questions:
 
         self.question = Question(
             f"Stop the {run.name} and open {name}?",
-            f"{_so_far(run)} {_KEPT if run.endings else _WRITTEN}",
+            f"{_so_far(run)} {_KEPT if self._runs.exports_of(run) else _WRITTEN}",
             (("Keep running", _nothing), ("Stop and open", stop)),
         )
         self._wake()
@@ -80,10 +79,11 @@ class Questions:
             self._runs.stop()
             self._leave, self._run, self._files = leave, run, None
 
+        saving = [("Save and quit", save)] if self._runs.exports_of(run) else []
         self.question = Question(
             f"Stop the {run.name} and quit?",
-            f"{_so_far(run)} {_SAVED if run.endings else _WRITTEN}",
-            (("Keep running", _nothing), *((("Save and quit", save),) if run.endings else ()), ("Quit", leave)),
+            f"{_so_far(run)} {_SAVED if saving else _WRITTEN}",
+            (("Keep running", _nothing), *saving, ("Quit", leave)),
         )
         self._wake()
 
@@ -116,7 +116,7 @@ class Questions:
             return
         if self._files is None:
             before = len(self._captures.saving)
-            for ending in ENDINGS if run.results is not None else ():
+            for ending in self._runs.exports_of(run):
                 self._runs.export(run, ending)
             self._files = self._captures.saving[before:]
         elif all(job.done for job in self._files):

@@ -10,6 +10,7 @@ from tracer.frame import Frame, Settings
 from tracer.scene.edits import NO_EDITS
 from viewer.output import commands
 from viewer.output.commands import BUILT, cannot_come_back, needs_history
+from viewer.services.frame_history import FrameHistory
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
@@ -26,9 +27,15 @@ class Recipes:
     """See the module."""
 
     def __init__(
-        self, session: Session, preferences: Preferences, tracing: FrameScheduler, loader: SceneLoader, notices: Notices
+        self,
+        session: Session,
+        preferences: Preferences,
+        scheduler: FrameScheduler,
+        history: FrameHistory,
+        loader: SceneLoader,
+        notices: Notices,
     ) -> None:
-        self._session, self._preferences, self._scheduler = session, preferences, tracing
+        self._session, self._preferences, self._scheduler, self._history = session, preferences, scheduler, history
         self._loader, self._notices = loader, notices
 
     def of(self, frame: Frame, view: View, legend: bool | None = None) -> ViewState | None:
@@ -50,7 +57,7 @@ class Recipes:
         )  # fmt: skip
         if not needs_history(state):
             return state
-        why, repeats = cannot_come_back(frame.settings, draw), self._scheduler.learnt.repeats(frame)
+        why, repeats = cannot_come_back(frame.settings, draw), self._history.repeats_of(frame)
         if why or repeats is None:
             return state.with_warmup(unknown=why or UNKNOWN)
         return state.with_warmup(repeats=repeats)

@@ -1,313 +1,98 @@
-"""Experiments and zoom tests in the window: what `shadowcull bench` and `zoom` do, while one watches.
+"""Runs in the window: experiments, zoom tests and whatever else traces many frames, one at a time.
 
-A `Run` is a task of the render thread: it has renderers, and so modes, of its own, and shares the
-scene's world, so that no frame is traced beside it.  Meanwhile the window shows its frames as its
-picture.  What has come of it is there at any moment, and stays when it is stopped.
+A run has the render thread to itself: it shares the scene's world, and has renderers, and so modes, of its own.  Its
+frames are the picture meanwhile.  What the user would change of the picture is refused, in one line that says how to
+stop the run.
 """
 
 from __future__ import annotations
 
 import math
-import threading
-import time
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
-from dataclasses import replace
-from datetime import datetime
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from datetime import date
+from functools import partial
 from pathlib import Path
-from typing import Generic, TypeVar, cast
+from typing import Protocol, cast
 
 from tracer.experiments import experiment, zoom
-from tracer.frame import Frame, Settings
+from tracer.experiments.experiment import Experiment
+from tracer.experiments.hunt import Hunt
+from tracer.experiments.runner import STARTING, Run
+from tracer.experiments.zoom import Step, ZoomTest
 from tracer.method import in_order
 from tracer.renderer import Renderer
-from tracer.scene.edits import Origin
-from tracer.scene.model import Cancelled, Scene
+from tracer.scene.model import Camera, Scene
+from tracer.settings import Settings
 from viewer.output import exports
-from viewer.output.film import Film
-from viewer.services.render_request import Traces
+from viewer.output.filmstrip import Filmstrip
+from viewer.services.capture_service import CaptureService
+from viewer.services.render_request import RenderRequest, Task, Traced, Traces
+from viewer.services.selection import Selection
+from viewer.state.methods import BY_MODES, CERTIFIED
+from viewer.state.notices import Notices
 from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.util.messages import Failure, failure
-from viewer.util.time_left import TimeLeft
+from viewer.util.messages import failure
+from viewer.util.numbers import several
 
 LONGEST_SIDE = 4096
-"""Pixels of a run's pictures: it traces many."""
-
-SEEN_WITHIN = 1.0
-"""Seconds that a frame of a zoom test waits, at most, to be drawn before the next is traced."""
-
-STARTING = "starting"
-"""The label of a run before its first frame."""
-
-Results = TypeVar("Results")
+"""Pixels of a run's pictures, of which there are many."""
 
 
-class Run(ABC, Generic[Results]):
-    """Long tracing under way, or what is left of it.
+class FileRun(Run[Path]):
+    """A run whose results are the files that it writes as it traces.  Its frames are the picture in the view in which
+    they are drawn, or not at all where that is None."""
 
-    `results` is a copy that nothing changes any more, None before the first whole frame; `frames` is
-    how many there are to trace, `traced` how many have been; `label` says which was the last of them,
-    `label_shown` which is shown; `failure` is why it ended early; `began` is the time of day.  The scene is let go
-    at the end; `scene_path` stays.
-    """
+    view: View | None = None
 
-    name = "run"
-    endings: tuple[str, ...] = tuple(exports.ENDINGS)
-    """Of the files that its results can be saved as."""
 
-    def __init__(self, scene: Scene, frames: int, wake: Callable[[], None] = lambda: None) -> None:
-        self.scene_path = scene.path
-        self._scene: Scene | None = scene
-        self._origin = Origin(scene)
-        self.began = datetime.now()
-        self.frames = frames
-        self.traced = 0
-        self.label = self.label_shown = STARTING
-        self.results: Results | None = None
-        self.failure: Failure | None = None
-        self.seconds = 0.0
-        self.stopping = False
-        self._left = TimeLeft()
-        self._wake = wake
-        self._lock = threading.Lock()
-        self._shown: tuple[Frame, str] | None = None
-        self._seen = threading.Event()
-        self._done = threading.Event()
+class RecordedZoomTest(ZoomTest):
+    """A zoom test that keeps the picture of each step."""
 
-    @property
-    def done(self) -> bool:
-        return self._done.is_set()
+    def __init__(
+        self, scene: Scene, settings: Settings, start: zoom.Aim, factors: Sequence[float], steps: int, ratio: float
+    ) -> None:
+        self.filmstrip = Filmstrip()
+        super().__init__(scene, settings, start, factors, steps, ratio, self.filmstrip.record)
 
-    @property
-    def whole(self) -> bool:
-        """Whether it went on to its end."""
-        return self.done and self.failure is None and self.traced == self.frames
 
-    @property
-    def showing(self) -> str:
-        """Which of its frames is the picture, in words, or that none has been yet."""
-        return f"showing {self.label_shown}" if self.is_shown else f"the {self.name} is starting"
-
-    @property
-    def is_shown(self) -> bool:
-        """Whether the picture is one of its frames."""
-        return self.label_shown != STARTING
-
-    @property
-    def verifies(self) -> bool:
-        """Whether its frames know which answers are wrong."""
-        return True
-
-    def lacks(self, view: View) -> str:
-        """Why frames of this run cannot be seen in a view that needs more of them, in words; else nothing."""
-        if view.needs_work:
-            return "does not count the rays of each pixel"
-        if view.needs_lights:
-            return "does not record which samples of lights reach each pixel"
-        if view.needs_fates:
-            return "does not record what becomes of the shadow rays of each pixel"
-        return "does not verify" if view.needs_verify and not self.verifies else ""
-
-    def is_of(self, scene: Scene | None) -> bool:
-        """Whether it is (or was) made in this scene, as it was read and edited then."""
-        return self._origin.is_of(scene)
-
-    def made_in(self, scene: Scene | None) -> str:
-        """In which scene it was made, in words, where that is not the one that is open."""
-        if scene is not None and Path(scene.path) == self.scene_path:
-            return f"in {self.scene_path.name} as it was before it was edited, or read again"
-        return f"in {self.scene_path.name}; open that scene again to go there"
-
-    @property
-    def done_of(self) -> tuple[int, int]:
-        """Frames that the results are of, and how many they are to be of."""
-        return self.traced, self.frames
-
-    @property
-    def where(self) -> str:
-        """Where it has written what it has made, in words; nothing where that is saved when asked for."""
+def missing_in(run: Run, view: View) -> str:
+    """Why frames of a run cannot be seen in a view, in words; nothing where they can."""
+    if isinstance(run, FileRun) and run.view is None:
+        return "is traced beside it"
+    if isinstance(run, FileRun) and run.view is view:
         return ""
-
-    @property
-    def fraction(self) -> float:
-        return self.traced / self.frames
-
-    @property
-    def seconds_left(self) -> float | None:
-        """An estimate from the frames so far; None before there are any."""
-        return self._left.seconds()
-
-    def stop(self) -> None:
-        """End it after the last whole frame."""
-        self.stopping = True
-        self._seen.set()
-
-    def take(self) -> Frame | None:
-        """The newest frame to be shown, once."""
-        with self._lock:
-            shown, self._shown = self._shown, None
-        self._seen.set()
-        if shown is None:
-            return None
-        frame, self.label_shown = shown
-        return frame
-
-    def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
-        """Do it, on the render thread."""
-        assert self._scene is not None, "a run is done once"
-        began = time.monotonic()
-        self._left.mark(0, self.frames)
-        try:
-            for results in self._steps(self._scene, cast(Renderer, renderer), lambda: self.stopping or cancelled()):
-                self.results = self._copy(results)
-                self._wake()
-        except Cancelled:
-            pass
-        except Exception as error:
-            self.failure = failure(error, f"the {self.name} failed")
-        finally:
-            self.seconds = time.monotonic() - began
-            self._scene = None
-            self._done.set()
-            self._wake()
-
-    def _count(self, label: str) -> None:
-        """One more frame has been traced."""
-        self.traced += 1
-        self.label = label
-        self._left.mark(self.traced, self.frames)
-
-    def _show(self, frame: Frame, wait: bool) -> None:
-        self._seen.clear()
-        with self._lock:
-            self._shown = frame, self.label
-        self._wake()
-        if wait and not self.stopping:
-            self._seen.wait(SEEN_WITHIN)
-
-    @abstractmethod
-    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[Results]: ...
-
-    def _copy(self, results: Results) -> Results:
-        """Results that nothing changes any more; as they are where nothing does."""
-        return results
-
-    @abstractmethod
-    def write(self, results: Results, path: Path) -> None:
-        """Results of this run as one of `exports.ENDINGS`; raises OSError or ValueError in one line."""
+    if view.needs_work:
+        return "does not count the rays of each pixel"
+    if view.needs_lights:
+        return "does not record which samples of lights reach each pixel"
+    if view.needs_fates:
+        return "does not record what becomes of the shadow rays of each pixel"
+    return "does not verify" if view.needs_verify and not run.verifies else ""
 
 
-class Experiment(Run[experiment.Results]):
-    """A path of frames by several methods; the frames of the method `shown` are the picture.
-
-    Raises ValueError for a method that does not exist or a size out of range.
-    """
-
-    name = "experiment"
-
-    def __init__(
-        self, scene: Scene, settings: Settings, plan: ExperimentPlan, wake: Callable[[], None] = lambda: None
-    ) -> None:
-        _check_size(plan.size)
-        self.methods = experiment.with_reference(in_order(plan.methods))
-        self.times = experiment.path_times(scene, plan.frames)
-        self.settings = replace(
-            settings,
-            width=plan.size[0],
-            height=plan.size[1],
-            depth=plan.depth,
-            verify=plan.verify,
-            samples=1,
-            accelerator=plan.accelerator,
-            certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
-        ).validated()
-        self.shown = self.methods[-1]
-        super().__init__(scene, len(self.methods) * len(self.times), wake)
-
-    @property
-    def verifies(self) -> bool:
-        return self.settings.verify
-
-    @property
-    def done_of(self) -> tuple[int, int]:
-        return len(self.results.frames) if self.results is not None else 0, len(self.times)
-
-    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[experiment.Results]:
-        def on_frame(number: int, method: str, frame: Frame) -> None:
-            self._count(f"frame {number + 1} of {len(self.times)}, {method}")
-            if method == self.shown:
-                self._show(frame, wait=False)
-
-        return experiment.run(scene, self.settings, self.methods, self.times, cancel=cancelled, on_frame=on_frame)
-
-    def _copy(self, results: experiment.Results) -> experiment.Results:
-        methods = {
-            method: {name: list(values) for name, values in figures.items()}
-            for method, figures in results.methods.items()
-        }
-        return replace(results, frames=list(results.frames), methods=methods)
-
-    def write(self, results: experiment.Results, path: Path) -> None:
-        exports.write(results, path)
+def shown_of(run: Run) -> str:
+    """Which frame of a run is the picture, in words."""
+    return f"showing {run.label_shown}" if run.label_shown != STARTING else f"the {run.name} is starting"
 
 
-class ZoomTest(Run[zoom.Results]):
-    """Towards a primitive; every frame is the picture once, and kept in `film`.
-
-    Raises ValueError for factors or a size that are none."""
-
-    name = "zoom test"
-
-    def __init__(
-        self,
-        scene: Scene,
-        settings: Settings,
-        start: zoom.Aim,
-        plan: ZoomPlan,
-        wake: Callable[[], None] = lambda: None,
-    ) -> None:
-        _check_size(plan.size)
-        self.start, self.plan = start, replace(plan)
-        self.factors = parse_factors(plan.factors)
-        self.film = Film()
-        self.settings = replace(settings, width=plan.size[0], height=plan.size[1]).validated()
-        super().__init__(scene, len(self.factors) * (plan.steps + zoom.STILL_FRAMES), wake)
-
-    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[zoom.Results]:
-        last = self.plan.steps + zoom.STILL_FRAMES - 1
-
-        def on_frame(factor: float, number: int, frame: Frame) -> None:
-            self.film.record(factor, number, frame)
-            self._count(f"zoom factor {factor:g}, step {number} of {last}")
-            self._show(frame, wait=True)
-
-        return zoom.run(
-            scene,
-            self.settings,
-            self.start,
-            self.factors,
-            self.plan.steps,
-            self.plan.ratio,
-            cancel=cancelled,
-            world=renderer.world,
-            on_frame=on_frame,
-        )
-
-    def _copy(self, results: zoom.Results) -> zoom.Results:
-        return replace(results, approaches=[replace(a, steps=list(a.steps)) for a in results.approaches])
-
-    def write(self, results: zoom.Results, path: Path) -> None:
-        exports.write(results, path)
-
-    def write_film(self, results: zoom.Results, path: Path) -> None:
-        """The filmstrip as a picture; raises OSError in one line, and ValueError where no step is done."""
-        exports.write_film(self.film, results, path)
-
-
-def _check_size(size: tuple[int, int]) -> None:
-    if max(size) > LONGEST_SIDE:
-        raise ValueError(f"{size[0]} x {size[1]} is too large for a run; {LONGEST_SIDE} pixels a side at most")
+def described(run: Experiment | ZoomTest, scene: Scene | None) -> tuple[str, bool]:
+    """Scene, size, what was done, and when it began, of a run's results; and whether they are of another scene than the
+    one that is open, or of what that was before: this is said first."""
+    name, elsewhere = run.scene_path.name, not run.is_of(scene)
+    if elsewhere and scene is not None:
+        same = Path(scene.path) == run.scene_path
+        name += " before it was edited or reloaded" if same else f" (not {Path(scene.path).name}, which is open)"
+    done, of = run.done_of
+    frames = several(of, "frame") if done == of else f"{done} of {several(of, 'frame')}"
+    what = f"towards primitive {run.start.primitive}" if isinstance(run, ZoomTest) else frames
+    what += "" if isinstance(run, ZoomTest) else f", {run.settings.accelerator}"
+    when = f"{run.began:%H:%M}" if run.began.date() == date.today() else f"{run.began:%Y-%m-%d %H:%M}"
+    return f"{name}, {run.settings.width} x {run.settings.height}, {what}, begun {when}", elsewhere
 
 
 def duration(seconds: float) -> str:
@@ -316,3 +101,223 @@ def duration(seconds: float) -> str:
         return f"{seconds:.0f} s"
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d} h"
+
+
+def check_size(size: tuple[int, int]) -> None:
+    """Raise ValueError, in one line, for pictures that are too large for a run."""
+    if max(size) > LONGEST_SIDE:
+        raise ValueError(f"{size[0]} x {size[1]} is too large for a run; {LONGEST_SIDE} pixels a side at most")
+
+
+class Performs(Protocol):
+    """The part of `RenderThread` that is used here."""
+
+    def perform(self, task: Task) -> None: ...
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A run as the render thread does it; what goes wrong is kept in the run."""
+
+    run: Run
+    wake: Callable[[], None]
+
+    def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
+        world = getattr(cast(Renderer, renderer), "world", None)
+        with suppress(Exception):
+            for _ in self.run.each(world, cancelled, self.wake):
+                pass
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What has become of the run since it was last asked: a frame that is to be the picture, and whether it ended."""
+
+    picture: Traced | None = None
+    ended: bool = False
+
+
+class Runs:
+    """`experiment` and `zoom_test` are the last of their kind: under way, done or stopped; `current` is under way."""
+
+    def __init__(
+        self,
+        session: Session,
+        selection: Selection,
+        renderer: Performs,
+        preferences: Preferences,
+        notices: Notices,
+        files: CaptureService,
+        wake: Callable[[], None] = lambda: None,
+        edited: Callable[[], bool] = lambda: False,
+    ) -> None:
+        """Nothing begins while `edited()`: the scene is being edited, and the next picture is of another."""
+        self._edited = edited
+        self._session, self._selection, self._renderer = session, selection, renderer
+        self._preferences, self._notices, self._files, self._wake = preferences, notices, files, wake
+        self.experiment_plan = ExperimentPlan({BY_MODES, CERTIFIED})
+        self.zoom_plan = ZoomPlan()
+        self.experiment: Experiment | None = None
+        self.zoom_test: RecordedZoomTest | None = None
+        self.current: Run | None = None
+
+    # --- start and stop ---------------------------------------------------------------------------
+
+    def refuses(self) -> bool:
+        """Whether a run is under way that must not be disturbed; says so."""
+        if self.current is None or self.current.stopping:
+            return False
+        self._notices.say(f"the {self.current.name} is still under way; stop it first")
+        return True
+
+    def start(self, make: Callable[[Scene], Run]) -> bool:
+        """Begin what `make` returns for the open scene; says why where that cannot be, as where it raises an error."""
+        scene = self._session.scene
+        if self.current is not None:
+            self._notices.say(f"the {self.current.name} is still under way")
+        elif scene is None:
+            self._notices.say("open a scene first")
+        elif self._edited():
+            self._notices.say("the scene is being edited; start again when the picture shows it")
+        else:
+            try:
+                run = make(scene)
+            except (ValueError, OSError) as error:
+                self._notices.say(str(error), error=True)
+                return False
+            run.watches = True
+            self.current = run
+            self._session.playing = False
+            self._renderer.perform(_Task(run, self._wake))
+            return True
+        return False
+
+    def stop(self) -> None:
+        """End the run that is under way after its last whole frame, and keep what it has."""
+        if self.current is not None:
+            self.current.stop()
+
+    def take_progress(self) -> Progress:
+        """Take what has become of the run since the last time, and report one that has ended."""
+        run = self.current
+        if run is None:
+            return Progress()
+        done = run.done  # before its last frame is taken: none comes after
+        frame = run.take()
+        if done:
+            self.current = None
+            self._report(run)
+        if frame is None or run.stopping or not run.is_of(self._session.scene):
+            return Progress(ended=done)
+        request = RenderRequest(frame.time, frame.camera, frame.settings)
+        return Progress(Traced(request, frame, frame.statistics), done)
+
+    def _report(self, run: Run) -> None:
+        where = f", in {run.output}" if run.output is not None else ""
+        done, frames = run.done_of
+        if run.error is not None:
+            self._notices.report(failure(run.error, f"the {run.name} failed"))
+        elif run.whole:
+            self._notices.say(f"{run.name} done: {several(frames, 'frame')} in {duration(run.seconds)}{where}")
+        else:
+            kept = "" if run.results is None else f"; what was done is kept{where}"
+            self._notices.say(f"{run.name} stopped after {done} of {frames} frames{kept}")
+
+    # --- experiments and zoom tests ---------------------------------------------------------------
+
+    def start_experiment(self) -> None:
+        """Begin what `experiment_plan` says, over the open scene's path."""
+
+        def make(scene: Scene) -> Run:
+            plan = self.experiment_plan
+            check_size(plan.size)
+            settings = replace(
+                self._session.settings, width=plan.size[0], height=plan.size[1], depth=plan.depth, verify=plan.verify,
+                samples=1, accelerator=plan.accelerator,
+                certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
+            )  # fmt: skip
+            times = experiment.path_times(scene, plan.frames)
+            self.experiment = Experiment(scene, settings, in_order(plan.methods), times)
+            return self.experiment
+
+        self.start(make)
+
+    def start_zoom_test(self) -> None:
+        """Go towards the selected primitive, from where the picture shows it or, so planned, from the last start."""
+
+        def make(scene: Scene) -> Run:
+            plan = self.zoom_plan
+            check_size(plan.size)
+            settings = replace(self._session.settings, width=plan.size[0], height=plan.size[1]).validated()
+            way = self._start_of_zoom_test(), parse_factors(plan.factors), plan.steps, plan.ratio
+            self.zoom_test = RecordedZoomTest(scene, settings, *way)
+            return self.zoom_test
+
+        self.start(make)
+
+    def _start_of_zoom_test(self) -> zoom.Aim:
+        frame, selected = self._selection.frame, self._selection.picked
+        last = self.last_start if self.zoom_plan.same_start else None
+        if last is not None:
+            return last
+        if frame is None:
+            raise ValueError("there is no picture yet")
+        if selected is None:
+            raise ValueError("click a primitive in the picture first: the zoom test goes towards it")
+        if selected.dynamic:
+            raise ValueError(f"primitive {selected.primitive} moves, and is never culled: choose one that does not")
+        return zoom.aim(frame, selected.primitive)
+
+    @property
+    def last_start(self) -> zoom.Aim | None:
+        """Where the last zoom test began; None where that was in another scene, or another primitive is selected."""
+        test, selected = self.zoom_test, self._selection.picked
+        if test is None or not test.is_of(self._session.scene):
+            return None
+        return test.start if selected is None or selected.primitive == test.start.primitive else None
+
+    def go_to(self, step: Step) -> Camera | None:
+        """Set the time of the zoom test, and return the camera of one of its steps; the next test starts where that one
+        did.  None, and one line, where that cannot be."""
+        test, session = self.zoom_test, self._session
+        if test is None or test.results is None or self.refuses():
+            return None
+        if not test.is_of(session.scene):
+            self._notices.say(f"this test was made {test.made_in(session.scene)}")
+            return None
+        session.playing = False
+        session.change(time=test.results.time)
+        self.zoom_plan.same_start = True
+        return step.camera
+
+    # --- results as files -------------------------------------------------------------------------
+
+    def exports_of(self, run: Run) -> dict[str, Callable[[Path], None]]:
+        """What can be saved of a run now, by the endings of files."""
+        results, scene = run.results, self._session.scene
+        if results is None:
+            return {}
+        if isinstance(run, Hunt):
+            if scene is None or not run.is_of(scene):
+                return {}
+            return {".json": lambda path: exports.write_json(path, results.to_dict(scene))}
+        if isinstance(run, Experiment | ZoomTest):
+            return dict.fromkeys(exports.ENDINGS, partial(exports.write, results))
+        return {}
+
+    def export(self, run: Run, ending: str) -> None:
+        """Write the results, as one of `exports_of`, into the folder of the pictures."""
+        self._export(run, ending, self.exports_of(run).get(ending))
+
+    def export_filmstrip(self, test: RecordedZoomTest) -> None:
+        """Write the filmstrip of a zoom test into that folder, as a picture."""
+        results = test.results
+        if results is not None:
+            self._export(test, ".png", lambda path: exports.write_film(test.filmstrip, results, path), "-film")
+
+    def _export(self, run: Run, ending: str, write: Callable[[Path], None] | None, what: str = "") -> None:
+        if write is None:
+            self._notices.say("there is nothing to save yet")
+            return
+        folder, name = self._preferences.picture_folder, f"{run.scene_path.stem}-{run.name.replace(' ', '-')}{what}"
+        self._files.write(lambda: exports.save(folder, name, ending, write))

@@ -21,15 +21,13 @@ import glfw  # isort: skip
 
 NEEDED = (3, 3)
 NO_OPENGL = (
-    "no window can be opened, as this display gives no OpenGL 3.3{instead}; without one, use: shadowcull render SCENE "
-    "-o out.png"
+    "no window can be opened, as this display gives no OpenGL 3.3; without one, use: shadowcull render SCENE -o out.png"
 )
 PATIENCE = 15.0
 """Seconds for a driver that was reset to come back."""
 RETRY_SECONDS = 0.5
 MOST_LOSSES, LOSS_SECONDS = 4, 60.0
 """So many losses in so many seconds are too many to go on."""
-_GL_RENDERER, _GL_VERSION = 0x1F01, 0x1F02
 _RESET = "the graphics driver was reset"
 _CAUSES = {  # by GL_KHR_robustness
     0x8253: f"{_RESET}, as something that the window drew took too long",
@@ -53,14 +51,14 @@ def open_window(run: Callable[[], None], is_open: Callable[[], bool], patience: 
         if is_open():
             raise
         if not _gives_window(robust=False):  # Hello ImGui would say on standard error, once more, that it failed
-            raise OSError(NO_OPENGL.format(instead=_available_opengl())) from error
+            raise OSError(NO_OPENGL) from error
     _set_context_hints(robust=False)
     try:
         run()
     except RuntimeError as error:
         if is_open():
             raise
-        raise OSError(NO_OPENGL.format(instead="")) from error
+        raise OSError(NO_OPENGL) from error
 
 
 def _set_context_hints(robust: bool) -> bool:
@@ -94,27 +92,6 @@ def _hidden_window() -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", glfw.GLFWError)
         return glfw.create_window(64, 64, "", None, None) or None
-
-
-def _available_opengl() -> str:
-    """Return what the display does give, as a half-sentence after a comma; "" where that is nothing."""
-    if not _set_context_hints(robust=False):
-        return ""
-    window = _hidden_window()
-    if window is None:
-        return ""
-    glfw.make_context_current(window)
-    try:
-        address = glfw.get_proc_address("glGetString")
-        if not address:
-            return ""
-        prototype: Any = ctypes.CFUNCTYPE(ctypes.c_char_p, ctypes.c_uint)
-        get_string = prototype(address)
-        version, by = ((get_string(name) or b"").decode(errors="replace") for name in (_GL_VERSION, _GL_RENDERER))
-        return f", but {version} by {by}" if version else ""
-    finally:
-        glfw.make_context_current(None)  # type: ignore[arg-type]
-        glfw.destroy_window(window)
 
 
 def _reset_status() -> Callable[[], int]:

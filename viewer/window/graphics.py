@@ -8,6 +8,7 @@ from dataclasses import replace
 import moderngl
 
 from viewer.services.controller import Controller
+from viewer.services.runs import missing_in
 from viewer.state.missing import missing
 from viewer.state.parts import parts_of
 from viewer.state.preview_geometry import PreviewGeometry
@@ -19,7 +20,7 @@ from viewer.window.display import Compared, Display, InWindow
 from viewer.window.magnifier import Magnifier
 from viewer.window.panels import legend, savings
 from viewer.window.preview import PreviewDisplay
-from viewer.window.shots import Shots
+from viewer.window.texture_cache import TextureCache
 from viewer.window.ui import CaptureKind, Ui
 
 PREVIEW_UPLOAD_SECONDS = 0.01
@@ -29,7 +30,7 @@ PREVIEW_UPLOAD_SECONDS = 0.01
 def make(ui: Ui) -> None:
     """Make all that a new context needs."""
     ui.graphics.display = Display()
-    ui.graphics.shots = Shots(ui.graphics.display.context)
+    ui.graphics.textures = TextureCache(ui.graphics.display.context)
     ui.graphics.compared = Compared(ui.graphics.display.context)
     ui.graphics.magnifier = Magnifier(ui.graphics.display.context)
     ui.graphics.renderer_name = ui.graphics.display.context.info["GL_RENDERER"]
@@ -39,10 +40,10 @@ def release(ui: Ui) -> None:
     """Free all of it, before the context goes."""
     release_preview(ui)
     gl = ui.graphics
-    for part in (gl.compared, gl.magnifier, gl.display, gl.shots):
+    for part in (gl.compared, gl.magnifier, gl.display, gl.textures):
         if part is not None:
             part.release()
-    gl.compared = gl.magnifier = gl.display = gl.shots = None
+    gl.compared = gl.magnifier = gl.display = gl.textures = None
 
 
 def draw(ui: Ui) -> None:
@@ -153,7 +154,7 @@ def _why_none(c: Controller) -> str:
     frame, view, run = c.frame, c.session.draw.view, c.runs.current
     if frame is None or c.scheduler.drawn_view is view:
         return ""
-    if run is not None and (lacks := run.lacks(view)):
+    if run is not None and (lacks := missing_in(run, view)):
         return f"the {run.name} {lacks}"
     if run is None and (c.scheduler.awaits or c.renderer.busy):
         return ""

@@ -63,7 +63,7 @@ class Magnifier:
         return self._targets[name].color_attachments[0].glo if there else None
 
     def drop(self, name: str) -> None:
-        """Let go of a copy, if there is one."""
+        """Free a copy, if there is one."""
         target = self._targets.pop(name, None)
         self._shown.pop(name, None)
         if target is not None:

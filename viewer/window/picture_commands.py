@@ -43,7 +43,7 @@ def comparing(ui: Ui) -> list[Command]:
         Command("Two methods live", "Compare", comparing.toggle_methods, "Shift+C", enabled=there,
                 checked=lambda: bool(c.comparing.second_method),
                 tip="trace each frame by a second method as well, with modes and counters of its own"),
-        Command("Next way to compare", "Compare", comparing.next_mode, "Shift+Z", enabled=there, separated=True),
+        Command("Next compare mode", "Compare", comparing.next_mode, "Shift+Z", enabled=there, separated=True),
         *[by(way) for way in CompareMode],
         Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not state.on, separated=True),
     ]  # fmt: skip

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tracer.experiments.zoom import Approach, Step
-from viewer.output.film import Shot
-from viewer.services.runs import ZoomTest
+from viewer.output.filmstrip import Shot
+from viewer.services.runs import RecordedZoomTest
 
 
 @dataclass(frozen=True)
 class Screening:
     """A recorded picture that is shown where the traced one is, until something changes that."""
 
-    test: ZoomTest
+    test: RecordedZoomTest
     shot: Shot
     beside: object
 
@@ -23,5 +23,5 @@ class Screening:
                      if s.number == self.shot.number), None)  # fmt: skip
 
 
-def approaches_of(test: ZoomTest) -> list[Approach]:
+def approaches_of(test: RecordedZoomTest) -> list[Approach]:
     return test.results.approaches if test.results is not None else []

@@ -56,40 +56,20 @@ def row(name: str, tip: str = "") -> None:
     imgui.set_next_item_width(-1.0)
 
 
-def _name(name: str, tip: str, write: Callable[[str, ImVec4], None] | None = None) -> None:
+def _name(name: str, tip: str) -> None:
     """A row's name in the first column, to go on in the second."""
-    (write or clipped)(name, QUIET)
+    clipped(name, QUIET)
     if tip:
         tooltip(tip)
     imgui.table_next_column()
 
 
-def value(name: str, text: str, tip: str = "") -> None:
-    """A row of text; long text is cut with an ellipsis and shown in full on hovering."""
+def value(name: str, text: str, tip: str = "", wraps: bool = False) -> None:
+    """A row of text; long text wraps, or is cut with an ellipsis and shown in full on hovering."""
     imgui.table_next_row()
     imgui.table_next_column()
     _name(name, tip)
-    clipped(text)
-
-
-def fact(name: str, text: str, tip: str = "") -> None:
-    """The same with text that wraps."""
-    imgui.table_next_row()
-    imgui.table_next_column()
-    imgui.text_colored(QUIET, name)
-    if tip:
-        tooltip(tip)
-    imgui.table_next_column()
-    paragraph(text)
-
-
-def amount(name: str, text: str, tip: str = "", wraps: bool = False) -> None:
-    """A row of a table whose numbers stand at the right edge, below each other; a name that is too long ends in an
-    ellipsis, or wraps."""
-    imgui.table_next_row()
-    imgui.table_next_column()
-    _name(name, tip, paragraph if wraps else clipped)
-    right(text)
+    (paragraph if wraps else clipped)(text)
 
 
 def right(text: str, color: ImVec4 | None = None) -> None:
@@ -255,11 +235,6 @@ def paragraph(text: str, color: ImVec4 | None = None) -> None:
     if color is not None:
         imgui.pop_style_color()
     imgui.pop_text_wrap_pos()
-
-
-def highest_count(highest: int) -> str:
-    """A primitive's highest pixel count in words: the number of pixels by which its modes were set."""
-    return f"highest {count(highest)}" if highest else "no highest count yet"
 
 
 def short(number: float) -> str:

@@ -13,7 +13,6 @@ from tracer.scene.load import load_scene
 from tracer.settings import Settings
 from viewer.output.commands import by_one_thread, cannot_come_back, needs_history
 from viewer.services import stills
-from viewer.services.films_elsewhere import filmed_alone
 from viewer.state.draw_options import DrawOptions
 from viewer.state.readings import can_draw
 from viewer.state.view_state import ViewState
@@ -50,7 +49,7 @@ def test_what_becomes_of_rays_depends_on_what_an_exact_method_has_learnt(view: V
                 ViewState(settings=Settings(method=method, threads=threads), draw=DrawOptions(shown))
                 for shown in (view, View.SAVED)
             )
-            assert needs_history(one) and not filmed_alone(one)
+            assert needs_history(one)
             assert by_one_thread(one) == by_one_thread(work)
             assert cannot_come_back(one.settings, one.draw) == cannot_come_back(work.settings, work.draw)
-    assert filmed_alone(ViewState(settings=Settings(method="none"), draw=DrawOptions(view)))
+    assert not needs_history(ViewState(settings=Settings(method="none"), draw=DrawOptions(view)))

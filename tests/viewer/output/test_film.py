@@ -12,7 +12,7 @@ from tests.viewer.fakes import make_frame
 from tracer.experiments.zoom import Approach, Change, Results, Step
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
-from viewer.output.film import Film
+from viewer.output.filmstrip import Filmstrip
 from viewer.output.run_figures import COLUMNS, chosen_steps, film_figure
 from viewer.state.palette import WRONG
 from viewer.views.difference import Mark, ringed, wrong_marks
@@ -32,7 +32,7 @@ def results(*approaches: Approach) -> Results:
 
 
 def test_a_shot_is_the_picture_with_rings_around_what_is_wrong(frame: Frame):
-    film = Film()
+    film = Filmstrip()
     film.record(4.0, 0, frame)
     pixels, ring = film.of(4.0)[0].pixels(), wrong_marks(frame) == Mark.RING
     assert (pixels[ring] == np.round(255.0 * np.asarray(WRONG))).all() and ring.any()
@@ -44,7 +44,7 @@ def test_a_shot_is_the_picture_with_rings_around_what_is_wrong(frame: Frame):
 
 @pytest.mark.parametrize("limit", [{"most_shots": 20}, {"most_bytes": 4000}])
 def test_however_long_the_way_memory_is_bounded(frame: Frame, limit: dict[str, int]):
-    film = Film(**limit)
+    film = Filmstrip(**limit)
     for factor in (4.0, 16.0):
         for number in range(200):
             film.record(factor, number, frame)
@@ -58,7 +58,7 @@ def test_however_long_the_way_memory_is_bounded(frame: Frame, limit: dict[str, i
 
 
 def test_the_figure_draws_first_last_and_where_something_happens(frame: Frame):
-    film = Film()
+    film = Filmstrip()
     for number in range(30):
         film.record(4.0, number, frame)
     approach = Approach(4.0, [step(n, wrong=int(11 <= n < 14)) for n in range(30)])
@@ -70,7 +70,7 @@ def test_the_figure_draws_first_last_and_where_something_happens(frame: Frame):
 
 
 def test_a_way_that_was_stopped_early_is_drawn_as_far_as_it_went(frame: Frame):
-    film = Film()
+    film = Filmstrip()
     for factor, steps in ((4.0, 5), (16.0, 2)):
         for number in range(steps):
             film.record(factor, number, frame)
@@ -78,4 +78,4 @@ def test_a_way_that_was_stopped_early_is_drawn_as_far_as_it_went(frame: Frame):
     figure = film_figure(film, results(*approaches))
     assert [len(panel.images) for panel in figure.axes] == [1, 1, 1, 1, 1, 1, 0, 0, 0, 0]
     with pytest.raises(ValueError, match="no step"):
-        film_figure(Film(), results(Approach(4.0)))
+        film_figure(Filmstrip(), results(Approach(4.0)))

@@ -30,7 +30,7 @@ def filmstrip(d: Driver) -> None:
     d.wait(lambda: runs.current is None, "the zoom test")
     d.settle()
     test = runs.zoom_test
-    assert test.whole and [len(test.film.of(factor)) for factor in (4.0, 64.0)] == [43, 43]
+    assert test.whole and [len(test.filmstrip.of(factor)) for factor in (4.0, 64.0)] == [43, 43]
     camera = d.c.session.camera
     for _ in d.sizes():
         for factor in (4.0, 64.0):
@@ -63,7 +63,7 @@ def _screened(d: Driver, results: zoom.Results, factor: float) -> None:
     pixels = shown.shot.pixels()
     magenta = (pixels == (255, 0, 255)).all(axis=-1)
     assert pixels.shape == (128, 128, 3) and magenta.any() == (step.wrong > 0) == (factor == 64.0)
-    assert d.ui.graphics.shots.texture_id(shown.shot, small=False) is not None, "it is not drawn"
+    assert d.ui.graphics.textures.texture_id(shown.shot, small=False) is not None, "it is not drawn"
     assert d.c.history.frames == traced, "showing it has traced"
 
 

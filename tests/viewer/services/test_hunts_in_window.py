@@ -87,7 +87,7 @@ def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(study: Desk,
     assert "open that scene again" in study.said and c.session.camera == camera
     c.hunts.plan.size = (9999, 16)
     c.hunts.start()
-    assert "too large for a hunt" in study.said
+    assert "too large for a run" in study.said
 
 
 def test_a_frame_of_an_experiment_can_be_gone_to(desk: Desk) -> None:

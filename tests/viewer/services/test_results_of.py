@@ -6,27 +6,27 @@ from datetime import datetime
 
 from tests.viewer.fakes import make_frame, make_scene
 from tracer.experiments import zoom
+from tracer.experiments.experiment import Experiment
+from tracer.experiments.zoom import ZoomTest
 from tracer.frame import Settings
-from viewer.services.results_of import results_of
-from viewer.services.runs import Experiment, ZoomTest
-from viewer.state.plans import ExperimentPlan, ZoomPlan
+from viewer.services.runs import described
 
 
 def test_results_name_their_scene_and_that_it_is_not_the_one_that_is_open():
     kitchen, office = (make_scene(path=f"scenes/{name}.aff") for name in ("kitchen", "office"))
-    run = Experiment(kitchen, Settings(), ExperimentPlan({"paper"}, frames=5, size=(64, 48), accelerator="kdtree"))
+    run = Experiment(kitchen, Settings(width=64, height=48, accelerator="kdtree"), ["paper"], [0.0] * 5)
     run.began = datetime(2026, 1, 2, 14, 3)
     rest = ", 64 x 48, 0 of 5 frames, kdtree, begun 2026-01-02 14:03"
-    assert results_of(run, kitchen) == (f"kitchen.aff{rest}", False)
-    assert results_of(run, office) == (f"kitchen.aff (not office.aff, which is open){rest}", True)
+    assert described(run, kitchen) == (f"kitchen.aff{rest}", False)
+    assert described(run, office) == (f"kitchen.aff (not office.aff, which is open){rest}", True)
     again = make_scene(path="scenes/kitchen.aff")
-    assert results_of(run, again) == (f"kitchen.aff before it was edited, or read again{rest}", True)
-    assert results_of(run, None) == (f"kitchen.aff{rest}", True)
+    assert described(run, again) == (f"kitchen.aff before it was edited or reloaded{rest}", True)
+    assert described(run, None) == (f"kitchen.aff{rest}", True)
 
 
 def test_a_zoom_test_names_its_primitive_and_the_time_of_today():
     scene = make_scene()
-    test = ZoomTest(scene, Settings(), zoom.aim(make_frame(), 3), ZoomPlan(size=(64, 64)))
-    said, elsewhere = results_of(test, scene)
+    test = ZoomTest(scene, Settings(width=64, height=64), zoom.aim(make_frame(), 3))
+    said, elsewhere = described(test, scene)
     assert not elsewhere
     assert said == f"scene.aff, 64 x 64, towards primitive 3, begun {test.began:%H:%M}"

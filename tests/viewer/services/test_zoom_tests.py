@@ -25,7 +25,7 @@ def test_a_zoom_test_shows_every_frame_and_finds_what_the_command_finds(figure4:
     of_test = [frame for frame in desk.came if frame.settings.verify]
     assert len(of_test) == test.frames == 2 * (20 + zoom.STILL_FRAMES)
     assert [frame.settings.zoom_factor for frame in of_test] == [4.0] * 23 + [64.0] * 23
-    *_, expected = zoom.run(desk.c.session.scene, test.settings, start, [4.0, 64.0], 20, test.plan.ratio)
+    *_, expected = zoom.run(desk.c.session.scene, test.settings, start, [4.0, 64.0], 20, test.ratio)
     assert test.results == expected
     four, sixty_four = test.results.approaches
     assert four.steps[-1].wrong == 0 < sixty_four.steps[-1].wrong

@@ -6,9 +6,9 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.experiments.zoom import Approach, Step
-from viewer.output.film import Shot
+from viewer.output.filmstrip import Shot
 from viewer.output.reports import changes_in_words
-from viewer.services.runs import ZoomTest
+from viewer.services.runs import RecordedZoomTest
 from viewer.window.screening import Screening, approaches_of
 from viewer.window.style import MARK
 from viewer.window.ui import Ui
@@ -17,9 +17,9 @@ from viewer.window.widgets import ERROR, QUIET, count, em, paragraph, tooltip
 _CHOSEN = ImVec4(0.42, 0.70, 0.96, 1.0)
 
 
-def show_step(ui: Ui, test: ZoomTest, factor: float, number: int) -> None:
+def show_step(ui: Ui, test: RecordedZoomTest, factor: float, number: int) -> None:
     """Show the recorded picture of a step, or of the nearest that is kept."""
-    shot = test.film.nearest(factor, number)
+    shot = test.filmstrip.nearest(factor, number)
     if shot is None:
         ui.controller.notices.say("no picture of this step was kept")
     else:
@@ -32,9 +32,9 @@ def _live(ui: Ui) -> object:
     return s.scene, s.camera, s.time, s.draw.view, s.draw.light, s.playing
 
 
-def strip(ui: Ui, test: ZoomTest, approach: Approach, name: str, size: ImVec2) -> None:
+def strip(ui: Ui, test: RecordedZoomTest, approach: Approach, name: str, size: ImVec2) -> None:
     """The pictures towards the primitive with one factor, side by side; a click shows one large."""
-    shots, steps = test.film.of(approach.factor), {step.number: step for step in approach.steps}
+    shots, steps = test.filmstrip.of(approach.factor), {step.number: step for step in approach.steps}
     bar = imgui.get_style().scrollbar_size
     if imgui.begin_child(name, size, 0, int(imgui.WindowFlags_.horizontal_scrollbar)):
         height = max(em(1.5), size.y - bar - em(0.25))
@@ -47,14 +47,14 @@ def strip(ui: Ui, test: ZoomTest, approach: Approach, name: str, size: ImVec2) -
     imgui.end_child()
 
 
-def _thumbnail(ui: Ui, test: ZoomTest, shot: Shot, step: Step, height: float) -> None:
+def _thumbnail(ui: Ui, test: RecordedZoomTest, shot: Shot, step: Step, height: float) -> None:
     size = ImVec2(height * shot.width / shot.height, height)
     if imgui.invisible_button(f"{shot.factor:g} step {shot.number}##shot", size):
         show_step(ui, test, shot.factor, shot.number)
-    if not imgui.is_item_visible() or ui.graphics.shots is None:
+    if not imgui.is_item_visible() or ui.graphics.textures is None:
         return
     start, end = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    draw, texture = imgui.get_window_draw_list(), ui.graphics.shots.texture_id(shot, small=True)
+    draw, texture = imgui.get_window_draw_list(), ui.graphics.textures.texture_id(shot, small=True)
     if texture is not None:
         draw.add_image(imgui.ImTextureRef(texture), start, end)
     chosen = ui.screening is not None and ui.screening.shot is shot
@@ -76,14 +76,14 @@ def screen(ui: Ui, room: ImVec2) -> bool:
     It goes as soon as anything else is done with the traced picture."""
     shown = ui.screening
     c = ui.controller
-    if shown is None or ui.graphics.shots is None:
+    if shown is None or ui.graphics.textures is None:
         return False
     if shown.test is not c.runs.zoom_test or shown.beside != _live(ui):
         ui.screening = None
         return False
     c.selection.hovered = None
     top = imgui.get_cursor_screen_pos()
-    texture = ui.graphics.shots.texture_id(shown.shot, small=False)
+    texture = ui.graphics.textures.texture_id(shown.shot, small=False)
     factor = min(room.x / shown.shot.width, room.y / shown.shot.height)
     size = ImVec2(shown.shot.width * factor, shown.shot.height * factor)
     start = ImVec2(top.x + (room.x - size.x) / 2.0, top.y + (room.y - size.y) / 2.0)
@@ -121,7 +121,7 @@ def _caption(ui: Ui, shown: Screening, top: ImVec2, room: ImVec2) -> None:
 
 
 def _turn(ui: Ui, shown: Screening, by: int, icon: str, tip: str) -> None:
-    shots = shown.test.film.of(shown.shot.factor)
+    shots = shown.test.filmstrip.of(shown.shot.factor)
     at = next((i for i, shot in enumerate(shots) if shot.number == shown.shot.number), 0) + by
     imgui.begin_disabled(not 0 <= at < len(shots))
     if imgui.button(f"{icon}##{by}") and 0 <= at < len(shots):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, imgui
 
-from viewer.services.film_controller import FilmController, FilmRun
+from viewer.services.film import FilmRun, Films
 from viewer.services.runs import LONGEST_SIDE, duration
 from viewer.window.panels.runs import start_or_progress
 from viewer.window.ui import Ui
@@ -40,7 +40,7 @@ def show(ui: Ui) -> None:
         imgui.end_child()
 
 
-def _way(ui: Ui, films: FilmController) -> None:
+def _way(ui: Ui, films: Films) -> None:
     """Along what, how long, and how fast."""
     c, plan = ui.controller, films.plan
     marks = len(c.bookmarks.all)
@@ -75,7 +75,7 @@ def _way(ui: Ui, films: FilmController) -> None:
             plan.fps = min(max(fps, 1.0), 240.0)
 
 
-def _looks(ui: Ui, films: FilmController) -> None:
+def _looks(ui: Ui, films: Films) -> None:
     """The size and the quality of the pictures, and what is on them."""
     plan = films.plan
     with properties("looks", 5.0) as shown:
@@ -93,12 +93,12 @@ def _looks(ui: Ui, films: FilmController) -> None:
     checkbox("With legend", plan.legend, lambda on: setattr(plan, "legend", on), "where the view has one")
 
 
-def _start(ui: Ui, films: FilmController) -> None:
+def _start(ui: Ui, films: Films) -> None:
     start_or_progress(ui, films.film, films.start, "trace every frame whole, and write it")
     _tell(ui, films)
 
 
-def _tell(ui: Ui, films: FilmController) -> None:
+def _tell(ui: Ui, films: Films) -> None:
     """What the film will be, or what became of the last one."""
     c, film = ui.controller, films.film
     if film is not None and not film.done:
@@ -117,7 +117,7 @@ def _tell(ui: Ui, films: FilmController) -> None:
 
 def _outcome(film: FilmRun) -> str:
     done, frames = film.done_of
-    if film.failure is not None:
+    if film.error is not None:
         return f"The last film failed after {done} frames."
     much = "The last film is" if film.whole else f"{done} of {frames} frames are"
     return f"{much} in {film.script.video or film.script.folder}"

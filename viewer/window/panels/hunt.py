@@ -8,7 +8,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.experiments import counterexample, hunt
 from tracer.experiments.counterexample import Counterexample
 from tracer.scene.model import Scene
-from viewer.services.hunt_controller import HuntController
+from viewer.services.hunts import Hunts
 from viewer.services.runs import LONGEST_SIDE
 from viewer.window.panels.method_choice import method_list
 from viewer.window.panels.runs import side_by_side, start_or_progress
@@ -49,13 +49,13 @@ def show(ui: Ui) -> None:
     )
 
 
-def _controls(ui: Ui, hunts: HuntController) -> None:
+def _controls(ui: Ui, hunts: Hunts) -> None:
     start_or_progress(ui, hunts.hunt, hunts.start, "search the frames for the worst wrong pixels of the method")
     if ui.controller.runs.current is not hunts.hunt or hunts.hunt is None:
         _plan(ui, hunts)
 
 
-def _plan(ui: Ui, hunts: HuntController) -> None:
+def _plan(ui: Ui, hunts: Hunts) -> None:
     plan = hunts.plan
     with properties("plan", 4.6) as shown:
         if not shown:
@@ -87,7 +87,7 @@ def _plan(ui: Ui, hunts: HuntController) -> None:
         plan.size = size_field(plan.size, LONGEST_SIDE, ui.controller.notices.say)
 
 
-def _finds(ui: Ui, hunts: HuntController, size: ImVec2) -> None:
+def _finds(ui: Ui, hunts: Hunts, size: ImVec2) -> None:
     """A line for each find, the worst first; a click flies there."""
     found, scene = hunts.found, ui.controller.session.scene
     if imgui.begin_child("finds", size):
@@ -106,7 +106,7 @@ def _finds(ui: Ui, hunts: HuntController, size: ImVec2) -> None:
     imgui.end_child()
 
 
-def _table(ui: Ui, hunts: HuntController, found: hunt.Results, scene: Scene) -> None:
+def _table(ui: Ui, hunts: Hunts, found: hunt.Results, scene: Scene) -> None:
     """As wide as its columns need, and scrolled where that is wider than the room."""
     rows = [_cells(number, find, scene) for number, find in enumerate(found.finds)]
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_x | imgui.TableFlags_.scroll_y
@@ -158,7 +158,7 @@ def _cell(text: str, width: float, right: bool) -> None:
     imgui.text_unformatted(text)
 
 
-def _chosen(ui: Ui, hunts: HuntController) -> tuple[int, Counterexample, Scene] | None:
+def _chosen(ui: Ui, hunts: Hunts) -> tuple[int, Counterexample, Scene] | None:
     """The find that was clicked, by its place and itself, with its scene."""
     found, scene = hunts.found, ui.controller.session.scene
     if found is None or hunts.hunt is None or scene is None or not hunts.hunt.is_of(scene):
@@ -168,7 +168,7 @@ def _chosen(ui: Ui, hunts: HuntController) -> tuple[int, Counterexample, Scene] 
     return hunts.chosen, found.finds[hunts.chosen], scene
 
 
-def _details(ui: Ui, hunts: HuntController, number: int, find: Counterexample, scene: Scene) -> None:
+def _details(ui: Ui, hunts: Hunts, number: int, find: Counterexample, scene: Scene) -> None:
     """What can be done with a find, and what is wrong there, in colours and words."""
     imgui.begin_disabled(ui.controller.runs.current is not None)
     if imgui.button(f"{icons.ICON_FA_PAPER_PLANE}  Fly there"):

@@ -24,12 +24,12 @@ from viewer.window.widgets import (
     QUIET,
     clipped,
     count,
-    fact,
     heading,
     paragraph,
     properties,
     swatch,
     tooltip,
+    value,
 )
 
 
@@ -73,25 +73,25 @@ def _details(ui: Ui, pick: Pick, at: tuple[int, int] | None) -> None:
     with properties("primitive", 5.8) as shown:
         if not shown:
             return
-        fact("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""))
-        fact("Primitive", f"{pick.primitive}  ({pick.kind})")
+        value("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""), wraps=True)
+        value("Primitive", f"{pick.primitive}  ({pick.kind})")
         if pick.in_cells:
-            fact("Cell", f"{pick.unit}", "the part of the primitive that has modes and pixel counts of its own")
+            value("Cell", f"{pick.unit}", "the part of the primitive that has modes and pixel counts of its own")
         if pick.material is not None:
-            fact("Material", pick.material.name, _describe(pick.material))
+            value("Material", pick.material.name, _describe(pick.material), wraps=True)
         if frame is not None and at is not None and can_draw(frame, View.CELL_LIGHTS):
             asked = int(cell_lights.VIEW.found(frame)[at[1], at[0]])
             if asked >= 0:
                 lights = f"looks at {count(asked)} of {count(frame.lights)} lights"
-                fact("Its cell", lights, "of the octree of this method: all but those known to be hidden from it")
+                value("Its cell", lights, "of the octree of this method: all but those known to be hidden from it")
         if not by_modes:  # else it is said above
-            fact("Pixels", f"{count(pick.pixels)} now")
+            value("Pixels", f"{count(pick.pixels)} now")
         if math.isfinite(pick.depth):  # else nothing of it is seen
-            fact("Depth", f"{pick.depth:.5g}")
+            value("Depth", f"{pick.depth:.5g}")
         if pick.point is not None:
-            fact("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
+            value("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
         if pick.normal is not None:
-            fact("Normal", ", ".join(f"{along:z.2f}" for along in pick.normal))
+            value("Normal", ", ".join(f"{along:z.2f}" for along in pick.normal))
 
 
 def _wrong(answers: int, samples: int) -> str:

@@ -194,7 +194,7 @@ def _pointer(ui: Ui) -> None:
         ("right click", "a menu for the pixel"),
         ("drag the wipe's line", "compare the picture with the right one, or A with B"),
         ("drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
-        ("click", "inspect a pixel, and draw its shadow rays; click the background to let go"),
+        ("click", "inspect a pixel, and draw its shadow rays; click the background to clear the selection"),
     ]
     if not imgui.begin_table("pointer", 2):
         return

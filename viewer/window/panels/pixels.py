@@ -53,9 +53,8 @@ def _watched(ui: Ui) -> None:
         if imgui.small_button("Fit"):
             picture_commands.fit(ui)
         imgui.same_line()
-    clipped(
-        "all of the picture" if c.session.draw.zoom.fits else f"enlarged {c.session.draw.zoom.scale:.3g} times", QUIET
-    )
+    zoom = c.session.draw.zoom
+    clipped("the whole picture" if zoom.fits else f"enlarged {zoom.scale:.3g} times", QUIET)
     frame = c.frame
     if frame is None or not ui.pixels.watched:
         text = "Ctrl+wheel zooms into the picture, Ctrl+drag moves it. Watch the pixel under the pointer"
@@ -83,13 +82,13 @@ def _watched(ui: Ui) -> None:
 
 
 def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Side | None) -> bool:
-    """A row; whether the pixel is to be let go of."""
+    """A row; whether the pixel is to be watched no longer."""
     c = ui.controller
     x, y = pixel_at(frame, *point)
     imgui.table_next_row()
     imgui.table_next_column()
     gone = imgui.small_button(f"{number + 1}")
-    tooltip("let go of this pixel")
+    tooltip("stop watching this pixel")
     imgui.table_next_column()
     if imgui.selectable(f"{x}, {y}##look", False)[0]:
         c.selection.select(point)

@@ -8,8 +8,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.output.exports import ENDINGS
-from viewer.services.results_of import results_of
-from viewer.services.runs import Experiment, Run, ZoomTest, duration
+from viewer.services.runs import Experiment, Run, ZoomTest, described, duration
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, clipped, em, tooltip_above, wide_button
 
@@ -116,7 +115,7 @@ def _two(
 
 def whose(ui: Ui, run: Experiment | ZoomTest) -> None:
     """A line that says of which scene the results are, and stands out where that is not the one that is open."""
-    text, elsewhere = results_of(run, ui.controller.session.scene)
+    text, elsewhere = described(run, ui.controller.session.scene)
     clipped(f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {text}" if elsewhere else text, WARNING if elsewhere else QUIET)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 
 from viewer.output.exr import ENDING as EXR
-from viewer.services.picture_controller import JPEG
+from viewer.services.pictures import JPEG
 from viewer.state.plans import MOST_MULTIPLE
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import QUIET, centred, checkbox, em, paragraph, properties, row, tooltip

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from imgui_bundle import imgui
 
+from viewer.services.runs import missing_in
 from viewer.state.readings import can_draw
 from viewer.state.tone import MID_GREY, NEUTRAL
 from viewer.state.views import View
@@ -89,7 +90,7 @@ def _explanation(ui: Ui) -> None:
     """What the view shows, and what it costs."""
     c = ui.controller
     view, run, text = c.session.draw.view, c.runs.current, c.session.draw.view.help
-    lacks = run.lacks(view) if run is not None else ""
+    lacks = missing_in(run, view) if run is not None else ""
     if lacks:
         paragraph(f"This run {lacks}.", WARNING)
     elif view.needs_verify:

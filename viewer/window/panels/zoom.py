@@ -10,7 +10,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.experiments.zoom import Approach, Results, Step
 from viewer.output.reports import changes_in_words, happenings, modes_in_words
-from viewer.services.runs import LONGEST_SIDE, ZoomTest
+from viewer.services.runs import LONGEST_SIDE, RecordedZoomTest
 from viewer.window.panels import film
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
 from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress, whose
@@ -24,7 +24,6 @@ from viewer.window.widgets import (
     clipped,
     count,
     em,
-    highest_count,
     paragraph,
     properties,
     row,
@@ -59,7 +58,7 @@ def show(ui: Ui) -> None:
     )
 
 
-def _controls(ui: Ui, test: ZoomTest | None) -> None:
+def _controls(ui: Ui, test: RecordedZoomTest | None) -> None:
     c = ui.controller
     under_way = c.runs.current is test
     if test is not None and under_way:
@@ -72,7 +71,7 @@ def _controls(ui: Ui, test: ZoomTest | None) -> None:
     export_buttons(ui, test)
     if test is not None and test.results is not None:
         if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} Film"):
-            c.runs.export_film(test)
+            c.runs.export_filmstrip(test)
         tooltip_above("save the filmstrip as a picture: the paper's Figure 4")
 
 
@@ -117,7 +116,7 @@ def _plan(ui: Ui) -> None:
         plan.size = size_field(plan.size, LONGEST_SIDE, c.notices.say)
 
 
-def _plots(ui: Ui, test: ZoomTest | None, results: Results | None, size: ImVec2) -> None:
+def _plots(ui: Ui, test: RecordedZoomTest | None, results: Results | None, size: ImVec2) -> None:
     """A plot for each factor, side by side."""
     approaches = [a for a in results.approaches if a.steps] if results is not None else []
     if test is None or not approaches:
@@ -141,7 +140,7 @@ def _plots(ui: Ui, test: ZoomTest | None, results: Results | None, size: ImVec2)
     imgui.end_group()
 
 
-def _tabs(ui: Ui, test: ZoomTest, approaches: list[Approach], size: ImVec2) -> None:
+def _tabs(ui: Ui, test: RecordedZoomTest, approaches: list[Approach], size: ImVec2) -> None:
     """One plot at a time, where there is no room for all; of a test that is under way, the one that grows."""
     grows = len(approaches) - 1 if ui.controller.runs.current is test else -1
     if imgui.begin_child("plots", size) and imgui.begin_tab_bar("factors"):
@@ -156,7 +155,7 @@ def _tabs(ui: Ui, test: ZoomTest, approaches: list[Approach], size: ImVec2) -> N
 
 
 def _plot_and_film(
-    ui: Ui, test: ZoomTest, approaches: list[Approach], approach: Approach, name: str, size: ImVec2
+    ui: Ui, test: RecordedZoomTest, approaches: list[Approach], approach: Approach, name: str, size: ImVec2
 ) -> None:
     """A plot, and under it the pictures of its steps."""
     gap = imgui.get_style().item_spacing.y
@@ -167,7 +166,9 @@ def _plot_and_film(
     imgui.end_group()
 
 
-def _plot(ui: Ui, test: ZoomTest, approaches: list[Approach], approach: Approach, name: str, size: ImVec2) -> None:
+def _plot(
+    ui: Ui, test: RecordedZoomTest, approaches: list[Approach], approach: Approach, name: str, size: ImVec2
+) -> None:
     """Pixels, and the count past which the primitive is examined again, on a logarithmic scale; wrong ones as bars."""
     low = size.y < em(_LOW)
     if not implot.begin_plot(name, size, FLAGS | int(implot.Flags_.no_legend) if low else FLAGS):
@@ -210,14 +211,15 @@ def _explain(step: Step) -> None:
     """A step in numbers and words."""
     if imgui.begin_tooltip():
         what = " (highest count while fully rendered)" if step.highest else ""
-        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {highest_count(step.highest)}{what}")
+        highest = f"highest {count(step.highest)}" if step.highest else "no highest count yet"
+        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {highest}{what}")
         imgui.text_unformatted(f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture")
         for line in changes_in_words(step.changes):
             imgui.text_unformatted(line)
         imgui.end_tooltip()
 
 
-def _table(ui: Ui, test: ZoomTest | None, results: Results | None) -> None:
+def _table(ui: Ui, test: RecordedZoomTest | None, results: Results | None) -> None:
     """The steps, those where something happens or all; a click shows what was recorded there."""
     state = ui.state(ZoomState)
     if test is None or results is None:
@@ -240,7 +242,7 @@ def _table(ui: Ui, test: ZoomTest | None, results: Results | None) -> None:
     imgui.end_table()
 
 
-def _row(ui: Ui, test: ZoomTest, approach: Approach, step: Step) -> None:
+def _row(ui: Ui, test: RecordedZoomTest, approach: Approach, step: Step) -> None:
     imgui.table_next_row()
     imgui.table_next_column()
     flags = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap

@@ -43,7 +43,7 @@ class Shot:
             return np.asarray(image.convert("RGB"))
 
 
-class Film:
+class Filmstrip:
     """Recorded on one thread while others look."""
 
     def __init__(self, most_bytes: int = MOST_BYTES, most_shots: int = MOST_SHOTS) -> None:

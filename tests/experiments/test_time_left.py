@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from viewer.util.time_left import TimeLeft
+from tracer.experiments.time_left import TimeLeft
 
 
 class Clock:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from tracer.frame import Frame
+from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import clipboard, exr, png, tev
@@ -21,14 +22,12 @@ from viewer.output.legend_picture import with_legend
 from viewer.services import stills
 from viewer.services.jobs import Job
 from viewer.services.recipes import Recipes
-from viewer.services.run_controller import RunController
-from viewer.services.runs import Run
+from viewer.services.runs import FileRun, Runs
 from viewer.state.notices import Notices
 from viewer.state.plans import MOST_MULTIPLE, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
-from viewer.state.views import View
 from viewer.util.files import write_new
 from viewer.views.legend import Legend
 
@@ -45,36 +44,25 @@ def write_picture(path: Path, pixels: NDArray[np.uint8], text: str) -> None:
         png.write(path, pixels, text)
 
 
-class PictureRun(Run[Path]):
-    """One picture being traced; `results` is its file."""
+class PictureRun(FileRun):
+    """One picture being traced beside what the window shows; its results are its file."""
 
     name = "picture"
-    endings = ()
 
-    def __init__(self, scene: Scene, recipe: ViewState, folder: Path, ending: str, wake: Callable[[], None]) -> None:
+    def __init__(self, scene: Scene, recipe: ViewState, folder: Path, ending: str) -> None:
         self.recipe, self.folder, self.ending = recipe, folder, ending
-        super().__init__(scene, 1 + recipe.warmup.repeats, wake)
+        super().__init__(scene, 1 + recipe.warmup.repeats)
 
-    def lacks(self, view: View) -> str:
-        return "is traced beside it"
-
-    @property
-    def where(self) -> str:
-        return f": {self.results}" if self.results is not None else ""
-
-    def _steps(self, scene: Scene, renderer: Renderer, cancelled: Callable[[], bool]) -> Iterator[Path]:
-        width, height = self.recipe.size
-        own = Renderer(scene, self.recipe.settings, world=renderer.world)
-        as_exr = self.ending == exr.ENDING
+    def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
+        (width, height), as_exr = self.recipe.size, self.ending == exr.ENDING
+        renderer = Renderer(scene, self.recipe.settings, world=world)
 
         def tell(done: int, total: int) -> None:
-            self.label = f"{width} x {height}"
-            self.traced = done
+            self.traced, self.label = done, f"{width} x {height}"
 
-        frame = stills.trace(own, self.recipe, as_exr, tell, cancelled)
+        frame = stills.trace(renderer, self.recipe, as_exr, tell, cancel)
         pixels, _ = (frame.pixels, "") if as_exr else stills.draw(frame, scene, self.recipe)
         text = stills.text(pixels, frame, scene, self.recipe)
-        stem = f"{scene.path.stem}-{self.recipe.draw.view.value}-{width}x{height}"
 
         def write(path: Path) -> None:
             if as_exr:
@@ -82,22 +70,20 @@ class PictureRun(Run[Path]):
             else:
                 write_picture(path, pixels, text)
 
-        path = write_new(self.folder, stem, self.ending, write)
+        stem = f"{Path(scene.path).stem}-{self.recipe.draw.view.value}-{width}x{height}"
+        self.output = write_new(self.folder, stem, self.ending, write)
         self.traced = self.frames
-        yield path
-
-    def write(self, results: Path, path: Path) -> None:
-        raise ValueError("a picture is written when it is traced")
+        yield self.output
 
 
-class PictureController:
+class Pictures:
     """`plan` is what the dialog says."""
 
     def __init__(
         self,
         session: Session,
         preferences: Preferences,
-        runs: RunController,
+        runs: Runs,
         recipes: Recipes,
         notices: Notices,
         wake: Callable[[], None] = lambda: None,
@@ -115,17 +101,14 @@ class PictureController:
 
     def save(self) -> bool:
         """Begin to trace and write what is planned; returns whether it has begun, and else has said why not."""
-        scene, recipe = self._session.scene, self._recipes.now()
-        if scene is None or recipe is None:
-            self._notices.say("there is no picture to save yet", error=True)
-            return False
-        try:
-            wanted = self._planned(recipe, scene)
-        except ValueError as error:
-            self._notices.say(str(error), error=True)
-            return False
-        run = PictureRun(scene, wanted, self._preferences.picture_folder, self.plan.ending, self._wake)
-        return self._runs.begin(run)
+
+        def make(scene: Scene) -> PictureRun:
+            recipe = self._recipes.now()
+            if recipe is None:
+                raise ValueError("there is no picture to save yet")
+            return PictureRun(scene, self._planned(recipe, scene), self._preferences.picture_folder, self.plan.ending)
+
+        return self._runs.start(make)
 
     def _planned(self, recipe: ViewState, scene: Scene) -> ViewState:
         plan = self.plan
