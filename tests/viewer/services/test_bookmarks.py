@@ -60,6 +60,7 @@ def test_a_picture_is_of_a_whole_frame_from_there(parts: Parts, own_settings: Pa
     parts.session.change(camera=replace(here, position=(0.0, 0.0, 0.0)))
     parts.comes()
     assert parts.pictured == [True, False, True], "who comes back takes the picture that was missed"
+    parts.settings.finish()
     (kept,) = json.loads((own_settings / "settings.json").read_text())["bookmarks"].values()
     assert kept == codec.to_json(parts.marks.all)
 
