@@ -26,8 +26,8 @@ class Parts:
         self.preferences, notices = Preferences(), Notices()
         self.session = Session(state=codec.recalled({}))
         self.session.open(make_scene())
-        settings = SettingsController(self.session, self.preferences, notices, lambda: False)
-        self.marks = Bookmarks(self.session, self.preferences, settings, notices)
+        self.settings = SettingsController(self.session, self.preferences, notices, lambda: False)
+        self.marks = Bookmarks(self.session, self.preferences, self.settings, notices)
 
     def comes(self) -> None:
         """A frame of where we are."""
