@@ -109,7 +109,7 @@ def _save_as(d: Driver) -> None:
     (path,) = (d.folder / "pictures").glob("tiny-color-96x64*")
     with Image.open(path) as image:
         assert np.array_equal(np.asarray(image), picture(d.c.frame, tone=d.c.session.draw.tone))
-    assert capture.read(path).tone == d.c.session.draw.tone
+    assert capture.read(path).draw.tone == d.c.session.draw.tone
 
 
 def _copy(d: Driver) -> None:
