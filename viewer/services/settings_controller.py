@@ -14,7 +14,6 @@ from viewer.state.methods import NO_CULLING, with_additions
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences, save_preferences
 from viewer.state.session import Session
-from viewer.state.views import View
 
 REST_SECONDS = 2.0
 """How long preferences are as they are before they are saved."""
@@ -57,10 +56,6 @@ class SettingsController:
             return
         self._session.state = state
         self.note_method()
-
-    def set_view(self, view: View) -> None:
-        """Choose a view."""
-        self._session.set_draw(view=view)
 
     def set_light(self, light: int) -> None:
         """Choose the light of the views that show one; past the last comes the first."""

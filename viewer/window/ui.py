@@ -29,7 +29,7 @@ from viewer.window.keyboard import Keyboard, is_key
 from viewer.window.magnifier import Magnifier
 from viewer.window.preview import PreviewDisplay
 from viewer.window.screening import Screening
-from viewer.window.shots import Shots
+from viewer.window.texture_cache import TextureCache
 
 
 class CaptureKind(Enum):
@@ -98,7 +98,7 @@ class Graphics:
 
     renderer_name: str = ""
     display: Display | None = None
-    shots: Shots | None = None
+    textures: TextureCache | None = None
     compared: Compared | None = None
     magnifier: Magnifier | None = None
     preview: PreviewDisplay | None = None

@@ -79,7 +79,7 @@ def test_lights_are_counted_around():
 def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
     parts = Parts()
     parts.bookmarks.add("here")
-    parts.settings.set_view(View.DEPTH)
+    parts.session.set_draw(view=View.DEPTH)
     parts.settings.change(depth=3)
     parts.settings.reset(["bookmarks"])
     assert parts.session.draw.view is View.COLOR and parts.session.settings.depth == 10

@@ -46,7 +46,7 @@ def show(ui: Ui) -> None:
     if area.view is not None:
         imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         if clicked:
-            c.settings.set_view(area.view)
+            c.session.set_draw(view=area.view)
 
 
 def _draw(drawing: Drawing, at: ImVec2, pointed: Area | None) -> None:
