@@ -48,7 +48,6 @@ from tracer.scene.model import (
     empty_quadrics,
 )
 from tracer.settings import Settings
-from tracer.shading.screen import to_screen
 from tracer.simd import f32_at, i32_at, load_i64
 
 # What is made ready, with about how much of the whole time it takes when compiled.
@@ -123,7 +122,7 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
         ("occlusion testing", frame.test_occlusion),
         ("surfaces", lambda: _see_and_find(frame)),
         ("shading and shadow testing", frame.shade),
-        ("filling", lambda: to_screen(frame.so_far().color.reshape(-1, 3), np.empty((16, 4), np.uint8))),
+        ("filling", frame.so_far),
         ("mode setting", frame.set_modes),
     ):
         yield name

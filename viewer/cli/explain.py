@@ -26,9 +26,8 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import working
 from viewer.output.explained import ray_data, why_data, why_lines
-from viewer.output.ray_rows import RayRows, Row, totals
+from viewer.output.ray_rows import Filter, RayRows, Row, Shown, totals
 from viewer.services.origin_pixels import Found, OriginPixels, can_trace_once_more, trace_once_more, with_origins
-from viewer.state.verdicts import Filter, Shown
 from viewer.util.messages import printable
 
 EPILOG = """\

@@ -152,11 +152,10 @@ def _picture_instead(options: Namespace) -> int:
     """Without a display, `make run` still does the main job: it shows what culling saves, stage by stage."""
     say(f"{no_display_reason()}; rendering to files instead")
 
-    from viewer.cli import first_light
-    from viewer.services.scene_files import is_capture
+    from viewer.cli import first_light, pictures
 
     path = resources.scene_path(options.scene or resources.DEFAULT_SCENE)
-    if is_capture(path):
+    if pictures.carries_state(path):
         return _run("render", [str(options.scene)])
     first_light.show(path, options)
     return 0

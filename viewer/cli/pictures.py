@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import LARGE
 from tracer.method import DEFAULT_METHOD, Method
+from tracer.scene.files import read_regular
 from tracer.scene.model import Scene
 from tracer.setting import settings_of
 from tracer.settings import Settings
@@ -19,15 +21,18 @@ from viewer.output import capture, recipe
 from viewer.output.recipe import Recipe, Style
 from viewer.services import stills
 from viewer.services.scene_files import find_scene, is_capture
+from viewer.state import codec
 from viewer.state.draw_options import MIDDLE, DrawOptions
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
 from viewer.state.tone import NEUTRAL, Tone
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 LOWER_LEFT = 0.0, 1.0
 _DRAWN = "outlines", "mark_wrong", "clipping", "legend", "shading", "beneath", "slice", "magnified"
 _TONE = "exposure", "white", "curve"
-OR_PICTURE = ", or a saved picture, for its scene, settings and view"
+OR_PICTURE = ", or a saved picture or a state as .json, for its scene, settings and view"
+_LARGEST_STATE = 1 << 26  # bytes
 
 
 def add_picture(parser: Parser) -> None:
@@ -156,63 +161,75 @@ def check_lights(wanted: Recipe, scene: Scene) -> None:
         raise ValueError(f"--view {wanted.view.value}: too many lights for pictures of this size")
 
 
-# --- saved pictures --------------------------------------------------------------------------------
-
-_SETTINGS = [one.name for one in settings_of(Settings) if one.option and one.name != "threads"]
-_STYLE = ("magnified", "shading", "beneath", "outlines", "savings")
+# --- saved pictures and states ----------------------------------------------------------------------
 
 
-def filled_in(parser: Parser, given: Namespace, words: list[str]) -> Namespace:
-    """Return the options beside what a saved picture carries where that stands for the scene; options win.
-
-    Raises CaptureError, in one line, for any other picture, and where its scene is gone."""
-    if not is_capture(given.path):
-        return given
-    saved, kept = _defaults(given.path)
-    parser.set_defaults(**kept)
-    given, picture = parser.parse_args(words), given.path
-    given.path = saved.scene
-    view, tone = given.view.view, saved.style.tone  # a view that has no use for something takes none of the picture's
-    if not view.shows_picture and _tone(given) == tone:
-        given.exposure, given.white, given.curve = NEUTRAL.exposure, NEUTRAL.white, NEUTRAL.curve
-    given.clipping &= view.shows_clipped or not saved.style.clipping
-    if given.range == saved.style.span and (view is not saved.view or given.view.shares):
-        given.range = None
-    if given.frame is None and given.time is None:
-        given.time = saved.time
-    if "buffers" in given and not (given.output or given.buffers or given.to_tev or given.print_command):
-        given.output = _free_name(f"{picture.stem}-rendered")
-    return given
+def carries_state(path: Path) -> bool:
+    """Whether a file stands for the state that it carries: a saved picture, or a JSON of a state."""
+    return is_capture(path) or path.suffix.lower() == ".json"
 
 
-def _defaults(path: Path) -> tuple[Recipe, dict[str, Any]]:
-    """Return the recipe of a saved picture, and what it carries by the names of the options; raises CaptureError."""
-    saved = recipe.of_state(capture.read(path))
-    saved, style = replace(saved, scene=scene_of(path)), saved.style
-    kept: dict[str, Any] = {name: getattr(saved.settings, name) for name in _SETTINGS}
-    kept |= {name: getattr(style, name) for name in _STYLE}
-    kept |= {"before": saved.before, "warmup": saved.warmup, "repeat": saved.repeats}
-    kept |= {"mark_wrong": style.marked, "legend": style.legend is not None, "legend_at": style.legend}
-    kept |= {"exposure": style.tone.exposure, "white": style.tone.white, "curve": style.tone.curve}
-    kept |= {"clipping": style.clipping, "range": style.span, "slice": style.cut}
-    kept["caption"] = style.caption.replace("{", "{{").replace("}", "}}")
-    kept["size"] = saved.size
-    if saved.camera is not None:
-        kept["camera"] = saved.camera
-    kept["view"] = ChosenView(saved.view, saved.edits.light_number(saved.light), saved.wipe, style.shares)
-    kept |= {"no_studio": not saved.meshes.studio, "up": saved.meshes.up, "crease": saved.meshes.crease}
-    return saved, kept | options.edits_as_options(saved.edits)
+def state_of(path: Path) -> ViewState:
+    """Return the state that a file carries, with the path that its scene has now.
+
+    Raises CaptureError, in one line, where it carries none, and where the scene is gone."""
+    if is_capture(path):
+        state = capture.read(path)
+    else:
+        try:
+            data = json.loads(read_regular(path, _LARGEST_STATE))
+            state = codec.picture_from_json(data) if "state" in data else codec.state_from_json(data)
+        except FileNotFoundError:
+            raise capture.CaptureError(f"{path}: no such file") from None
+        except (OSError, ValueError, TypeError, RecursionError) as error:
+            raise capture.CaptureError(f"{path}: holds no state of the viewer: {error}") from None
+    scene = find_scene(state.scene, path)
+    if scene is None:
+        raise capture.CaptureError(f"{path}: its scene is gone: {state.scene}")
+    return replace(state, scene=str(scene))
 
 
 def scene_of(path: Path) -> Path:
-    """Return the file of a scene, or of a saved picture's scene; raises CaptureError, in one line, where it is gone."""
-    if not is_capture(path):
-        return path
-    named = capture.read(path).scene
-    scene = find_scene(named, path)
-    if scene is None:
-        raise capture.CaptureError(f"{path}: its scene is gone: {named}")
-    return scene
+    """Return the file of a scene, or that of the scene of a saved picture or state; raises CaptureError."""
+    return Path(state_of(path).scene) if carries_state(path) else path
+
+
+def filled_in(parser: Parser, given: Namespace, words: list[str]) -> Namespace:
+    """Return the options beside a state that stands for the scene: what is given wins over what that says.
+
+    Raises CaptureError, in one line."""
+    if not carries_state(given.path):
+        return given
+    state, saved = state_of(given.path), given.path
+    parser.set_defaults(**_as_options(state))
+    given = parser.parse_args(words)
+    given.path = Path(state.scene)
+    view, draw = given.view.view, state.draw  # a view that has no use for something takes none of the state's
+    if not view.shows_picture and _tone(given) == draw.tone:
+        given.exposure, given.white, given.curve = NEUTRAL.exposure, NEUTRAL.white, NEUTRAL.curve
+    given.clipping &= view.shows_clipped or not draw.clipping
+    given.slice = given.slice if view.has_slice or given.slice != draw.slice else MIDDLE
+    if given.range == draw.span and (view is not draw.view or given.view.shares):
+        given.range = None
+    if given.frame is None and given.time is None:
+        given.time = state.time
+    if "buffers" in given and not (given.output or given.buffers or given.to_tev or given.print_command):
+        given.output = _free_name(f"{saved.stem}-rendered")
+    return given
+
+
+def _as_options(state: ViewState) -> dict[str, Any]:
+    """Return a state by the names that options have in the namespace."""
+    draw, warmup, meshes = state.draw, state.warmup, state.meshes
+    kept = {one.name: one.get(state) for one in settings_of(ViewState) if one.option}
+    kept |= {"view": ChosenView(draw.view, state.edits.light_number(draw.light), draw.wipe, draw.shares)}
+    kept |= {"legend_at": draw.legend_at, "range": draw.span}
+    kept |= {"caption": draw.caption.replace("{", "{{").replace("}", "}}")}
+    kept |= {"size": (state.settings.width, state.settings.height)}
+    kept |= {"before": warmup.frames, "warmup": warmup.of_path, "repeat": warmup.repeats}
+    kept |= {"no_studio": not meshes.studio, "up": meshes.up, "crease": meshes.crease}
+    kept |= {"camera": state.camera} if state.camera is not None else {}
+    return kept | options.edits_as_options(state.edits)
 
 
 def _free_name(stem: str) -> Path:

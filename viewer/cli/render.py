@@ -58,13 +58,15 @@ examples:
   shadowcull render Robot.aff --frame 10 --warmup 10 --buffers robot.npz
   shadowcull render Robot.aff -o robot.exr --frame 10 --warmup 10 --verify
   shadowcull render saved.png --samples 16 --size 1920x1080
+  shadowcull render state.json --view cost
   shadowcull render kitchen.aff -o same.png --camera saved.png
   shadowcull render bunny.ply -o bunny.png --camera '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 
 Culling uses what earlier frames have shown: --warmup N first traces the N frames before the one that is rendered.
 
 A picture saved by the window or by render carries its scene, camera, time, settings and view. Given instead of SCENE,
-it is rendered again, and options replace what it carries. Without -o the result is NAME-rendered.png.
+it is rendered again, and options replace what it carries. Without -o the result is NAME-rendered.png. So is a
+state as JSON.
 
 The .npz holds color (H,W,3 float32), depth (H,W float32, distance along the unit ray, inf for a miss), primitive and
 cell (H,W int32, -1 for a miss), occlusion_mode (H,W uint8, 255 for a miss), shadow_mode (H,W,lights uint8), and for
@@ -82,7 +84,7 @@ def parser() -> Parser:
     description = "Trace one frame, print its statistics, and write it as a picture, as buffers, or as a figure."
     parser = Parser("render", description, EPILOG + options.method_summaries())
     add = parser.add_argument
-    options.add_scene(parser, ", or a saved picture, to render it again")
+    options.add_scene(parser, ", or a saved picture or a state as .json, to render it again")
     help_ = "the picture; a .png also remembers how it was made, and an .exr has all buffers"
     add("-o", "--output", type=Path, metavar="FILE", help=help_)
     options.add_moment(parser)

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Progress
 from viewer.output import capture
 from viewer.output.legend_picture import with_legend
@@ -75,7 +74,6 @@ class CaptureService:
             return
         # What the picture shows: another moment than the session's where a run goes on, or a finer frame is to come.
         number = session.frame_at(frame.time)
-        camera = None if session.on_path and frame.camera == scene.camera_at(frame.time) else frame.camera
         height, width = pixels.shape[:2]
         values = {
             "scene": scene.path.stem,
@@ -87,9 +85,7 @@ class CaptureService:
             "width": width,
             "height": height,
         }
-        settings = replace(frame.settings, verify=session.settings.verify)  # a view may have verified by itself
-        edits = session.edited.edits if session.edited is not None else NO_EDITS
-        state = replace(session.state, time=frame.time, camera=camera, settings=settings, edits=edits)
+        state = session.state_of(frame).with_settings(verify=session.settings.verify)  # a view may verify by itself
         size = (frame.width, frame.height)
         text = capture.metadata(
             state, frame.camera, number, size, frame.statistics.to_dict(), {"window": recipe is None}

@@ -96,7 +96,7 @@ class Controller:
         self.questions = questions = Questions(runs, captures, wake)
         self.loader = loader = SceneLoader(session, preferences, notices, questions.before_opening, wake)
         self.preview = Preview(session, loader, motion, notices, wake)
-        self.recipes = recipes = Recipes(session, preferences, scheduler, loader, notices)
+        self.recipes = recipes = Recipes(session, preferences, scheduler, self.history, loader, notices)
         self.films = Films(session, preferences, runs, recipes, bookmarks)
         self.pictures = Pictures(session, preferences, runs, recipes, notices, wake)
         self.hunts = Hunts(session, preferences, runs, navigator, recipes, notices)
@@ -148,8 +148,8 @@ class Controller:
             self.session.change(camera=flown)
         self.notices.say(f"{arrival.text}. {said}" if said else arrival.text)
 
-    def take_frame(self) -> Frame | None:
-        """Take the newest frame, of a run that is under way or else as it was asked for; returns it, once."""
+    def take_frame(self) -> None:
+        """Take the newest frame, of a run that is under way or else as it was asked for."""
         for complaint in self.renderer.take_complaints():
             self.notices.report(complaint)
         failed = self.renderer.take_failure()
@@ -164,17 +164,14 @@ class Controller:
             self.scheduler.show(run.picture)
             frame = run.picture.frame
         else:
-            newest, learnt = self.scheduler.take(), self.renderer.take_learnt()
-            for traced in learnt:
-                self.scheduler.learnt.add(traced.frame)
-            self.history.take(learnt, newest, self.drawn_seconds)
+            newest = self.scheduler.take()
+            self.history.take(self.renderer.take_learnt(), newest, self.drawn_seconds)
             if newest is None:
-                return None
+                return
             frame = newest.frame
         self.reloaded = False
         self.motion.look_around(frame)
         self.selection.refresh(frame)
-        return frame
 
     def move(self) -> None:
         """Bring time and camera to where they should be now."""

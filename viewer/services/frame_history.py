@@ -7,7 +7,7 @@ bit; others depend on the modes, which are learnt anew."""
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.method import Method
 from tracer.mode_origins import ModeOrigins, Origins
-from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Camera
 from viewer.output.recipe import BUILT
 from viewer.services.frame_scheduler import FrameScheduler
@@ -46,6 +45,7 @@ class FrameHistory(History):
     def __init__(self, session: Session, clock: Callable[[], float] = time.monotonic) -> None:
         super().__init__()
         self._session, self._clock = session, clock
+        self._repeats: dict[tuple[int, int], tuple[Hashable, int]] = {}  # by size: what set the modes, and how often
         self.records, self._rate = FrameRecords(), FrameRate()
         # Origins look at all units of each frame, for which the window need not wait.
         self._worker = ThreadPoolExecutor(1, "shadowcull mode origins")
@@ -71,6 +71,7 @@ class FrameHistory(History):
         self._lights: dict[Key, NDArray[np.float64]] = {}
         self._dropped: set[Key] = set()
         self._blank = blank
+        self._repeats = {} if blank else dict.fromkeys(self._repeats, (None, 0))
 
     def take(self, learnt: Sequence[Traced], newest: Traced | None, drawn_seconds: float) -> None:
         """Take up the frames that have set modes since the last time, in their order, and the newest that is shown,
@@ -91,18 +92,11 @@ class FrameHistory(History):
         return self.frames - 1
 
     def _record_of(self, traced: Traced, number: int) -> FrameRecord:
-        session, frame = self._session, traced.frame
-        scene = session.scene
-        on_path = session.on_path and scene is not None and frame.camera == scene.camera_at(frame.time)
-        chosen = session.settings
-        settings = replace(  # of these the frame may have had others than were chosen
-            frame.settings, samples=chosen.samples, lamp_samples=chosen.lamp_samples, verify=chosen.verify,
-            method=chosen.method,
-        )  # fmt: skip
-        edits = session.edited.edits if session.edited is not None else NO_EDITS
-        camera = None if on_path else frame.camera
-        state = replace(session.state, time=frame.time, camera=camera, settings=settings, edits=edits)
-        return FrameRecord(number, state, frame.camera, frame.settings, traced.full_size, traced.whole)
+        chosen, settings = self._session.settings, traced.frame.settings
+        state = self._session.state_of(traced.frame).with_settings(  # of these the frame may have had others
+            samples=chosen.samples, lamp_samples=chosen.lamp_samples, verify=chosen.verify, method=chosen.method
+        )
+        return FrameRecord(number, state, traced.frame.camera, settings, traced.full_size, traced.whole)
 
     # --- which frame set which mode ---------------------------------------------------------------
 
@@ -110,6 +104,10 @@ class FrameHistory(History):
         frame, scene = traced.frame, self._session.scene
         if traced.fresh:
             self.forget_modes()
+        # A frame that was left before it was whole cannot be traced again as it was.
+        size, what = (frame.width, frame.height), _what_sets_modes(frame) if traced.whole else None
+        known, count = self._repeats.get(size, (what, 0))
+        self._repeats[size] = (what, count + 1) if known == what else (None, 0)
         if scene is None or not frame.settings.keeps_modes:
             return
         key = _key(frame)
@@ -133,6 +131,18 @@ class FrameHistory(History):
         if origins is None or self._shown is None or self._shown[2] != pick.in_cells:
             return None
         return self._worker.submit(origins.of, pick.unit).result()
+
+    def repeats_of(self, frame: Frame) -> int | None:
+        """Return how often this very frame was traced since modes were forgotten, before it; None where others were as
+        well, at its resolution, which has modes of its own."""
+        what, count = self._repeats.get((frame.width, frame.height), (None, 0))
+        return count - 1 if what is not None and what == _what_sets_modes(frame) and count else None
+
+
+def _what_sets_modes(frame: Frame) -> Hashable:
+    s = frame.settings
+    of_settings = s.method, s.symmetric, s.zoom_factor, s.depth, s.lamp_radius, s.lamp_samples, s.accelerator
+    return frame.time, frame.camera, of_settings
 
 
 def _key(frame: Frame) -> Key:
@@ -165,7 +175,7 @@ class FrameNavigator:
         session: Session,
         preferences: Preferences,
         history: FrameHistory,
-        tracing: FrameScheduler,
+        scheduler: FrameScheduler,
         runs: Runs,
         undo: Undo,
         selection: Selection,
@@ -173,7 +183,7 @@ class FrameNavigator:
         restore: Callable[[ViewState], None],
         reset_modes: Callable[[], None],
     ) -> None:
-        self._session, self._preferences, self._history, self._scheduler = session, preferences, history, tracing
+        self._session, self._preferences, self._history, self._scheduler = session, preferences, history, scheduler
         self._runs, self._undo, self._selection, self._notices = runs, undo, selection, notices
         self._restore, self._reset_modes = restore, reset_modes
         self._wanted: tuple[float, Camera, Point] | None = None

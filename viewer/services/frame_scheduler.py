@@ -23,7 +23,6 @@ from viewer.services.refinement import LampSamples, Refinement
 from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
-from viewer.state.learnt import Learnt
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.preferences import Preferences
 from viewer.state.readings import can_draw, records_fates, records_lights
@@ -76,7 +75,6 @@ class FrameScheduler:
         self.budget = budget or FrameBudget()
         self.refinement = Refinement()
         self.lamps = LampSamples(session)
-        self.learnt = Learnt()
         self._serial = 0
         self._frozen: FrozenFrame | None = None
         self._refines = False  # whether the last frame was asked for to refine what is known
@@ -138,7 +136,6 @@ class FrameScheduler:
         if not same:
             self.traced = None
         self._asked = None
-        self.learnt.confuse()
         self.refinement.forget()
         self.trace_once_more()
 
@@ -153,7 +150,6 @@ class FrameScheduler:
 
     def forget_modes(self) -> None:
         """Note that nothing is known about shadows any more."""
-        self.learnt.forget()
         self.refinement.forget()
         self.trace_once_more()
 

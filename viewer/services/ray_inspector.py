@@ -6,11 +6,10 @@ from __future__ import annotations
 
 from tracer.frame import Frame
 from tracer.told_rays import RayTree
-from viewer.output.ray_rows import Key, RayRows, Row, unfolded
+from viewer.output.ray_rows import Filter, Key, RayRows, Row, unfolded
 from viewer.services.pixel_inspector import PixelInspector
 from viewer.services.selection import Selection
 from viewer.state.session import Session
-from viewer.state.verdicts import Filter
 
 
 class RayInspector:

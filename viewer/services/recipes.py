@@ -10,6 +10,7 @@ from tracer.frame import Frame, Settings
 from tracer.scene.edits import NO_EDITS
 from viewer.output import recipe
 from viewer.output.recipe import BUILT, Recipe, Style
+from viewer.services.frame_history import FrameHistory
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
@@ -24,9 +25,15 @@ class Recipes:
     """See the module."""
 
     def __init__(
-        self, session: Session, preferences: Preferences, tracing: FrameScheduler, loader: SceneLoader, notices: Notices
+        self,
+        session: Session,
+        preferences: Preferences,
+        scheduler: FrameScheduler,
+        history: FrameHistory,
+        loader: SceneLoader,
+        notices: Notices,
     ) -> None:
-        self._session, self._preferences, self._scheduler = session, preferences, tracing
+        self._session, self._preferences, self._scheduler, self._history = session, preferences, scheduler, history
         self._loader, self._notices = loader, notices
 
     def of(self, frame: Frame, view: View, legend: bool | None = None) -> Recipe | None:
@@ -78,7 +85,7 @@ class Recipes:
         why = recipe.cannot_come_back(frame.settings, found.view, found.tells_counters)
         if why:
             return replace(found, history=why)
-        repeats = self._scheduler.learnt.repeats(frame)
+        repeats = self._history.repeats_of(frame)
         return replace(found, history=UNKNOWN) if repeats is None else replace(found, repeats=repeats)
 
     @property

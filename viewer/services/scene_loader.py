@@ -16,7 +16,7 @@ from typing import Any
 from tracer.compilation import can_draw, compiled_before, make_ready, ready_for, warm_up
 from tracer.scene.files import Stamp
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
-from tracer.scene.model import Camera, Scene
+from tracer.scene.model import Camera, Progress, Scene
 from tracer.scene.studio import up_in_studio
 from viewer.output import capture
 from viewer.services import scene_files
@@ -27,6 +27,7 @@ from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 from viewer.util.messages import ERROR, say
+from viewer.views import paint
 
 PATIENCE = 0.5
 """Seconds that a load which was cancelled may take to end."""
@@ -125,7 +126,7 @@ class SceneLoader:
         self._session.set_settings(**self._given)
         self.compiles = not compiled_before()
         title = "Compiling the tracer (first start only)" if self.compiles else "Loading the tracer"
-        self.warm_up_job = Job(title, warm_up, self._wake)
+        self.warm_up_job = Job(title, _warm_up, self._wake)
         if path is not None:
             self._from_shell = True
             self._open(path)
@@ -351,3 +352,10 @@ def _same_file(path: Path, scene: Scene) -> bool:
         return path.samefile(scene.path)
     except OSError:
         return False
+
+
+def _warm_up(progress: Progress) -> None:
+    """Make all kernels ready: those that draw pictures, then those that trace them."""
+    progress("what draws pictures", 0.0)
+    paint.make_ready()
+    warm_up(progress)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from tracer.frame import Frame
 from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.lights import number_of
 from tracer.scene.mesh_options import MeshOptions
@@ -87,6 +88,13 @@ class Session:
         here = replace(here, time=min(max(state.time, start), end)).with_draw(light=light)
         self.state, self.playing = here.on_machine_of(self.state), False
         self.want(state.edits, state.draw.light)
+
+    def state_of(self, frame: Frame) -> ViewState:
+        """Return the state that a frame shows, which may be of another moment, or of other edits, than this one."""
+        on_path = self.on_path and self.scene is not None and frame.camera == self.scene.camera_at(frame.time)
+        camera = None if on_path else frame.camera
+        edits = self.edited.edits if self.edited is not None else NO_EDITS
+        return replace(self.state, time=frame.time, camera=camera, settings=frame.settings, edits=edits)
 
     # --- the scene and its camera ----------------------------------------------------------------
 

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.kernels import inlined, kernel
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import BACKGROUND, GREY, color_map
+from viewer.views import kernels
 
 Pixels = NDArray[np.uint8]
 
@@ -28,9 +28,6 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 _BACKGROUND, _GREY = np.asarray(BACKGROUND, np.float32), np.asarray(GREY, np.float32)
 _MAP = color_map().astype(np.float64)
 _ONE = np.float32(1.0)
-
-
-# --- for views -----------------------------------------------------------------------------------
 
 
 def by_class(
@@ -48,7 +45,7 @@ def by_class(
     In every second stripe, so many pixels across, `striped` takes the place of the palette.  Between `cells` there are
     lines."""
     pixels, classes = _empty(frame), classes if len(classes) else np.zeros(1, np.uint8)
-    _paint_classes(
+    kernels.paint_classes(
         index, classes, palette, palette if striped is None else striped, stripe, frame.color, np.float32(draw.shading),
         frame.primitive, _BACKGROUND, frame.primitive if cells is None else cells,
         _ONE if cells is None else np.float32(CELL_LINE), np.float32(_outline(draw)), pixels,
@@ -74,7 +71,7 @@ def by_number(
     place = on_map(place).astype(np.float64)
     if known is not None:
         place[~known] = np.nan
-    _paint_numbers(
+    kernels.paint_numbers(
         place, _MAP, _GREY, frame.color, np.float32(shading), frame.primitive, _BACKGROUND,
         frame.primitive if cells is None else cells, 1.0 if cells is None else FAINT_LINE, _outline(draw), pixels,
     )  # fmt: skip
@@ -87,7 +84,7 @@ def by_color(
     """Draw colours (h, w, 3), `everywhere` or only where something is hit."""
     pixels = _empty(frame)
     colors = np.ascontiguousarray(colors, np.float32)
-    _paint_colors(
+    kernels.paint_colors(
         colors, everywhere, frame.color, np.float32(shading), frame.primitive, _BACKGROUND,
         np.float32(_outline(draw)), pixels,
     )  # fmt: skip
@@ -139,9 +136,9 @@ def make_ready() -> None:
     """Compile the kernels, or load what has been compiled."""
     one, color, pixels = np.zeros((1, 1), np.int32), np.zeros((1, 1, 3), np.float32), np.empty((1, 1, 3), np.uint8)
     end = one, _BACKGROUND
-    _paint_classes(one, np.zeros(1, np.uint8), color[0], color[0], 1, color, _ONE, *end, one, _ONE, _ONE, pixels)
-    _paint_numbers(np.zeros((1, 1)), _MAP, _GREY, color, _ONE, *end, one, 1.0, 1.0, pixels)
-    _paint_colors(color, True, color, _ONE, *end, _ONE, pixels)
+    kernels.paint_classes(one, np.zeros(1, np.uint8), color[0], color[0], 1, color, _ONE, *end, one, _ONE, _ONE, pixels)
+    kernels.paint_numbers(np.zeros((1, 1)), _MAP, _GREY, color, _ONE, *end, one, 1.0, 1.0, pixels)
+    kernels.paint_colors(color, True, color, _ONE, *end, _ONE, pixels)
 
 
 def _empty(frame: Frame) -> Pixels:
@@ -150,105 +147,3 @@ def _empty(frame: Frame) -> Pixels:
 
 def _outline(draw: DrawOptions) -> float:
     return OUTLINE if draw.outlines else 1.0
-
-
-# --- kernels -------------------------------------------------------------------------------------
-
-
-@inlined
-def _shade_row(color, y, shading, factor):
-    """Find by what the light and shade of the picture multiplies flat colours, with the sums of fused products."""
-    zero, one = np.float32(0), np.float32(1)
-    red, green, blue = np.float32(0.2126), np.float64(np.float32(0.7152)), np.float64(np.float32(0.0722))
-    for x in range(color.shape[1]):
-        r, g, b = min(max(color[y, x, 0], zero), one), min(max(color[y, x, 1], zero), one), color[y, x, 2]
-        luminance = np.float32(np.float64(g) * green + np.float64(r * red))
-        luminance = np.float32(np.float64(min(max(b, zero), one)) * blue + np.float64(luminance))
-        light = np.float32(0.25) + np.float32(0.95) * np.sqrt(luminance)
-        factor[x] = one + shading * (light - one)
-
-
-@inlined
-def _line_row(cells, y, line, plain, factor):
-    """Find by what lines multiply colours: `line` where the neighbour to the right, or below, is another."""
-    h, w = cells.shape
-    below = y + 1 if y + 1 < h else y
-    for x in range(w):
-        right = x + 1 if x + 1 < w else x
-        cell = cells[y, x]
-        factor[x] = line if (cells[y, right] != cell) | (cells[below, x] != cell) else plain
-
-
-@kernel
-def _paint_classes(
-    index, classes, palette, striped, stripe, color, shading, primitive, background, cells, line, outline, pixels
-):
-    one, zero, most = np.float32(1), np.float32(0), np.float32(255)
-    h, w = primitive.shape
-    shade, border, edge = np.ones(w, np.float32), np.ones(w, np.float32), np.ones(w, np.float32)
-    row = np.empty((w, 3), np.float32)
-    for y in range(h):
-        _shade_row(color, y, shading, shade)
-        if line < one:
-            _line_row(cells, y, line, one, border)
-        if outline < one:
-            _line_row(primitive, y, outline, one, edge)
-        for x in range(w):
-            if primitive[y, x] < 0:
-                row[x, 0], row[x, 1], row[x, 2] = background[0], background[1], background[2]
-                shade[x] = border[x] = one
-            else:
-                k = classes[index[y, x]]
-                row[x, 0], row[x, 1], row[x, 2] = palette[k, 0], palette[k, 1], palette[k, 2]
-        if stripe > 1:
-            for x in range(w):
-                if primitive[y, x] >= 0 and (x + y) // stripe % 2 == 1:
-                    k = classes[index[y, x]]
-                    row[x, 0], row[x, 1], row[x, 2] = striped[k, 0], striped[k, 1], striped[k, 2]
-        for x in range(w):
-            for c in range(3):
-                shown = min(max(row[x, c] * shade[x], zero), one) * border[x] * edge[x]
-                pixels[y, x, c] = np.uint8(np.rint(shown * most))
-
-
-@kernel
-def _paint_numbers(place, colors, unknown, color, shading, primitive, background, cells, line, outline, pixels):
-    one, zero = np.float64(1), np.float64(0)
-    h, w = primitive.shape
-    shade, border, edge = np.ones(w, np.float32), np.ones(w), np.ones(w)
-    for y in range(h):
-        if shading > np.float32(0):
-            _shade_row(color, y, shading, shade)
-        if line < one:
-            _line_row(cells, y, line, one, border)
-        if outline < one:
-            _line_row(primitive, y, outline, one, edge)
-        for x in range(w):
-            t = place[y, x]
-            missed, known = primitive[y, x] < 0, t == t
-            i = min(int(t), 255) if known else 0
-            j = min(i + 1, 255)
-            for c in range(3):
-                if missed:
-                    shown = np.float64(background[c])
-                else:
-                    flat = (colors[j, c] - colors[i, c]) * (t - i) + colors[i, c] if known else np.float64(unknown[c])
-                    shown = min(max(flat * np.float64(shade[x]), zero), one) * border[x]
-                pixels[y, x, c] = np.uint8(np.rint(shown * edge[x] * 255.0))
-
-
-@kernel
-def _paint_colors(colors, everywhere, color, shading, primitive, background, outline, pixels):
-    one, zero, most = np.float32(1), np.float32(0), np.float32(255)
-    h, w = primitive.shape
-    shade, edge = np.ones(w, np.float32), np.ones(w, np.float32)
-    for y in range(h):
-        if shading > zero:
-            _shade_row(color, y, shading, shade)
-        if outline < one:
-            _line_row(primitive, y, outline, one, edge)
-        for x in range(w):
-            missed = primitive[y, x] < 0 and not everywhere
-            for c in range(3):
-                shown = background[c] if missed else min(max(colors[y, x, c] * shade[x], zero), one)
-                pixels[y, x, c] = np.uint8(np.rint(shown * edge[x] * most))

@@ -184,7 +184,10 @@ class App:
         step("The script's function", self._call_script)
         draws("Drawing the picture", lambda: graphics.draw(ui))
         draws("Drawing the preview", lambda: graphics.draw_preview(ui))
-        draws("Drawing recorded pictures", lambda: ui.graphics.shots.bring() if ui.graphics.shots is not None else None)
+        draws(
+            "Drawing recorded pictures",
+            lambda: ui.graphics.textures.update() if ui.graphics.textures is not None else None,
+        )
         draws("Saving the picture", self._capture_picture)
         self._set_frame_rate()
 

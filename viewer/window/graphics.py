@@ -20,7 +20,7 @@ from viewer.window.display import Compared, Display, InWindow
 from viewer.window.magnifier import Magnifier
 from viewer.window.panels import legend, savings
 from viewer.window.preview import PreviewDisplay
-from viewer.window.shots import Shots
+from viewer.window.texture_cache import TextureCache
 from viewer.window.ui import CaptureKind, Ui
 
 PREVIEW_UPLOAD_SECONDS = 0.01
@@ -30,7 +30,7 @@ PREVIEW_UPLOAD_SECONDS = 0.01
 def make(ui: Ui) -> None:
     """Make all that a new context needs."""
     ui.graphics.display = Display()
-    ui.graphics.shots = Shots(ui.graphics.display.context)
+    ui.graphics.textures = TextureCache(ui.graphics.display.context)
     ui.graphics.compared = Compared(ui.graphics.display.context)
     ui.graphics.magnifier = Magnifier(ui.graphics.display.context)
     ui.graphics.renderer_name = ui.graphics.display.context.info["GL_RENDERER"]
@@ -40,10 +40,10 @@ def release(ui: Ui) -> None:
     """Free all of it, before the context goes."""
     release_preview(ui)
     gl = ui.graphics
-    for part in (gl.compared, gl.magnifier, gl.display, gl.shots):
+    for part in (gl.compared, gl.magnifier, gl.display, gl.textures):
         if part is not None:
             part.release()
-    gl.compared = gl.magnifier = gl.display = gl.shots = None
+    gl.compared = gl.magnifier = gl.display = gl.textures = None
 
 
 def draw(ui: Ui) -> None:

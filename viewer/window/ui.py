@@ -29,7 +29,7 @@ from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard, is_key
 from viewer.window.magnifier import Magnifier
 from viewer.window.preview import PreviewDisplay
-from viewer.window.shots import Shots
+from viewer.window.texture_cache import TextureCache
 
 
 class CaptureKind(Enum):
@@ -98,7 +98,7 @@ class Graphics:
 
     renderer_name: str = ""
     display: Display | None = None
-    shots: Shots | None = None
+    textures: TextureCache | None = None
     compared: Compared | None = None
     magnifier: Magnifier | None = None
     preview: PreviewDisplay | None = None
@@ -119,7 +119,7 @@ State = TypeVar("State")
 @dataclass(slots=True)
 class Ui:
     """See the module.  `dialogs` are those that are open, the newest last, `fate_shown` is the fate of shadow rays
-    whose pixels are to stand out, and `screening` the recorded picture that is shown in the picture's place."""
+    whose pixels are to stand out, and `frame_preview` the recorded picture that is shown in the picture's place."""
 
     controller: Controller
     commands: list[Command] = field(default_factory=list)

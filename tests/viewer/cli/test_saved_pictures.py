@@ -11,6 +11,7 @@ from PIL import Image
 
 from tests.commands import CAMERA, ROOM, run
 from viewer.output import capture
+from viewer.state import codec
 
 
 @pytest.fixture
@@ -69,6 +70,27 @@ def test_its_camera_is_taken_alone(saved: Path, room: Path, capfd: pytest.Captur
     assert other.camera.to_json() == CAMERA and other.time == 0.0 and other.draw.view == "color"
     tests = ("--primitive", 0, "--size", "32x32", "--steps", 2, "--camera", saved)
     assert run(capfd, "zoom", room, *tests)[0] == 0
+
+
+def test_a_state_as_json_is_rendered_like_a_picture_that_carries_it(
+    saved: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Alone, or all that a picture carries; options given beside it win."""
+    state = capture.read(saved)
+    Path("state.json").write_text(json.dumps(codec.state_to_json(state, of_picture=True)))
+    Path("all.json").write_text(json.dumps(capture.read_data(saved)))
+    for name in ("state", "all"):
+        assert run(capfd, "render", f"{name}.json")[0] == 0
+        with Image.open(saved) as before, Image.open(f"{name}-rendered.png") as again:
+            assert np.array_equal(np.asarray(before), np.asarray(again))
+    assert run(capfd, "render", "state.json", "-o", "depth.png", "--view", "depth", "--depth", 1)[0] == 0
+    other = capture.read(Path("depth.png"))
+    assert (other.draw.view, other.settings.depth, other.camera) == ("depth", 1, state.camera)
+    damaged = {"nothing": "[]", "no": "{", "wrong": json.dumps({"scene": 3})}
+    for name, text in damaged.items():
+        Path(f"{name}.json").write_text(text)
+        code, _, errors = run(capfd, "render", f"{name}.json")
+        assert code == 1 and f"{name}.json: holds no state" in errors and errors.count("\n") == 1, errors
 
 
 def test_mistakes_are_one_line(saved: Path, room: Path, capfd: pytest.CaptureFixture[str]) -> None:

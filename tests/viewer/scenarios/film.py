@@ -63,7 +63,7 @@ def _screened(d: Driver, results: zoom.Results, factor: float) -> None:
     pixels = shown.shot.pixels()
     magenta = (pixels == (255, 0, 255)).all(axis=-1)
     assert pixels.shape == (128, 128, 3) and magenta.any() == (step.wrong > 0) == (factor == 64.0)
-    assert d.ui.graphics.shots.texture_id(shown.shot, small=False) is not None, "it is not drawn"
+    assert d.ui.graphics.textures.texture_id(shown.shot, small=False) is not None, "it is not drawn"
     assert d.c.history.frames == traced, "showing it has traced"
 
 

@@ -35,7 +35,7 @@ def _from_a_plot(d: Driver) -> None:
         d.settle()
     here, number = c.session.time, c.history.frames - 1
     moments = [c.history.records.get(n) for n in range(number + 1)]
-    target = next(m.number for m in moments if m is not None and m.time == c.session.scene.frame_time(1))
+    target = next(m.number for m in moments if m is not None and m.state.time == c.session.scene.frame_time(1))
     _point_at_sample(d, target)
     d.context.mouse_click(0)
     d.settle()
@@ -78,7 +78,7 @@ def _from_the_inspector(d: Driver) -> None:
     d.scroll_down("Inspector")
     d.context.item_click(f"//Inspector/**/{light} lit/picture {lesson.lit}##0")
     d.settle()
-    assert (c.session.time, c.session.camera) == (moment.time, moment.camera)
+    assert (c.session.time, c.session.camera) == (moment.state.time, moment.camera)
 
 
 def _to_a_find(d: Driver) -> None:

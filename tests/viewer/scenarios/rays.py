@@ -6,7 +6,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
-from viewer.state.verdicts import Shown
+from viewer.output.ray_rows import Shown
 
 KEY = imgui.Key
 

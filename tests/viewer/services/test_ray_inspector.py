@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from tests.viewer.desk import Desk
+from viewer.output.ray_rows import Filter, Shown
 from viewer.services.ray_inspector import RayInspector
 from viewer.state import navigation
-from viewer.state.verdicts import Filter, Shown
 from viewer.window.panels.ray_overlay import RayLine, ray_lines
 
 
@@ -83,28 +83,6 @@ def test_rays_follow_an_edit_of_the_scene(desk: Desk) -> None:
     assert len(lines(rays)) == len(drawn)
     again = replace(first, frame=replace(first.frame, color=first.frame.color.copy()))
     assert (again, again.frame) != (first, first.frame), "arrays alone cannot be compared as one"
-
-
-def test_frame_after_frame_is_looked_into(desk: Desk) -> None:
-    rays = looked_at(desk)
-    desk.c.selection.select(middle(desk))
-    desk.c.session.set_pace(keep_tracing=True)
-    desk.c.scheduler.trace_again()
-    seen = []
-
-    def others() -> bool:
-        if rays.tree is not None and not any(rays.tree is tree for tree in seen):
-            seen.append(rays.tree)
-        return len(seen) > 3
-
-    desk.until(others)
-    desk.c.session.set_pace(keep_tracing=False)
-    desk.rest()
-    desk.c.motion.step(2)
-    desk.until(lambda: rays.tree is not None and rays.tree.frame.time == desk.c.frame.time > seen[-1].frame.time)
-    desk.c.settings.change(method="none")
-    desk.until(lambda: rays.tree is not None and rays.tree.frame.settings.method == "none")
-    assert rays.tree.traced == rays.tree.due
 
 
 def test_filters_and_folds(desk: Desk) -> None:

@@ -26,14 +26,6 @@ from viewer.views.wipe import wipe_column
 from viewer.window.widgets import in_window_style, percent
 
 
-def test_the_occlusion_legend_counts_primitives_and_pixels():
-    rows = {r.name: r for r in classes_in(make_frame(), View.OCCLUSION)}
-    assert {name: r.units for name, r in rows.items()} == {
-        "INIT": 1, "PARTIALLY_OCCLUDED": 1, "FULLY_RENDERED": 3, "DYNAMIC": 2,
-    }  # fmt: skip
-    assert rows["FULLY_RENDERED"].pixels == 3 * 16
-
-
 def test_the_shadow_legend_counts_what_moves_apart():
     rows = {r.name: r.units for r in classes_in(make_frame(), View.SHADOW)}
     assert rows == {

@@ -24,15 +24,14 @@ from tests.viewer.fakes import (
     with_voxels,
 )
 from tracer.culling.fate import MOVING_SHADOW, Fate
-from tracer.culling.modes import OcclusionMode, ShadowMode
-from tracer.culling.voxels.tell import STATE_NAMES
+from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.lights import Light, light_in_words
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend_picture import with_legend
 from viewer.state.draw_options import Slice
-from viewer.state.palette import FATE_COLORS, FATE_NAMES, GREY, OCCLUSION_COLORS, WRONG, Certificate, color_map
+from viewer.state.palette import FATE_COLORS, FATE_NAMES, GREY, OCCLUSION_COLORS, WRONG
 from viewer.state.views import View
 from viewer.util.numbers import count, percent
 from viewer.util.resources import embedded_scenes
@@ -408,17 +407,6 @@ def test_a_legend_in_a_picture_has_its_colours_and_changes_nothing_around_it(
     assert (white == 255).all(), "the picture itself stays as it is"
 
 
-def test_a_bar_in_a_picture_goes_through_the_colour_map(frame: Frame):
-    black = np.zeros((200, 300, 3), np.uint8)
-    depth, work = (with_legend(black, of(frame, view), (0.0, 0.0)) for view in (View.DEPTH, View.COST))
-    first, last = (np.round(255.0 * color) for color in color_map()[[0, -1]])
-
-    def column(drawn: np.ndarray, color: np.ndarray) -> int:
-        return int(np.nonzero((drawn == color).all(axis=-1).any(axis=0))[0][0])
-
-    assert column(work, first) < column(work, last) and column(depth, last) < column(depth, first)
-
-
 def test_a_picture_too_small_for_its_legend_has_none(frame: Frame):
     assert with_legend(np.zeros((40, 60, 3), np.uint8), of(frame, View.OCCLUSION), (0.0, 0.0)) is None
 
@@ -432,8 +420,3 @@ def test_modes_say_what_the_papers_method_would_cull(frame: Frame):
     assert of_light[0].quiet and of_light[1].name == "culled"
     assert [fact.values for fact in of(frame, View.OCCLUSION).facts] == [("all lights",), ("10.0 %",), ("2.5 %",)]
     assert of(frame, View.OCCLUSION).facts[1].name == "culled"
-
-
-def test_what_voxels_and_certificates_say_of_a_light_has_the_same_words():
-    for state in (ShadowMode.FULL_SHADOW, ShadowMode.NON_SHADOW):
-        assert STATE_NAMES[int(state)] == Certificate(int(state)).name.lower()

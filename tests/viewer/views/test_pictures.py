@@ -308,17 +308,6 @@ def test_what_is_not_known_yet_looks_like_nothing_that_is(certified_frame: Frame
         assert np.array_equal(drawn[part.shaded], whole[part.shaded])
 
 
-def test_lights_are_counted_at_each_pixel(certified_frame: Frame) -> None:
-    f = certified_frame
-    drawn, hit = picture(f, View.LIGHTS), f.primitive >= 0
-    due = (f.asked > 0).sum(axis=-1)
-    colors = np.round(color_map() * 255).astype(int)
-    assert due[hit].max() == f.lights == 2, "the top of the map"
-    for number, entry in ((0, 0), (2, -1)):
-        there = hit & (due == number)
-        assert there.any() and np.abs(drawn[there].astype(int) - colors[entry]).max() <= 1
-
-
 @pytest.mark.parametrize("cut", [Slice(0, 0.6), Slice(1, 0.5), Slice(2, 0.7)])
 @pytest.mark.parametrize("light", [0, 1])
 def test_a_slice_has_the_colours_of_its_voxels_over_the_dimmed_picture(

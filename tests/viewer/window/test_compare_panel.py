@@ -34,7 +34,3 @@ def test_new_medians_are_shown_wherever_in_memory_they_lie():
         assert shown.a == 1e3 * (k + 1.0)
     timed = _timed(1.0)
     assert figures(ui, a, b, timed) is figures(ui, a, b, timed)
-    for _ in range(50):
-        b = make_frame(Settings(8, 8, method="paper"))
-        b.statistics.shadow.due = 1000 + _
-        assert next(row for row in figures(ui, a, b, timed) if row.name == "Due").b == 1000 + _

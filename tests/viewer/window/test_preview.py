@@ -88,9 +88,8 @@ def test_a_preview_that_cannot_be_made_frees_what_it_took_and_is_not_tried_again
 
     context = moderngl.create_context(standalone=True, require=330)
     controller = SimpleNamespace(preview=SimpleNamespace(geometry=geometry))
-    ui = SimpleNamespace(
-        controller=controller, display=SimpleNamespace(context=Failing()), preview=None, not_previewed=None
-    )
+    gl = SimpleNamespace(display=SimpleNamespace(context=Failing()), preview=None, not_previewed=None)
+    ui = SimpleNamespace(controller=controller, graphics=gl)
     with context:
         with pytest.raises(moderngl.Error, match="out of memory"):
             graphics.draw_preview(ui)

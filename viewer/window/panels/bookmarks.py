@@ -102,7 +102,9 @@ def _picture(ui: Ui, mark: Bookmark, corner: ImVec2, height: float) -> float:
     text = mark.picture
     picture = ui.cached(f"picture of {id(mark)}", mark, text, lambda: from_text(text))
     texture = (
-        ui.graphics.shots.texture_id(picture, True) if picture is not None and ui.graphics.shots is not None else None
+        ui.graphics.textures.texture_id(picture, True)
+        if picture is not None and ui.graphics.textures is not None
+        else None
     )
     low, high = ImVec2(corner.x, corner.y), ImVec2(corner.x + room, corner.y + height)
     if picture is None or texture is None:

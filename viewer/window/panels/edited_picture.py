@@ -160,14 +160,14 @@ def show_lights(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
 def show_changed(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """In place of the picture: dimmed, with the pixels in magenta that the edits have changed."""
     c = ui.controller
-    if not ui.state(WhatIfState).changed_shown or ui.graphics.shots is None:
+    if not ui.state(WhatIfState).changed_shown or ui.graphics.textures is None:
         return
     found, frame = c.before_edits.effects, c.before_edits.frame
     if found is None or frame is None or found.changes is None or c.scheduler.drawn_view is not View.COLOR:
         return
     changes = found.changes
     shot = ui.cached("changed pixels", found, None, lambda: ChangedPixels(frame, changes))
-    texture = ui.graphics.shots.texture_id(shot, small=False)
+    texture = ui.graphics.textures.texture_id(shot, small=False)
     if texture is None:
         return
     draw = imgui.get_window_draw_list()

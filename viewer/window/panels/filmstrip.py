@@ -50,10 +50,10 @@ def _thumbnail(ui: Ui, test: RecordedZoomTest, shot: Shot, step: Step, height: f
     size = ImVec2(height * shot.width / shot.height, height)
     if imgui.invisible_button(f"{shot.factor:g} step {shot.number}##shot", size):
         show_step(ui, test, shot.factor, shot.number)
-    if not imgui.is_item_visible() or ui.graphics.shots is None:
+    if not imgui.is_item_visible() or ui.graphics.textures is None:
         return
     start, end = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    draw, texture = imgui.get_window_draw_list(), ui.graphics.shots.texture_id(shot, small=True)
+    draw, texture = imgui.get_window_draw_list(), ui.graphics.textures.texture_id(shot, small=True)
     if texture is not None:
         draw.add_image(imgui.ImTextureRef(texture), start, end)
     chosen = ui.frame_preview is not None and ui.frame_preview.shot is shot
@@ -75,14 +75,14 @@ def screen(ui: Ui, room: ImVec2) -> bool:
     It goes as soon as anything else is done with the traced picture."""
     shown = ui.frame_preview
     c = ui.controller
-    if shown is None or ui.graphics.shots is None:
+    if shown is None or ui.graphics.textures is None:
         return False
     if shown.test is not c.runs.zoom_test or shown.beside != _live(ui):
         ui.frame_preview = None
         return False
     c.selection.hovered = None
     top = imgui.get_cursor_screen_pos()
-    texture = ui.graphics.shots.texture_id(shown.shot, small=False)
+    texture = ui.graphics.textures.texture_id(shown.shot, small=False)
     factor = min(room.x / shown.shot.width, room.y / shown.shot.height)
     size = ImVec2(shown.shot.width * factor, shown.shot.height * factor)
     start = ImVec2(top.x + (room.x - size.x) / 2.0, top.y + (room.y - size.y) / 2.0)

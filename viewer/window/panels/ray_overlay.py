@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.told_rays import AWAY, TRACED, RayTree
-from viewer.output.ray_rows import Row
+from viewer.output.ray_rows import Filter, Row
 from viewer.state.palette import Color
 from viewer.state.projection import Stroke, place, strokes
-from viewer.state.verdicts import Filter
 from viewer.window.panels.marks import SHADE, Pen, Point
 from viewer.window.ui import Ui
 

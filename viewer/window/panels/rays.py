@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, imgui
 
-from viewer.output.ray_rows import Row, totals
+from viewer.output.ray_rows import Row, Shown, totals
 from viewer.services.ray_inspector import RayInspector
-from viewer.state.verdicts import Shown
 from viewer.window.panels import lights
 from viewer.window.panels.ray_overlay import MOST_DRAWN
 from viewer.window.setting_rows import ALL, setting_switch

@@ -23,7 +23,7 @@ class Recorded(Protocol):
     def thumbnail(self, height: int) -> NDArray[np.uint8]: ...
 
 
-class Shots:
+class TextureCache:
     """Needs a current GL context for all but `texture_id`."""
 
     def __init__(self, context: moderngl.Context) -> None:
@@ -38,8 +38,8 @@ class Shots:
         found = self._textures.get(key)
         return found[1].glo if found is not None else None
 
-    def bring(self) -> None:
-        """What was asked for since the last time, and nothing else, stays or comes."""
+    def update(self) -> None:
+        """Keep, or bring, what was asked for since the last time, and nothing else."""
         for key in [key for key in self._textures if key not in self._wanted]:
             self._textures.pop(key)[1].release()
         for key in [key for key in self._wanted if key not in self._textures][:A_FRAME]:
