@@ -26,11 +26,11 @@ class CompareMode(StrEnum):
         made._value_, made.label, made.meaning = value, label, meaning
         return made
 
-    FLIP = "flip", "Flip", "B is shown, and A while Z is held"
-    WIPE = "wipe", "Wipe", "A left of a line, B right of it; drag the line"
-    SIDE = "side", "Side by side", "A on the left, B on the right"
-    DIFFERENCE = "difference", "Signed difference", "B - A: orange where B has more, blue where it has less"
-    BLINK = "blink", "Blink", "A and B in turn"
+    FLIP = "flip", "Flip", "Shows B, and A while Z is held."
+    WIPE = "wipe", "Wipe", "Shows A left of a line and B right of it. Drag the line."
+    SIDE = "side", "Side by side", "Shows A on the left and B on the right."
+    DIFFERENCE = "difference", "Signed difference", "Shows B - A: orange where B has more, blue where it has less."
+    BLINK = "blink", "Blink", "Shows A and B in turn."
 
 
 class Source(StrEnum):

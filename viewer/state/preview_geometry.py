@@ -26,7 +26,7 @@ MOST_QUADRICS = 12_000
 MOST_READ = 3_000_000
 """Primitives of a scene that is previewed at all: gathering more takes too much memory and time."""
 MOST_LIGHTS = 8
-"""More are merged into so many."""
+"""More are replaced by the brightest of them."""
 MOST_TEXELS = 1024
 """A side of a texture."""
 _CELLS = 1 << 20  # of a grid, on either side of the origin
@@ -42,7 +42,7 @@ MATERIAL = np.dtype([("ambient", "f4", 4), ("diffuse", "f4", 4), ("specular", "f
 class PreviewGeometry:
     """In world space: vertices (3 n,) VERTEX, three for each triangle; batches of them that share a texture, its
     number or -1, their first and how many; quadrics (m,) QUADRIC, the largest first; materials (k,) MATERIAL; images of
-    the textures; lights (l, 8) float32: place, radius of what was merged, colour, and 1 where it falls off with
+    the textures; lights (l, 8) float32: place, 0, colour, and 1 where it falls off with
     distance; box (2, 3) around everything.  `left_out` primitives of the scene, of `of`, are not there."""
 
     vertices: NDArray[np.void]
@@ -186,31 +186,18 @@ def _image(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def _lights(scene: Scene, time: float) -> Float32:
-    """Lamps shine from their centres; too many are merged with their neighbours, and keep their light."""
-    lamps = LampTable(scene.lights).at(scene.light_positions(time))
-    falls = np.array([light.falloff != "none" for light in scene.lights], np.float32)
+    """Lamps shine from their centres; of too many, the brightest shine as brightly as all together."""
+    places = LampTable(scene.lights).at(scene.light_positions(time)).places.reshape(-1, 3)
     colors = np.array([light.color for light in scene.lights], np.float32).reshape(-1, 3)
-    places = lamps.places.reshape(-1, 3)
+    falls = np.array([light.falloff != "none" for light in scene.lights], np.bool_)
     rows = []
-    for group in _neighbours(np.concatenate([places, 1e6 * falls[:, None]], axis=1), MOST_LIGHTS):
-        weight = colors[group].sum(axis=1) + 1e-12
-        centre = np.average(places[group], axis=0, weights=weight)
-        reach = np.linalg.norm(places[group] - centre, axis=1).max()
-        rows.append((*centre, reach, *colors[group].sum(axis=0), falls[group[0]]))
+    for fall in (False, True):  # each kind by itself, as their brightness cannot be compared
+        kind = np.flatnonzero(falls == fall)
+        most = MOST_LIGHTS if falls.all() or not falls.any() else MOST_LIGHTS // 2
+        kept = kind[np.argsort(-colors[kind].sum(axis=1), kind="stable")[:most]]
+        scale = colors[kind].sum() / max(float(colors[kept].sum()), 1e-12) if len(kind) else 1.0
+        rows += [(*places[k], 0.0, *(scale * colors[k]), float(fall)) for k in sorted(kept.tolist())]
     return np.array(rows, np.float32).reshape(-1, 8)
-
-
-def _neighbours(points: Float32, most: int) -> list[NDArray[np.int64]]:
-    """The numbers of points (n, d) in groups, at most so many, around points that are far from each other."""
-    if len(points) <= most:
-        return [np.array([i]) for i in range(len(points))]
-    owner, away = np.zeros(len(points), np.int64), np.linalg.norm(points - points[0], axis=1)
-    for number in range(1, most):
-        from_next = np.linalg.norm(points - points[int(away.argmax())], axis=1)
-        owner[from_next < away] = number
-        away = np.minimum(away, from_next)
-    groups = [np.flatnonzero(owner == number) for number in range(most)]
-    return [group for group in groups if len(group)]
 
 
 def _box(soup: NDArray[np.void], quadrics: NDArray[np.void]) -> Float64:

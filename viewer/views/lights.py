@@ -17,7 +17,7 @@ from viewer.views.legend import Legend, counts_scale, fact
 class LightsDue(Count):
     label = "Lights due"
     key = "Shift+J"
-    help = "How many lights each pixel has to look at: those that its surface faces, and to which rays are due."
+    help = "How many lights the surface at each pixel faces: a shadow ray is due to each of them."
     records = Record.LIGHTS
     name = "lights due"
 
@@ -35,7 +35,7 @@ class LightsDue(Count):
         facts = (fact("per pixel", f"{self.per_pixel(frame):.4g} of {count(frame.lights)} lights"),)
         entries = NOT_KNOWN_YET if frame.shaded is not None else ()
         scale = counts_scale(int(self.span(frame)[1]), draw.span)
-        return Legend("Lights that each pixel has to look at", (), entries, scale, facts)
+        return Legend("Lights due at each pixel", (), entries, scale, facts)
 
 
 def _counted(asked: NDArray[np.uint16], shaded: NDArray[np.bool_] | None) -> NDArray[np.int32]:

@@ -54,30 +54,32 @@ def _controls(ui: Ui) -> None:
     c = ui.controller
     comparing, state = c.comparing, c.comparing.state
     if wide_button(
-        f"{icons.ICON_FA_THUMBTACK}  Keep as A", f"keep what is shown now, to compare with it{ui.key('Keep as A')}", 2
+        f"{icons.ICON_FA_THUMBTACK}  Keep as A",
+        f"Keep this picture, to compare others with it{ui.key('Keep as A')}.",
+        2,
     ):
         comparing.keep()
     imgui.same_line()
     imgui.begin_disabled(not state.on)
-    if wide_button(f"{icons.ICON_FA_XMARK}  End", "show the live picture alone"):
+    if wide_button(f"{icons.ICON_FA_XMARK}  End", "Show the live picture only."):
         comparing.end()
     imgui.end_disabled()
     with properties("comparison", 5.0) as shown:
         if shown:
-            row("A is", "what the live picture, B, is compared with")
+            row("A is", "What the live picture, B, is compared with.")
             names = {Source.KEPT: "a kept picture", Source.METHOD: "another method, live"}
             sources = list(Source)
             changed, index = imgui.combo("##source", sources.index(state.source), [names[one] for one in sources])
             if changed:
                 comparing.use(sources[index])
             if state.source is Source.METHOD:
-                row("A's method", "traces each frame once more, with modes and counters of its own")
+                row("A's method", "Each frame is traced a second time by this method, with its own modes and counters.")
                 _second(ui)
             held = ui.key_label("Show A")
-            row("Show", f"how A and B are seen{f'; {held} shows A while it is held' if held else ''}")
-            _way(ui)
+            row("Show", f"How A and B are shown.{f' Hold {held} to see A.' if held else ''}")
+            _mode(ui)
             if state.mode is CompareMode.BLINK:
-                row("Rate", "times a second that both are seen")
+                row("Rate", "How often per second both are shown.")
                 changed, rate = imgui.slider_float("##rate", state.rate, *RATES, "%.2f Hz")
                 state.rate = min(max(rate, RATES[0]), RATES[1]) if changed else state.rate
             if state.mode is CompareMode.DIFFERENCE and state.on:
@@ -89,16 +91,16 @@ def _controls(ui: Ui) -> None:
         paragraph(comparing.remark, WARNING)
 
 
-def _way(ui: Ui) -> None:
+def _mode(ui: Ui) -> None:
     comparing, state = ui.controller.comparing, ui.controller.comparing.state
     if not imgui.begin_combo("##way", state.mode.label if state.on else "B alone"):
         return
     if imgui.selectable("B alone", not state.on)[0]:
         comparing.end()
-    for way in CompareMode:
-        if imgui.selectable(way.label, state.on and state.mode is way)[0]:
-            comparing.start(way)
-        tooltip(way.meaning)
+    for mode in CompareMode:
+        if imgui.selectable(mode.label, state.on and state.mode is mode)[0]:
+            comparing.start(mode)
+        tooltip(mode.meaning)
     imgui.end_combo()
 
 
@@ -116,7 +118,7 @@ def _limit(ui: Ui) -> None:
     if found is None or found.values.classes:
         return
     limit = comparing.limit(found)
-    row("Range", "to both sides of 0; drag, or Ctrl+click to type")
+    row("Range", "How far the colours go to both sides of 0. Drag, or Ctrl+click to type a number.")
     imgui.set_next_item_width(-em(4.2))
     changed, limit = imgui.drag_float("##limit", limit, max(limit / 100.0, 1e-6), 1e-6, 1e9, "\u00b1 %.4g")
     if changed and limit > 0.0:
@@ -131,7 +133,7 @@ def _limit(ui: Ui) -> None:
 def _rings(ui: Ui) -> None:
     """Whether the signed difference marks where it is largest."""
     session = ui.controller.session
-    row("Rings", f"around the pixels that differ most{ui.key('Mark wrong pixels')}")
+    row("Rings", f"Draw rings around the pixels that differ most{ui.key('Mark wrong pixels')}.")
     checkbox("##rings", session.draw.mark_wrong, lambda on: session.set_draw(mark_wrong=on))
 
 
@@ -147,7 +149,7 @@ def _kept(ui: Ui) -> None:
         f"{kept.frame.width} x {kept.frame.height}",
         QUIET,
     )
-    tip = "show A in the view of B, as far as A has what that needs, instead of the view in which it was kept"
+    tip = "Show A in the view of B, where the frame of A has what that needs, not in the view in which it was kept."
     checkbox("A in the view of B", state.same_view, lambda on: setattr(state, "same_view", on), tip)
 
 

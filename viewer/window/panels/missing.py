@@ -49,7 +49,7 @@ def _button(ui: Ui, what: str) -> bool:
     clicked = imgui.button(f"Use {what}##instead")
     imgui.end_disabled()
     if run is not None:
-        tooltip_above(f"not while the {run.name} is under way: Escape stops it")
+        tooltip_above(f"Not while the {run.name} runs. Escape stops it.")
     return clicked
 
 

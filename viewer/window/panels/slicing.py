@@ -28,7 +28,7 @@ def rows(ui: Ui) -> None:
     """Rows of the panel's table."""
     session = ui.controller.session
     cut = session.draw.slice
-    row("Slice", "across which axis space is cut")
+    row("Slice", "The axis that the slice goes across.")
     for axis, name in enumerate(AXES):
         if axis:
             imgui.same_line(0.0, em(0.6))
@@ -38,7 +38,7 @@ def rows(ui: Ui) -> None:
     layer = view_of(session.draw.view).layer(frame, cut) if frame is not None else None
     if layer is None:
         return
-    row("Layer", "along the axis; Ctrl+click to type one")
+    row("Layer", "Where along the axis it is. Ctrl+click to type a number.")
     flags, shown = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[cut.axis]} = {layer.place:.4g})"
     changed, number = imgui.slider_int("##layer", layer.number, 0, layer.many - 1, shown, flags)
     if changed:
