@@ -354,5 +354,5 @@ class Controller:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
         if self.session.scene is not None:
             self.preferences.last = codec.state_to_json(self.session.state)
-        self.settings.save()
+        self.settings.finish()
         return stopped

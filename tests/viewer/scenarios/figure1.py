@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
-from viewer.output.figure1_shapes import Drawing
+from viewer.output.figure1_layout import Drawing
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 

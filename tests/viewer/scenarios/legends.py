@@ -36,7 +36,7 @@ def legends(d: Driver) -> None:
     assert right - area[2] < 20.0 and bottom - area[3] < 20.0, "it has left its corner"
     _off_and_on(d)
     _in_saved_pictures(d)
-    d.c.settings.save()
+    d.c.settings.finish()
     kept = load_preferences()[0]
     assert (kept.legend, kept.legend_in_pictures, kept.legend_x, kept.legend_y) == (True, False, 1.0, 1.0)
 

@@ -65,6 +65,7 @@ def test_one_is_saved_and_applied_again_by_another_window(parts: Parts, own_sett
     parts.session.set_draw(outlines=True)
     kept = parts.now
     assert parts.presets.save("  soft   shadows ")
+    parts.settings.finish()
     assert json.loads((own_settings / "settings.json").read_text())["presets"][0]["name"] == "soft shadows"
     other = Parts()
     other.preferences.presets = load_preferences()[0].presets
