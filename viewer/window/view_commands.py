@@ -33,7 +33,7 @@ def view(ui: Ui) -> list[Command]:
     c, p = ui.controller, ui.controller.preferences
 
     def show(view: View) -> Command:
-        return Command(view.label, "View", lambda: c.settings.set_view(view), view.key, also=view.declared.also,
+        return Command(view.label, "View", lambda: c.session.set_draw(view=view), view.key, also=view.declared.also,
                        checked=lambda: c.session.draw.view is view)  # fmt: skip
 
     def light(step: int) -> Callable[[], None]:
@@ -41,10 +41,10 @@ def view(ui: Ui) -> list[Command]:
 
     def another(step: int) -> Callable[[], None]:
         views = list(View)
-        return lambda: c.settings.set_view(views[(views.index(c.session.draw.view) + step) % len(views)])
+        return lambda: c.session.set_draw(view=views[(views.index(c.session.draw.view) + step) % len(views)])
 
     lit = Condition(
-        lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "there are not several lights"
+        lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "the scene has no other light"
     )
     return [
         *[show(view) for view in View],
@@ -132,8 +132,8 @@ def _interface(ui: Ui) -> list[Command]:
 
         return change
 
-    largest = Condition(lambda: p.ui_scale < SCALES[-1], "it is as large as it can be")
-    smallest = Condition(lambda: p.ui_scale > SCALES[0], "it is as small as it can be")
+    largest = Condition(lambda: p.ui_scale < SCALES[-1], "the interface is at its largest")
+    smallest = Condition(lambda: p.ui_scale > SCALES[0], "the interface is at its smallest")
 
     def other_theme() -> None:
         p.theme = "dark" if p.theme == "light" else "light"
