@@ -91,7 +91,7 @@ def inspect(path: Path, size: int) -> dict[str, Any]:
     from tracer.scene.load import load_visible_scene
     from tracer.scene.mesh_options import IN_STUDIO
     from tracer.settings import Settings
-    from viewer.services.scene_files import open_loaded
+    from viewer.services.scene_files import open_scene
 
     warm_up(lights=1)
     warm_up(lights=96)
@@ -100,7 +100,7 @@ def inspect(path: Path, size: int) -> dict[str, Any]:
     before, started, reports = resident("VmRSS"), time.perf_counter(), Reports()
     scene = load_visible_scene(path, reports, meshes=IN_STUDIO)
     read, most_reading, as_scene = time.perf_counter(), resident("VmHWM"), resident("VmRSS")
-    opened = open_loaded(scene, Settings(width=size, height=size), lambda: True, reports)
+    opened = open_scene(lambda: scene, Settings(width=size, height=size), lambda: True, reports)
     reports("ready", 1.0)
     built, most_building = time.perf_counter(), resident("VmHWM")
     frame = opened.renderer.render(0.0)

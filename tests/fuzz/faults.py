@@ -152,7 +152,7 @@ def _add_bookmarks(folder: Path, who: int, marks: int) -> None:
     rng = np.random.default_rng(who)
     for mark in range(marks):
         preferences.bookmarks.setdefault(SCENE, []).append({"name": f"{who}-{mark}", "state": {}})
-        settings.save()
+        settings.finish()
         assert notices.message is None, notices.message
         time.sleep(float(rng.uniform(0.0, 0.01)))
 

@@ -133,7 +133,7 @@ class Soak:
 
     def _view(self) -> None:
         views = list(View)
-        self.c.settings.set_view(views[self.rng.integers(len(views))])
+        self.c.session.set_draw(view=views[self.rng.integers(len(views))])
 
     def _size(self) -> None:
         width, height = (int(side) for side in self.rng.integers(8, 160, 2))

@@ -77,6 +77,14 @@ class Stage:
     bar_tip: str = ""
     view: View | None = None
 
+    @property
+    def heading(self) -> str:
+        return f"{self.name} {self.section}".strip()
+
+    @property
+    def duration(self) -> str:
+        return ", ".join(filter(None, (self.time, self.part)))
+
 
 @dataclass(frozen=True)
 class Figure:

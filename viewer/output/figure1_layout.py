@@ -7,14 +7,102 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import cache
 from itertools import combinations, pairwise
 
 from viewer.output.figure1 import Figure, Flow, Part, Stage
-from viewer.output.figure1_shapes import Area, Arrow, Box, Drawing, Point, Tone, Words
+from viewer.state.palette import Color
+from viewer.state.views import View
 from viewer.views.legend import wrapped
+
+# --- what a drawing consists of ------------------------------------------------------------------
+
+Point = tuple[float, float]
+
+
+class Tone(Enum):
+    """How a text, or a line, is meant."""
+
+    PLAIN = "plain"
+    STRONG = "strong"
+    QUIET = "quiet"
+
+
+@dataclass(frozen=True)
+class Words:
+    """A line of text; its upper left corner, or the upper right one where it is aligned to the `right`."""
+
+    x: float
+    y: float
+    text: str
+    tone: Tone = Tone.PLAIN
+    right: bool = False
+
+
+@dataclass(frozen=True)
+class Box:
+    """A rectangle: the frame of a stage where it has no colour, else filled with it, or, `hollow`, outlined."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    color: Color | None = None
+    hollow: bool = False
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """A line from point to point, with a head at its end or none."""
+
+    points: tuple[Point, ...]
+    head: bool = True
+
+    def head_of(self, size: float) -> tuple[Point, Point, Point]:
+        """The corners of its head; the last part of an arrow goes along an axis."""
+        (x0, y0), (x, y) = self.points[-2:]
+        along = ((x > x0) - (x < x0), (y > y0) - (y < y0))
+        back = x - 2.0 * size * along[0], y - 2.0 * size * along[1]
+        side = size * along[1], size * along[0]
+        return (x, y), (back[0] + side[0], back[1] + side[1]), (back[0] - side[0], back[1] - side[1])
+
+
+@dataclass(frozen=True)
+class Area:
+    """A rectangle that is about something: what is said of it, and the view that shows it."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    tip: str
+    view: View | None = None
+
+    def holds(self, x: float, y: float) -> bool:
+        return self.x <= x < self.x + self.width and self.y <= y < self.y + self.height
+
+
+@dataclass
+class Drawing:
+    """All of a figure, laid out: its size, and what is drawn, in this order; areas that come later lie above."""
+
+    width: float
+    height: float
+    boxes: list[Box] = field(default_factory=list)
+    bars: list[Box] = field(default_factory=list)
+    times: list[Box] = field(default_factory=list)
+    arrows: list[Arrow] = field(default_factory=list)
+    words: list[Words] = field(default_factory=list)
+    areas: list[Area] = field(default_factory=list)
+
+    def at(self, x: float, y: float) -> Area | None:
+        """What lies at a point, above all else."""
+        return next((area for area in reversed(self.areas) if area.holds(x, y)), None)
+
+
+# --- where its parts lie ----------------------------------------------------------------------------
 
 Measure = Callable[[str], float]
 
@@ -84,10 +172,10 @@ class _Texts:
         return self.strong * self.measure(text)
 
     def heading(self, stage: Stage) -> str:
-        return stage.name if self.detail is Detail.LEAST else _heading(stage)
+        return stage.name if self.detail is Detail.LEAST else stage.heading
 
     def time(self, stage: Stage) -> str:
-        return stage.part if self.detail is Detail.LEAST else _time(stage)
+        return stage.part if self.detail is Detail.LEAST else stage.duration
 
     def number(self, flow: Flow) -> str:
         return _short(flow.number) if self.detail is Detail.LEAST else f"{flow.number:,}"
@@ -131,14 +219,6 @@ class _Texts:
             for flow in stage.flows
         )
         return max(*boxes, *rows)
-
-
-def _heading(stage: Stage) -> str:
-    return f"{stage.name} {stage.section}".strip()
-
-
-def _time(stage: Stage) -> str:
-    return ", ".join(filter(None, (stage.time, stage.part)))
 
 
 def _short(number: int) -> str:
@@ -226,7 +306,7 @@ class _Sheet:
         drawing, line, texts, height = self.drawing, self._line, self._texts, self._box_height(stage)
         left, inner = x + texts.pad, self._column - 2 * texts.pad
         drawing.boxes.append(Box(x, y, self._column, height))
-        tip = f"{_heading(stage)}\n{stage.rule}\n{_time(stage)}"
+        tip = f"{stage.heading}\n{stage.rule}\n{stage.duration}"
         drawing.areas.append(Area(x, y, self._column, height, tip, stage.view))
         at, beside = y + texts.pad, texts.fits_one_line(stage, self._column)
         drawing.words.append(Words(left, at, shortened(texts.heading(stage), texts.wide, inner), Tone.STRONG))

@@ -10,7 +10,6 @@ from dataclasses import replace
 from tracer.frame import Frame
 from tracer.method import Method, bases
 from viewer.services.frame_scheduler import FrameScheduler
-from viewer.services.settings_controller import SettingsController
 from viewer.state.comparison import CompareMode, Side, Source, named, sizes_in_words
 from viewer.state.draw_options import DrawOptions, Slice
 from viewer.state.methods import BY_MODES, NO_CULLING
@@ -26,10 +25,8 @@ from viewer.views.compare import Difference, difference_of
 class Comparing:
     """`state` is what was chosen; panels and commands may change it by the methods here."""
 
-    def __init__(
-        self, session: Session, scheduler: FrameScheduler, settings: SettingsController, notices: Notices
-    ) -> None:
-        self._session, self._scheduler, self._settings, self._notices = session, scheduler, settings, notices
+    def __init__(self, session: Session, scheduler: FrameScheduler, notices: Notices) -> None:
+        self._session, self._scheduler, self._notices = session, scheduler, notices
         self.state = session.comparison
         self._difference: tuple[Side, Side, Slice, Difference | None] | None = None
         self._span: tuple[Frame, Frame, dict[View, tuple[float, float]]] | None = None
@@ -147,7 +144,7 @@ class Comparing:
         """Compare in this way."""
         self.state.on, self.state.mode = True, mode
         if self._session.draw.view is View.WIPE:  # one line is enough
-            self._settings.set_view(View.COLOR)
+            self._session.set_draw(view=View.COLOR)
         if self.state.source is Source.KEPT and self.state.kept is None:
             self._notices.say(self.remark)
 

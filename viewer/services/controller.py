@@ -74,7 +74,7 @@ class Controller:
         self.baseline = Baseline(renderer)
         self.settings = settings = SettingsController(session, preferences, notices, runs.refuses)
         self.motion = motion = Motion(session, preferences, notices, runs.refuses)
-        self.comparing = Comparing(session, scheduler, settings, notices)
+        self.comparing = Comparing(session, scheduler, notices)
         self.bookmarks = bookmarks = Bookmarks(session, preferences, settings, notices)
         self.undo = undo = Undo(
             session, motion, notices, runs.refuses,
@@ -250,7 +250,7 @@ class Controller:
         session = self.session
         view, said = fitting_view(session.draw.view, session.settings, session.scene.lights if session.scene else ())
         if view is not session.draw.view:
-            self.settings.set_view(view)
+            self.session.set_draw(view=view)
         return said
 
     def _show_again(self, arrival: Arrival) -> None:
@@ -354,5 +354,5 @@ class Controller:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
         if self.session.scene is not None:
             self.preferences.last = codec.state_to_json(self.session.state)
-        self.settings.save()
+        self.settings.finish()
         return stopped

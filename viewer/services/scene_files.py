@@ -15,7 +15,7 @@ from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.renderer import Renderer, Settings
 from tracer.scene.files import Stamp, noting
 from tracer.scene.load import load_visible_scene, scene_info
-from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
+from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Progress, Scene
 from tracer.scene.studio import model_bounds
 from viewer.util import resources
@@ -53,34 +53,27 @@ def refusal(path: Path) -> str | None:
     return None
 
 
+def read_scene(
+    path: Path, progress: Progress, folders: Sequence[Path], meshes: MeshOptions, files: dict[Path, Stamp]
+) -> Scene:
+    """Read a scene's file; what was read gets into `files`, also where it cannot be shown.  Raises SceneError or
+    Cancelled."""
+    with noting(files), _no_collecting():
+        return load_visible_scene(path, progress, folders, meshes)
+
+
 def open_scene(
-    path: Path,
+    read: Callable[[], Scene],
     settings: Settings,
     ready: Callable[[], bool],
     progress: Progress,
-    folders: Sequence[Path] = (),
-    files: dict[Path, Stamp] | None = None,
-    meshes: MeshOptions = AS_IN_FILE,
     seen: Callable[[Scene], None] = lambda scene: None,
 ) -> Opened:
-    """Read a scene and build its trees; waits for the tracer to be `ready` in between.  What was read gets into
-    `files`, also where it cannot be shown.  A scene whose kernels are yet to be compiled is `seen` before that.
+    """Build the trees of a scene once it is `read` and the tracer is `ready`.  A scene whose kernels are yet to be
+    compiled is `seen` before that.
 
     Raises SceneError or Cancelled; runs on a thread of its own."""
-    started = time.perf_counter()
-    with noting({} if files is None else files), _no_collecting():
-        scene = load_visible_scene(path, progress, folders, meshes)
-    return _opened(scene, settings, ready, progress, started, seen)
-
-
-def _opened(
-    scene: Scene,
-    settings: Settings,
-    ready: Callable[[], bool],
-    progress: Progress,
-    started: float,
-    seen: Callable[[Scene], None],
-) -> Opened:
+    started, scene = time.perf_counter(), read()
     lights, accelerator = len(scene.lights), settings.accelerator
     if not can_draw(lights, accelerator) and not compiled_before(lights, accelerator, certificates=False):
         seen(scene)
@@ -95,18 +88,6 @@ def _opened(
     if model is not None:  # what the camera goes around is the model, not the floor
         info["bounds"] = model.tolist()
     return Opened(scene, renderer, info, time.perf_counter() - started)
-
-
-def open_loaded(
-    scene: Scene,
-    settings: Settings,
-    ready: Callable[[], bool],
-    progress: Progress,
-    seen: Callable[[Scene], None] = lambda scene: None,
-) -> Opened:
-    """The same with a scene that is there already, as scripts have one."""
-    started = time.perf_counter()
-    return _opened(scene, settings, ready, progress, started, seen)
 
 
 @contextmanager

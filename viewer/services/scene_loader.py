@@ -162,15 +162,10 @@ class SceneLoader:
 
     def take(self, scene: Scene) -> None:
         """Show a scene that a script has loaded, or made."""
-        settings, seen = self._session.settings, list[Scene]()
         self._given = {}
         up = up_in_studio(scene)
-        job = Job(
-            f"Opening {scene.path.name}",
-            lambda progress: scene_files.open_loaded(scene, settings, self._kernels_ready, progress, seen.append),
-            self._wake,
-        )
-        self._load = _Load(job, MeshOptions(up is not None, up), seen=seen)  # as far as it shows how it was read
+        meshes = MeshOptions(up is not None, up)  # as far as it shows how it was read
+        self._start(f"Opening {scene.path.name}", lambda progress: scene, meshes)
 
     def open(self, path: Path) -> None:
         """Open a scene, or restore what a captured picture shows; anything else is one line."""
@@ -307,16 +302,20 @@ class SceneLoader:
             meshes = self._session.meshes
         elif meshes is None:
             meshes, self.meshes = self.meshes, replace(self.meshes, up=None)
-        meshes = meshes.of_file(path)
-        settings, files, seen = self._session.settings, dict[Path, Stamp](), list[Scene]()
-        job = Job(
+        meshes, files = meshes.of_file(path), dict[Path, Stamp]()
+        self._start(
             f"Loading {path.name}",
-            lambda progress: scene_files.open_scene(
-                path, settings, self._kernels_ready, progress, self.folders, files, meshes, seen.append
-            ),
-            self._wake,
-        )
-        self._load = _Load(job, meshes, place, again, changed, files, seen)
+            lambda progress: scene_files.read_scene(path, progress, self.folders, meshes, files),
+            meshes, place=place, again=again, changed=changed, files=files,
+        )  # fmt: skip
+
+    def _start(self, title: str, read: Callable[[Progress], Scene], meshes: MeshOptions, **more: Any) -> None:
+        settings, seen = self._session.settings, list[Scene]()
+
+        def work(progress: Progress) -> scene_files.Opened:
+            return scene_files.open_scene(lambda: read(progress), settings, self._kernels_ready, progress, seen.append)
+
+        self._load = _Load(Job(title, work, self._wake), meshes, seen=seen, **more)
 
     def _kernels_ready(self) -> bool:
         job = self.warm_up_job

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Collection
+from concurrent.futures import Future
 from typing import Any
 
 from tracer.method import Method
@@ -14,7 +14,7 @@ from viewer.state.methods import NO_CULLING, with_additions
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences, save_preferences
 from viewer.state.session import Session
-from viewer.state.views import View
+from viewer.util.files import BackgroundWriter
 
 REST_SECONDS = 2.0
 """How long preferences are as they are before they are saved."""
@@ -32,7 +32,8 @@ class SettingsController:
         self._seen: dict[str, Any] = {}
         self._problem: str | None = None
         self._told: str | None = None
-        self._writer: threading.Thread | None = None
+        self._writer = BackgroundWriter()
+        self._writing: Future[None] | None = None
 
     def set(self, one: Setting, value: Any) -> None:
         """Change a setting of the state or of the preferences; a wrong value is one line and changes nothing."""
@@ -57,10 +58,6 @@ class SettingsController:
             return
         self._session.state = state
         self.note_method()
-
-    def set_view(self, view: View) -> None:
-        """Choose a view."""
-        self._session.set_draw(view=view)
 
     def set_light(self, light: int) -> None:
         """Choose the light of the views that show one; past the last comes the first."""
@@ -98,28 +95,36 @@ class SettingsController:
     # --- the file --------------------------------------------------------------------------------
 
     def save(self) -> None:
-        """Write the preferences to their file, beside what other windows have written; a failure is reported in one
-        line."""
-        if self._writer is not None:
-            self._writer.join()
-        self._write(self._now())
-        self._told = self._problem
-        if self._problem:
-            self._notices.say(self._problem, error=True)
+        """Write the preferences to their file soon, beside what other windows have written.
+
+        That is done on a thread, so that the window waits for neither the disk nor another window."""
+        mine = self._now()
+        self._writing = self._writer.write(lambda: self._write(mine))
+
+    def finish(self) -> None:
+        """Save, and wait until it is done."""
+        self.save()
+        if self._writing is not None:
+            self._writing.result()
+        self._tell()
 
     def save_when_rested(self) -> None:
-        """Save, on a thread, what was changed and has rested for a moment, so that little is lost with the program; a
-        failure is reported once."""
+        """Save what was changed and has rested for a moment, so that little is lost with the program, and say once what
+        could not be saved."""
+        self._tell()
         now = time.monotonic()
-        if now < self._looked + REST_SECONDS or (self._writer is not None and self._writer.is_alive()):
+        if now < self._looked + REST_SECONDS or (self._writing is not None and not self._writing.done()):
             return
-        if self._problem and self._problem != self._told:
-            self._notices.say(self._problem, error=True)
-        self._told = self._problem
         self._looked, before, self._seen = now, self._seen, self._now()
         if self._seen == before and self._seen != self._tried:
-            self._writer = threading.Thread(target=self._write, args=(self._seen,), name="saving")
-            self._writer.start()
+            self.save()
+
+    def _tell(self) -> None:
+        """Say once why the last save failed, in one line."""
+        problem = self._problem
+        if problem and problem != self._told:
+            self._notices.say(problem, error=True)
+        self._told = problem
 
     def _now(self) -> dict[str, Any]:
         """The preferences as they are stored, with the state that the next window starts with."""

@@ -218,7 +218,7 @@ def _has_seen_modes(c: Controller) -> Iterator[None]:
 def _show_modes(c: Controller, show_panel: Callable[[str], None]) -> Iterator[float]:
     show_panel("View")
     for view in (View.OCCLUSION, View.SHADOW, View.COLOR):
-        c.settings.set_view(view)
+        c.session.set_draw(view=view)
         yield SECONDS
 
 
@@ -246,7 +246,7 @@ def _click_a_shadow(c: Controller, show_panel: Callable[[str], None]) -> Iterato
     """Of places from the middle on, the first whose ray to some light is culled, with that light chosen, so that the
     Inspector begins with what blocks it; where there is none, one that is in shadow all the same."""
     show_panel("Inspector")
-    c.settings.set_view(View.COLOR)
+    c.session.set_draw(view=View.COLOR)
     in_shadow = None
     for at in _PLACES:
         c.selection.select(at)

@@ -1,33 +1,47 @@
-"""What the user plans to measure: an experiment over a path, a zoom test towards a primitive."""
+"""What is planned to be traced: an experiment over a path, a zoom test, a film, a hunt, a picture to be saved.
+
+Fields that are settings of the tracer go by their declarations there.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tracer.geometry.accelerators import KD_TREE
+from tracer.setting import setting
+
 MOST_FACTORS = 6  # that are compared in one zoom test
+MOST_MULTIPLE = 8
+MOST_FRAMES = 100_000
 
 
 @dataclass
 class ExperimentPlan:
-    """What to measure: `frames` over the whole path, by each of `methods`, the reference always among them, through a
-    tree whose steps are the paper's unless another is chosen."""
+    """A path of frames by each of `methods`, the reference always among them, through a tree whose steps are the
+    paper's unless another is chosen."""
 
     methods: set[str]
-    frames: int = 100
+    frames: int = setting(100, "Frames", "Frames over the whole path of the scene.", low=1, high=MOST_FRAMES)
     size: tuple[int, int] = (512, 512)
     depth: int = 10
+    accelerator: str = KD_TREE
     verify: bool = False
-    accelerator: str = "kdtree"
 
 
 @dataclass
 class ZoomPlan:
-    """How to go towards a primitive: in `steps`, each to `ratio` of the distance, once with each of `factors`, which
-    are as they were typed; with `same_start` from where the last test began, if that is known."""
+    """Towards a primitive in `steps`, each to `ratio` of the distance, once with each of `factors`, as they were typed;
+    with `same_start` from where the last test began, if that is known."""
 
-    factors: str = "4, 16"
-    steps: int = 30
-    ratio: float = 0.94
+    factors: str = setting(
+        "4, 16", "Factors",
+        "Zoom factors to compare: a primitive is examined anew once it covers this many times its highest pixel count.",
+    )  # fmt: skip
+    steps: int = setting(30, "Steps", "Steps towards the primitive.", low=1, high=1000)
+    ratio: float = setting(
+        0.94, "Ratio", "The part of the distance that is left after each step.", low=0.01, high=0.999,
+        slider=(0.5, 0.99), digits=2,
+    )  # fmt: skip
     size: tuple[int, int] = (256, 256)
     same_start: bool = False
 
@@ -41,15 +55,18 @@ def frames_within(first: int, last: int | None, count: int) -> tuple[int, int]:
 
 @dataclass
 class FilmPlan:
-    """What to film: the frames `first` to `last` of the path, to its end where that is None, with the scene's camera or
-    `from_here`, or a flight `through_bookmarks`; `seconds` long, 0 for every frame once."""
+    """The frames `first` to `last` of the path, to its end where that is None, with the scene's camera or `from_here`,
+    or a flight `through_bookmarks`; 0 seconds for every frame once."""
 
     through_bookmarks: bool = False
     first: int = 0
     last: int | None = None
     from_here: bool = False
-    seconds: float = 0.0
-    fps: float = 25.0
+    seconds: float = setting(
+        0.0, "Seconds", "Length of the film; 0 for every frame once, or 2 seconds from bookmark to bookmark.",
+        low=0.0, high=3600.0, digits=1,
+    )  # fmt: skip
+    fps: float = setting(25.0, "Frames / s", "Frames a second of the video.", low=1.0, high=240.0, digits=2)
     size: tuple[int, int] = (640, 480)
     samples: int = 1
     caption: str = ""
@@ -59,22 +76,23 @@ class FilmPlan:
 
 @dataclass
 class HuntPlan:
-    """What to search for wrong pixels of a method: the frames `first` to `last` of the path, to its end where that is
-    None, every `step`-th, and so many pictures `around` the worst finds, as far as `radius` and `seed` say; the worst
-    `keep` are kept."""
+    """The frames `first` to `last` of the path, to its end where that is None, by a method whose wrong pixels are
+    searched; the worst `keep` are kept."""
 
     method: str = "paper"
     first: int = 0
     last: int | None = None
-    step: int = 1
-    around: int = 40
-    radius: float = 0.3
-    seed: int = 1
+    step: int = setting(1, "Step", "Search only every nth of these frames.", low=1, high=MOST_FRAMES)
+    around: int = setting(
+        40, "Random views", "Extra random views near the worst findings.", low=0, high=MOST_FRAMES
+    )  # fmt: skip
+    radius: float = setting(
+        0.3, "Radius", "How far random views are from a finding's camera, as a part of its distance to what is wrong.",
+        low=0.0, high=100.0, slider=(0.0, 1.0), digits=2,
+    )  # fmt: skip
+    seed: int = setting(1, "Seed", "Seed of the random views.", low=0, high=2**31 - 1)
     keep: int = 12
     size: tuple[int, int] = (256, 256)
-
-
-MOST_MULTIPLE = 8
 
 
 @dataclass

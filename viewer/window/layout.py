@@ -21,7 +21,7 @@ from viewer.window.panels import (
     culling,
     experiment,
     figure1,
-    filming,
+    film,
     find,
     hunt,
     inspector,
@@ -75,7 +75,7 @@ PANELS = {
         Panel("Experiment", "Bottom", icons.ICON_FA_FLASK, experiment.show, wide=True),
         Panel("Zoom test", "Bottom", icons.ICON_FA_MAGNIFYING_GLASS_PLUS, zoom.show, wide=True),
         Panel("Hunt", "Bottom", icons.ICON_FA_CROSSHAIRS, hunt.show, wide=True),
-        Panel("Film", "Bottom", icons.ICON_FA_FILM, filming.show, wide=True),
+        Panel("Film", "Bottom", icons.ICON_FA_FILM, film.show, wide=True),
         Panel("Log", "Bottom", icons.ICON_FA_LIST, log.show, wide=True),
     )
 }

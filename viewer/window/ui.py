@@ -15,6 +15,7 @@ from tracer.culling.fate import Fate
 from tracer.scene.lights import named_light
 from viewer.output.capture import FIELDS
 from viewer.services.controller import Controller
+from viewer.services.runs import FramePreview
 from viewer.services.tour import Tour
 from viewer.state.keymap import Keymap
 from viewer.state.pixels import Pixels
@@ -28,7 +29,6 @@ from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard, is_key
 from viewer.window.magnifier import Magnifier
 from viewer.window.preview import PreviewDisplay
-from viewer.window.screening import Screening
 from viewer.window.texture_cache import TextureCache
 
 
@@ -119,7 +119,7 @@ State = TypeVar("State")
 @dataclass(slots=True)
 class Ui:
     """See the module.  `dialogs` are those that are open, the newest last, `fate_shown` is the fate of shadow rays
-    whose pixels are to stand out, and `screening` the recorded picture that is shown in the picture's place."""
+    whose pixels are to stand out, and `frame_preview` the recorded picture that is shown in the picture's place."""
 
     controller: Controller
     commands: list[Command] = field(default_factory=list)
@@ -136,7 +136,7 @@ class Ui:
     guard: Guard = field(init=False)
     keymap: Keymap = field(init=False)
     tour: Tour = field(init=False)
-    screening: Screening | None = None
+    frame_preview: FramePreview | None = None
     pixels: Pixels = field(default_factory=Pixels)
     picture: Picture = field(default_factory=Picture)
     _states: dict[type, Any] = field(default_factory=dict)

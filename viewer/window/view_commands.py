@@ -33,7 +33,7 @@ def view(ui: Ui) -> list[Command]:
     c, p = ui.controller, ui.controller.preferences
 
     def show(view: View) -> Command:
-        return Command(view.label, "View", lambda: c.settings.set_view(view), view.key, also=view.declared.also,
+        return Command(view.label, "View", lambda: c.session.set_draw(view=view), view.key, also=view.declared.also,
                        checked=lambda: c.session.draw.view is view)  # fmt: skip
 
     def light(step: int) -> Callable[[], None]:
@@ -41,7 +41,7 @@ def view(ui: Ui) -> list[Command]:
 
     def another(step: int) -> Callable[[], None]:
         views = list(View)
-        return lambda: c.settings.set_view(views[(views.index(c.session.draw.view) + step) % len(views)])
+        return lambda: c.session.set_draw(view=views[(views.index(c.session.draw.view) + step) % len(views)])
 
     lit = Condition(
         lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "there are not several lights"

@@ -13,8 +13,7 @@ import tracer
 from tests.tracing.shades import roof, shadow_scene
 from tests.tracing.worlds import moved
 from viewer.output.figure1 import Figure, Flow, figure_of
-from viewer.output.figure1_layout import lay_out
-from viewer.output.figure1_shapes import Drawing
+from viewer.output.figure1_layout import Drawing, lay_out
 from viewer.output.figure1_svg import svg
 from viewer.state.views import View
 

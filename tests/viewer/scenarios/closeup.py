@@ -121,7 +121,7 @@ def _numbers(d: Driver) -> None:
     _point_at(d, 0.45, 0.55)
     _wheel(d, 12)
     for view in (View.COLOR, View.OCCLUSION):
-        d.c.settings.set_view(view)
+        d.c.session.set_draw(view=view)
         d.settle()
         d.c.preferences.pixel_values = False
         d.frames(3)
@@ -131,7 +131,7 @@ def _numbers(d: Driver) -> None:
         left, top, right, bottom = (int(edge) for edge in d.picture_edges())
         changed = (d.window() != without).any(axis=-1)[top + 30 : bottom, left:right]
         assert 0.02 < changed.mean() < 0.8, f"{view}: {changed.mean():.1%} of the picture changed"
-    d.c.settings.set_view(View.COLOR)
+    d.c.session.set_draw(view=View.COLOR)
     d.press(int(KEY.f) | SHIFT)
     d.settle()
 
@@ -149,10 +149,10 @@ def _watched(d: Driver) -> None:
     d.frames(3)
     assert len(d.ui.pixels.watched) == 2 and d.c.session.camera == camera and d.c.selection.picked is None
     for view in (View.COLOR, View.COST):
-        d.c.settings.set_view(view)
+        d.c.session.set_draw(view=view)
         d.settle()
         assert d.context.item_exists("//Pixels/**/1"), "the first pixel is not in the list"
-    d.c.settings.set_view(View.COLOR)
+    d.c.session.set_draw(view=View.COLOR)
     d.settle()
     d.context.menu_click("//##MainMenuBar/Picture/Unwatch all pixels")
     d.frames(2)
@@ -170,7 +170,7 @@ def _region(d: Driver) -> None:
     region = d.ui.pixels.region
     assert region is not None and d.c.session.camera == camera
     assert np.allclose((region.left, region.top, region.right, region.bottom), (0.25, 0.3, 0.75, 0.7), atol=0.01)
-    d.c.settings.set_view(View.DEPTH)
+    d.c.session.set_draw(view=View.DEPTH)
     d.settle()
     rows, columns = region.pixels(d.c.frame)
     depth = d.c.frame.depth[rows, columns]
@@ -181,7 +181,7 @@ def _region(d: Driver) -> None:
     expected = picture(d.c.frame, View.DEPTH, span=d.c.session.draw.span)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.c.session.set_draw(spans=())
-    d.c.settings.set_view(View.COLOR)
+    d.c.session.set_draw(view=View.COLOR)
     d.ui.pixels.region = None
     d.settle()
 

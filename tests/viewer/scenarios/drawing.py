@@ -50,7 +50,7 @@ def views(d: Driver) -> None:
     d.press(KEY.u)
     d.settle()
     for view in (View.SAVED, View.COST):
-        d.c.settings.set_view(view)
+        d.c.session.set_draw(view=view)
         d.frames(2)
         expected = picture(d.c.frame, view, shares=True).astype(int)
         assert np.abs(d.shown().astype(int) - expected).max() <= 2

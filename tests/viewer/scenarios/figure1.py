@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
-from viewer.output.figure1_shapes import Drawing
+from viewer.output.figure1_layout import Drawing
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 
@@ -49,7 +49,7 @@ def figure1(d: Driver) -> None:
         _click(d, name)
         assert d.c.session.draw.view is view, name
         d.settle()
-    d.c.settings.set_view(View.COLOR)
+    d.c.session.set_draw(view=View.COLOR)
 
     # Without culling it says what modes would do; with certificates these stand in the place of modes.
     d.c.settings.change(method="none")
@@ -62,7 +62,7 @@ def figure1(d: Driver) -> None:
     assert "Certificates" in said and not any("mode setting" in text for text in said)
     _click(d, "Certificates")
     assert d.c.session.draw.view is View.CERTIFICATE
-    d.c.settings.set_view(View.COLOR)
+    d.c.session.set_draw(view=View.COLOR)
 
 
 def _drawing(d: Driver) -> Drawing:

@@ -95,14 +95,14 @@ def dropping(d: Driver) -> None:
     d.wait(lambda: d.c.session.scene is not scene, "the other scene")
     d.settle()
     assert len(d.c.session.scene.lights) == 42
-    d.c.settings.set_view(View.SHADOW)
+    d.c.session.set_draw(view=View.SHADOW)
     d.c.settings.set_light(35)
     d.frames(3)
     dark = d.folder / "dark.nff"
     dark.write_text(
         "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 0.1\nresolution 8 8\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n"
     )
-    d.c.settings.set_view(View.SHADOW)
+    d.c.session.set_draw(view=View.SHADOW)
     d.drop(dark)
     d.wait(lambda: d.c.session.scene.path.name == "dark.nff", "the scene without lights")
     assert d.c.session.draw.view is View.COLOR

@@ -58,7 +58,7 @@ def _screened(d: Driver, results: zoom.Results, factor: float) -> None:
     _to_the_end(d, f"film {factor:g}")
     d.context.item_click(f"//Zoom test/**/{factor:g} step {step.number}##shot")
     d.frames(6)
-    shown = d.ui.screening
+    shown = d.ui.frame_preview
     assert shown is not None and shown.step() == step
     pixels = shown.shot.pixels()
     magenta = (pixels == (255, 0, 255)).all(axis=-1)
@@ -82,23 +82,23 @@ def _ways_back(d: Driver) -> None:
     def show(number: int) -> None:
         d.context.item_click(f"//Zoom test/**/4 step {number}##shot")
         d.frames(4)
-        assert d.ui.screening.shot.number == number
+        assert d.ui.frame_preview.shot.number == number
 
     show(41)
     d.context.item_click(f"//Picture/**/{icons.ICON_FA_CHEVRON_RIGHT}##1")
     d.frames(2)
-    assert d.ui.screening.shot.number == 42
+    assert d.ui.frame_preview.shot.number == 42
     d.press(KEY.escape)
-    assert d.ui.screening is None and d.c.selection.picked is not None
+    assert d.ui.frame_preview is None and d.c.selection.picked is not None
     show(42)
     d.context.item_click("//Picture/**/Back (Escape)##recorded")
     d.frames(2)
-    assert d.ui.screening is None
+    assert d.ui.frame_preview is None
     show(42)
     d.press(KEY._2)
-    assert d.ui.screening is None and d.c.session.draw.view is View.OCCLUSION
+    assert d.ui.frame_preview is None and d.c.session.draw.view is View.OCCLUSION
     show(42)
     d.hold(KEY.d, 0.1)
-    assert d.ui.screening is None
+    assert d.ui.frame_preview is None
     d.settle()
     assert d.c.runs.zoom_test is test

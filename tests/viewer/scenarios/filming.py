@@ -15,7 +15,7 @@ def filming(d: Driver) -> None:
     """A path, with its modes; a flight through bookmarks; and one that is stopped."""
     pictures, films, runs = d.folder / "pictures", d.c.films, d.c.runs
     d.settle()
-    d.c.settings.set_view(View.OCCLUSION)
+    d.c.session.set_draw(view=View.OCCLUSION)
     d.settle()
     next(c for c in d.ui.commands if c.name == "Film").run()
     d.frames(3)

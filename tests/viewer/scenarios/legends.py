@@ -22,7 +22,7 @@ def legends(d: Driver) -> None:
     d.settle()
     for _ in d.sizes():
         for view in View:
-            d.c.settings.set_view(view)
+            d.c.session.set_draw(view=view)
             d.settle()
             assert d.ui.state(LegendState).shown == (
                 view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.draw.light)
@@ -36,7 +36,7 @@ def legends(d: Driver) -> None:
     assert right - area[2] < 20.0 and bottom - area[3] < 20.0, "it has left its corner"
     _off_and_on(d)
     _in_saved_pictures(d)
-    d.c.settings.save()
+    d.c.settings.finish()
     kept = load_preferences()[0]
     assert (kept.legend, kept.legend_in_pictures, kept.legend_x, kept.legend_y) == (True, False, 1.0, 1.0)
 
@@ -52,7 +52,7 @@ def _legend(d: Driver) -> tuple[float, float, float, float]:
 
 def _dragged(d: Driver) -> None:
     """About the picture, and into two corners; nothing but the legend moves, and a click on it selects nothing."""
-    d.c.settings.set_view(View.OCCLUSION)
+    d.c.session.set_draw(view=View.OCCLUSION)
     d.settle()
     camera, frame = d.c.session.camera, d.c.frame
     left, top, right, bottom = d.picture_edges()

@@ -32,7 +32,7 @@ def experimenting(d: Driver) -> None:
     run = runs.experiment
     for _ in range(3):
         before = run.traced
-        d.wait(lambda: run.traced > before + 3, "frames of the experiment")  # noqa: B023
+        d.wait(lambda: run.is_shown and run.traced > before + 3, "frames of the experiment")  # noqa: B023
         assert (d.c.frame.width, d.c.frame.height) == (64, 48) == d.ui.graphics.display.size, "they are not the picture"
     d.hold(KEY.w, 0.1)
     assert d.c.session.camera == home and "stop it first" in d.c.notices.message.text
@@ -97,10 +97,10 @@ def zooming(d: Driver) -> None:
     step = test.results.approaches[0].steps[4]  # farther down, a row is out of the pointer's reach
     d.context.item_click("//Zoom test/**/4##4")
     d.frames(3)
-    assert d.ui.screening.step() is step
+    assert d.ui.frame_preview.step() is step
     d.context.item_click("//Picture/**/Fly there")
     d.settle()
-    assert d.ui.screening is None
+    assert d.ui.frame_preview is None
     assert np.allclose(d.c.frame.camera.position, step.camera.position)
     files = saved_results(d, "Zoom test")
     assert json.loads(files[".json"].read_text())["primitive"] == test.start.primitive

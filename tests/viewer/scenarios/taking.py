@@ -65,10 +65,10 @@ def _nothing_to_save(d: Driver) -> None:
         d.settle()
         assert not d.c.captures.busy and not d.c.pictures.jobs
     d.ui.capture_wanted = CaptureKind.PICTURE
-    d.c.settings.set_view(View.DIFFERENCE)
+    d.c.session.set_draw(view=View.DIFFERENCE)
     d.wait(lambda: d.ui.capture_wanted is None, "the picture that was asked for")
     d.settle()
-    d.c.settings.set_view(View.COLOR)
+    d.c.session.set_draw(view=View.COLOR)
     d.settle()
     assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1, "one that comes is waited for"
     d.ui.capture_wanted, d.ui.graphics.capture_view = CaptureKind.PICTURE, View.DIFFERENCE
@@ -83,7 +83,7 @@ def _nothing_to_save(d: Driver) -> None:
 def _save_as(d: Driver) -> None:
     """A picture of twice the size, with a caption, through the dialog."""
     d.fix_resolution(96, 64)
-    d.c.settings.set_view(View.OCCLUSION)
+    d.c.session.set_draw(view=View.OCCLUSION)
     d.settle()
     d.press(int(KEY.s) | CTRL)
     d.frames(3)
@@ -100,7 +100,7 @@ def _save_as(d: Driver) -> None:
     assert str(path) in d.c.notices.message.text
     with Image.open(path) as image:
         assert image.width == 288 and image.height > 192
-    d.c.settings.set_view(View.COLOR)
+    d.c.session.set_draw(view=View.COLOR)
     d.c.session.set_draw(tone=Tone(1.0, 2.0, Curve.REINHARD))
     d.settle()
     plan.multiple, plan.samples, plan.caption = 1, 1, ""
@@ -109,7 +109,7 @@ def _save_as(d: Driver) -> None:
     (path,) = (d.folder / "pictures").glob("tiny-color-96x64*")
     with Image.open(path) as image:
         assert np.array_equal(np.asarray(image), picture(d.c.frame, tone=d.c.session.draw.tone))
-    assert capture.read(path).tone == d.c.session.draw.tone
+    assert capture.read(path).draw.tone == d.c.session.draw.tone
 
 
 def _copy(d: Driver) -> None:

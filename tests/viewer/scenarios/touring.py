@@ -115,5 +115,5 @@ def _tour(d: Driver) -> None:
     assert tour.at is None
     d.press(KEY.c)
     d.settle()
-    d.c.settings.save()
+    d.c.settings.finish()
     assert not load_preferences()[0].tour

@@ -26,8 +26,8 @@ class Parts:
         self.preferences, notices = Preferences(), Notices()
         self.session = Session(state=codec.recalled({}))
         self.session.open(make_scene())
-        settings = SettingsController(self.session, self.preferences, notices, lambda: False)
-        self.marks = Bookmarks(self.session, self.preferences, settings, notices)
+        self.settings = SettingsController(self.session, self.preferences, notices, lambda: False)
+        self.marks = Bookmarks(self.session, self.preferences, self.settings, notices)
 
     def comes(self) -> None:
         """A frame of where we are."""
@@ -60,6 +60,7 @@ def test_a_picture_is_of_a_whole_frame_from_there(parts: Parts, own_settings: Pa
     parts.session.change(camera=replace(here, position=(0.0, 0.0, 0.0)))
     parts.comes()
     assert parts.pictured == [True, False, True], "who comes back takes the picture that was missed"
+    parts.settings.finish()
     (kept,) = json.loads((own_settings / "settings.json").read_text())["bookmarks"].values()
     assert kept == codec.to_json(parts.marks.all)
 

@@ -49,7 +49,7 @@ def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
     comparing = desk.c.comparing
     keep(desk, "paper")
     comparing.start(CompareMode.FLIP)
-    desk.c.settings.set_view(View.COST)
+    desk.c.session.set_draw(view=View.COST)
     desk.rest()
     a, b = comparing.sides
     assert (a.view, b.view) == (View.COLOR, View.COST)
@@ -57,7 +57,7 @@ def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
     assert comparing.a.view is View.COLOR, "what it has not recorded it cannot show"
     comparing.start(CompareMode.DIFFERENCE)
     assert comparing.difference(*comparing.sides) is None and "keep A in this one" in comparing.remark
-    desk.c.settings.set_view(View.DEPTH)
+    desk.c.session.set_draw(view=View.DEPTH)
     desk.rest()
     assert comparing.a.view is View.DEPTH and comparing.difference(*comparing.sides) is not None
     assert comparing.remark == ""
@@ -65,7 +65,7 @@ def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
 
 def test_maps_of_both_have_one_range(desk: Desk) -> None:
     comparing, session = desk.c.comparing, desk.c.session
-    desk.c.settings.set_view(View.DEPTH)
+    desk.c.session.set_draw(view=View.DEPTH)
     keep(desk)
     alone = comparing.span(View.DEPTH)
     desk.c.motion.move(ELSEWHERE)
@@ -83,7 +83,7 @@ def test_maps_of_both_have_one_range(desk: Desk) -> None:
 def test_a_whose_tree_is_gone_is_shown_as_a_picture(desk: Desk) -> None:
     comparing = desk.c.comparing
     desk.c.settings.change(accelerator=LAZY)
-    desk.c.settings.set_view(View.TREE)
+    desk.c.session.set_draw(view=View.TREE)
     keep(desk)
     comparing.start(CompareMode.SIDE)
     assert comparing.a.view is View.TREE and comparing.span(View.TREE) is not None
@@ -99,12 +99,12 @@ def test_a_whose_tree_is_gone_is_shown_as_a_picture(desk: Desk) -> None:
 def test_one_wipe_at_a_time(desk: Desk) -> None:
     comparing = desk.c.comparing
     keep(desk)
-    desk.c.settings.set_view(View.WIPE)
+    desk.c.session.set_draw(view=View.WIPE)
     comparing.start(CompareMode.WIPE)
     assert desk.c.session.draw.view is View.COLOR
     desk.rest()
     assert comparing.state.on
-    desk.c.settings.set_view(View.WIPE)
+    desk.c.session.set_draw(view=View.WIPE)
     desk.rest()
     assert not comparing.state.on and "right picture" in desk.said
 

@@ -40,7 +40,7 @@ def flown(desk: Desk, method: str) -> dict[int, Frame]:
     c.motion.move(ELSEWHERE)
     here()
     c.settings.change(depth=1)
-    c.settings.set_view(View.DEPTH)
+    c.session.set_draw(view=View.DEPTH)
     here()
     c.session.go_to_frame(15)
     c.motion.follow_path(True)

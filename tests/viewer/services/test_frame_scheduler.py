@@ -58,7 +58,7 @@ def test_pictures_are_asked_for_once_and_again_after_a_run():
         scheduler.request(here)
     (request,) = pictures.asked[1:] if len(pictures.asked) > 1 else pictures.asked
     assert (request.settings.width, request.settings.height, request.parts) == (16, 8, (16,))
-    run = SimpleNamespace(showing="showing frame 3", lacks=lambda view: "")
+    run = SimpleNamespace(label_shown="frame 3", name="experiment", verifies=True)
     scheduler.request(replace(here, run=run))
     assert scheduler.title == f"showing frame 3   {View.COLOR.label}"
     count = len(pictures.asked)

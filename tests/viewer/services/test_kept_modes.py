@@ -30,7 +30,7 @@ def desk(tmp_path: Path) -> Iterator[Desk]:
 def saved(desk: Desk, view: View, name: str) -> Path:
     """What the window would save of the picture that it shows, after it has shown others."""
     desk.c.settings.change(method="paper", samples=2)
-    desk.c.settings.set_view(view)
+    desk.c.session.set_draw(view=view)
     for _ in range(4):
         desk.c.motion.step(1)
         desk.rest()

@@ -42,7 +42,7 @@ def parts() -> Parts:
 
 def test_as_in_the_paper_is_what_the_paper_says(parts: Parts):
     parts.settings.change(method="certified", symmetric=True, zoom_factor=9.0, depth=2, lamp_radius=0.5)
-    parts.settings.set_view(View.DEPTH)
+    parts.session.set_draw(view=View.DEPTH)
     parts.presets.apply("As in the paper")
     s, pace = parts.session.settings, parts.session.pace
     assert (s.method, s.symmetric, s.zoom_factor, s.depth, s.samples) == ("paper", False, 4.0, 10, 1)
@@ -61,10 +61,11 @@ def test_all_of_the_program_can_be_applied(parts: Parts, name: str):
 
 def test_one_is_saved_and_applied_again_by_another_window(parts: Parts, own_settings: Path):
     parts.settings.change(method="paper+rest", depth=4, lamp_samples=64)
-    parts.settings.set_view(View.PENUMBRA)
+    parts.session.set_draw(view=View.PENUMBRA)
     parts.session.set_draw(outlines=True)
     kept = parts.now
     assert parts.presets.save("  soft   shadows ")
+    parts.settings.finish()
     assert json.loads((own_settings / "settings.json").read_text())["presets"][0]["name"] == "soft shadows"
     other = Parts()
     other.preferences.presets = load_preferences()[0].presets

@@ -47,7 +47,7 @@ def test_the_camera_is_as_fast_in_the_preview_as_in_the_traced_scene(tmp_path: P
     first = FirstStart(scene)
     assert first.preview.geometry is not None
     before = first.motion.pace
-    opened = scene_files.open_loaded(scene, first.session.settings, lambda: True, lambda what, fraction: None)
+    opened = scene_files.open_scene(lambda: scene, first.session.settings, lambda: True, lambda what, fraction: None)
     first.motion.enter(opened.info["bounds"])
     assert before == pytest.approx(first.motion.pace, rel=1e-6) and before != 1.0
 

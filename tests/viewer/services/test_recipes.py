@@ -73,7 +73,7 @@ def elsewhere(desk: Desk) -> None:
 
 def soft(desk: Desk) -> None:
     desk.c.session.change(settings=replace(desk.c.session.settings, lamp_radius=0.7, lamp_samples=4, samples=1))
-    desk.c.settings.set_view(View.PENUMBRA)
+    desk.c.session.set_draw(view=View.PENUMBRA)
     desk.c.settings.set_light(1)
 
 
@@ -84,7 +84,7 @@ def toned(desk: Desk) -> None:
 def ranged(desk: Desk) -> None:
     """By a range of its own; tone and stripes are for other views."""
     desk.c.session.change(draw=desk.c.session.draw.with_span((1e-7, 9.5), View.DEPTH))
-    desk.c.settings.set_view(View.DEPTH)
+    desk.c.session.set_draw(view=View.DEPTH)
 
 
 def by_modes(view: View) -> Callable[[Desk], None]:
@@ -92,7 +92,7 @@ def by_modes(view: View) -> Callable[[Desk], None]:
         desk.c.session.change(
             settings=replace(desk.c.session.settings, method="paper", symmetric=True, zoom_factor=2.5)
         )
-        desk.c.settings.set_view(view)
+        desk.c.session.set_draw(view=view)
         desk.c.session.set_draw(wipe=0.3)
         desk.c.preferences.legend_in_pictures = view is View.SHADOW
         desk.c.session.set_draw(legend_at=(0.25, 1.0), shading=0.7, shares=True)
@@ -112,7 +112,7 @@ def test_a_copied_command_makes_the_same_picture(odd: Desk, capfd: pytest.Captur
 
 
 def test_what_cannot_be_brought_back_is_said(odd: Desk) -> None:
-    odd.c.settings.set_view(View.OCCLUSION)
+    odd.c.session.set_draw(view=View.OCCLUSION)
     odd.c.motion.step(5)
     odd.rest()
     assert odd.c.recipes.command() is not None
@@ -120,7 +120,7 @@ def test_what_cannot_be_brought_back_is_said(odd: Desk) -> None:
     fresh(odd)
     assert odd.c.recipes.command() is not None and odd.said.startswith("copied: ")
     odd.c.session.change(settings=replace(odd.c.session.settings, method="certified"))
-    odd.c.settings.set_view(View.CERTIFICATE)
+    odd.c.session.set_draw(view=View.CERTIFICATE)
     odd.rest()
     fresh(odd)
     assert odd.c.recipes.command() is not None
@@ -155,7 +155,7 @@ def test_a_command_is_printed_for_a_saved_picture(
 
 def test_a_tree_that_rays_have_had_built_cannot_be_brought_back(odd: Desk) -> None:
     odd.c.settings.change(accelerator="kdtree-lazy")
-    odd.c.settings.set_view(View.TREE)
+    odd.c.session.set_draw(view=View.TREE)
     odd.rest()
     assert odd.c.recipes.command() is not None and f"may differ: {BUILT}" in odd.said
     assert odd.c.pictures.save()

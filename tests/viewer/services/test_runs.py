@@ -49,7 +49,7 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
 @pytest.mark.parametrize("verify", [False, True])
 def test_a_view_of_what_is_wrong_says_whether_the_run_verifies(desk: Desk, verify: bool) -> None:
     desk.runs.experiment_plan = replace(desk.runs.experiment_plan, frames=5000, verify=verify)
-    desk.c.settings.set_view(View.WIPE)
+    desk.c.session.set_draw(view=View.WIPE)
     desk.rest()
     desk.came.clear()
     desk.runs.start_experiment()

@@ -155,7 +155,7 @@ def test_a_load_that_cannot_stop_is_left_to_itself_when_it_is_cancelled(
 def test_a_scene_that_waited_in_vain_is_let_go(door: Door, tiny_scene_file: Path, monkeypatch, end: str):
     go_on, read = threading.Event(), []
 
-    def waits(path, settings, ready, progress, folders, files, meshes, seen):
+    def waits(_read, settings, ready, progress, seen):
         scene = make_scene()
         read.append(weakref.ref(scene))
         seen(scene)

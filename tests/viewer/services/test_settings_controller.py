@@ -14,6 +14,7 @@ from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
+from viewer.util.files import file_lock
 
 
 class Parts:
@@ -31,8 +32,8 @@ class Parts:
 
     def follow_settings(self) -> None:
         self.settings.save_when_rested()
-        if self.settings._writer is not None:
-            self.settings._writer.join(30.0)
+        if self.settings._writing is not None:
+            self.settings._writing.result(30.0)
 
 
 def test_a_setting_is_changed_and_remembered_unless_it_is_no_good_or_locked():
@@ -79,9 +80,10 @@ def test_lights_are_counted_around():
 def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
     parts = Parts()
     parts.bookmarks.add("here")
-    parts.settings.set_view(View.DEPTH)
+    parts.session.set_draw(view=View.DEPTH)
     parts.settings.change(depth=3)
     parts.settings.reset(["bookmarks"])
+    parts.settings.finish()
     assert parts.session.draw.view is View.COLOR and parts.session.settings.depth == 10
     stored = json.loads((own_settings / "settings.json").read_text())
     assert stored["state"]["draw"]["view"] == "color" and len(stored["bookmarks"]) == 1
@@ -90,7 +92,7 @@ def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
 def test_settings_that_cannot_be_written_are_one_line(own_settings: Path):
     own_settings.write_text("a file where the folder should be")
     parts = Parts()
-    parts.settings.save()
+    parts.settings.finish()
     assert parts.notices.current.text.startswith("settings not saved: ") and parts.notices.current.error
 
 
@@ -145,6 +147,16 @@ def test_a_change_that_rests_is_saved_and_other_windows_changes_stay(own_setting
     pass_time()
     read = json.loads(saved.read_text())
     assert (read["theme"], read["state"]["settings"]["depth"]) == ("light", 3)
+
+
+def test_no_window_waits_while_another_saves(own_settings: Path):
+    parts = Parts()
+    own_settings.mkdir(exist_ok=True)
+    with file_lock(own_settings / "settings.json", 0.0):
+        parts.settings.save()
+        assert not parts.settings._writing.done(), "it waits for the other on a thread of its own"
+    parts.settings.finish()
+    assert (own_settings / "settings.json").exists()
 
 
 def test_preferences_that_cannot_be_saved_are_said_once(own_settings: Path, monkeypatch):

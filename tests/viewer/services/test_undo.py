@@ -78,7 +78,7 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Desk:
 def test_each_change_is_a_step_with_a_name(desk: Desk):
     desk.settings.change(method="certified")
     desk.frame()
-    desk.settings.set_view(View.DEPTH)
+    desk.session.set_draw(view=View.DEPTH)
     desk.frame()
     assert desk.undo.undoes == "view Depth" and desk.undo.redoes == ""
     desk.undo.undo()
@@ -141,7 +141,7 @@ def test_a_flight_is_one_step_and_glides_back(desk: Desk):
 def test_a_view_chosen_in_flight_is_a_step_of_its_own(desk: Desk):
     desk.motion.move(AWAY)
     desk.frame()
-    desk.settings.set_view(View.NORMAL)
+    desk.session.set_draw(view=View.NORMAL)
     desk.frame()
     desk.rest()
     assert desk.undo.undoes == "view Normals"
@@ -168,7 +168,7 @@ def test_time_is_no_step_and_stays(desk: Desk):
 def test_what_is_named_is_one_step_with_that_name(desk: Desk):
     desk.undo.begin_step("preset mine")
     desk.settings.change(method="certified", depth=2)
-    desk.settings.set_view(View.DEPTH)
+    desk.session.set_draw(view=View.DEPTH)
     desk.frame()
     assert desk.undo.undoes == "preset mine"
     desk.undo.undo()

@@ -50,13 +50,13 @@ def desk():
 
 @pytest.mark.parametrize("view", [View.SAVED, View.COST])
 def test_a_view_of_work_has_it_counted_once_and_other_views_trace_nothing(desk: Desk, view: View):
-    desk.c.settings.set_view(view)
+    desk.c.session.set_draw(view=view)
     assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "nothing has been counted yet"
     assert "counting" in desk.c.scheduler.title
     assert desk.rest() == [False]
     assert desk.c.frame.settings.record_work and desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
     for other in (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE):
-        desk.c.settings.set_view(other)
+        desk.c.session.set_draw(view=other)
         assert not desk.c.scheduler.outdated
         assert desk.rest() == []
     desk.c.motion.step(1)
@@ -68,32 +68,32 @@ def test_a_view_of_work_has_it_counted_once_and_other_views_trace_nothing(desk: 
 def test_what_was_verified_is_counted_and_verified_again_when_both_are_wanted(desk: Desk):
     desk.c.settings.change(verify=True)
     assert desk.rest() == [True]
-    desk.c.settings.set_view(View.SAVED)
+    desk.c.session.set_draw(view=View.SAVED)
     assert desk.rest() == [True] and desk.c.frame.settings.record_work
-    desk.c.settings.set_view(View.DIFFERENCE)
+    desk.c.session.set_draw(view=View.DIFFERENCE)
     assert desk.rest() == []
 
 
 @pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
 def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(desk: Desk, view: View):
-    desk.c.settings.set_view(view)
+    desk.c.session.set_draw(view=view)
     assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "nothing has been verified yet"
     assert "verifying" in desk.c.scheduler.title
     assert desk.rest() == [True]
     assert desk.c.frame.wrong is not None and desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
     for other in (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH):
-        desk.c.settings.set_view(other)
+        desk.c.session.set_draw(view=other)
         assert not desk.c.scheduler.outdated
         assert desk.rest() == []
     assert not desk.c.session.settings.verify
 
 
 def test_only_frames_of_such_a_view_are_verified(desk: Desk):
-    desk.c.settings.set_view(View.DIFFERENCE)
+    desk.c.session.set_draw(view=View.DIFFERENCE)
     assert set(desk.rest()) == {True}
     desk.c.motion.step(1)
     assert set(desk.rest()) == {True}
-    desk.c.settings.set_view(View.COLOR)
+    desk.c.session.set_draw(view=View.COLOR)
     assert desk.rest() == []
     desk.c.motion.step(1)
     assert set(desk.rest()) == {False}
@@ -102,10 +102,10 @@ def test_only_frames_of_such_a_view_are_verified(desk: Desk):
 def test_the_users_own_setting_counts_in_every_view(desk: Desk):
     desk.c.settings.change(verify=True)
     assert desk.rest() == [True]
-    desk.c.settings.set_view(View.DIFFERENCE)
+    desk.c.session.set_draw(view=View.DIFFERENCE)
     desk.c.settings.change(verify=False)
     assert desk.rest() == [], "verified it is already"
-    desk.c.settings.set_view(View.COLOR)
+    desk.c.session.set_draw(view=View.COLOR)
     desk.c.settings.change(verify=True)
     desk.c.settings.change(verify=False)
     desk.c.scheduler.trace_again()
@@ -161,7 +161,7 @@ def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: 
 
 
 def test_a_capture_keeps_the_users_setting_and_the_line(desk: Desk, tmp_path):
-    desk.c.settings.set_view(View.WIPE)
+    desk.c.session.set_draw(view=View.WIPE)
     desk.c.session.set_draw(wipe=0.25)
     desk.rest()
     desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "wipe.png"

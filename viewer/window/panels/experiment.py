@@ -8,27 +8,32 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
 from tracer.experiments.experiment import REFERENCE, Results
-from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Kind, additions, in_order
-from viewer.services.runs import LONGEST_SIDE, Experiment
+from viewer.services.runs import Experiment
 from viewer.state.methods import groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
 from viewer.window.panels import experiment_table
 from viewer.window.panels.method_choice import lights_to_fit, pale, said_of
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, go_to_experiment_frame, pointed_frame, wrong_axis
-from viewer.window.panels.runs import export_buttons, in_tabs, side_by_side, start_or_progress, whose
+from viewer.window.panels.runs import (
+    export_buttons,
+    in_tabs,
+    plan_rows,
+    side_by_side,
+    size_row,
+    start_or_progress,
+    whose,
+)
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
     QUIET,
-    checkbox,
     in_window_style,
     outlined,
     paragraph,
     properties,
     row,
-    size_field,
     tooltip,
 )
 
@@ -55,40 +60,22 @@ def _controls(ui: Ui, run: Experiment | None) -> None:
         _shown_method(run)
     else:
         _plan(ui)
-    tip = "trace the whole path with each method, and compare them"
+    tip = "Trace the path by each method, and compare them"
     start_or_progress(ui, run, runner.start_experiment, tip)
     export_buttons(ui, run)
 
 
 def _plan(ui: Ui) -> None:
-    imgui.push_style_var(imgui.StyleVar_.cell_padding, ImVec2(imgui.get_style().cell_padding.x, 1.0))
-    _rows(ui)
-    imgui.pop_style_var()
-
-
-def _rows(ui: Ui) -> None:
     plan = ui.controller.runs.experiment_plan
+    imgui.push_style_var(imgui.StyleVar_.cell_padding, ImVec2(imgui.get_style().cell_padding.x, 1.0))
     with properties("plan", 4.6) as shown:
-        if not shown:
-            return
-        row("Methods", f"each is compared with {REFERENCE}, which traces every shadow ray")
-        _methods(plan, lights_to_fit(ui))
-        row("Frames", "over the whole path of the scene")
-        changed, frames = imgui.input_int("##frames", plan.frames)
-        if changed:
-            plan.frames = min(max(frames, 1), 100_000)
-        row("Size")
-        plan.size = size_field(plan.size, LONGEST_SIDE, ui.controller.notices.say)
-        row("Bounces", "of reflected and refracted rays, at most")
-        changed, depth = imgui.slider_int("##depth", plan.depth, 0, 20)
-        if changed:
-            plan.depth = min(max(depth, 0), 100)
-        row("Tree", "through which rays are traced: only the steps of kdtree are those of the paper")
-        changed, index = imgui.combo("##tree", ACCELERATORS.index(plan.accelerator), list(ACCELERATORS))
-        if changed:
-            plan.accelerator = ACCELERATORS[index]
-        row("Verify", "trace every culled shadow ray as well, and count wrong answers; this takes longer")
-        checkbox("##verify", plan.verify, lambda on: setattr(plan, "verify", on))
+        if shown:
+            row("Methods", f"Methods to compare with {REFERENCE}, which traces every shadow ray.")
+            _methods(plan, lights_to_fit(ui))
+            plan_rows(plan, "frames")
+            size_row(ui, plan, "Size of the pictures.")
+            plan_rows(plan, "depth", "accelerator", "verify")
+    imgui.pop_style_var()
 
 
 def _methods(plan: ExperimentPlan, lights: tuple[int, int]) -> None:
@@ -165,7 +152,7 @@ def _plot(ui: Ui, run: Experiment | None, results: Results | None, size: ImVec2)
     """Savings of each method but the reference, and its wrong answers, over the frames of the path."""
     if run is None or results is None:
         if imgui.begin_child("nothing", size):
-            paragraph("The work of shadow rays that culling saves, frame by frame, and the paper's Table 1.", QUIET)
+            paragraph("What culling saves of the work of shadow rays, frame by frame, and the paper's Table 1.", QUIET)
         imgui.end_child()
         return
     wrong = run.settings.verify and any(any(figures["wrong"]) for figures in results.methods.values())

@@ -8,8 +8,7 @@ from itertools import pairwise
 from imgui_bundle import ImVec2, imgui
 
 from viewer.output.figure1 import figure_of
-from viewer.output.figure1_layout import lay_out
-from viewer.output.figure1_shapes import Area, Arrow, Box, Drawing, Tone
+from viewer.output.figure1_layout import Area, Arrow, Box, Drawing, Tone, lay_out
 from viewer.window.panels import status
 from viewer.window.style import BLUE
 from viewer.window.ui import Ui
@@ -46,7 +45,7 @@ def show(ui: Ui) -> None:
     if area.view is not None:
         imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         if clicked:
-            c.settings.set_view(area.view)
+            c.session.set_draw(view=area.view)
 
 
 def _draw(drawing: Drawing, at: ImVec2, pointed: Area | None) -> None:

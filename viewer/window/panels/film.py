@@ -1,130 +1,107 @@
-"""The filmstrip of a zoom test: a row of small pictures for each zoom factor; one is shown in the picture's place."""
+"""Films in the window: what to film, how far it is, and where it goes."""
 
 from __future__ import annotations
 
-from imgui_bundle import ImVec2, ImVec4, imgui
-from imgui_bundle.immapp import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, imgui
 
-from tracer.experiments.zoom import Approach, Step
-from viewer.output.filmstrip import Shot
-from viewer.output.reports import changes_in_words
-from viewer.services.runs import RecordedZoomTest
-from viewer.window.screening import Screening, approaches_of
-from viewer.window.style import MARK
+from viewer.services.film import FilmRun, Films
+from viewer.services.runs import duration
+from viewer.window.panels.runs import frames_row, plan_rows, size_row, start_or_progress
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, count, em, paragraph, tooltip
+from viewer.window.widgets import (
+    QUIET,
+    WARNING,
+    checkbox,
+    em,
+    paragraph,
+    properties,
+    row,
+    same_line_for,
+    tooltip,
+)
 
-_CHOSEN = ImVec4(0.42, 0.70, 0.96, 1.0)
-
-
-def show_step(ui: Ui, test: RecordedZoomTest, factor: float, number: int) -> None:
-    """Show the recorded picture of a step, or of the nearest that is kept."""
-    shot = test.filmstrip.nearest(factor, number)
-    if shot is None:
-        ui.controller.notices.say("no picture of this step was kept")
-    else:
-        ui.screening = Screening(test, shot, _live(ui))
-
-
-def _live(ui: Ui) -> object:
-    """What the user does with the traced picture: once that is something else, it is what they want to see."""
-    s = ui.controller.session
-    return s.scene, s.camera, s.time, s.draw.view, s.draw.light, s.playing
+_WIDE = 42.0  # ems of a panel that has room for its three parts side by side
+_HIGH = int(imgui.ChildFlags_.auto_resize_y)
 
 
-def strip(ui: Ui, test: RecordedZoomTest, approach: Approach, name: str, size: ImVec2) -> None:
-    """The pictures towards the primitive with one factor, side by side; a click shows one large."""
-    shots, steps = test.filmstrip.of(approach.factor), {step.number: step for step in approach.steps}
-    bar = imgui.get_style().scrollbar_size
-    if imgui.begin_child(name, size, 0, int(imgui.WindowFlags_.horizontal_scrollbar)):
-        height = max(em(1.5), size.y - bar - em(0.25))
-        for shot in shots:
-            if shot.number in steps:
-                _thumbnail(ui, test, shot, steps[shot.number], height)
-                imgui.same_line(0.0, em(0.15))
-        if ui.controller.runs.current is test and approach is approaches_of(test)[-1]:
-            imgui.set_scroll_x(imgui.get_scroll_max_x())
-    imgui.end_child()
-
-
-def _thumbnail(ui: Ui, test: RecordedZoomTest, shot: Shot, step: Step, height: float) -> None:
-    size = ImVec2(height * shot.width / shot.height, height)
-    if imgui.invisible_button(f"{shot.factor:g} step {shot.number}##shot", size):
-        show_step(ui, test, shot.factor, shot.number)
-    if not imgui.is_item_visible() or ui.graphics.textures is None:
-        return
-    start, end = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    draw, texture = imgui.get_window_draw_list(), ui.graphics.textures.texture_id(shot, small=True)
-    if texture is not None:
-        draw.add_image(imgui.ImTextureRef(texture), start, end)
-    chosen = ui.screening is not None and ui.screening.shot is shot
-    color = _CHOSEN if chosen else ERROR if step.wrong_of_primitive else MARK if step.changes else None
-    if color is not None:
-        draw.add_rect(start, end, imgui.get_color_u32(color), 0.0, em(0.15 if chosen else 0.1))
-    tooltip("\n".join([*in_words(step), "click to see it large"]))
-
-
-def in_words(step: Step) -> list[str]:
-    """A step in numbers and words."""
-    wrong = f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture"
-    return [f"step {step.number}: {count(step.pixels)} pixels, {wrong}", *changes_in_words(step.changes)]
-
-
-def screen(ui: Ui, room: ImVec2) -> bool:
-    """The recorded picture that was asked for, in the picture's room; returns whether there is one.
-
-    It goes as soon as anything else is done with the traced picture."""
-    shown = ui.screening
-    c = ui.controller
-    if shown is None or ui.graphics.textures is None:
-        return False
-    if shown.test is not c.runs.zoom_test or shown.beside != _live(ui):
-        ui.screening = None
-        return False
-    c.selection.hovered = None
-    top = imgui.get_cursor_screen_pos()
-    texture = ui.graphics.textures.texture_id(shown.shot, small=False)
-    factor = min(room.x / shown.shot.width, room.y / shown.shot.height)
-    size = ImVec2(shown.shot.width * factor, shown.shot.height * factor)
-    start = ImVec2(top.x + (room.x - size.x) / 2.0, top.y + (room.y - size.y) / 2.0)
-    if texture is not None:
-        imgui.get_window_draw_list().add_image(
-            imgui.ImTextureRef(texture), start, ImVec2(start.x + size.x, start.y + size.y)
-        )
-    _caption(ui, shown, top, room)
-    return True
-
-
-def _caption(ui: Ui, shown: Screening, top: ImVec2, room: ImVec2) -> None:
-    """What it is, the way to its neighbours, and the way back."""
-    imgui.set_cursor_screen_pos(ImVec2(top.x + em(0.4), top.y + em(0.4)))
-    imgui.push_style_color(imgui.Col_.child_bg, imgui.get_style_color_vec4(imgui.Col_.popup_bg))
-    flags = imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.always_use_window_padding
-    if imgui.begin_child("recorded", ImVec2(min(room.x - em(0.8), em(25.0)), 0.0), int(flags)):
-        step = shown.step()
-        paragraph(f"Recorded with zoom factor {shown.shot.factor:g}")
-        for line in in_words(step) if step is not None else ():
-            paragraph(line, QUIET)
-        _turn(ui, shown, -1, icons.ICON_FA_CHEVRON_LEFT, "the step before")
-        imgui.same_line()
-        _turn(ui, shown, 1, icons.ICON_FA_CHEVRON_RIGHT, "the next step")
-        imgui.same_line()
-        if imgui.button("Back (Escape)##recorded"):
-            ui.screening = None
-        if step is not None and ui.controller.runs.current is None:
+def show(ui: Ui) -> None:
+    """The panel: along what, what the pictures are like, and the button with what comes of it."""
+    films = ui.controller.films
+    room, spacing = imgui.get_content_region_avail().x, imgui.get_style().item_spacing.x
+    wide = room > em(_WIDE)
+    width = (room - 2.0 * spacing) / 3.0 if wide else 0.0
+    parts = (lambda: _way(ui, films), lambda: _looks(ui, films), lambda: _start(ui, films))
+    for number, part in enumerate(parts):
+        if wide and number:
             imgui.same_line()
-            if imgui.button("Fly there"):
-                ui.controller.go_to_step(step)
-            tooltip("traced at the window's size and with its modes, so that wrong pixels may be missing")
-    imgui.end_child()
-    imgui.pop_style_color()
+        if imgui.begin_child(f"part {number}", ImVec2(width, 0.0), _HIGH):
+            part()
+        imgui.end_child()
 
 
-def _turn(ui: Ui, shown: Screening, by: int, icon: str, tip: str) -> None:
-    shots = shown.test.filmstrip.of(shown.shot.factor)
-    at = next((i for i, shot in enumerate(shots) if shot.number == shown.shot.number), 0) + by
-    imgui.begin_disabled(not 0 <= at < len(shots))
-    if imgui.button(f"{icon}##{by}") and 0 <= at < len(shots):
-        show_step(ui, shown.test, shots[at].factor, shots[at].number)
-    imgui.end_disabled()
-    tooltip(tip)
+def _way(ui: Ui, films: Films) -> None:
+    """Along what, how long, and how fast."""
+    c, plan = ui.controller, films.plan
+    marks = len(c.bookmarks.all)
+    with properties("way", 5.0) as shown:
+        if not shown:
+            return
+        row("Along", "The frames of the animation, or a flight through the bookmarks at an even speed.")
+        if imgui.radio_button("path", not plan.through_bookmarks):
+            plan.through_bookmarks = False
+        same_line_for(f"bookmarks ({marks})")
+        if imgui.radio_button(f"bookmarks ({marks})###bookmarks", plan.through_bookmarks):
+            plan.through_bookmarks = True
+        if not plan.through_bookmarks:
+            frames_row(plan, films.frames, "First and last frame of the animation.")
+            row("Camera", "The scene's own camera, or the one in the picture now, which stays where it is.")
+            if imgui.radio_button("own", not plan.from_here):
+                plan.from_here = False
+            same_line_for("as here")
+            if imgui.radio_button("as here", plan.from_here):
+                plan.from_here = True
+        plan_rows(plan, "seconds", "fps")
+
+
+def _looks(ui: Ui, films: Films) -> None:
+    """The size and the quality of the pictures, and what is on them."""
+    plan = films.plan
+    with properties("looks", 5.0) as shown:
+        if shown:
+            size_row(ui, plan, "Size of the pictures.")
+            plan_rows(plan, "samples")
+            row("Caption", "A line below each picture.")
+            _, plan.caption = imgui.input_text_with_hint("##caption", "none", plan.caption)
+            tooltip(ui.template_help)
+    checkbox("Video (mp4)", plan.video, lambda on: setattr(plan, "video", on), "Beside the numbered pictures.")
+    checkbox("With legend", plan.legend, lambda on: setattr(plan, "legend", on), "Where the view has one.")
+
+
+def _start(ui: Ui, films: Films) -> None:
+    start_or_progress(ui, films.film, films.start, "Trace and write every frame")
+    _tell(ui, films)
+
+
+def _tell(ui: Ui, films: Films) -> None:
+    """What the film will be, or what became of the last one."""
+    c, film = ui.controller, films.film
+    if film is not None and not film.done:
+        paragraph(f"to {film.script.folder}", QUIET)
+        return
+    if films.count:
+        seconds = films.count / films.plan.fps
+        method, view = c.session.settings.method, c.session.draw.view.label
+        paragraph(f"{films.count} frames, {duration(seconds)}; method {method}, view {view}", QUIET)
+    elif films.plan.through_bookmarks:
+        text = f"A flight needs two bookmarks at least: add one where the camera is{ui.key('Add bookmark')}."
+        paragraph(text, WARNING)
+    if film is not None:
+        paragraph(_outcome(film), QUIET)
+
+
+def _outcome(film: FilmRun) -> str:
+    done, frames = film.done_of
+    if film.error is not None:
+        return f"The last film failed after {done} frames."
+    much = "The last film is" if film.whole else f"{done} of {frames} frames are"
+    return f"{much} in {film.script.video or film.script.folder}"

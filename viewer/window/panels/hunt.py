@@ -9,9 +9,15 @@ from tracer.experiments import counterexample, hunt
 from tracer.experiments.counterexample import Counterexample
 from tracer.scene.model import Scene
 from viewer.services.hunts import Hunts
-from viewer.services.runs import LONGEST_SIDE
 from viewer.window.panels.method_choice import method_list
-from viewer.window.panels.runs import side_by_side, start_or_progress
+from viewer.window.panels.runs import (
+    export_buttons,
+    frames_row,
+    plan_rows,
+    side_by_side,
+    size_row,
+    start_or_progress,
+)
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
@@ -21,18 +27,17 @@ from viewer.window.widgets import (
     paragraph,
     properties,
     row,
-    size_field,
     tooltip,
     tooltip_above,
 )
 
 _COLUMNS = (  # the heading, whether it is at the right, and what it means
-    ("#", True, "the worst first"),
-    ("off by", True, "how far the colour is from the right one, of 1"),
-    ("pixel", True, "its column and row, from the upper left"),
-    ("frame", True, "of the path, or the one that it is near to"),
-    ("light", True, "whose answer is wrong, and how many others are wrong in the same way"),
-    ("primitive", False, "where that light is wrong: its number, and its object"),
+    ("#", True, "The worst first."),
+    ("off by", True, "Difference of the colour from the right one, of 1."),
+    ("pixel", True, "Column and row, from the upper left."),
+    ("frame", True, "Frame of the path, or the one that it is near."),
+    ("light", True, "Light whose answer is wrong, and how many others are wrong in the same way."),
+    ("primitive", False, "Primitive at which the light is wrong: number and object."),
 )
 _HEADINGS = tuple(heading for heading, _, _ in _COLUMNS)
 
@@ -50,9 +55,10 @@ def show(ui: Ui) -> None:
 
 
 def _controls(ui: Ui, hunts: Hunts) -> None:
-    start_or_progress(ui, hunts.hunt, hunts.start, "search the frames for the worst wrong pixels of the method")
+    start_or_progress(ui, hunts.hunt, hunts.start, "Search the frames for the worst wrong pixels of the method")
     if ui.controller.runs.current is not hunts.hunt or hunts.hunt is None:
         _plan(ui, hunts)
+    export_buttons(ui, hunts.hunt)
 
 
 def _plan(ui: Ui, hunts: Hunts) -> None:
@@ -60,31 +66,11 @@ def _plan(ui: Ui, hunts: Hunts) -> None:
     with properties("plan", 4.6) as shown:
         if not shown:
             return
-        row("Method", "whose wrong pixels are searched; of an exact one, it shows that there are none")
+        row("Method", "The method whose wrong pixels are searched; an exact one has none.")
         method_list(ui, "##method", plan.method, lambda name: setattr(plan, "method", name), combined=False)
-        first, last = hunts.frames
-        row("Frames", "the first and the last of the path, traced one after another")
-        changed, span = imgui.input_int2("##frames", [first, last])
-        if changed:
-            plan.first, plan.last = max(0, span[0]), max(0, span[1])
-        row("Step", "only every so many of them")
-        changed, step = imgui.input_int("##step", plan.step, 0)
-        if changed:
-            plan.step = min(max(step, 1), 100_000)
-        row("Around", "so many pictures near the worst finds, after the path")
-        changed, around = imgui.input_int("##around", plan.around, 0)
-        if changed:
-            plan.around = min(max(around, 0), 100_000)
-        row("Radius", "how far from the camera of a find, in parts of its distance to what is wrong")
-        changed, radius = imgui.slider_float("##radius", plan.radius, 0.0, 1.0, "%.2f")
-        if changed:
-            plan.radius = min(max(radius, 0.0), 100.0)
-        row("Seed", "by which these pictures are drawn")
-        changed, seed = imgui.input_int("##seed", plan.seed, 0)
-        if changed:
-            plan.seed = max(seed, 0)
-        row("Size", "of the pictures: modes are those of a size")
-        plan.size = size_field(plan.size, LONGEST_SIDE, ui.controller.notices.say)
+        frames_row(plan, hunts.frames, "First and last frame of the path, traced one after another.")
+        plan_rows(plan, "step", "around", "radius", "seed")
+        size_row(ui, plan, "Size of the pictures: modes are those of a size.")
 
 
 def _finds(ui: Ui, hunts: Hunts, size: ImVec2) -> None:
@@ -93,8 +79,8 @@ def _finds(ui: Ui, hunts: Hunts, size: ImVec2) -> None:
     if imgui.begin_child("finds", size):
         if found is None or hunts.hunt is None:
             paragraph(
-                "Where is a method wrong, and how badly? Start, and the worst wrong pixels are listed here. A click on "
-                "one flies there, and the inspector explains it.",
+                "Where is a method wrong, and how badly? Start: the worst wrong pixels are listed here. Click one to "
+                "fly there; the inspector explains it.",
                 QUIET,
             )
         elif scene is None or not hunts.hunt.is_of(scene):
@@ -177,7 +163,7 @@ def _details(ui: Ui, hunts: Hunts, number: int, find: Counterexample, scene: Sce
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK}  Figure"):
         hunts.save_figure(number)
-    tooltip_above("save it beside the right picture; shadowcull check draws it again")
+    tooltip_above("Save it beside the right picture; shadowcull check draws it again")
     imgui.end_disabled()
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_CODE_BRANCH}  Rays"):
@@ -201,4 +187,4 @@ def _colors(find: Counterexample) -> None:
         draw.add_rect_filled(start, ImVec2(start.x + 1.6 * side, start.y + side), fill)
     imgui.dummy(ImVec2(3.2 * side, side))
     imgui.same_line(0.0, em(0.4))
-    clipped("as it is shown, and as it is right", QUIET)
+    clipped("shown, and right", QUIET)

@@ -30,8 +30,13 @@ class Pen:
 
     def __init__(self, area: Area, frame: Frame) -> None:
         self.area, self.draw = area, imgui.get_window_draw_list()
-        self.pixel = area.whole_size.x / frame.width, area.whole_size.y / frame.height
+        self._corner, self._size = area.whole, area.whole_size  # asked for once, as there are thousands of strokes
+        self.pixel = self._size.x / frame.width, self._size.y / frame.height
         self.radius = max(0.4, 0.5 * math.hypot(*self.pixel) / em(1.0) + 0.2)
+
+    def to_screen(self, u: float, v: float) -> ImVec2:
+        """The point of the screen that shows a point of the picture."""
+        return ImVec2(self._corner.x + u * self._size.x, self._corner.y + v * self._size.y)
 
     def strokes(
         self,
@@ -45,31 +50,32 @@ class Pen:
     ) -> None:
         """Strokes with a rim `around` them; what lies behind something has the opacity `behind`, and nothing is drawn
         within the ring around a `hole`."""
-        centre = self.area.to_screen(*hole) if hole is not None else None
+        centre = self.to_screen(*hole) if hole is not None else None
+        outer, inner = (  # of what lies behind something, and of what is seen
+            [imgui.get_color_u32(with_alpha(one, alpha)) for alpha in (behind, 1.0)]
+            for one in (with_alpha(around, color.w), color)
+        )
         for stroke in strokes:
-            alpha = 1.0 if stroke.seen else behind
-            ends = self.area.to_screen(*stroke.start), self.area.to_screen(*stroke.end)
-            outer = imgui.get_color_u32(with_alpha(around, alpha * color.w))
-            inner = imgui.get_color_u32(with_alpha(color, alpha))
+            ends = self.to_screen(*stroke.start), self.to_screen(*stroke.end)
             for a, b in [ends] if centre is None else _outside(*ends, centre, em(self.radius)):
-                self.draw.add_line(a, b, outer, em(width + 2.0 * rim))
-                self.draw.add_line(a, b, inner, max(1.0, em(width)))
+                self.draw.add_line(a, b, outer[stroke.seen], em(width + 2.0 * rim))
+                self.draw.add_line(a, b, inner[stroke.seen], max(1.0, em(width)))
 
     def ring(self, at: Point, radius: float | None = None, alpha: float = 1.0) -> None:
         """A white ring, around a pixel unless it has another radius."""
-        centre, size = self.area.to_screen(*at), em(self.radius if radius is None else radius)
+        centre, size = self.to_screen(*at), em(self.radius if radius is None else radius)
         self.draw.add_circle(centre, size, imgui.get_color_u32(SHADE), 0, em(0.22))
         self.draw.add_circle(centre, size, imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, alpha)), 0, em(0.1))
 
     def disc(self, at: Point, color: ImVec4, radius: float) -> None:
         """A disc with a rim."""
-        centre, shade = self.area.to_screen(*at), imgui.get_color_u32(with_alpha(SHADE, color.w))
+        centre, shade = self.to_screen(*at), imgui.get_color_u32(with_alpha(SHADE, color.w))
         self.draw.add_circle_filled(centre, em(radius + 0.1), shade)
         self.draw.add_circle_filled(centre, em(radius), imgui.get_color_u32(color))
 
     def cross(self, at: Point, color: ImVec4) -> None:
         """A cross, where light is blocked."""
-        centre, shown, arm = self.area.to_screen(*at), imgui.get_color_u32(color), em(0.28)
+        centre, shown, arm = self.to_screen(*at), imgui.get_color_u32(color), em(0.28)
         for way in (arm, -arm):
             a, b = ImVec2(centre.x - arm, centre.y - way), ImVec2(centre.x + arm, centre.y + way)
             self.draw.add_line(a, b, shown, em(0.14))

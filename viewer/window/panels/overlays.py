@@ -151,7 +151,7 @@ def _figure_3(made: Pen, frame: Frame, found: Why) -> None:
 
 def _square_of(made: Pen, frame: Frame, pixel: tuple[int, int]) -> tuple[ImVec2, tuple[float, float]]:
     """The middle of a pixel on the screen, and the size of its square there."""
-    middle = made.area.to_screen((pixel[0] + 0.5) / frame.width, (pixel[1] + 0.5) / frame.height)
+    middle = made.to_screen((pixel[0] + 0.5) / frame.width, (pixel[1] + 0.5) / frame.height)
     return middle, (max(made.pixel[0], em(_SIDE)), max(made.pixel[1], em(_SIDE)))
 
 
@@ -212,9 +212,7 @@ def _clusters(ui: Ui, made: Pen, frame: Frame) -> None:
         where = (at[0] + 0.5) / frame.width, (at[1] + 0.5) / frame.height
         made.ring(where)
         corner, end = made.area.whole, made.area.whole_end
-        write_beside(
-            waits, made.area.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place
-        )
+        write_beside(waits, made.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place)
 
 
 def show_worst_pixels(ui: Ui, area: Area, frame: Frame) -> None:

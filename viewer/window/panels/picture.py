@@ -21,7 +21,7 @@ from viewer.window import comparing
 from viewer.window.panels import (
     closeup,
     edited_picture,
-    film,
+    filmstrip,
     legend,
     missing,
     overlays,
@@ -68,7 +68,7 @@ def show(ui: Ui) -> None:
     scale = imgui.get_io().display_framebuffer_scale
     ui.picture.area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
     top = imgui.get_cursor_pos()
-    if room.x >= 1.0 and room.y >= 1.0 and not film.screen(ui, room):
+    if room.x >= 1.0 and room.y >= 1.0 and not filmstrip.screen(ui, room):
         _picture(ui, room)
     if bar > 0.0:
         imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y + strip))

@@ -1,23 +1,70 @@
-"""What the panels of experiments and zoom tests share: three parts side by side, progress, and the files to save."""
+"""What the panels of runs share: rows of a plan, three parts side by side, progress, and the files to save."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.output.exports import ENDINGS
-from viewer.services.runs import Experiment, Run, ZoomTest, described, duration
+from tracer.experiments.experiment import Experiment
+from tracer.experiments.runner import Run
+from tracer.experiments.zoom import ZoomTest
+from tracer.setting import settings_of
+from tracer.settings import Settings
+from viewer.services.runs import LONGEST_SIDE, described, duration
+from viewer.state.plans import FilmPlan, HuntPlan
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, clipped, em, tooltip_above, wide_button
+from viewer.window.widgets import QUIET, WARNING, checkbox, clipped, em, row, size_field, tooltip_above, wide_button
 
-_KINDS = {".json": "JSON", ".csv": "CSV", ".png": "Plot"}
-_TIPS = {
-    ".json": "save every figure",
-    ".csv": "save the table",
-    ".png": "save the plot as a picture",
-}
+_SAVED_AS = {".json": ("JSON", "Save every figure"), ".csv": ("CSV", "Save the table"),
+             ".png": ("Plot", "Save the plot as a picture")}  # fmt: skip
+
+
+def plan_rows(plan: Any, *names: str) -> None:
+    """Rows of `properties` for fields of a plan, by their declarations or, where they are settings of the tracer, by
+    those."""
+    kind: type = type(plan)
+    declared = {one.name: one for one in (*settings_of(Settings), *settings_of(kind))}
+    for name in names:
+        one = declared[name]
+        row(one.label, one.help)
+        now, label = getattr(plan, name), f"##{name}"
+        if one.kind is bool:
+            checkbox(label, now, partial(setattr, plan, name))
+        elif one.choices:
+            choices = list(one.choices)
+            changed, place = imgui.combo(label, choices.index(now), [one.text(choice) for choice in choices])
+            setattr(plan, name, choices[place])
+        elif one.kind is str:
+            setattr(plan, name, imgui.input_text(label, now)[1])
+        else:
+            value: float
+            low, high = one.slider or (one.low, one.high)
+            if one.kind is int:
+                changed, value = imgui.input_int(label, now, 0)
+            elif one.slider:
+                changed, value = imgui.slider_float(label, now, low, high, f"%.{one.digits}f")
+            else:
+                changed, value = imgui.input_float(label, now, 0.0, 0.0, f"%.{one.digits}f")
+            if changed:
+                setattr(plan, name, min(max(value, one.low), one.high))
+
+
+def frames_row(plan: FilmPlan | HuntPlan, frames: tuple[int, int], tip: str) -> None:
+    """The row of the first and the last frame."""
+    row("Frames", tip)
+    changed, span = imgui.input_int2("##frames", list(frames))
+    if changed:
+        plan.first, plan.last = max(0, span[0]), max(0, span[1])
+
+
+def size_row(ui: Ui, plan: Any, tip: str) -> None:
+    """The row of the size of a run's pictures."""
+    row("Size", tip)
+    plan.size = size_field(plan.size, LONGEST_SIDE, ui.controller.notices.say)
 
 
 def side_by_side(
@@ -130,12 +177,12 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
         return
     left = run.seconds_left
     imgui.progress_bar(run.fraction, ImVec2(-1.0, 0.0), "" if left is None else f"{duration(left)} left")
-    clipped(f"now {run.label}" if run.traced else "starting ...", QUIET)
+    clipped(run.label if run.traced else "Starting ...", QUIET)
     if run.stopping:
-        imgui.text_colored(QUIET, "stopping ...")
+        imgui.text_colored(QUIET, "Stopping ...")
     elif wide_button(
         f"{icons.ICON_FA_STOP}  Stop",
-        f"keeps what is done{ui.key('Stop, or clear the selection')}",
+        f"Keep what is done{ui.key('Stop, or clear the selection')}",
         explain=tooltip_above,
     ):
         runner.stop()
@@ -143,11 +190,12 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
 
 def export_buttons(ui: Ui, run: Run | None) -> None:
     """One small button for each kind of file; none before there are results."""
-    if run is None or run.results is None:
-        return
-    for ending in ENDINGS:
-        if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} {_KINDS[ending]}"):
+    kinds = ui.controller.runs.exports_of(run) if run is not None else {}
+    for ending in kinds:
+        name, tip = _SAVED_AS[ending]
+        if run is not None and imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} {name}"):
             ui.controller.runs.export(run, ending)
-        tooltip_above(f"{_TIPS[ending]} ({run.scene_path.name})")
+        tooltip_above(tip)
         imgui.same_line(0.0, em(0.25))
-    imgui.new_line()
+    if kinds:
+        imgui.new_line()

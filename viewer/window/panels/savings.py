@@ -146,7 +146,7 @@ def _show_pixels(ui: Ui, fate: Fate, would: bool) -> None:
     only would, the modes by which they would."""
     shown = ui.fate_shown is fate
     ui.fate_shown = None if shown or would else fate
-    ui.controller.settings.set_view(View.SHADOW if would else View.FATE)
+    ui.controller.session.set_draw(view=View.SHADOW if would else View.FATE)
 
 
 def _fill(draw: imgui.ImDrawList, color: Color, at: ImVec2, end: ImVec2, hatched: bool) -> None:

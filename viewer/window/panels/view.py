@@ -54,7 +54,7 @@ def _views(ui: Ui) -> None:
         return
     for view in View:
         if imgui.selectable(f"{view.label}##{view.value}", view is chosen)[0]:
-            ui.controller.settings.set_view(view)
+            ui.controller.session.set_draw(view=view)
         if view is chosen:
             imgui.set_item_default_focus()
         key = ui.key_label(view.label)

@@ -10,10 +10,10 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.experiments.zoom import Approach, Results, Step
 from viewer.output.reports import changes_in_words, happenings, modes_in_words
-from viewer.services.runs import LONGEST_SIDE, RecordedZoomTest
-from viewer.window.panels import film
+from viewer.services.runs import RecordedZoomTest
+from viewer.window.panels import filmstrip
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
-from viewer.window.panels.runs import export_buttons, side_by_side, start_or_progress, whose
+from viewer.window.panels.runs import export_buttons, plan_rows, side_by_side, size_row, start_or_progress, whose
 from viewer.window.style import MARK
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -27,7 +27,6 @@ from viewer.window.widgets import (
     paragraph,
     properties,
     row,
-    size_field,
     tooltip,
     tooltip_above,
 )
@@ -66,13 +65,13 @@ def _controls(ui: Ui, test: RecordedZoomTest | None) -> None:
     else:
         _plan(ui)
 
-    tip = "move towards the primitive, once with each factor"
+    tip = "Move towards the primitive, once with each factor"
     start_or_progress(ui, test, c.runs.start_zoom_test, tip)
     export_buttons(ui, test)
     if test is not None and test.results is not None:
         if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK} Film"):
             c.runs.export_filmstrip(test)
-        tooltip_above("save the filmstrip as a picture: the paper's Figure 4")
+        tooltip_above("Save the filmstrip as a picture: the paper's Figure 4")
 
 
 def _plan(ui: Ui) -> None:
@@ -81,39 +80,24 @@ def _plan(ui: Ui) -> None:
     with properties("plan", 4.6) as shown:
         if not shown:
             return
-        row("Towards", "the primitive that was clicked in the picture")
+        row("Towards", "The primitive that you clicked in the picture.")
         start = c.runs.last_start
         if c.selection.picked is not None:
             clipped(f"{c.selection.picked.primitive}  ({c.selection.picked.kind}, {c.selection.picked.object_name})")
         elif start is not None and plan.same_start:
             clipped(f"{start.primitive}")
         else:
-            imgui.text_colored(WARNING, "click a primitive")
+            imgui.text_colored(WARNING, "Click a primitive")
         if start is not None:
-            row("From", "where the camera is, or where the last test towards this primitive began")
+            row("From", "Start where the camera is, or where the last test towards this primitive began.")
             if imgui.radio_button("here", not plan.same_start):
                 plan.same_start = False
             imgui.same_line()
             if imgui.radio_button("start", plan.same_start):
                 plan.same_start = True
-        row(
-            "Factors",
-            "the primitive is examined again at so many times its highest pixel count; give several to compare",
-        )
-        _, plan.factors = imgui.input_text("##factors", plan.factors)
-        row("Steps", "how many, and which part of the distance is left after each")
-        imgui.set_next_item_width(em(4.6))
-        changed, steps = imgui.input_int("##steps", plan.steps, 0)
-        if changed:
-            plan.steps = min(max(steps, 1), 1000)
-        imgui.same_line()
-        imgui.set_next_item_width(-1.0)
-        changed, ratio = imgui.slider_float("##ratio", plan.ratio, 0.5, 0.99, "x %.2f")
-        if changed:
-            plan.ratio = min(max(ratio, 0.01), 0.999)
-        tooltip(f"the last step is at {100.0 * plan.ratio**plan.steps:.2g} % of the distance")
-        row("Size", "of the test's pictures: it decides the pixel counts, and what can be seen from afar")
-        plan.size = size_field(plan.size, LONGEST_SIDE, c.notices.say)
+        plan_rows(plan, "factors", "steps", "ratio")
+        tooltip(f"The last step is at {100.0 * plan.ratio**plan.steps:.2g} % of the distance.")
+        size_row(ui, plan, "Size of the pictures: it decides the pixel counts, and what can be seen from afar.")
 
 
 def _plots(ui: Ui, test: RecordedZoomTest | None, results: Results | None, size: ImVec2) -> None:
@@ -162,7 +146,7 @@ def _plot_and_film(
     pictures = min(max(_FILM * size.y, em(_LEAST_FILM)), em(_MOST_FILM))
     imgui.begin_group()
     _plot(ui, test, approaches, approach, name, ImVec2(size.x, max(size.y - pictures - gap, em(4.0))))
-    film.strip(ui, test, approach, f"film {approach.factor:g}", ImVec2(size.x, pictures))
+    filmstrip.strip(ui, test, approach, f"film {approach.factor:g}", ImVec2(size.x, pictures))
     imgui.end_group()
 
 
@@ -203,7 +187,7 @@ def _plot(
         step = steps[min(max(round(implot.get_plot_mouse_pos().x), 0), len(steps) - 1)]
         _explain(step)
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
-            film.show_step(ui, test, approach.factor, step.number)
+            filmstrip.show_step(ui, test, approach.factor, step.number)
     implot.end_plot()
 
 
@@ -247,7 +231,7 @@ def _row(ui: Ui, test: RecordedZoomTest, approach: Approach, step: Step) -> None
     imgui.table_next_column()
     flags = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap
     if imgui.selectable(f"{approach.factor:g}##{step.number}", False, int(flags))[0]:
-        film.show_step(ui, test, approach.factor, step.number)
+        filmstrip.show_step(ui, test, approach.factor, step.number)
     tooltip("\n".join(["show its picture", *changes_in_words(step.changes)]))
     for text, color in (
         (str(step.number), None),
