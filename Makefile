@@ -41,7 +41,7 @@ test: kernels  ## run the tests; without a display, on a virtual one (ARGS="-k c
 quick:  ## run the tests that show soonest whether something is broken, one window among them
 	@$(MAKE) --no-print-directory test ARGS='$(QUICK) $(ARGS)'
 
-test-all:  ## run the tests with many times as many random scenes and frames as in every run
+test-all:  ## run the tests with more random scenes and frames, all combinations, and what is checked seldom
 	@SHADOWCULL_TESTS=all $(MAKE) --no-print-directory test
 
 fuzz:  ## read damaged files of all kinds, and trace what is left of them (ARGS="--seconds 600 --seed 1000")

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tracer
+from tests.sweeps import cases
 from tests.tracing.trees8 import NO_BOXES, assert_sound, cost, same, walk
 from tests.tracing.worlds import random_corners, scene
 from tracer.geometry.building import CANCELLED, DONE
@@ -47,7 +48,7 @@ def test_anything_makes_a_sound_tree(shape, triangles, boxes, seed):
 @pytest.mark.parametrize("shape", sorted(SHAPES))
 def test_thousands_make_a_sound_tree_which_no_number_of_threads_changes(shape):
     rng = np.random.default_rng(1)
-    rows = triangle_rows(np.asarray(SHAPES[shape](rng, 3 * SMALL), np.float32))
+    rows = triangle_rows(np.asarray(SHAPES[shape](rng, cases(2, 3) * SMALL), np.float32))
     boxes = np.tile(np.array([[0, 0, 0, 1, 1, 1]], np.float32), (50, 1))
     trees = [build_tree(rows, boxes, threads=n) for n in (1, 2, 4)]
     assert_sound(trees[0], rows, boxes)

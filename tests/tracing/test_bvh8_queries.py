@@ -89,7 +89,7 @@ def assert_right(world: tracer.World, rays: Rays) -> Answers:
 def test_random_scenes_are_seen_as_they_are():
     seen = {"static": 0, "dynamic": 0, "triangles": 0, "quadrics": 0, "misses": 0}
 
-    @quickly(60)
+    @quickly(40)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
         world, rng = of_8(made, time), np.random.default_rng(seed)

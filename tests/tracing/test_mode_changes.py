@@ -58,7 +58,7 @@ def test_random_words_are_counted_alike_by_any_number_of_threads(count, word, se
             assert mode_changes(before, after, threads) == expected
 
 
-@quickly(12)
+@quickly(7)
 @given(walks(lights=3), st.sampled_from(["paper", "cells", "paper+rest", "none"]), st.sampled_from([1, 2, 3]))
 def test_frames_say_how_their_modes_changed(walk: Walk, method: str, threads: int):
     renderer = tracer.Renderer(walk.scene, replace(SETTINGS, method=method, modes=True, threads=threads))

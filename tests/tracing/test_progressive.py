@@ -41,7 +41,7 @@ def assert_whole(frame: tracer.Frame, expected: tracer.Frame, where: str) -> Non
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 @given(walk=walks())
-@quickly(8)
+@quickly(5)
 def test_what_becomes_whole_is_what_is_rendered_at_once(accelerator: str, walk: Walk):
     """Bit for bit, all that a frame holds and learns, frame after frame, whichever parts come first."""
     for number, method in enumerate(("paper", "cells", "certified")):
@@ -61,7 +61,7 @@ def test_what_becomes_whole_is_what_is_rendered_at_once(accelerator: str, walk: 
 
 
 @given(walk=walks())
-@quickly(8)
+@quickly(5)
 def test_what_is_shaded_is_shown_as_it_is(walk: Walk):
     """Pixels of a part that have been shaded have their final colours; more of them in each part."""
     time, camera = walk.frames[0]

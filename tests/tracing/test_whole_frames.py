@@ -50,12 +50,12 @@ CULLED = {"culled", "dynamic_only", "wrong", "occlusion_tests"}
     "lights, method, examples, counted",
     [
         (0, "paper", 4, {"primary", "secondary", "occlusion_tests"}),
-        (1, "paper", 10, SHADOW_TESTED | CULLED),
-        (3, "paper", 10, SHADOW_TESTED | CULLED),
-        (17, "paper", 6, SHADOW_TESTED | CULLED),  # words of 64 bits
-        (33, "paper", 4, SHADOW_TESTED | CULLED),  # lights past what they hold
+        (1, "paper", 6, SHADOW_TESTED | CULLED),
+        (3, "paper", 6, SHADOW_TESTED | CULLED),
+        (17, "paper", 4, SHADOW_TESTED | CULLED),  # words of 64 bits
+        (33, "paper", 3, SHADOW_TESTED | CULLED),  # lights past what they hold
         (3, "none", 4, SHADOW_TESTED),
-        (3, "cells", 8, SHADOW_TESTED | CULLED),
+        (3, "cells", 5, SHADOW_TESTED | CULLED),
     ],
 )
 def test_frames_of_random_scenes_are_what_the_naive_twin_says(

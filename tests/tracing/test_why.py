@@ -113,7 +113,7 @@ METHODS = (
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_fates_of_all_pixels_are_what_the_frame_has_counted(scene_file: Path, method: str):
-    settings = Settings(32, 24, method=method, threads=1, depth=0, record_work=True, modes=True)
+    settings = Settings(24, 18, method=method, threads=1, depth=0, record_work=True, modes=True)
     renderer = Renderer(load_scene(scene_file), settings)
     for time in (5.0, 5.5, 6.0):
         frame = renderer.render(time)
@@ -136,7 +136,7 @@ def test_the_fates_of_all_pixels_are_what_the_frame_has_counted(scene_file: Path
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_fates_are_those_of_the_view_of_fates(scene_file: Path, method: str):
-    settings = Settings(32, 24, method=method, threads=1, depth=0, record_fates=True, modes=True)
+    settings = Settings(24, 18, method=method, threads=1, depth=0, record_fates=True, modes=True)
     renderer = Renderer(load_scene(scene_file), settings)
     for time in (5.0, 5.5, 6.0):
         frame = renderer.render(time)

@@ -31,6 +31,8 @@ from viewer.services import refinement
 from viewer.window import app as viewer_app
 from viewer.window.app import App
 
+# There what culling saves is told above the picture, for which methods are timed after each picture.
+MEASURING = ("fitting", "panels", "savings")
 DOZING = ("explaining",)  # there the window rests when nothing moves: what threads find out must wake it
 
 
@@ -42,6 +44,7 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
         app.ui.tour.end()  # it comes by itself on the first start
     app.controller.preferences.screenshot_folder = str(Path(folder) / "pictures")
     app.controller.session.set_pace(progressive=True)
+    app.controller.preferences.savings = name in MEASURING
     app.controller.settings.change(samples=1)  # else idle pictures go on changing
     failed: list[BaseException] = []
     parts = [SCENARIOS[name]]

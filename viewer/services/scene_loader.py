@@ -310,6 +310,7 @@ class SceneLoader:
         )  # fmt: skip
 
     def _start(self, title: str, read: Callable[[Progress], Scene], meshes: MeshOptions, **more: Any) -> None:
+        """Read a scene on a thread, and open it; `more` are fields of the load."""
         settings, seen = self._session.settings, list[Scene]()
 
         def work(progress: Progress) -> scene_files.Opened:

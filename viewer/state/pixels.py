@@ -66,6 +66,6 @@ class Pixels:
                 self.watched.remove(known)
                 return f"pixel {x}, {y} is no longer watched"
         if len(self.watched) >= MOST_WATCHED:
-            return f"{MOST_WATCHED} pixels are watched, and no more can be: stop watching one first"
+            return f"{MOST_WATCHED} pixels are watched, which is the most: stop watching one first"
         self.watched.append(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
         return f"watching pixel {x}, {y}"

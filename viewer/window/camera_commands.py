@@ -89,7 +89,7 @@ def focus(ui: Ui) -> None:
         return
     point, extent = point_at(c.frame, *at), extent_at(c.frame, *at)
     if point is None or extent is None:
-        c.notices.say("there is nothing to focus on")
+        c.notices.say("there is nothing to focus on here")
         return
     ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
     c.motion.glide(navigation.focus(c.session.camera, ui.picture.pivot, extent, c.motion.world_up))
@@ -172,7 +172,7 @@ def _bookmarks(ui: Ui, here: Condition) -> list[Command]:
         def title() -> str:
             return f"{index + 1}  {marks.all[index].name}" if index < len(marks.all) else ""
 
-        there = Condition(lambda: index < len(marks.all), "this scene has not so many bookmarks")
+        there = Condition(lambda: index < len(marks.all), "this scene has fewer bookmarks")
         return Command(f"Go to bookmark {index + 1}", "Camera/Bookmarks", lambda: c.go_to_bookmark(index),
                        f"Alt+{index + 1}", enabled=there, title=title, separated=index == 0)  # fmt: skip
 

@@ -74,7 +74,7 @@ def _meshes(ui: Ui) -> list[Command]:
             loader.read_as(replace(c.session.meshes, up=following))
 
     stands = Condition(
-        lambda: loader.load_job is None and shown_up() is not None, "no model stands in a studio, or one is being read"
+        lambda: loader.load_job is None and shown_up() is not None, "no model is in a studio, or one is being loaded"
     )
     return [
         Command("Studio", "File", toggle, checked=wanted, separated=True,
@@ -110,11 +110,11 @@ def _run(ui: Ui) -> list[Command]:
             c.selection.picked = None
 
     idle = Condition(
-        lambda: c.session.scene is not None and runner.current is None, "no scene is open, or a run is under way"
+        lambda: c.session.scene is not None and runner.current is None, "no scene is open, or a run is in progress"
     )
     busy = Condition(
         lambda: c.loader.load_job is not None or runner.current is not None or c.selection.picked is not None,
-        "nothing is under way, and nothing is selected",
+        "nothing is running, and nothing is selected",
     )
     return [
         Command("Experiment", "Run", start("Experiment", runner.start_experiment), enabled=idle),
@@ -139,5 +139,5 @@ def _help(ui: Ui) -> list[Command]:
         dialog(Dialog.KEYS, "F1", "keys shortcuts"),
         dialog(Dialog.ABOUT),
         Command("Restart graphics", "Help", lambda: ui.desktop.restart_graphics(), separated=True,
-                tip="for broken pictures or letters, as after sleep: the window is made anew, nothing is lost"),
+                tip="for broken pictures or letters, as after sleep: a new window is made, nothing is lost"),
     ]  # fmt: skip

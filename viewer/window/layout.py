@@ -85,7 +85,7 @@ SMALLEST = (66.0, 38.0)
 _NOTICED = 1.5  # pixels by which a panel's size must differ from its share to have been changed by the user
 _TABS_AFTER = 3  # frames that ImGui needs to make the tabs of panels that come back
 STRIP = 2.4
-"""Of the strip, in ems."""
+"""Width of the strip, in ems."""
 _DRAWER, _WIDE = 21.0, 44.0  # width of an open panel in ems; it leaves some of the picture to be seen
 _SHARE = 0.86  # of the room beside the strip, which an open panel takes at most
 _FLAGS = int(

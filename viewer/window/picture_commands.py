@@ -63,7 +63,7 @@ def looking(ui: Ui) -> list[Command]:
     def clear_region() -> None:
         ui.pixels.region = None
 
-    larger = Condition(lambda: session.draw.zoom.scale < MOST, f"it is enlarged {MOST:.0f} times, which is the most")
+    larger = Condition(lambda: session.draw.zoom.scale < MOST, f"{MOST:.0f} times is the largest zoom")
     enlarged = Condition(lambda: not session.draw.zoom.fits, "the whole picture is shown")
     watching = Condition(lambda: bool(watched), "no pixel is watched")
     chosen = Condition(lambda: ui.pixels.region is not None, "no region is chosen")

@@ -44,7 +44,7 @@ def view(ui: Ui) -> list[Command]:
         return lambda: c.session.set_draw(view=views[(views.index(c.session.draw.view) + step) % len(views)])
 
     lit = Condition(
-        lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "there are not several lights"
+        lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "the scene has no other light"
     )
     return [
         *[show(view) for view in View],
@@ -132,8 +132,8 @@ def _interface(ui: Ui) -> list[Command]:
 
         return change
 
-    largest = Condition(lambda: p.ui_scale < SCALES[-1], "it is as large as it can be")
-    smallest = Condition(lambda: p.ui_scale > SCALES[0], "it is as small as it can be")
+    largest = Condition(lambda: p.ui_scale < SCALES[-1], "the interface is at its largest")
+    smallest = Condition(lambda: p.ui_scale > SCALES[0], "the interface is at its smallest")
 
     def other_theme() -> None:
         p.theme = "dark" if p.theme == "light" else "light"

@@ -190,9 +190,6 @@ def _slice(d: Driver) -> None:
 
 def explaining(d: Driver) -> None:
     """What the pointer is on, or was clicked, is explained beside the window's own frames; a key hides the lines."""
-    d.c.preferences.savings = False  # its words come and go while lines are counted
-    d.settle()
-    d.c.preferences.savings = False  # whose figures would change what is drawn in the picture's window
     d.settle()
     explaining = d.c.inspector
     assert explaining.answer is None

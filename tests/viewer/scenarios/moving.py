@@ -55,7 +55,7 @@ def flying(d: Driver) -> None:
     assert d.c.session.camera == before, "typing moved the camera"
     d.context.key_press(KEY.enter)
     d.frames(2)
-    assert d.c.bookmarks.all[0]["name"] == "wasd"
+    assert d.c.bookmarks.all[0].name == "wasd"
     d.context.mouse_move_to_pos(d.picture_centre())
     d.context.mouse_click(0)
     d.frames(2)

@@ -49,13 +49,13 @@ def _bookmarks(d: Driver) -> None:
     d.frames(2)
     d.context.key_chars("near the sphere")
     d.press(KEY.enter)
-    assert marks[1]["name"] == "near the sphere"
+    assert marks[1].name == "near the sphere"
     d.context.item_drag_and_drop("//Camera/$$1/##go", "//Camera/$$0/##go")
     d.frames(3)
-    assert [mark["name"] for mark in d.c.bookmarks.all] == ["near the sphere", "frame 0"]
+    assert [mark.name for mark in d.c.bookmarks.all] == ["near the sphere", "frame 0"]
     d.context.item_click("//Camera/$$1/\uf00d")
     d.frames(2)
-    assert [mark["name"] for mark in d.c.bookmarks.all] == ["near the sphere"]
+    assert [mark.name for mark in d.c.bookmarks.all] == ["near the sphere"]
     d.settle()
 
 

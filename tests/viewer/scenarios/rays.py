@@ -13,7 +13,6 @@ KEY = imgui.Key
 
 def rays(d: Driver) -> None:
     """A click on a pixel lists its rays."""
-    d.c.preferences.savings = False  # its words come and go while lines are counted
     d.settle()
     c = d.c
     assert not c.rays.visible, "they are folded at first"

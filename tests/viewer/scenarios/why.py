@@ -25,6 +25,7 @@ def why(d: Driver) -> None:
     one sentence, at the top of the Inspector, and the names in it are links."""
     d.settle()
     d.c.settings.change(method="paper")
+    d.fix_resolution(400, 250)
     d.drop(ROOM)
     d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path == ROOM, "the room")
     d.settle()

@@ -64,7 +64,7 @@ def test_what_cannot_be_run_says_why(ui):
     silent = [c.name for c in ui.commands if not c.enabled() and not c.why_not]
     assert any(not c.enabled() for c in ui.commands) and silent == []
     ui.controller.preferences.ui_scale = SCALES[-1]
-    assert next(c for c in ui.commands if c.name == "Larger interface").why_not == "it is as large as it can be"
+    assert next(c for c in ui.commands if c.name == "Larger interface").why_not == "the interface is at its largest"
 
 
 def test_no_panel_opens_by_itself_where_it_would_cover_the_picture(ui):

@@ -35,7 +35,7 @@ def test_the_line_below_the_preview_tells_of_the_job_that_it_shows() -> None:
     load = SimpleNamespace(title="Opening a.aff", label="", fraction=0.5, started=now, stopping=False)
     assert loading.in_one_line(kernels, load) == "Compiling: 25 %, 0 s so far"
     assert loading.in_one_line(load, load) == "Opening a.aff: 50 %, 0 s so far"
-    assert "kernels are compiled" in loading.doing(kernels, kernels, True)
+    assert "Compiling kernels" in loading.doing(kernels, kernels, True)
     assert loading.doing(load, None, True) == loading.doing(load, kernels, True) == "starting"
     load.label = "building the tree"
     assert loading.doing(load, None, True) == "building the tree"

@@ -117,7 +117,7 @@ def _line(finder: Finder) -> bool:
 def _list(finder: Finder, room: float) -> Item | None:
     """What was found; returns what was clicked."""
     if not finder.found:
-        imgui.text_colored(QUIET, "nothing is called so")
+        imgui.text_colored(QUIET, "no matches")
         return None
     height = math.ceil(imgui.get_text_line_height_with_spacing())
     lines = min(len(finder.found), _LINES, max(3, int(0.7 * room / height)))

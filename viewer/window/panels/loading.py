@@ -78,8 +78,8 @@ def doing(job: Job, preparing: Job | None, compiles: bool) -> str:
 
 _PAD = 0.25  # ems
 _PREPARING = {
-    True: "Its kernels are compiled for this processor. They are kept, so that later starts only load them.",
-    False: "Its kernels were compiled before, and are loaded.",
+    True: "Compiling kernels for this processor. They are cached, so later starts only load them.",
+    False: "Loading compiled kernels from the cache.",
 }
 
 
