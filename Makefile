@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results
+.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -84,6 +84,10 @@ methods:  ## hold all methods side by side, scene by scene (ARGS="--write" into 
 results:  ## measure all tables of the pages of results and performance anew (ARGS="--write", "--only table-1", "--quick")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.results $(ARGS)
+
+settings:  ## write the page of all settings from their declarations
+	@tools/environment.sh dev
+	@$(RUN) tools/settings_table.py
 
 lamps:  ## hold frames by the light of lamps against those by `none` (ARGS="--radius 0.1 --frames 20 SCENE ...")
 	@tools/environment.sh dev
