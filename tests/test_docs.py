@@ -6,6 +6,7 @@ import argparse
 import importlib
 import os
 import re
+import runpy
 import shlex
 import subprocess
 import sys
@@ -26,6 +27,7 @@ from viewer.__main__ import main
 from viewer.cli.sweep import RESULTS
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
+from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 from viewer.window import commands
 from viewer.window.keyboard import key_label
@@ -187,7 +189,7 @@ def test_targets_and_files_exist(page: Path) -> None:
 def test_keys_of_the_window_are_told() -> None:
     """Each key of a command is in the table of keys."""
     table = "".join(re.findall(r"^\| (`.*?) \|", (DOCS / "viewer.md").read_text(), re.MULTILINE))
-    told = set(re.findall(r"`([^`]+)`", table)) | set("1234567")  # shown as `1` … `7`
+    told = set(re.findall(r"`([^`]+)`", table))
     told |= {f"Alt+{n}" for n in range(2, 9)}
     shown = {"RightArrow": "→", "LeftArrow": "←", "Ctrl+Equal": "+", "Ctrl+Minus": "-", "Ctrl+0": "0"}
     shown |= {"Period": ".", "Comma": ",", "Shift+Period": "Shift+."}
@@ -198,6 +200,11 @@ def test_keys_of_the_window_are_told() -> None:
         ui.controller.close()
     assert len(keys) > 30
     assert keys <= told, keys - told
+
+
+def test_the_table_of_views_says_what_each_declares() -> None:
+    table = "".join(f"| `{view.key}` | {view.label} | {view.help} |\n" for view in View)
+    assert f"|---|---|---|\n{table}\n" in (DOCS / "viewer.md").read_text(), f"docs/viewer.md has to say:\n{table}"
 
 
 def test_lines_of_the_sources_are_there() -> None:
@@ -276,3 +283,8 @@ def test_certified_cells_are_told_with_the_numbers_they_have() -> None:
         culling = "tracer.culling" if module.startswith("regions.") else "tracer.culling.certified"
         package = "tracer.geometry" if module == "offsets" else culling
         assert value == repr(getattr(importlib.import_module(f"{package}.{module}"), name)), name
+
+
+def test_the_table_of_settings_is_that_of_their_declarations() -> None:
+    page = runpy.run_path(str(ROOT / "tools" / "settings_table.py"))["page"]()
+    assert (DOCS / "settings.md").read_text(encoding="utf-8") == page, "make settings"

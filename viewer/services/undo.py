@@ -15,7 +15,7 @@ from tracer.scene.mesh_options import MeshOptions
 from tracer.setting import ALWAYS, settings_of
 from viewer.services.motion import Motion
 from viewer.state import edits as scene_edits
-from viewer.state.comparison import Chosen
+from viewer.state.comparison import Comparison
 from viewer.state.notices import Notices
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
@@ -31,7 +31,7 @@ class Place:
     """All that a step brings back; `with_time`, it goes to another time as well."""
 
     state: ViewState
-    compared: Chosen
+    compared: Comparison
     with_time: bool = False
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from tracer.frame import Frame
@@ -97,36 +97,6 @@ def sizes_in_words(a: Frame, b: Frame) -> str:
     return f"A has {a.width} x {a.height} pixels, B {b.width} x {b.height}: A is shown in B's size{stretched}."
 
 
-@dataclass(frozen=True)
-class Chosen:
-    """What undo brings back of a comparison: whether and how there is one.  What was kept is no part of it."""
-
-    on: bool
-    mode: CompareMode
-    source: Source
-    second: str
-    same_view: bool
-    rate: float
-    limit: float | None
-
-    def changes(self, after: Chosen) -> dict[str, str]:
-        """What has changed since, in a few words for each."""
-        changed: dict[str, str] = {}
-        if (self.on, self.mode) != (after.on, after.mode):
-            changed["mode"] = f"comparison: {after.mode.label.lower()}" if after.on else "comparison off"
-        if self.source is not after.source:
-            changed["source"] = "A by another method" if after.source is Source.METHOD else "A as it was kept"
-        if self.second and self.second != after.second:
-            changed["second"] = f"second method {after.second}"
-        if self.same_view != after.same_view:
-            changed["same_view"] = "A in the view of B" if after.same_view else "A in its own view"
-        if self.rate != after.rate:
-            changed["rate"] = f"blinking at {after.rate:.2f} Hz"
-        if self.limit != after.limit:
-            changed["limit"] = "range of the difference"
-        return changed
-
-
 @dataclass
 class Comparison:
     """What is compared, and how: `kept` is A as it was kept; with `same_view` it is shown in the view of B; `limit` is
@@ -143,14 +113,30 @@ class Comparison:
     second: str = ""
 
     @property
-    def chosen(self) -> Chosen:
-        """What undo brings back."""
-        return Chosen(**{name.name: getattr(self, name.name) for name in fields(Chosen)})
+    def chosen(self) -> Comparison:
+        """What undo brings back: whether and how pictures are compared.  What was kept is no part of it."""
+        return replace(self, kept=None, held=False)
 
-    def choose(self, chosen: Chosen) -> None:
+    def choose(self, chosen: Comparison) -> None:
         """Bring it back."""
-        for name in fields(Chosen):
-            setattr(self, name.name, getattr(chosen, name.name))
+        vars(self).update(vars(chosen) | {"kept": self.kept, "held": self.held})
+
+    def changes(self, after: Comparison) -> dict[str, str]:
+        """What has changed since, in a few words for each."""
+        changed: dict[str, str] = {}
+        if (self.on, self.mode) != (after.on, after.mode):
+            changed["mode"] = f"comparison: {after.mode.label.lower()}" if after.on else "comparison off"
+        if self.source is not after.source:
+            changed["source"] = "A by another method" if after.source is Source.METHOD else "A as it was kept"
+        if self.second and self.second != after.second:
+            changed["second"] = f"second method {after.second}"
+        if self.same_view != after.same_view:
+            changed["same_view"] = "A in the view of B" if after.same_view else "A in its own view"
+        if self.rate != after.rate:
+            changed["rate"] = f"blinking at {after.rate:.2f} Hz"
+        if self.limit != after.limit:
+            changed["limit"] = "range of the difference"
+        return changed
 
     def shows_a(self, seconds: float) -> bool:
         """Whether, of the ways that show one picture at a time, it is A's turn at this time in seconds."""

@@ -78,10 +78,10 @@ class Penumbra(FrameView):
     def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
         asked, reached = samples_of(frame, draw.light)
         found = arrivals(frame, draw.light)
-        share = (reached / np.maximum(asked, 1).astype(np.float32))[..., None]
-        ramp = _PALETTE[Arrival.FEW] + share * (_PALETTE[Arrival.MOST] - _PALETTE[Arrival.FEW])
-        between = (found == Arrival.FEW) | (found == Arrival.MOST)
-        return by_color(frame, draw, np.where(between[..., None], ramp, _PALETTE[found]), draw.shading)
+        colors, between = _PALETTE[found], (found == Arrival.FEW) | (found == Arrival.MOST)
+        share = (reached[between] / asked[between].astype(np.float32))[:, None]
+        colors[between] = _PALETTE[Arrival.FEW] + share * (_PALETTE[Arrival.MOST] - _PALETTE[Arrival.FEW])
+        return by_color(frame, draw, colors, draw.shading)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
         hit, found, (asked, reached) = hits(frame), arrivals(frame, draw.light), samples_of(frame, draw.light)
@@ -121,9 +121,10 @@ def samples_of(frame: Frame, light: int) -> tuple[NDArray[np.uint16], NDArray[np
 def arrivals(frame: Frame, light: int) -> NDArray[np.uint8]:
     """Return the Arrival of a light at each pixel (h, w).  Raises ValueError for a frame without that record."""
     asked, reached = samples_of(frame, light)
-    penumbra = np.where(2 * reached.astype(np.int32) > asked, Arrival.MOST, Arrival.FEW)
-    lit = np.where(reached == 0, Arrival.DARK, np.where(reached == asked, Arrival.LIT, penumbra))
-    found = np.where(asked == 0, Arrival.AWAY, lit).astype(np.uint8)
+    found = np.where(2 * reached.astype(np.int32) > asked, np.uint8(Arrival.MOST), np.uint8(Arrival.FEW))
+    found[reached == asked] = Arrival.LIT
+    found[reached == 0] = Arrival.DARK
+    found[asked == 0] = Arrival.AWAY
     found[~shaded_pixels(frame)] = Arrival.UNKNOWN
     return found
 

@@ -8,7 +8,6 @@ from PIL import Image
 
 from tests.viewer.driver import Driver
 from viewer.output import capture
-from viewer.state import codec
 from viewer.state.preferences import load_preferences
 from viewer.state.readings import can_draw
 from viewer.state.views import View
@@ -39,8 +38,8 @@ def legends(d: Driver) -> None:
     _in_saved_pictures(d)
     d.c.settings.finish()
     kept = load_preferences()[0]
-    draw = codec.recalled(kept.state).draw
-    assert (draw.legend, kept.legend_in_pictures, draw.legend_at) == (True, False, (1.0, 1.0))
+    draw = kept.state["draw"]
+    assert (draw["legend"], kept.legend_in_pictures, draw["legend_at"]) == (True, False, [1.0, 1.0])
 
 
 def _legend(d: Driver) -> tuple[float, float, float, float]:
