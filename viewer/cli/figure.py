@@ -71,7 +71,7 @@ def run(given: Namespace) -> int:
         crops = tuple(Crop(*crop) for crop in given.crops)
         wanted = Comparison(recipe, tuple(given.methods), crops).checked()
         pictures.check_lights(recipe, scene)
-        options.warmup_times(scene, recipe.time, recipe.warmup, work)
+        options.warmup_times(scene, recipe.time, recipe.warmup.of_path, work)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, *wanted.methods)
         world = World(scene, recipe.time, given.accelerator, work.progress)
 

@@ -65,7 +65,7 @@ def setting_row(ui: Ui, one: Setting, note: str = "") -> None:
 
 
 def _choice(ui: Ui, one: Setting, now: Any) -> None:
-    if imgui.begin_combo(f"##{one.path}", one.text(now)):
+    if imgui.begin_combo(f"##{one.name}", one.text(now)):
         for choice, meaning in one.choices.items():
             if imgui.selectable(one.text(choice), choice == now)[0]:
                 ui.controller.settings.set(one, choice)
@@ -82,11 +82,11 @@ def _slider(one: Setting, now: Any) -> Any:
     low, high = one.slider or (one.low, one.high)
     flags = int(imgui.SliderFlags_.logarithmic) if one.log else 0
     if one.kind is int:
-        changed, number = imgui.slider_int(f"##{one.path}", now, int(low), int(high), f"%d{one.unit}", flags)
+        changed, number = imgui.slider_int(f"##{one.name}", now, int(low), int(high), f"%d{one.unit}", flags)
         return number if changed else None
     unit = " %%" if one.percent else one.unit
     shown = f"%{'+' if low < 0.0 else ''}.{one.digits}f{unit}"
-    changed, value = imgui.slider_float(f"##{one.path}", scale * now, scale * low, scale * high, shown, flags)
+    changed, value = imgui.slider_float(f"##{one.name}", scale * now, scale * low, scale * high, shown, flags)
     return value / scale if changed else None
 
 

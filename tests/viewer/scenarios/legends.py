@@ -38,7 +38,8 @@ def legends(d: Driver) -> None:
     _in_saved_pictures(d)
     d.c.settings.finish()
     kept = load_preferences()[0]
-    assert (kept.legend, kept.legend_in_pictures, kept.legend_x, kept.legend_y) == (True, False, 1.0, 1.0)
+    draw = kept.state["draw"]
+    assert (draw["legend"], kept.legend_in_pictures, draw["legend_at"]) == (True, False, [1.0, 1.0])
 
 
 def _legend(d: Driver) -> tuple[float, float, float, float]:
