@@ -91,7 +91,7 @@ def test_every_dependency_has_a_range() -> None:
 
 
 # Lines of Python, and files of it: each only ever goes down.
-MOST_LINES = {"viewer": 35_800, "tracer": 43_000, "tests/viewer": 19_500}
+MOST_LINES = {"viewer": 35_800, "tracer": 41_700, "tests/viewer": 19_500}
 MOST_FILES = {"viewer": 245}
 
 
