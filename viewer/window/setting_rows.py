@@ -15,7 +15,7 @@ from viewer.state.view_state import ViewState
 from viewer.window.command import Command
 from viewer.window.finder import Item, Kind
 from viewer.window.ui import Ui
-from viewer.window.widgets import checkbox, properties, row, tooltip
+from viewer.window.widgets import checkbox, row, tooltip
 
 ALL = {one.path: one for one in (*settings_of(ViewState), *settings_of(Preferences))}
 """All settings of the window, by their paths: "draw.outlines"."""
@@ -31,19 +31,6 @@ def in_panel(ui: Ui, panel: str) -> list[Setting]:
     """List the settings of a panel that do something as things are."""
     state = ui.controller.session.state
     return [one for one in ALL.values() if one.panel == panel and (not one.within or state.applies(one))]
-
-
-def setting_rows(ui: Ui, panel: str, width: float, note: Callable[[Setting], str] = lambda one: "") -> None:
-    """Show the settings of a panel: a table of names and values, and the switches below it; `note` is added to what a
-    tooltip says."""
-    settings = in_panel(ui, panel)
-    with properties(panel, width) as shown:
-        for one in settings:
-            if shown and one.kind is not bool:
-                setting_row(ui, one, note(one))
-    for one in settings:
-        if one.kind is bool:
-            setting_switch(ui, one, note(one))
 
 
 def setting_switch(ui: Ui, one: Setting, note: str = "") -> None:
