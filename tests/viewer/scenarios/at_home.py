@@ -68,8 +68,8 @@ def find(d: Driver, typed: str) -> None:
 def _undo(d: Driver) -> None:
     home = d.c.session.camera
     d.hold(KEY.d, 0.1)
-    _, top, right, bottom = d.picture_edges()
-    d.drag((right - 90.0, 0.5 * (top + bottom)), (60.0, 10.0))  # beside the legend
+    x, y = d.picture_centre()
+    d.drag((x + 100.0, y - 60.0), (60.0, 10.0))  # beside the legend, which would be moved
     d.settle()
     slider = d.context.item_info("//View/view/##shading").rect_full
     middle, shading = (0.5 * (slider.min.x + slider.max.x), 0.5 * (slider.min.y + slider.max.y)), 0.35
