@@ -32,9 +32,6 @@ class Slice(NamedTuple):
         """Return it as the option `--slice` takes it."""
         return f"{AXES[self.axis]}:{self.at!r}"
 
-    def __str__(self) -> str:
-        return self.in_words()
-
     @staticmethod
     def parse(text: str) -> Slice:
         """Return the inverse of `str`; raises ValueError, in one line."""
