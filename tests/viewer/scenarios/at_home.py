@@ -78,7 +78,9 @@ def _undo(d: Driver) -> None:
     d.context.menu_click("//##MainMenuBar/Edit/###Undo")
     d.frames(2)
     assert d.c.session.draw.shading == shading, "a drag is one step"
-    assert d.c.notices.message.text.startswith("undone: shading") and d.c.undo.undoes == "camera"
+    assert d.c.notices.message.text.startswith("undone: shading") and d.c.undo.undoes == "camera", [
+        s.name for s in d.c.undo._done
+    ]
     flights = 0
     while d.c.undo.undoes == "camera":  # several where the machine is slow: the camera rests between them
         d.press(CTRL | int(KEY.z))
