@@ -1,4 +1,4 @@
-"""The command `check`: whether saved pictures and figures are still what the program makes of their recipes."""
+"""The command `check`: whether saved pictures and figures are still what the program makes of what they carry."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ class Checker:
         )
 
     def _wanted(self, data: Mapping[str, Any]) -> ViewState:
-        """The recipe that a picture carries; raises ValueError in one line."""
+        """Return the state that a picture carries; raises ValueError in one line."""
         return codec.picture_from_json(data)
 
     def _traced(self, path: Path, wanted: ViewState) -> tuple[Frame, ViewState]:
@@ -217,7 +217,7 @@ class Checker:
             return again.read_bytes()
 
     def _prepared(self, path: Path, wanted: ViewState, methods: tuple[str, ...]) -> tuple[Scene, ViewState]:
-        """The scene, read, and the recipe with the path that it has now; raises ValueError where it is gone."""
+        """Return the scene, read, and the state with the path that it has now; raises ValueError where it is gone."""
         found = find_scene(str(wanted.scene), path)
         if found is None:
             raise ValueError(f"its scene is gone: {wanted.scene}")

@@ -84,15 +84,15 @@ def run(given: Namespace) -> int:
         check_writable(video)
     with working() as work:
         scene = options.read_scene(given.path, given, work)
-        recipe = pictures.recipe_of(scene, settings, given).with_warmup(
+        state = pictures.wanted_state(scene, settings, given).with_warmup(
             frames=()
         )  # modes are learnt from the film alone
-        stills.with_caption_filled(recipe, scene)  # or say now what is wrong with it
-        pictures.check_tree(settings, recipe.draw.view, scene)
-        pictures.check_lights(recipe, scene)
+        stills.with_caption_filled(state, scene)  # or say now what is wrong with it
+        pictures.check_tree(settings, state.draw.view, scene)
+        pictures.check_lights(state, scene)
         takes = _takes(scene, _stops(scene, given), given)
-        script = Script(takes, recipe, folder, video, given.fps)
-        shared = _is_shared(recipe, given, work)
+        script = Script(takes, state, folder, video, given.fps)
+        shared = _is_shared(state, given, work)
         if not shared:
             films.check_folder(folder)
         if given.scheduler is None or not shared:
@@ -120,19 +120,19 @@ def _in_turn(scene: Scene, script: Script, work: Work) -> int:
     return done
 
 
-def _is_shared(recipe: ViewState, given: Namespace, work: Work) -> bool:
+def _is_shared(state: ViewState, given: Namespace, work: Work) -> bool:
     """Whether several processes shall share the film, and can; raises ValueError, in one line, without Dask."""
     if given.workers is None and given.scheduler is None:
         return False
     from tracer.experiments.cluster import check_dask
 
     check_dask()
-    if not needs_history(recipe):
+    if not needs_history(state):
         return True
-    settings = recipe.settings
-    exact = replace(recipe, settings=replace(settings, method=CERTIFIED))
+    settings = state.settings
+    exact = replace(state, settings=replace(settings, method=CERTIFIED))
     work.note(
-        f"pictures by {settings.method} in the view {recipe.draw.view.value} depend on the frames before them: one "
+        f"pictures by {settings.method} in the view {state.draw.view.value} depend on the frames before them: one "
         "process "
         f"traces them all, in turn{f'; give --method {CERTIFIED} to share them' if not needs_history(exact) else ''}"
     )

@@ -71,7 +71,7 @@ def picture_settings(given: Namespace) -> Settings:
     return settings
 
 
-def recipe_of(scene: Scene, settings: Settings, given: Namespace) -> ViewState:
+def wanted_state(scene: Scene, settings: Settings, given: Namespace) -> ViewState:
     """Return what the options ask for, with a caption that may have fields.
 
     Raises ValueError, in one line, for a moment or a light that the scene does not have."""

@@ -116,7 +116,7 @@ def run(given: Namespace) -> int:
     settings = pictures.picture_settings(given)
     with working() as work:
         scene = options.read_scene(given.path, given, work)
-        wanted = stills.with_caption_filled(pictures.recipe_of(scene, settings, given), scene)
+        wanted = stills.with_caption_filled(pictures.wanted_state(scene, settings, given), scene)
         if given.print_command:
             words = commands.words(wanted, scene, str(given.output or f"{given.path.stem}.png"), given.folder)
             print(shlex.join(["shadowcull", *words]))

@@ -135,7 +135,7 @@ def _difference(path: Path, recipe: ViewState, scene: Scene) -> str:
         "version": (made.get("version"), program_version()),
         "scene": (made.get("scene"), fingerprint.of_scene(scene)),
         "size": (data.get("size"), list(recipe.size)),
-        "settings": (data.get("state"), _as_json(codec.state_to_json(recipe, of_picture=True))),
+        "settings": (data.get("state"), _as_json(codec.state_to_json(stills.as_kept(recipe), of_picture=True))),
     }
     return ", ".join(f"another {name}" for name, (old, new) in expected.items() if old != new)
 

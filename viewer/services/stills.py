@@ -140,12 +140,15 @@ def with_caption_filled(recipe: ViewState, scene: Scene) -> ViewState:
     return recipe.with_draw(caption=caption)
 
 
+def as_kept(state: ViewState) -> ViewState:
+    """Return a state as its picture carries it: with one thread only where that shows."""
+    return state if by_one_thread(state) else state.with_settings(threads=0)
+
+
 def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: ViewState, by_gpu: bool = False) -> str:
     """Return what a picture carries: its state, its statistics, and what they were made of; and its modes, where these
     cannot be learnt again.  Where it was drawn `by_gpu`, which may round otherwise, that too."""
-    kept = recipe.with_warmup(modes=kept_modes.packed(frame, recipe))
-    if not by_one_thread(recipe):
-        kept = kept.with_settings(threads=0)
+    kept = as_kept(recipe).with_warmup(modes=kept_modes.packed(frame, recipe))
     more = {
         "picture": {"by_gpu": by_gpu and not _as_traced(recipe.draw)},
         "made": {
