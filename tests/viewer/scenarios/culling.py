@@ -16,6 +16,7 @@ from viewer.state.views import View
 from viewer.views.slices import layer_of, slice_seen
 from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
+from viewer.window.panels.light_buffer import CubeState, Unfolded
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
 
@@ -121,8 +122,8 @@ def _clusters(d: Driver) -> None:
 
 
 def _space(d: Driver) -> None:
-    """What methods keep of space: a slice through voxels, which keys and a slider move; and cells by the lights that
-    they ask."""
+    """What methods keep of space: a slice through voxels, which keys and a slider move; cells by the lights that they
+    ask; and a light's cube in a panel."""
     d.c.settings.change(lamp_radius=None, lamp_samples=None)
     for view, name in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact")):
         d.press(chord(view.key))
@@ -136,6 +137,23 @@ def _space(d: Driver) -> None:
         if view is View.VOXELS:
             _slice(d)
     _tree(d)
+    _light_buffer(d)
+
+
+def _light_buffer(d: Driver) -> None:
+    """A line where the method has none; else the cube by lengths of lists, or by where full shadow begins."""
+    state = d.ui.state(CubeState)
+    d.ui.show_panel("Light buffer")
+    d.wait(lambda: isinstance(state.answer, str), "why there is none", 20.0)
+    d.c.settings.change(method="lightbuffer")
+    d.settle()
+    d.wait(lambda: isinstance(state.answer, Unfolded), "the cube", 20.0)
+    lists = state.answer
+    d.frames(3)
+    assert imgui.internal.find_window_by_name("Light buffer").draw_list.vtx_buffer.size() > 0
+    d.context.item_click("//Light buffer/distance at which full shadow begins")
+    d.wait(lambda: state.answer is not lists, "where full shadow begins", 20.0)
+    assert state.depths and (state.answer.cross != lists.cross).any()
 
 
 def _tree(d: Driver) -> None:
