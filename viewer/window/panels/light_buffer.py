@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui
-from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
@@ -17,7 +16,7 @@ from viewer.state.readings import LIGHT_CUBES
 from viewer.views.legend import Legend
 from viewer.window.panels import legend, lights
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, em, paragraph
+from viewer.window.widgets import QUIET, checkbox, em, paragraph
 
 
 class CubeState(Newest):
@@ -30,10 +29,10 @@ class CubeState(Newest):
 class Unfolded:
     """A cube as a picture (3 side, 4 side, 3), which becomes a texture, and its legend."""
 
-    cross: NDArray[np.uint8]
+    cross: np.ndarray
     legend: Legend
 
-    def pixels(self, height: int = 0) -> NDArray[np.uint8]:
+    def pixels(self, height: int = 0) -> np.ndarray:
         return self.cross
 
     thumbnail = pixels
@@ -55,12 +54,13 @@ def show(ui: Ui) -> None:
     c, state = ui.controller, ui.state(CubeState)
     if c.frame is not None:
         state.take(c.renderer.query(unfold, c.frame, c.session.draw.light, state.depths))
+    checkbox("distance at which full shadow begins", state.depths, lambda on: setattr(state, "depths", on))
+    imgui.same_line()
     lights.combo(ui)
     found = state.answer
     if not isinstance(found, Unfolded):
         paragraph(state.problem or found or "The light buffer is drawn when the picture is whole.", QUIET)
         return
-    _, state.depths = imgui.checkbox("distance at which full shadow begins", state.depths)
     room, (down, across, _) = imgui.get_content_region_avail(), found.cross.shape
     scale = max(min((room.x - em(16.0)) / across, room.y / down), 0.1)
     texture = ui.graphics.textures.texture_id(found, small=False) if ui.graphics.textures is not None else None
