@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results
+.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -41,7 +41,7 @@ test: kernels  ## run the tests; without a display, on a virtual one (ARGS="-k c
 quick:  ## run the tests that show soonest whether something is broken, one window among them
 	@$(MAKE) --no-print-directory test ARGS='$(QUICK) $(ARGS)'
 
-test-all:  ## run the tests with many times as many random scenes and frames as in every run
+test-all:  ## run the tests with more random scenes and frames, all combinations, and what is checked seldom
 	@SHADOWCULL_TESTS=all $(MAKE) --no-print-directory test
 
 fuzz:  ## read damaged files of all kinds, and trace what is left of them (ARGS="--seconds 600 --seed 1000")
@@ -84,6 +84,10 @@ methods:  ## hold all methods side by side, scene by scene (ARGS="--write" into 
 results:  ## measure all tables of the pages of results and performance anew (ARGS="--write", "--only table-1", "--quick")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.results $(ARGS)
+
+settings:  ## write the page of all settings from their declarations
+	@tools/environment.sh dev
+	@$(RUN) tools/settings_table.py
 
 lamps:  ## hold frames by the light of lamps against those by `none` (ARGS="--radius 0.1 --frames 20 SCENE ...")
 	@tools/environment.sh dev

@@ -6,6 +6,7 @@ import argparse
 import importlib
 import os
 import re
+import runpy
 import shlex
 import subprocess
 import sys
@@ -282,3 +283,8 @@ def test_certified_cells_are_told_with_the_numbers_they_have() -> None:
         culling = "tracer.culling" if module.startswith("regions.") else "tracer.culling.certified"
         package = "tracer.geometry" if module == "offsets" else culling
         assert value == repr(getattr(importlib.import_module(f"{package}.{module}"), name)), name
+
+
+def test_the_table_of_settings_is_that_of_their_declarations() -> None:
+    page = runpy.run_path(str(ROOT / "tools" / "settings_table.py"))["page"]()
+    assert (DOCS / "settings.md").read_text(encoding="utf-8") == page, "make settings"

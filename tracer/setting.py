@@ -203,7 +203,8 @@ class Setting:
         if self.percent:
             return f"{100.0 * value:.6g} %"
         if self.kind in (int, float):
-            return f"{value:{'+' if self.low < 0 and value else ''}.6g}{self.unit}"
+            sign = "+" if -math.inf < self.low < 0 and value else ""
+            return f"{value:{sign}.6g}{self.unit}"
         if isinstance(value, tuple) and not hasattr(value, "in_words"):
             return "changed"
         return value.in_words() if hasattr(value, "in_words") else str(getattr(value, "label", value))

@@ -20,7 +20,6 @@ from viewer.util.messages import ERROR, say
 if TYPE_CHECKING:
     from tracer.experiments.warmup_frames import WarmupFrame
     from tracer.scene.model import Camera
-    from viewer.state.draw_options import Slice
     from viewer.state.views import View
 
 T = TypeVar("T")
@@ -196,13 +195,6 @@ def place(text: str) -> tuple[float, float]:
     return x, y
 
 
-def cube_side(text: str) -> int:
-    """Read the number of cells along an edge of a light's cube."""
-    if text not in ("16", "32", "64", "128", "256", "512", "1024"):
-        raise ValueError(f"{text!r} is not a power of two from 16 to 1024")
-    return int(text)
-
-
 # --- JSON ------------------------------------------------------------------------------------------
 
 
@@ -287,17 +279,6 @@ def view(text: str) -> ChosenView:
     if wipe > 1.0:
         raise ValueError(f"{text!r}: the line of a wipe lies at 0 to 1 of the width")
     return ChosenView(view, int(detail) if view.of_light and detail else 0, wipe, view.needs_work and bool(detail))
-
-
-def slice_(text: str) -> Slice:
-    """Read an axis and a place along it, like x:0.5."""
-    from viewer.state.draw_options import AXES, MIDDLE, Slice
-
-    wrong = "is not a slice; give an axis and 0 to 1 along it, like y:0.3"
-    axis, at = _matched(rf"([{''.join(AXES)}])(?::(0|1|[01]?\.\d{{1,30}}))?", text, wrong)
-    if float(at or 0) > 1:
-        raise ValueError(f"{text!r} {wrong}")
-    return Slice(AXES.index(axis), float(at) if at else MIDDLE.at)
 
 
 def method(text: str) -> str:

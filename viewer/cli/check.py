@@ -1,4 +1,4 @@
-"""The command `check`: whether saved pictures and figures are still what the program makes of their recipes."""
+"""The command `check`: whether saved pictures and figures are still what the program makes of what they carry."""
 
 from __future__ import annotations
 
@@ -30,12 +30,13 @@ from tracer.version import program_version
 from viewer.cli import options
 from viewer.cli.arguments import FAILED, Parser
 from viewer.cli.console import Work, working
-from viewer.output import capture, comparison_figure, exr, recipe
-from viewer.output.recipe import BUILT, CHANCE, Recipe
+from viewer.output import capture, comparison_figure, exr
+from viewer.output.commands import BUILT, CHANCE
 from viewer.services import comparison, stills
 from viewer.services.scene_files import find_scene
 from viewer.state import codec
 from viewer.state.methods import NO_CULLING
+from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
 from viewer.util.messages import ERROR, in_one_line, printable
 
@@ -126,7 +127,8 @@ class Checker:
         if data.get("window"):
             return Verdict(None, "it shows two pictures, or the window with its panels, which cannot be rendered again")
         wanted = self._wanted(data)
-        if wanted.history and not wanted.modes and wanted.view is View.COLOR and not wanted.tells_counters:
+        forgotten = wanted.warmup.unknown and not wanted.warmup.modes
+        if forgotten and wanted.draw.view is View.COLOR and wanted.draw.savings is None:
             return self._against_tracing_all(path, kept, wanted)
         frame, wanted = self._traced(path, wanted)
         pixels, _ = stills.draw(frame, self._open_scene, wanted)
@@ -134,12 +136,10 @@ class Checker:
             kept, pixels, data, frame.statistics.to_dict(), bool(data.get("picture", {}).get("by_gpu"))
         )
 
-    def _against_tracing_all(self, path: Path, kept: NDArray[np.uint8], wanted: Recipe) -> Verdict:
+    def _against_tracing_all(self, path: Path, kept: NDArray[np.uint8], wanted: ViewState) -> Verdict:
         """What can be said of a picture whose modes nobody can learn again: where it is not that without culling."""
         settings = replace(wanted.settings, method=NO_CULLING)
-        frame, plain = self._traced(
-            path, replace(wanted, settings=settings, history="", before=(), warmup=0, repeats=0)
-        )
+        frame, plain = self._traced(path, replace(wanted, settings=settings, warmup=Warmup()))
         pixels, _ = stills.draw(frame, self._open_scene, plain)
         if pixels.shape != kept.shape:
             raise ValueError(_not_again(wanted))
@@ -153,13 +153,13 @@ class Checker:
             f"by {most} of 255 at most, which culling may have done: {_not_again(wanted)}",
         )
 
-    def _wanted(self, data: Mapping[str, Any]) -> Recipe:
-        """The recipe that a picture carries; raises ValueError in one line."""
-        return recipe.of_state(codec.picture_from_json(data))
+    def _wanted(self, data: Mapping[str, Any]) -> ViewState:
+        """Return the state that a picture carries; raises ValueError in one line."""
+        return codec.picture_from_json(data)
 
-    def _traced(self, path: Path, wanted: Recipe) -> tuple[Frame, Recipe]:
+    def _traced(self, path: Path, wanted: ViewState) -> tuple[Frame, ViewState]:
         """The frame of a picture, once more; raises ValueError, in one line, where that cannot be."""
-        if wanted.history and not wanted.modes:
+        if wanted.warmup.unknown and not wanted.warmup.modes:
             raise ValueError(_not_again(wanted))
         scene, wanted = self._prepared(path, wanted, (wanted.settings.method,))
         stills.check_light(wanted, scene)
@@ -216,8 +216,8 @@ class Checker:
             comparison_figure.save(shown, again, json.dumps(data))
             return again.read_bytes()
 
-    def _prepared(self, path: Path, wanted: Recipe, methods: tuple[str, ...]) -> tuple[Scene, Recipe]:
-        """The scene, read, and the recipe with the path that it has now; raises ValueError where it is gone."""
+    def _prepared(self, path: Path, wanted: ViewState, methods: tuple[str, ...]) -> tuple[Scene, ViewState]:
+        """Return the scene, read, and the state with the path that it has now; raises ValueError where it is gone."""
         found = find_scene(str(wanted.scene), path)
         if found is None:
             raise ValueError(f"its scene is gone: {wanted.scene}")
@@ -231,9 +231,9 @@ class Checker:
         start, end = scene.time_range
         if not start <= wanted.time <= end:
             raise ValueError(f"its time, {wanted.time:g} s, is none of the scene's any more")
-        return scene, replace(wanted, scene=found, settings=settings)
+        return scene, replace(wanted, scene=str(found), settings=settings)
 
-    def _world_of(self, scene: Scene, wanted: Recipe) -> World:
+    def _world_of(self, scene: Scene, wanted: ViewState) -> World:
         accelerator = wanted.settings.accelerator
         if self._world is None or self._world[0] != accelerator:
             self._world = accelerator, World(scene, wanted.time, accelerator, self._work.progress)
@@ -279,13 +279,13 @@ class Checker:
         return f"changed since: {'; '.join(found)}"
 
 
-def _not_again(wanted: Recipe) -> str:
+def _not_again(wanted: ViewState) -> str:
     """Why a picture cannot be made again, and how to save one that can."""
-    if wanted.history in (CHANCE, BUILT):
+    if wanted.warmup.unknown in (CHANCE, BUILT):
         way = "a picture of the view color can be made again" if Method.parse(wanted.settings.method).exact else ""
     else:
         way = "Backspace in the window forgets all modes: what is saved after it can be made again"
-    return f"it cannot be made again: {wanted.history}{f'; {way}' if way else ''}"
+    return f"it cannot be made again: {wanted.warmup.unknown}{f'; {way}' if way else ''}"
 
 
 def _counted(then: Any, now: Mapping[str, Any]) -> str:

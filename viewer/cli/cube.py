@@ -11,7 +11,9 @@ from tracer.methods.lightbuffer import LightBuffer
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file
-from viewer.cli import arguments, options
+from tracer.setting import setting_of
+from tracer.settings import Settings
+from viewer.cli import options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import print_table, titled, working
 from viewer.output.light_cube import EMPTY, FEW, MANY, ONE, described, picture_of, seen
@@ -23,9 +25,7 @@ examples:
   shadowcull cube default --light 1 -o cube.png
   shadowcull cube kitchen.aff --side 512 --accelerator kdtree
 
-Left, cells with nothing in them are white, and those that one triangle covers blue; those with a list of candidates
-go from violet, for one, to yellow, for the longest list there is, and those with more than eight are grey. Right is
-the distance at which full shadow begins. The legends have the numbers.
+The legends say what the colours mean; --no-legend draws a pixel for each cell.
 """
 
 
@@ -39,7 +39,7 @@ def parser() -> Parser:
     options.add_scene(parser)
     add("--light", type=count(0, 2**31 - 1), default=0, metavar="N", help="which light (default: 0)")
     help_ = "cells along an edge, a power of two from 16 to 1024 (default: 256)"
-    add("--side", type=arguments.cube_side, default=256, metavar="N", help=help_)
+    add("--side", type=setting_of(Settings, "light_buffer_side").parse, default=256, metavar="N", help=help_)
     add("-o", "--output", type=Path, default=Path("cube.png"), metavar="FILE", help="the picture (default: cube.png)")
     add("--no-legend", action="store_true", help="a pixel for each cell, without legends")
     options.add_moment(parser)

@@ -37,14 +37,9 @@ examples:
   shadowcull explain default --pixel 200,300 --method certified
   shadowcull explain default --pixel 200,300 --accelerator kdtree --json
 
-The tree has the pixel's primary, reflected and refracted rays, and below each the shadow rays from where it ends.
-Each shadow ray was not due, as the surface faces away from its light; culled, by a mode of the paper, a certificate
-or a cached occluder; passed over, as its light is hidden from the region; or traced, with its traversal steps and
-intersection tests, counted for the ray alone. It says what blocks a ray first, seen from the light, and which culled
-answers are wrong. Where a point has more than 12 lights, those with the same fate have one line.
-
-Culling uses what earlier frames have shown: --warmup N first traces the N frames before the one that is explained,
-and --repeat N that frame itself N times.
+The tree has the pixel's primary, reflected and refracted rays, and below each the shadow rays from where it ends: not
+due, culled and by what, passed over, or traced, with the steps and tests of the ray alone and what blocks it. Culling
+uses what earlier frames have shown: --warmup N first traces the N frames before, and --repeat N the frame itself.
 """
 
 

@@ -67,13 +67,13 @@ def run(given: Namespace) -> int:
         pictures.check_view(replace(settings, method=method), view, "--methods")
     with working() as work:
         scene = options.read_scene(given.path, given, work)
-        recipe = pictures.recipe_of(scene, settings, given)
+        state = pictures.wanted_state(scene, settings, given)
         crops = tuple(Crop(*crop) for crop in given.crops)
-        wanted = Comparison(recipe, tuple(given.methods), crops).checked()
-        pictures.check_lights(recipe, scene)
-        options.warmup_times(scene, recipe.time, recipe.warmup, work)
+        wanted = Comparison(state, tuple(given.methods), crops).checked()
+        pictures.check_lights(state, scene)
+        options.warmup_times(scene, state.time, state.warmup.of_path, work)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, *wanted.methods)
-        world = World(scene, recipe.time, given.accelerator, work.progress)
+        world = World(scene, state.time, given.accelerator, work.progress)
 
         def tell(method: str, done: int, total: int) -> None:
             work.count(f"{method}, frame {done + 1} of {total}", done, total)
@@ -81,7 +81,7 @@ def run(given: Namespace) -> int:
         shown = comparison.trace(scene, wanted, world, tell, work.cancelled)
         work.progress("drawing", 1.0)
         comparison_figure.save(shown, given.output, comparison.text(shown, wanted))
-    table = titled(f"{scene.path.name}, {recipe.time:.3f} s")
+    table = titled(f"{scene.path.name}, {state.time:.3f} s")
     table.add_column("")
     for method in shown.frames:
         table.add_column(method, justify="right")

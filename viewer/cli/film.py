@@ -19,7 +19,7 @@ from viewer.cli import arguments, options, pictures, processes
 from viewer.cli.arguments import INTERRUPTED, Parser, number
 from viewer.cli.console import Work, working
 from viewer.output import capture, movie
-from viewer.output.recipe import Recipe
+from viewer.output.commands import needs_history
 from viewer.services import film as films
 from viewer.services import stills
 from viewer.services.film import Script
@@ -27,6 +27,7 @@ from viewer.state import codec, flight
 from viewer.state.flight import Stop, Take
 from viewer.state.methods import CERTIFIED
 from viewer.state.preferences import load_preferences
+from viewer.state.view_state import ViewState
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
 
@@ -83,13 +84,15 @@ def run(given: Namespace) -> int:
         check_writable(video)
     with working() as work:
         scene = options.read_scene(given.path, given, work)
-        recipe = replace(pictures.recipe_of(scene, settings, given), before=())  # modes are learnt from the film alone
-        stills.with_caption_filled(recipe, scene)  # or say now what is wrong with it
-        pictures.check_tree(settings, recipe.view, scene)
-        pictures.check_lights(recipe, scene)
+        state = pictures.wanted_state(scene, settings, given).with_warmup(
+            frames=()
+        )  # modes are learnt from the film alone
+        stills.with_caption_filled(state, scene)  # or say now what is wrong with it
+        pictures.check_tree(settings, state.draw.view, scene)
+        pictures.check_lights(state, scene)
         takes = _takes(scene, _stops(scene, given), given)
-        script = Script(takes, recipe, folder, video, given.fps)
-        shared = _is_shared(recipe, given, work)
+        script = Script(takes, state, folder, video, given.fps)
+        shared = _is_shared(state, given, work)
         if not shared:
             films.check_folder(folder)
         if given.scheduler is None or not shared:
@@ -117,20 +120,21 @@ def _in_turn(scene: Scene, script: Script, work: Work) -> int:
     return done
 
 
-def _is_shared(recipe: Recipe, given: Namespace, work: Work) -> bool:
+def _is_shared(state: ViewState, given: Namespace, work: Work) -> bool:
     """Whether several processes shall share the film, and can; raises ValueError, in one line, without Dask."""
     if given.workers is None and given.scheduler is None:
         return False
     from tracer.experiments.cluster import check_dask
 
     check_dask()
-    if not recipe.needs_history:
+    if not needs_history(state):
         return True
-    settings = recipe.settings
-    exact = replace(recipe, settings=replace(settings, method=CERTIFIED))
+    settings = state.settings
+    exact = replace(state, settings=replace(settings, method=CERTIFIED))
     work.note(
-        f"pictures by {settings.method} in the view {recipe.view.value} depend on the frames before them: one process "
-        f"traces them all, in turn{f'; give --method {CERTIFIED} to share them' if not exact.needs_history else ''}"
+        f"pictures by {settings.method} in the view {state.draw.view.value} depend on the frames before them: one "
+        "process "
+        f"traces them all, in turn{f'; give --method {CERTIFIED} to share them' if not needs_history(exact) else ''}"
     )
     return False
 

@@ -21,9 +21,9 @@ from viewer.cli.console import Work, print_table, titled, working
 from viewer.cli.render import write_picture
 from viewer.output import figure1_svg
 from viewer.output.figure1 import TITLE, Stage, figure_of
-from viewer.output.recipe import Recipe
 from viewer.services import stills
 from viewer.state.methods import BY_MODES, NO_CULLING
+from viewer.state.view_state import ViewState, Warmup
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
 from viewer.util.numbers import percent, saved
@@ -47,19 +47,21 @@ def show(path: Path, given: Namespace) -> None:
         scene = options.read_scene(path, given, work)
         options.prepare_kernels(work, len(scene.lights), settings.accelerator, BY_MODES)
         time = scene.frame_time(min(FRAMES, scene.frames) - 1)
-        folders, meshes = tuple(given.folder), options.mesh_options(given).of_file(path)
-        recipe = Recipe(path, time, None, settings, warmup=FRAMES - 1, folders=folders, meshes=meshes)
+        meshes = options.mesh_options(given).of_file(path)
+        recipe = ViewState(
+            str(path.absolute()), meshes, time=time, settings=settings, warmup=Warmup(of_path=FRAMES - 1)
+        )
         frame, all_traced = _trace(scene, recipe, work)
         work.progress("writing", 1.0)
         write_picture(PICTURE, scene, frame, recipe)
         figure1_svg.write(FIGURE, frame, scene)
-    frames = len(stills.times_before(scene, time, recipe.warmup)) + 1
+    frames = len(stills.times_before(scene, time, recipe.warmup.of_path)) + 1
     print_table(_table(path, recipe, frames, frame, all_traced))
     for file in (PICTURE, FIGURE):
         print(printable(file.absolute()))
 
 
-def _trace(scene: Scene, recipe: Recipe, work: Work) -> tuple[Frame, Frame]:
+def _trace(scene: Scene, recipe: ViewState, work: Work) -> tuple[Frame, Frame]:
     """The last frame by the paper's method, and by none."""
     renderer, steps = Renderer(scene, recipe.settings, work.progress), FRAMES + _AGAIN
 
@@ -75,7 +77,7 @@ def _trace(scene: Scene, recipe: Recipe, work: Work) -> tuple[Frame, Frame]:
     return frame, all_traced
 
 
-def _table(path: Path, recipe: Recipe, frames: int, frame: Frame, all_traced: Frame) -> Table:
+def _table(path: Path, recipe: ViewState, frames: int, frame: Frame, all_traced: Frame) -> Table:
     """What each stage did, beside what `none` did, and what that saved."""
     size, end = f"{frame.width} × {frame.height}", f"{recipe.time:.2f} s"
     title = f"{TITLE}: {path.name}, {size}, the last of {frames} frames, at {end}"

@@ -33,16 +33,10 @@ examples:
   shadowcull check wrong/*.png
   shadowcull explain kitchen.aff --frame 12 --pixel 147,125 --before '[[0, null]]' --only wrong
 
-The frames are traced one after another, as in bench, so that the method learns from each; every culled shadow ray is
-verified. Wrong pixels are ranked by how far their colour is from the right one, and of each primitive and light the
-worst is kept. Then the fewest frames before it are looked for that make the pixel just as wrong: often the one that
-taught the mode. --around N traces N extra random views near the worst findings; --radius says how far from the camera
-of a finding, in parts of its distance to what is wrong there.
-
---output writes for each finding a figure that shows it beside the right picture, which `shadowcull check` can draw
-again, a JSON with all about it, which --before of render, figure and explain takes, and hunt.json with all. For an
-exact method nothing is found, and the last line says how many pixels were compared. Ctrl-C keeps what was found; the
-exit code is then 130.
+Every culled shadow ray is verified. Wrong pixels are ranked by how far their colour is from the right one,
+and of each primitive and light the worst is kept, with the fewest frames before it that make the pixel just as wrong.
+--output writes for each a figure, which `shadowcull check` draws again, and a JSON, which --before of render, figure
+and explain takes. Ctrl-C keeps what was found; the exit code is then 130.
 """
 
 

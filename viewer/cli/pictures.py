@@ -17,20 +17,19 @@ from tracer.setting import settings_of
 from tracer.settings import Settings
 from viewer.cli import arguments, options
 from viewer.cli.arguments import ChosenView, Parser
-from viewer.output import capture, recipe
-from viewer.output.recipe import Recipe, Style
+from viewer.output import capture, commands
 from viewer.services import stills
 from viewer.services.scene_files import find_scene, is_capture
 from viewer.state import codec
 from viewer.state.draw_options import MIDDLE, DrawOptions
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
 from viewer.state.tone import NEUTRAL, Tone
-from viewer.state.view_state import ViewState
+from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
 
 LOWER_LEFT = 0.0, 1.0
-_DRAWN = "outlines", "mark_wrong", "clipping", "legend", "shading", "beneath", "slice", "magnified"
-_TONE = "exposure", "white", "curve"
+_SPECIAL = {"view", "spans", "savings", "caption"}  # whose options are no plain values
+_DRAWN = [one for one in settings_of(DrawOptions) if one.option and one.path not in _SPECIAL]
 OR_PICTURE = ", or a saved picture or a state as .json, for its scene, settings and view"
 _LARGEST_STATE = 1 << 26  # bytes
 
@@ -51,7 +50,7 @@ def add_picture(parser: Parser) -> None:
         "moving-shadow:LIGHT, saved or cost, as counts of rays or as shares like saved:share (default: color)"
     )
     add("--view", type=arguments.view, default="color", metavar="V", help=help_)
-    options.add_settings(parser, DrawOptions, *_DRAWN, *_TONE)
+    options.add_settings(parser, DrawOptions, *(one.name for one in _DRAWN))
     help_ = "what has the first and the last colour in the views depth, saved, cost and lights (default: as they come)"
     add("--range", type=arguments.value_range, metavar="LOW:HIGH", help=help_)
     help_ = "where the legend is: 0,0 is the upper left (default: 0,1)"
@@ -72,7 +71,7 @@ def picture_settings(given: Namespace) -> Settings:
     return settings
 
 
-def recipe_of(scene: Scene, settings: Settings, given: Namespace) -> Recipe:
+def wanted_state(scene: Scene, settings: Settings, given: Namespace) -> ViewState:
     """Return what the options ask for, with a caption that may have fields.
 
     Raises ValueError, in one line, for a moment or a light that the scene does not have."""
@@ -80,30 +79,20 @@ def recipe_of(scene: Scene, settings: Settings, given: Namespace) -> Recipe:
     edits = options.edits_of(given)
     if view.of_light:
         light = options.light_index(given, f"--view {view.value}:", light, scene)
-    style = Style(
-        shares=shares,
-        marked=given.mark_wrong,
-        magnified=given.magnified,
-        shading=given.shading,
-        beneath=given.beneath,
-        outlines=given.outlines,
-        legend=(given.legend_at or LOWER_LEFT) if given.legend else None,
-        caption=given.caption,
-        tone=_tone(given),
-        clipping=given.clipping,
-        span=given.range,
-        cut=given.slice,
-        savings=given.savings,
-    )
-    history = ""
-    if recipe.by_chance(settings, view, style.savings is not None):
-        history = f"what the method {settings.method} makes depends on time and threads"
-    return Recipe(
-        given.path, options.moment(scene, given), given.camera, settings, view,
-        light if view.of_light else edits.light_index(light) or 0, wipe, style, given.warmup, given.repeat, history,
-        folders=tuple(given.folder), before=given.before, meshes=options.mesh_options(given).of_file(given.path),
-        edits=edits,
+    draw = DrawOptions(
+        view=view, light=light if view.of_light else edits.light_index(light) or 0, wipe=wipe, shares=shares,
+        legend_at=given.legend_at or LOWER_LEFT, savings=given.savings, caption=given.caption,
     )  # fmt: skip
+    for one in _DRAWN:
+        draw = one.put(draw, getattr(given, one.name))
+    draw = draw.with_span(given.range)
+    unknown = ""
+    if commands.by_chance(settings, draw):
+        unknown = f"what the method {settings.method} makes depends on time and threads"
+    warmup = Warmup(given.before, given.warmup, given.repeat, unknown=unknown)
+    meshes = options.mesh_options(given).of_file(given.path)
+    path, time = str(given.path.absolute()), options.moment(scene, given)
+    return ViewState(path, meshes, edits, time, given.camera, settings, draw, warmup=warmup)
 
 
 def _tone(given: Namespace) -> Tone:
@@ -155,10 +144,10 @@ def check_tree(settings: Settings, view: View, scene: Scene) -> None:
         raise ValueError(f"--view {view.value}: {why}")
 
 
-def check_lights(wanted: Recipe, scene: Scene) -> None:
+def check_lights(wanted: ViewState, scene: Scene) -> None:
     """Raise ValueError, in one line, where memory has no room for what all lights send to each pixel."""
     if not stills.lights_fit(wanted, scene):
-        raise ValueError(f"--view {wanted.view.value}: too many lights for pictures of this size")
+        raise ValueError(f"--view {wanted.draw.view.value}: too many lights for pictures of this size")
 
 
 # --- saved pictures and states ----------------------------------------------------------------------

@@ -25,13 +25,13 @@ from tracer.statistics import FrameStatistics
 from viewer.cli import options, pictures
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import Work, print_table, titled, working
-from viewer.output import exr, figure1_svg, png, recipe, tev
+from viewer.output import commands, exr, figure1_svg, png, tev
 from viewer.output.exr import buffers
-from viewer.output.recipe import Recipe
 from viewer.services import stills
 from viewer.services.refinement import has_lamps
 from viewer.state import terms, verified
 from viewer.state.readings import MOST_RECORDED
+from viewer.state.view_state import ViewState
 from viewer.util.files import check_writable, write_whole
 from viewer.util.messages import printable, say
 
@@ -116,9 +116,9 @@ def run(given: Namespace) -> int:
     settings = pictures.picture_settings(given)
     with working() as work:
         scene = options.read_scene(given.path, given, work)
-        wanted = stills.with_caption_filled(pictures.recipe_of(scene, settings, given), scene)
+        wanted = stills.with_caption_filled(pictures.wanted_state(scene, settings, given), scene)
         if given.print_command:
-            words = recipe.arguments(wanted, scene, str(given.output or f"{given.path.stem}.png"))
+            words = commands.words(wanted, scene, str(given.output or f"{given.path.stem}.png"), given.folder)
             print(shlex.join(["shadowcull", *words]))
             return 0
         pictures.check_tree(settings, view, scene)
@@ -151,16 +151,16 @@ def run(given: Namespace) -> int:
     return 0
 
 
-def _first(wanted: Recipe) -> str:
+def _first(wanted: ViewState) -> str:
     """Say why a method that culls by what earlier frames have shown has culled nothing, where there were none."""
     method = wanted.settings.method
-    if wanted.before or wanted.warmup or wanted.repeats or not Method.parse(method).uses_modes:
+    if wanted.warmup.frames or wanted.warmup.of_path or wanted.warmup.repeats or not Method.parse(method).uses_modes:
         return ""
     return f"{method} culls by what earlier frames have shown, and this is the first: give --warmup N, or --repeat N."
 
 
-def _traced(renderer: Renderer, wanted: Recipe, everything: bool, work: Work) -> Frame:
-    options.warmup_times(renderer.scene, wanted.time, wanted.warmup, work)
+def _traced(renderer: Renderer, wanted: ViewState, everything: bool, work: Work) -> Frame:
+    options.warmup_times(renderer.scene, wanted.time, wanted.warmup.of_path, work)
     settings = wanted.settings
 
     def show(done: int, frames: int) -> None:
@@ -197,7 +197,7 @@ def _check_outputs(given: Namespace) -> None:
         check_writable(path)
 
 
-def write_picture(path: Path, scene: Scene, frame: Frame, wanted: Recipe) -> None:
+def write_picture(path: Path, scene: Scene, frame: Frame, wanted: ViewState) -> None:
     """Write the frame as its recipe draws it; a PNG remembers, as the window's captures do, how it was made."""
     pixels, missing = stills.draw(frame, scene, wanted)
     if missing:

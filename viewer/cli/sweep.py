@@ -62,17 +62,10 @@ A study is a TOML file:
   depth = [2, 10]      # lamp_samples, certificates, certificate_seconds, certificate_memory, lightcuts_error,
                        # lightcuts_nodes, light_buffer_side, light_buffer_memory
 
-Frames of methods that learn nothing are tasks of their own. Other methods trace their whole path in one task, as in
-bench, unless there is a warmup. Each task has one thread. Every frame is kept as soon as it is traced, as a row of
-Parquet in the folder of results, and the same command again traces only what is missing. Ctrl-C ends the sweep at
-once.
-
-The table says of each method, under the same circumstances, how many steps and tests it saves on average; which part
-of the shadow rays is saved; the median processor time of a frame; and the speed-up, which is the processor time of
-all frames by none over that by the method.
-
---scheduler takes the address of a Dask scheduler whose workers have the same version of Shadowcull and one thread
-each; scenes are sent to them. Needs Dask and PyArrow: install shadowcull[sweep].
+Every frame is kept as soon as it is traced, as a row of Parquet in the folder of results, and the same command again
+traces only what is missing. Methods that learn trace their whole path in one task unless there is a warmup; all other
+frames are tasks of their own, with one thread each. Times are processor times. Workers of a Dask scheduler need the
+same version of Shadowcull. Needs Dask and PyArrow: install shadowcull[sweep].
 """
 
 

@@ -46,15 +46,11 @@ examples:
   shadowcull zoom kitchen.aff --frame 100 --primitive 15548 --size 256x256 --ratio 0.9 --factors 4,64
   shadowcull zoom figure4 --pixel 64,64 --size 128x128 --json zoom.json --csv zoom.csv
 
-A primitive that was fully rendered from afar is culled by what its few pixels met then, until it covers more pixels
-than the zoom factor times its highest pixel count; then it is examined again. The camera starts where it is at that
-time and moves straight towards the primitive: along its view if that meets the primitive, else turned to the middle
-of the visible part. The first frames stay in place until the modes settle. Every culled shadow ray is verified, and a
-pixel with a wrong answer is a wrong pixel. Ctrl-C keeps the finished frames; the exit code is then 130.
-
-The tables show the steps where something changes, and a summary of each factor; the JSON and the CSV hold every step,
-and the plot draws them. In these, wrong_of_primitive counts the wrong pixels of this primitive, wrong those of the
-whole picture. A primitive that is never fully rendered is never culled, so nothing is tested.
+The camera moves straight towards the primitive; the first frames stay in place until the modes settle. The primitive
+is culled by what its few pixels met from afar, until it covers more pixels than the zoom factor times its highest
+pixel count. Every culled shadow ray is verified, and a pixel with a wrong answer is a wrong pixel: wrong_of_primitive
+counts those of the primitive, wrong those of the whole picture. Ctrl-C keeps the finished frames; the exit code is
+then 130.
 """
 
 

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.scene.model import Scene
 from viewer.output.capture import CHUNK
-from viewer.output.recipe import Recipe
 from viewer.state.palette import color_map
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 from viewer.util.numbers import changed
 from viewer.views import colorize
@@ -62,7 +62,7 @@ class Shown:
     `edition` says in which words the title does."""
 
     scene: Scene
-    recipe: Recipe
+    recipe: ViewState
     frames: Mapping[str, Frame]
     reference: Frame
     crops: Sequence[Crop]
@@ -75,9 +75,9 @@ class Shown:
     def span(self) -> tuple[float, float] | None:
         """What has the first and the last colour, for all methods: as was asked for, or of a map of work that of all;
         None in other views."""
-        view = self.recipe.view
-        if self.recipe.style.span is not None or not view.needs_work:
-            return self.recipe.style.span
+        view = self.recipe.draw.view
+        if self.recipe.draw.span is not None or not view.needs_work:
+            return self.recipe.draw.span
         return 0.0, max(view.declared.span(frame)[1] for frame in self.frames.values())
 
     @property
@@ -184,7 +184,9 @@ def _title(shown: Shown) -> str:
     number = Session(shown.scene).frame_at(recipe.time)
     warm = _warm(shown.warmed, shown.edition) if shown.warmed else ""
     samples = f", {recipe.settings.samples} samples" if recipe.settings.samples > 1 else ""
-    return f"{shown.scene.path.name}, frame {number}{warm}, {width} × {height}{samples}; {recipe.view.label.lower()}"
+    return (
+        f"{shown.scene.path.name}, frame {number}{warm}, {width} × {height}{samples}; {recipe.draw.view.label.lower()}"
+    )
 
 
 def _warm(frames: int, edition: int) -> str:
@@ -258,8 +260,8 @@ def _color_bars(page: Figure, shown: Shown, top: float, size: tuple[float, float
     from matplotlib.colors import ListedColormap
 
     bars: list[tuple[tuple[float, float], Any, str]] = []
-    view = shown.recipe.view
-    if shown.span is not None and not shown.recipe.style.shares:
+    view = shown.recipe.draw.view
+    if shown.span is not None and not shown.recipe.draw.shares:
         near_is_bright = view is View.DEPTH
         colors = ListedColormap(color_map()[::-1] if near_is_bright else color_map())  # type: ignore[arg-type]
         bars.append((shown.span, colors, view.label.lower() if near_is_bright else f"{view.label.lower()}, per pixel"))

@@ -14,22 +14,23 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.method import Method
-from viewer.output.recipe import Recipe
+from viewer.output.commands import needs_history
+from viewer.state.view_state import ViewState
 
 LARGEST = 1 << 20
 """Bytes of the text, at most: pictures of more modes do without them."""
 
 
-def suffice(recipe: Recipe) -> bool:
+def suffice(recipe: ViewState) -> bool:
     """Whether modes are all that its history means to the picture: other methods learn more, and views of modes show
     what the frame itself has taught, which depends on more."""
     method = Method.parse(recipe.settings.method)
-    return method.uses_modes and len(method.kinds) == 1 and not recipe.view.of_modes and recipe.needs_history
+    return method.uses_modes and len(method.kinds) == 1 and not recipe.draw.view.of_modes and needs_history(recipe)
 
 
-def packed(frame: Frame, recipe: Recipe) -> str:
+def packed(frame: Frame, recipe: ViewState) -> str:
     """What `unpacked` makes the modes of again; empty where they are not needed, or do not suffice."""
-    if not recipe.history or not suffice(recipe):
+    if not recipe.warmup.unknown or not suffice(recipe):
         return ""
     words = np.ascontiguousarray(frame.modes_before)
     text = base64.b64encode(zlib.compress(words.astype(words.dtype.newbyteorder("<")).tobytes(), 6)).decode()

@@ -6,7 +6,6 @@ Each is written on a thread of its own, so that the window does not wait for a d
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,13 +15,13 @@ from tracer.frame import Frame
 from tracer.scene.model import Progress
 from viewer.output import capture
 from viewer.output.legend_picture import with_legend
-from viewer.output.recipe import Recipe
 from viewer.output.savings_picture import with_savings
 from viewer.services import stills
 from viewer.services.jobs import Job
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.views.legend import Legend
 
 
@@ -63,7 +62,7 @@ class CaptureService:
         frame: Frame | None,
         pixels: NDArray[np.uint8] | None,
         legend: Legend | None = None,
-        recipe: Recipe | None = None,
+        recipe: ViewState | None = None,
     ) -> None:
         """Save a picture, (h, w, 3) uint8, of a frame, with its legend, named by the user's template.
 
@@ -102,10 +101,10 @@ class CaptureService:
             described = with_legend(pixels, legend, place) if legend is not None else None
             saved = pixels if described is None else described
             if recipe is not None:
-                saved = with_savings(saved, frame, recipe.style.savings)
+                saved = with_savings(saved, frame, recipe.draw.savings)
             if recipe is None:
                 return capture.save(saved, folder, name, text)
-            kept = recipe if described is not None else replace(recipe, style=replace(recipe.style, legend=None))
-            return capture.save(saved, folder, name, stills.text(saved, frame, scene, kept))
+            kept = recipe if described is not None else recipe.with_draw(legend=False)
+            return capture.save(saved, folder, name, stills.text(saved, frame, scene, kept, by_gpu=True))
 
         self.write(save)

@@ -13,9 +13,8 @@ from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version
-from viewer.output import capture, recipe
+from viewer.output import capture
 from viewer.output.comparison_figure import EDITION, Crop, Shown
-from viewer.output.recipe import Recipe
 from viewer.services import stills
 from viewer.state import codec
 from viewer.state.session import Session
@@ -29,7 +28,7 @@ class Comparison:
     """`recipe` is what all methods have in common; its own method does not count.  `marks` are pixels (x, y) that are
     marked in the crops, and `words` stand below the title, which is of an `edition`."""
 
-    recipe: Recipe
+    recipe: ViewState
     methods: tuple[str, ...]
     crops: tuple[Crop, ...]
     marks: tuple[tuple[int, int], ...] = ()
@@ -62,7 +61,7 @@ class Comparison:
 
 def from_json(state: ViewState, data: Any) -> Comparison:
     """Return the inverse of `to_json`; raises ValueError in one line."""
-    common = recipe.of_state(state)
+    common = state
     kept = codec.from_json(data, _Kept, "its figure")
     crops = tuple(Crop(*sides) for sides in kept.crops)
     return Comparison(common, kept.methods, crops, kept.marks, kept.words, kept.edition).checked()
@@ -100,13 +99,13 @@ def trace(
         def tell(done: int, total: int, method: str = method) -> None:
             on_frame(method, done, total)
 
-        if not (Method.parse(method).culls or settings.modes or wanted.view.of_modes):  # it learns nothing
-            wanted = replace(wanted, before=())
+        if not (Method.parse(method).culls or settings.modes or wanted.draw.view.of_modes):  # it learns nothing
+            wanted = wanted.with_warmup(frames=())
         frames[method] = stills.trace(renderer, wanted, on_frame=tell, cancelled=cancelled)
     reference = frames["none"]
     shown = {method: frames[method] for method in comparison.methods}
     common = comparison.recipe
-    warmed = len(common.before) + len(stills.times_before(scene, common.time, common.warmup))
+    warmed = len(common.warmup.frames) + len(stills.times_before(scene, common.time, common.warmup.of_path))
     marked = comparison.marks, comparison.words, warmed, comparison.edition
     return Shown(scene, common, shown, reference, comparison.crops, *marked)
 
@@ -120,4 +119,4 @@ def text(shown: Shown, comparison: Comparison) -> str:
         "made": {"version": program_version(), "scene": fingerprint.of_scene(scene)},
     }
     number = Session(scene).frame_at(common.time)
-    return capture.metadata(common.state(), shown.reference.camera, number, common.size, statistics, more)
+    return capture.metadata(common, shown.reference.camera, number, common.size, statistics, more)

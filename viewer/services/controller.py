@@ -45,7 +45,7 @@ from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import Undo
 from viewer.state import codec
-from viewer.state.arriving import fitting_view
+from viewer.state.methods import fitting_view
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session

@@ -17,11 +17,12 @@ from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Scene
 from tracer.version import program_version
 from viewer.output import comparison_figure
+from viewer.output.commands import scene_word
 from viewer.output.comparison_figure import Crop
-from viewer.output.recipe import Recipe, scene_word
 from viewer.services import comparison
 from viewer.services.comparison import Comparison
 from viewer.state.methods import NO_CULLING
+from viewer.state.view_state import ViewState, Warmup
 from viewer.util.files import write_text
 
 ALL = "hunt.json"
@@ -56,13 +57,12 @@ def comparison_of(
     edits: Edits = NO_EDITS,
 ) -> Comparison:
     """The figure of a counterexample: the right picture and the method's, with the pixel's surroundings enlarged."""
-    common = Recipe(
-        scene=Path(scene.path),
+    common = ViewState(
+        scene=str(Path(scene.path).absolute()),
         time=find.time,
         camera=find.seen_camera,
         settings=replace(settings, method=found.method, verify=False, samples=1, modes=False),
-        folders=folders,
-        before=find.before,
+        warmup=Warmup(find.before),
         meshes=meshes,
         edits=edits,
     )

@@ -27,8 +27,8 @@ from tracer.scene.model import Scene
 from tracer.settings import Settings
 from tracer.version import program_version
 from viewer.output import capture, movie, png
+from viewer.output.commands import cannot_come_back, needs_history
 from viewer.output.movie import VIDEO, Video, frame_name, video
-from viewer.output.recipe import Recipe, cannot_come_back
 from viewer.services import stills
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.recipes import Recipes
@@ -38,6 +38,7 @@ from viewer.state.flight import Stop, Take
 from viewer.state.plans import FilmPlan, frames_within
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState, Warmup
 from viewer.util.files import write_bytes
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ class Script:
     pictures go to, the video if one is wanted, and its frames a second."""
 
     takes: Sequence[Take]
-    recipe: Recipe
+    recipe: ViewState
     folder: Path
     video: Path | None = None
     fps: float = 25.0
@@ -68,19 +69,17 @@ class Script:
         numbers = of_path if len(of_path) == len(self.takes) else list(range(len(self.takes)))
         return [self.folder / frame_name(number, max(numbers)) for number in numbers]
 
-    def recipe_of(self, take: Take, scene: Scene) -> Recipe:
+    def recipe_of(self, take: Take, scene: Scene) -> ViewState:
         """How to make a take again, alone: after as many frames of the scene's path, where these were before it."""
         recipe = replace(self.recipe, time=take.time, camera=take.camera)
-        if recipe.needs_history and not recipe.history:  # where chance has a part in it, nothing brings it back
+        if needs_history(recipe) and not recipe.warmup.unknown:  # where chance has a part in it, nothing brings it back
             unknown = take.warmup is None
-            recipe = replace(recipe, history=FILMED) if unknown else replace(recipe, warmup=take.warmup or 0)
+            recipe = recipe.with_warmup(unknown=FILMED) if unknown else recipe.with_warmup(of_path=take.warmup or 0)
         return stills.with_caption_filled(recipe, scene)
 
-    def recipes_alone(self, scene: Scene) -> list[Recipe]:
+    def recipes_alone(self, scene: Scene) -> list[ViewState]:
         """How each picture is made by a process of one thread that may work in another folder."""
-        recipe = replace(
-            self.recipe, scene=self.recipe.scene.absolute(), settings=replace(self.recipe.settings, threads=1)
-        )
+        recipe = self.recipe.with_settings(threads=1)
         return [replace(self, recipe=recipe).recipe_of(take, scene) for take in self.takes]
 
 
@@ -125,7 +124,7 @@ def kept_pictures(script: Script, scene: Scene) -> set[int]:
     return found
 
 
-def _difference(path: Path, recipe: Recipe, scene: Scene) -> str:
+def _difference(path: Path, recipe: ViewState, scene: Scene) -> str:
     """In what a picture differs from what the recipe makes, in words; empty where it is the same."""
     try:
         data = capture.read_data(path)
@@ -136,7 +135,7 @@ def _difference(path: Path, recipe: Recipe, scene: Scene) -> str:
         "version": (made.get("version"), program_version()),
         "scene": (made.get("scene"), fingerprint.of_scene(scene)),
         "size": (data.get("size"), list(recipe.size)),
-        "settings": (data.get("state"), _as_json(codec.state_to_json(recipe.state(), of_picture=True))),
+        "settings": (data.get("state"), _as_json(codec.state_to_json(stills.as_kept(recipe), of_picture=True))),
     }
     return ", ".join(f"another {name}" for name, (old, new) in expected.items() if old != new)
 
@@ -150,12 +149,12 @@ def _as_json(data: Any) -> Any:
 
 def drawn(
     renderer: Renderer,
-    recipe: Recipe,
+    recipe: ViewState,
     cancelled: Callable[[], bool],
     on_frame: Callable[[Frame], None] = lambda frame: None,
 ) -> tuple[bytes, str]:
     """A picture's file, and why it has no legend where one was wanted; `on_frame` gets its frame."""
-    frame = stills.trace(renderer, replace(recipe, warmup=0), cancelled=cancelled)
+    frame = stills.trace(renderer, recipe.with_warmup(of_path=0), cancelled=cancelled)
     pixels, missing = stills.draw(frame, renderer.scene, recipe)
     on_frame(frame)
     return png.encoded(pixels, stills.text(pixels, frame, renderer.scene, recipe)), missing
@@ -229,7 +228,7 @@ class FilmRun(FileRun):
     name = "film"
 
     def __init__(self, scene: Scene, script: Script) -> None:
-        self.script, self.view = script, script.recipe.view
+        self.script, self.view = script, script.recipe.draw.view
         self.verifies = script.recipe.settings.verify or self.view.needs_verify
         super().__init__(scene, len(script.takes))
         self.output = script.video or script.folder
@@ -292,10 +291,8 @@ class Films:
             recipe.settings, width=plan.size[0], height=plan.size[1], samples=plan.samples,
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()  # fmt: skip
-        place = self._session.draw.legend_at if plan.legend else None
-        style = replace(recipe.style, magnified=1, caption=plan.caption, legend=place)
-        history = cannot_come_back(settings, recipe.view, recipe.tells_counters)
-        recipe = replace(recipe, settings=settings, style=style, repeats=0, history=history, by_gpu=False)
+        recipe = replace(recipe, settings=settings, warmup=Warmup(unknown=cannot_come_back(settings, recipe.draw)))
+        recipe = recipe.with_draw(magnified=1, caption=plan.caption, legend=plan.legend)
         name = f"{scene.path.stem}-film-{datetime.now():%Y-%m-%d-%H-%M-%S}"
         mp4 = p.picture_folder / (name + VIDEO) if plan.video else None
         return Script(takes, recipe, p.picture_folder / name, mp4, plan.fps)

@@ -18,7 +18,7 @@ from tracer.frame import Frame
 from tracer.method import Method
 from tracer.mode_origins import ModeOrigins, Origins
 from tracer.scene.model import Camera
-from viewer.output.recipe import BUILT
+from viewer.output.commands import BUILT
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.runs import Experiment, Runs

@@ -17,8 +17,8 @@ from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import clipboard, exr, png, tev
+from viewer.output.commands import cannot_come_back, needs_history
 from viewer.output.legend_picture import with_legend
-from viewer.output.recipe import Recipe, cannot_come_back
 from viewer.services import stills
 from viewer.services.jobs import Job
 from viewer.services.recipes import Recipes
@@ -27,6 +27,7 @@ from viewer.state.notices import Notices
 from viewer.state.plans import MOST_MULTIPLE, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState, Warmup
 from viewer.util.files import write_new
 from viewer.views.legend import Legend
 
@@ -48,9 +49,9 @@ class PictureRun(FileRun):
 
     name = "picture"
 
-    def __init__(self, scene: Scene, recipe: Recipe, folder: Path, ending: str) -> None:
+    def __init__(self, scene: Scene, recipe: ViewState, folder: Path, ending: str) -> None:
         self.recipe, self.folder, self.ending = recipe, folder, ending
-        super().__init__(scene, 1 + recipe.repeats)
+        super().__init__(scene, 1 + recipe.warmup.repeats)
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
         (width, height), as_exr = self.recipe.size, self.ending == exr.ENDING
@@ -69,7 +70,7 @@ class PictureRun(FileRun):
             else:
                 write_picture(path, pixels, text)
 
-        stem = f"{Path(scene.path).stem}-{self.recipe.view.value}-{width}x{height}"
+        stem = f"{Path(scene.path).stem}-{self.recipe.draw.view.value}-{width}x{height}"
         self.output = write_new(self.folder, stem, self.ending, write)
         self.traced = self.frames
         yield self.output
@@ -109,22 +110,18 @@ class Pictures:
 
         return self._runs.start(make)
 
-    def _planned(self, recipe: Recipe, scene: Scene) -> Recipe:
+    def _planned(self, recipe: ViewState, scene: Scene) -> ViewState:
         plan = self.plan
         width, height = self.size
         if not 1 <= plan.multiple <= MOST_MULTIPLE or width * height > MOST_PIXELS:
             raise ValueError(f"{width} x {height} are more than {MOST_PIXELS:,} pixels; choose a smaller multiple")
         if plan.ending == exr.ENDING:
             exr.check()
-        place = self._session.draw.legend_at if plan.legend else None
-        style = replace(recipe.style, magnified=1, legend=place, caption=plan.caption)
         settings = replace(recipe.settings, width=width, height=height, samples=plan.samples).validated()
         # Modes are those of a resolution, and begin anew in another; once more, and they show what they are.
-        history = cannot_come_back(settings, recipe.view, recipe.tells_counters)
-        wanted = replace(
-            recipe, settings=settings, style=style, repeats=1 if recipe.needs_history else 0, history=history,
-            by_gpu=False,
-        )  # fmt: skip
+        repeats, unknown = 1 if needs_history(recipe) else 0, cannot_come_back(settings, recipe.draw)
+        wanted = replace(recipe, settings=settings, warmup=Warmup(repeats=repeats, unknown=unknown))
+        wanted = wanted.with_draw(magnified=1, legend=plan.legend, caption=plan.caption)
         stills.check_light(wanted, scene)
         if not stills.lights_fit(wanted, scene, plan.ending == exr.ENDING):
             raise ValueError("there are too many lights for all buffers of a picture of this size")
@@ -137,7 +134,7 @@ class Pictures:
         pixels: NDArray[np.uint8] | None,
         frame: Frame | None,
         legend: Legend | None = None,
-        recipe: Recipe | None = None,
+        recipe: ViewState | None = None,
     ) -> None:
         """Put what is shown, (h, w, 3), on the clipboard, with its legend.
 
@@ -154,7 +151,9 @@ class Pictures:
             file = BytesIO()
             if recipe is not None:
                 drawn, _ = stills.dressed(pixels, frame, scene, recipe)
-                Image.fromarray(drawn).save(file, "PNG", pnginfo=png.notes(stills.text(drawn, frame, scene, recipe)))
+                Image.fromarray(drawn).save(
+                    file, "PNG", pnginfo=png.notes(stills.text(drawn, frame, scene, recipe, by_gpu=True))
+                )
             else:
                 described = with_legend(pixels, legend, place) if legend is not None else None
                 drawn = pixels if described is None else described

@@ -8,15 +8,17 @@ from pathlib import Path
 
 from tracer.frame import Frame, Settings
 from tracer.scene.edits import NO_EDITS
-from viewer.output import recipe
-from viewer.output.recipe import BUILT, Recipe, Style
+from viewer.output import commands
+from viewer.output.commands import BUILT, cannot_come_back, needs_history
 from viewer.services.frame_history import FrameHistory
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
+from viewer.state.zooming import FIT
 
 UNKNOWN = "its modes were learnt from other frames as well"
 
@@ -36,64 +38,36 @@ class Recipes:
         self._session, self._preferences, self._scheduler, self._history = session, preferences, scheduler, history
         self._loader, self._notices = loader, notices
 
-    def of(self, frame: Frame, view: View, legend: bool | None = None) -> Recipe | None:
+    def of(self, frame: Frame, view: View, legend: bool | None = None) -> ViewState | None:
         """What makes a frame's picture again, in a view and with a legend or not; None without a scene."""
         session, scene = self._session, self._session.scene
         if scene is None:
             return None
         follow = session.on_path and frame.camera == scene.camera_at(frame.time)
         settings = replace(frame.settings, verify=session.settings.verify, modes=False)
-        magnified = self._scheduler.magnified if view.needs_verify else 1
-        style = self._style(view, magnified, self._preferences.legend_in_pictures if legend is None else legend)
-        found = Recipe(
-            scene=Path(scene.path).absolute(),
-            time=frame.time,
-            camera=None if follow else frame.camera,
-            settings=settings,
-            view=view,
-            light=session.draw.light,
-            wipe=session.draw.wipe,
-            style=style,
-            by_gpu=view is not View.COLOR or style.outlines or not style.tone.neutral or style.clipping,
-            folders=self._loader.folders,
-            meshes=session.meshes,
-            edits=session.edited.edits if session.edited is not None else NO_EDITS,
-        )
-        return self._with_history(found, frame)
-
-    def _style(self, view: View, magnified: int, legend: bool) -> Style:
-        """Of tone and range, what the view has a use for."""
-        draw = replace(self._session.draw, view=view).as_needed()
-        return Style(
-            shares=draw.shares,
-            marked=draw.mark_wrong,
-            magnified=magnified,
-            shading=draw.shading,
-            beneath=draw.beneath,
-            outlines=draw.outlines,
-            legend=draw.legend_at if legend else None,
-            tone=draw.tone,
-            clipping=draw.clipping,
-            span=draw.span,
-            cut=draw.slice,
+        with_legend = self._preferences.legend_in_pictures if legend is None else legend
+        draw = replace(
+            session.draw, view=view, legend=with_legend, zoom=FIT,
+            magnified=self._scheduler.magnified if view.needs_verify else 1,
             savings="" if self._preferences.savings_in_pictures else None,
-        )
-
-    def _with_history(self, found: Recipe, frame: Frame) -> Recipe:
-        if not found.needs_history:
-            return found
-        why = recipe.cannot_come_back(frame.settings, found.view, found.tells_counters)
-        if why:
-            return replace(found, history=why)
-        repeats = self._history.repeats_of(frame)
-        return replace(found, history=UNKNOWN) if repeats is None else replace(found, repeats=repeats)
+        ).as_needed()  # fmt: skip
+        state = replace(
+            session.state, time=frame.time, camera=None if follow else frame.camera, settings=settings, draw=draw,
+            edits=session.edited.edits if session.edited is not None else NO_EDITS, warmup=Warmup(),
+        )  # fmt: skip
+        if not needs_history(state):
+            return state
+        why, repeats = cannot_come_back(frame.settings, draw), self._history.repeats_of(frame)
+        if why or repeats is None:
+            return state.with_warmup(unknown=why or UNKNOWN)
+        return state.with_warmup(repeats=repeats)
 
     @property
     def folders(self) -> tuple[Path, ...]:
         """Those that scenes may read files from besides their own."""
         return tuple(self._loader.folders)
 
-    def now(self) -> Recipe | None:
+    def now(self) -> ViewState | None:
         """What makes the picture that the window shows, or will show when it has all its samples; None before one."""
         session, frame = self._session, self._scheduler.frame
         if session.scene is None or frame is None:
@@ -111,17 +85,17 @@ class Recipes:
         if found is None:
             self._notices.say("there is no picture yet", error=True)
             return None
-        name = f"{found.scene.stem}-{found.view.value}-{self._session.frame:04d}.png"
-        words = shlex.join(["shadowcull", *recipe.arguments(found, self._session.scene, name)])
+        name = f"{Path(found.scene).stem}-{found.draw.view.value}-{self._session.frame:04d}.png"
+        words = shlex.join(["shadowcull", *commands.words(found, self._session.scene, name, self.folders)])
         try:
             words.encode()
         except UnicodeEncodeError:
             self._notices.say("not copied: the name of the scene's file is no text", error=True)
             return None
-        if found.history == BUILT:
-            self._notices.say(f"copied, but the picture may differ: {found.history}")
-        elif found.history:
-            self._notices.say(f"copied, but the picture may differ: {found.history} (Backspace forgets them)")
+        if found.warmup.unknown == BUILT:
+            self._notices.say(f"copied, but the picture may differ: {found.warmup.unknown}")
+        elif found.warmup.unknown:
+            self._notices.say(f"copied, but the picture may differ: {found.warmup.unknown} (Backspace forgets them)")
         else:
             self._notices.say(f"copied: {words}")
         return words

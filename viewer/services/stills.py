@@ -22,21 +22,23 @@ from tracer.scene.model import Scene
 from tracer.version import program_version
 from viewer.output import capture, kept_modes
 from viewer.output.caption import with_caption
+from viewer.output.commands import by_one_thread
 from viewer.output.legend_picture import with_legend
-from viewer.output.recipe import Recipe
 from viewer.output.savings_picture import with_savings
+from viewer.state.draw_options import DrawOptions
 from viewer.state.readings import can_record_lights, records_lights
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 from viewer.views import colorize, legend_of
 from viewer.views.legend import lights_in_words
 
 
-def check_light(recipe: Recipe, scene: Scene) -> None:
+def check_light(recipe: ViewState, scene: Scene) -> None:
     """Raise ValueError, in one line, where the view speaks of a light that the scene does not have."""
-    if recipe.view.of_light and recipe.light >= len(scene.lights):
-        number, lights = recipe.edits.light_number(recipe.light), len(scene.lights) + len(recipe.edits.lights_off)
-        raise ValueError(f"--view {recipe.view.value}:{number}: {lights_in_words(lights)}")
+    if recipe.draw.view.of_light and recipe.draw.light >= len(scene.lights):
+        number, lights = recipe.edits.light_number(recipe.draw.light), len(scene.lights) + len(recipe.edits.lights_off)
+        raise ValueError(f"--view {recipe.draw.view.value}:{number}: {lights_in_words(lights)}")
 
 
 def times_before(scene: Scene, time: float, count: int) -> list[float]:
@@ -59,7 +61,7 @@ def times_before(scene: Scene, time: float, count: int) -> list[float]:
 
 def trace(
     renderer: Renderer,
-    recipe: Recipe,
+    recipe: ViewState,
     everything: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, total: None,
     cancelled: Callable[[], bool] = lambda: False,
@@ -67,16 +69,18 @@ def trace(
     """The recipe's frame, after those before it; `everything`: with modes, and all lights recorded.
 
     `on_frame` is told how many of these are done, before each.  Raises Cancelled."""
-    scene, settings, view = renderer.scene, recipe.settings, recipe.view
-    times = times_before(scene, recipe.time, recipe.warmup) + [recipe.time] * recipe.repeats
-    before = [*recipe.before, *(WarmupFrame(time, recipe.camera) for time in times)] if not recipe.modes else []
-    modes = settings.modes or view.of_modes or everything or recipe.tells_counters
+    scene, settings, view = renderer.scene, recipe.settings, recipe.draw.view
+    times = times_before(scene, recipe.time, recipe.warmup.of_path) + [recipe.time] * recipe.warmup.repeats
+    earlier = [*recipe.warmup.frames, *(WarmupFrame(time, recipe.camera) for time in times)]
+    before = earlier if not recipe.warmup.modes else []
+    modes = settings.modes or view.of_modes or everything or recipe.draw.savings is not None
     renderer.settings = replace(settings, samples=1, verify=False, modes=modes)
-    for done, earlier in enumerate(before):
+    for done, one in enumerate(before):
         on_frame(done, len(before) + 1)
-        renderer.render(earlier.time, earlier.camera, cancelled)
-    if recipe.modes:
-        renderer.begin_with(kept_modes.unpacked(recipe.modes, renderer.units, np.dtype(word_type(len(scene.lights)))))
+        renderer.render(one.time, one.camera, cancelled)
+    if recipe.warmup.modes:
+        word = np.dtype(word_type(len(scene.lights)))
+        renderer.begin_with(kept_modes.unpacked(recipe.warmup.modes, renderer.units, word))
     on_frame(len(before), len(before) + 1)
     lights = everything or records_lights(view, settings.width * settings.height, len(scene.lights))
     renderer.settings = replace(
@@ -88,60 +92,65 @@ def trace(
         record_work=view.needs_work,
     )
     frame = renderer.render(recipe.time, recipe.camera, cancelled)
-    return with_light(renderer, frame, recipe.light) if view.needs_lights and not lights else frame
+    return with_light(renderer, frame, recipe.draw.light) if view.needs_lights and not lights else frame
 
 
-def lights_fit(recipe: Recipe, scene: Scene, everything: bool = False) -> bool:
+def lights_fit(recipe: ViewState, scene: Scene, everything: bool = False) -> bool:
     """Whether there is memory for what all lights send to each pixel, where that is to be recorded."""
     width, height = recipe.size
-    recorded = everything or recipe.view is View.LIGHTS or recipe.view.needs_fates
+    recorded = everything or recipe.draw.view is View.LIGHTS or recipe.draw.view.needs_fates
     return not recorded or can_record_lights(width * height, len(scene.lights))
 
 
-def draw(frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8], str]:
+def draw(frame: Frame, scene: Scene, recipe: ViewState) -> tuple[NDArray[np.uint8], str]:
     """(h, w, 3) uint8, the frame as the recipe draws it, with all that goes with it; and why there is no legend where
     one was wanted, in words."""
     pixels = colorize(frame, recipe.draw)
     return dressed(pixels, frame, scene, recipe)
 
 
-def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recipe) -> tuple[NDArray[np.uint8], str]:
+def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: ViewState) -> tuple[NDArray[np.uint8], str]:
     """What lies over a drawn view (h, w, 3), above and below it; as `draw`."""
-    style, missing = recipe.style, ""
-    if style.legend is not None:
-        legend = legend_of(frame, recipe.draw, scene.lights)
-        described = with_legend(pixels, legend, style.legend) if legend is not None else None
+    options, missing = recipe.draw, ""
+    if options.legend:
+        legend = legend_of(frame, options, scene.lights)
+        described = with_legend(pixels, legend, options.legend_at) if legend is not None else None
         if described is None:
             missing = f"no legend: {'the picture is too small for it' if legend else 'the traced picture needs none'}"
         pixels = pixels if described is None else described
-    pixels = with_savings(pixels, frame, style.savings)
-    return with_caption(pixels, style.caption), missing
+    pixels = with_savings(pixels, frame, options.savings)
+    return with_caption(pixels, options.caption), missing
 
 
-def with_caption_filled(recipe: Recipe, scene: Scene) -> Recipe:
+def with_caption_filled(recipe: ViewState, scene: Scene) -> ViewState:
     """The recipe with the fields of its caption (`capture.FIELDS`) filled in; raises CaptureError."""
-    if not recipe.style.caption:
+    if not recipe.draw.caption:
         return recipe
     values = {
         "scene": scene.path.stem,
-        "view": recipe.view.value,
+        "view": recipe.draw.view.value,
         "frame": Session(scene).frame_at(recipe.time),
         "seconds": recipe.time,
         "method": recipe.settings.method,
-        "light": recipe.light,
+        "light": recipe.draw.light,
         "width": recipe.settings.width,
         "height": recipe.settings.height,
     }
-    caption = capture.filled(recipe.style.caption, values, what="caption")
-    return replace(recipe, style=replace(recipe.style, caption=caption))
+    caption = capture.filled(recipe.draw.caption, values, what="caption")
+    return recipe.with_draw(caption=caption)
 
 
-def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recipe) -> str:
-    """What a picture carries: its recipe, its statistics, and what they were made of; and its modes, where these cannot
-    be learnt again."""
-    kept = replace(recipe, modes=kept_modes.packed(frame, recipe))
+def as_kept(state: ViewState) -> ViewState:
+    """Return a state as its picture carries it: with one thread only where that shows."""
+    return state if by_one_thread(state) else state.with_settings(threads=0)
+
+
+def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: ViewState, by_gpu: bool = False) -> str:
+    """Return what a picture carries: its state, its statistics, and what they were made of; and its modes, where these
+    cannot be learnt again.  Where it was drawn `by_gpu`, which may round otherwise, that too."""
+    kept = as_kept(recipe).with_warmup(modes=kept_modes.packed(frame, recipe))
     more = {
-        "picture": {"by_gpu": recipe.by_gpu},
+        "picture": {"by_gpu": by_gpu and not _as_traced(recipe.draw)},
         "made": {
             "version": program_version(),
             "scene": fingerprint.of_scene(scene),
@@ -149,4 +158,9 @@ def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: Recipe) 
         },
     }
     number, size = Session(scene).frame_at(frame.time), (frame.width, frame.height)
-    return capture.metadata(kept.state(), frame.camera, number, size, frame.statistics.to_dict(), more)
+    return capture.metadata(kept, frame.camera, number, size, frame.statistics.to_dict(), more)
+
+
+def _as_traced(options: DrawOptions) -> bool:
+    """Whether a picture is shown as it was traced, without anything that is drawn."""
+    return options.view is View.COLOR and not options.outlines and options.tone.neutral and not options.clipping

@@ -28,13 +28,13 @@ class Slice(NamedTuple):
         """Return the number of the layer of voxels along the axis."""
         return min(int(self.at * shape[self.axis]), shape[self.axis] - 1)
 
-    def in_words(self) -> str:
+    def __str__(self) -> str:
         """Return it as the option `--slice` takes it."""
         return f"{AXES[self.axis]}:{self.at!r}"
 
     @staticmethod
     def parse(text: str) -> Slice:
-        """Return the inverse of `in_words`; raises ValueError, in one line."""
+        """Return the inverse of `str`; raises ValueError, in one line."""
         axis, colon, at = text.partition(":")
         try:
             found = Slice(AXES.index(axis.strip().lower()), float(at) if colon else Slice().at)

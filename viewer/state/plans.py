@@ -84,13 +84,13 @@ class HuntPlan:
     last: int | None = None
     step: int = setting(1, "Step", "Search only every nth of these frames.", low=1, high=MOST_FRAMES)
     around: int = setting(
-        40, "Random views", "Extra random views near the worst findings.", low=0, high=MOST_FRAMES
+        40, "Extra views", "Extra random views near the worst findings.", low=0, high=MOST_FRAMES
     )  # fmt: skip
     radius: float = setting(
-        0.3, "Radius", "How far random views are from a finding's camera, as a part of its distance to what is wrong.",
+        0.3, "Radius", "How far extra views are from a finding's camera, as a part of its distance to what is wrong.",
         low=0.0, high=100.0, slider=(0.0, 1.0), digits=2,
     )  # fmt: skip
-    seed: int = setting(1, "Seed", "Seed of the random views.", low=0, high=2**31 - 1)
+    seed: int = setting(1, "Seed", "Seed of the extra views.", low=0, high=2**31 - 1)
     keep: int = 12
     size: tuple[int, int] = (256, 256)
 

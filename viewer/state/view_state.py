@@ -105,6 +105,11 @@ class ViewState:
             state = one.put(state, one.in_window) if one.in_window != AS_DEFAULT else state
         return state
 
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the picture in pixels."""
+        return self.settings.width, self.settings.height
+
     def applies(self, one: Setting) -> bool:
         """Return whether one of its settings does anything as it is."""
         return one.applies(self.settings if one.within == ("settings",) else self)
@@ -112,6 +117,10 @@ class ViewState:
     def with_draw(self, **options: Any) -> ViewState:
         """Return it with other options of drawing."""
         return replace(self, draw=replace(self.draw, **options))
+
+    def with_warmup(self, **warmup: Any) -> ViewState:
+        """Return it with other frames before it."""
+        return replace(self, warmup=replace(self.warmup, **warmup))
 
     def with_settings(self, **settings: Any) -> ViewState:
         """Return it with other settings of tracing."""

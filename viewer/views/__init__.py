@@ -29,7 +29,7 @@ def colorize(frame: Frame, draw: DrawOptions = USUAL, highlight: Highlight = AS_
     Raises ValueError where there is no such light, or where the frame has not recorded what the view shows."""
     if draw.view.of_light and not 0 <= draw.light < frame.lights:
         raise ValueError(f"no light {draw.light}: {lights_in_words(frame.lights)}")
-    return view_of(draw.view).colorize(frame, draw, highlight)
+    return view_of(draw.view).highlighted(frame, draw, highlight)
 
 
 def legend_of(frame: Frame, draw: DrawOptions, lights: Lights = ()) -> Legend | None:

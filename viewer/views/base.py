@@ -66,9 +66,13 @@ class FrameView(Declaration):
     everywhere: ClassVar[bool] = False
     """Whether it shows something where nothing is hit, too."""
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         """Draw a frame that it can be drawn of, (h, w, 3) uint8.  Raises ValueError for another."""
         raise NotImplementedError
+
+    def highlighted(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+        """Draw the same with what the window highlights."""
+        return self.colorize(frame, draw)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
         """Say what the colours mean, and how much of the frame has them; None where they speak for themselves."""

@@ -10,7 +10,7 @@ from tracer.frame import Frame
 from tracer.scene.lights import named_light
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import CERTIFICATE_COLORS, CERTIFICATE_MEANING, OCCLUSION_COLORS, Certificate
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, single, spoken
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single, spoken
 from viewer.views.legend import Legend
 from viewer.views.modes import Class, at_rest, class_entries
 from viewer.views.paint import by_class
@@ -34,7 +34,7 @@ class Certificates(FrameView):
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         return frame.certificates is not None
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         found, all_of_them = _found(frame, draw.light).astype(np.int32), np.arange(len(_PALETTE), dtype=np.uint8)
         return by_class(frame, draw, found, all_of_them, _PALETTE, cells=frame.cell)
 

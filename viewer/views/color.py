@@ -10,7 +10,7 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import hex_color
 from viewer.state.tone import Tone, clipped, toned
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words
 from viewer.views.legend import Entry, Legend
 from viewer.views.paint import by_color, checkered
 
@@ -26,7 +26,7 @@ class Color(FrameView):
     help = "The traced picture."
     shows_picture = shows_clipped = everywhere = True
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         return by_color(frame, draw, displayed(frame.color, draw), everywhere=True)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:

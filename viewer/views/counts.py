@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY
-from viewer.views.base import FrameView, Highlight, Pixels, Values, Words, hits, once, single
+from viewer.views.base import FrameView, Pixels, Values, Words, hits, once, single
 from viewer.views.legend import Entry
 from viewer.views.paint import by_number, in_range
 
@@ -30,7 +30,7 @@ class Count(FrameView):
     def span(self, frame: Frame) -> tuple[float, float]:
         return once(frame, self.name, lambda: (0.0, float(max(1, int(self.found(frame).max(initial=0))))))
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         found = self.found(frame)
         cells = frame.cell if self.has_cells else None
         return by_number(frame, draw, in_range(found, draw.span or self.span(frame)), found >= 0, cells)

@@ -6,7 +6,7 @@ import numpy as np
 
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, once, single
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, once, single
 from viewer.views.legend import Legend, Scale
 from viewer.views.paint import by_number, in_range
 
@@ -25,7 +25,7 @@ class Depth(FrameView):
         """Return the 1st and the 99th percentile of what is hit; 0 and 1 for nothing."""
         return once(frame, "depth", lambda: _range(frame))
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         near, far = draw.span or self.span(frame)
         depth = np.where(np.isfinite(frame.depth), frame.depth, np.float32(far))
         return by_number(frame, draw, 1.0 - np.clip(in_range(depth, (near, far)), 0.0, 1.0))  # near is bright

@@ -17,7 +17,6 @@ from viewer.state.views import Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import (
     FrameView,
-    Highlight,
     Lights,
     Pixels,
     Values,
@@ -51,7 +50,7 @@ class Difference(FrameView):
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         return frame.wrong is not None
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         marks = wrong_marks(frame, draw.magnified)
         pixels = by_color(frame, draw, dimmed(frame, draw.tone, draw.beneath), everywhere=True)
         if draw.mark_wrong:

@@ -35,7 +35,10 @@ class Fates(FrameView):
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         return frame.fates is not None
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
+        return self.highlighted(frame, draw, Highlight())
+
+    def highlighted(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
         fates = once(frame, ("fate", draw.light), lambda: frame.fate(draw.light))
         return by_code(frame, draw, fates, np.asarray(fate_palette(highlight.fate), np.float32))
 

@@ -16,7 +16,7 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import OCCLUSION_COLORS, Color, hex_color
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, single
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
 from viewer.views.fate import filled_in
 from viewer.views.legend import Entry, Legend, Note, fact
 from viewer.views.paint import LUMINANCE, by_color, shaded
@@ -72,7 +72,7 @@ class MovingShadows(FrameView):
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         return frame.fates is not None
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         found = moving_shadows(frame, draw.light)
         stands_out = found != MovingShadow.NONE
         paled = PALE + (1.0 - PALE) * (np.clip(frame.color, 0.0, 1.0) @ LUMINANCE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tracer.frame import Frame
 from viewer.state.draw_options import AXES, DrawOptions
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits
 from viewer.views.legend import Entry, Legend
 from viewer.views.paint import by_color
 
@@ -14,7 +14,7 @@ class Normal(FrameView):
     key = "6"
     help = "The shading normal: x, y, z as red, green, blue."
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         return by_color(frame, draw, frame.normal * 0.5 + 0.5)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:

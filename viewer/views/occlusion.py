@@ -8,7 +8,7 @@ from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import OCCLUSION_COLORS, OCCLUSION_MEANING
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, single, spoken
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single, spoken
 from viewer.views.legend import Legend
 from viewer.views.modes import Class, culled_by_modes, dynamic_meaning, mode_entries, units_of
 from viewer.views.paint import by_class
@@ -22,7 +22,7 @@ class Occlusion(FrameView):
     help = "How much of each primitive the camera has seen: only fully rendered ones are culled."
     of_modes = is_flat = True
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         return by_class(frame, draw, frame.unit, occlusion_mode(frame.modes), _PALETTE)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:

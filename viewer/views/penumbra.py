@@ -17,7 +17,6 @@ from viewer.util.numbers import count, percent
 from viewer.views.base import (
     NOT_RECORDED,
     FrameView,
-    Highlight,
     Lights,
     Pixels,
     Values,
@@ -75,7 +74,7 @@ class Penumbra(FrameView):
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         return frame.asked is not None and frame.only_light in (None, light)
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         asked, reached = samples_of(frame, draw.light)
         found = arrivals(frame, draw.light)
         colors, between = _PALETTE[found], (found == Arrival.FEW) | (found == Arrival.MOST)

@@ -7,7 +7,7 @@ import numpy as np
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, per_pixel, single
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, per_pixel, single
 from viewer.views.legend import Entry, Legend, Scale
 from viewer.views.modes import culled_by_modes
 from viewer.views.paint import by_number
@@ -19,7 +19,7 @@ class PixelCount(FrameView):
     help = "Pixels a primitive covers now, against the most it covered while fully rendered."
     of_modes = is_flat = True
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         """Draw the ratio, logarithmic from 1 / zoom_factor to zoom_factor, where modes are no longer trusted."""
         if not len(frame.highest_count):
             return by_number(frame, draw, np.zeros(frame.unit.shape))

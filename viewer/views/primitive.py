@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.util.numbers import count
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, single
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
 from viewer.views.legend import Legend, fact
 from viewer.views.paint import by_color
 
@@ -21,7 +21,7 @@ class Primitive(FrameView):
     help = "Every primitive in a colour of its own."
     is_flat = True
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         colors = _colors(1 << int(frame.primitive.max(initial=0)).bit_length())
         return by_color(frame, draw, colors[np.maximum(frame.primitive, 0)], draw.shading)
 

@@ -13,7 +13,6 @@ from viewer.util.numbers import count, percent
 from viewer.views.base import (
     NOT_RECORDED,
     FrameView,
-    Highlight,
     Lights,
     Pixels,
     Values,
@@ -66,7 +65,7 @@ class Work(FrameView):
         sample = work.reshape(-1)[::step][frame.primitive.reshape(-1)[::step] >= 0]
         return max(1.0, float(np.percentile(sample, 99.0))) if len(sample) else 1.0
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         work = self.recorded(frame)
         if not draw.shares:
             return by_number(frame, draw, in_range(work, draw.span or self.span(frame)))

@@ -9,7 +9,7 @@ from tracer.frame import Frame
 from tracer.scene.lights import named_light, number_of
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS, SHADOW_MEANING
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words, hits, per_pixel, single, spoken
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, per_pixel, single, spoken
 from viewer.views.legend import Legend, Note, NoteKind
 from viewer.views.modes import (
     Class,
@@ -57,7 +57,7 @@ class Shadow(FrameView):
     )
     of_light = of_modes = is_flat = True
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         return by_class(frame, draw, frame.unit, _classes(frame, draw.light), _PALETTE, _STRIPED, STRIPE)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:

@@ -10,7 +10,7 @@ from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import BACKGROUND, hex_color
 from viewer.state.readings import TREE, TREE_IS_GONE
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Highlight, Layer, Lights, Pixels, Values, Words, hits, once, single
+from viewer.views.base import FrameView, Layer, Lights, Pixels, Values, Words, hits, once, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Scale, fact
 from viewer.views.paint import FAINT_LINE, OUTLINE, checkered, in_range, mapped, on_line, shaded
@@ -54,7 +54,7 @@ class Tree(FrameView):
     def span(self, frame: Frame) -> tuple[float, float]:
         return 0.0, float(tree_of(frame).levels)
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         parts, cut = tree_of(frame), draw.slice
         found = once(frame, ("tree", cut), lambda: tree_codes(frame, parts, cut))
         pixels, there = _behind(frame, draw), found != NO_PART

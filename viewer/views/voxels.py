@@ -12,7 +12,7 @@ from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import GREY, SHADOW_COLORS, Color
 from viewer.state.readings import VOXELS
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Highlight, Layer, Lights, Pixels, Values, Words, once, single
+from viewer.views.base import FrameView, Layer, Lights, Pixels, Values, Words, once, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Note, NoteKind, fact
 from viewer.views.paint import CELL_LINE, by_color, in_bytes
@@ -47,7 +47,7 @@ class Voxels(FrameView):
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         return VOXELS in frame.structures
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         states, light, cut = voxels_of(frame), draw.light, draw.slice
         codes = once(frame, ("voxels", light, cut), lambda: slice_codes(frame, states, light, cut))
         pixels, there = by_color(frame, draw, dimmed(frame, draw.tone, draw.beneath)), codes != NO_VOXEL

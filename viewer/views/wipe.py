@@ -29,7 +29,10 @@ class Wipe(FrameView):
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         return frame.wrong is not None
 
-    def colorize(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
+    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
+        return self.highlighted(frame, draw, Highlight())
+
+    def highlighted(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
         marks, column = wrong_marks(frame, draw.magnified), wipe_column(frame.width, draw.wipe)
         right = verified.known(frame.reference)
         both = displayed(np.concatenate([frame.color[:, :column], right[:, column:]], axis=1), draw)

@@ -140,9 +140,9 @@ def capture(ui: Ui) -> None:
             pixels = comparing.composed_picture(ui, pixels)
         described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
         recipe = c.recipes.of(c.frame, options.view) if c.frame is not None and not compared else None
-        if recipe is not None and c.frame is not None and recipe.tells_counters:
+        if recipe is not None and c.frame is not None and recipe.draw.savings is not None:
             said = comparison_in_words(c.frame, savings.standing(c))
-            recipe = replace(recipe, style=replace(recipe.style, savings=said))
+            recipe = recipe.with_draw(savings=said)
         if wanted is CaptureKind.CLIPBOARD:
             c.pictures.copy(pixels, c.frame, described, recipe)
         else:

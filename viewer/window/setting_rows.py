@@ -15,7 +15,7 @@ from viewer.state.view_state import ViewState
 from viewer.window.command import Command
 from viewer.window.finder import Item, Kind
 from viewer.window.ui import Ui
-from viewer.window.widgets import checkbox, properties, row, tooltip
+from viewer.window.widgets import checkbox, row, tooltip
 
 ALL = {one.path: one for one in (*settings_of(ViewState), *settings_of(Preferences))}
 """All settings of the window, by their paths: "draw.outlines"."""
@@ -31,19 +31,6 @@ def in_panel(ui: Ui, panel: str) -> list[Setting]:
     """List the settings of a panel that do something as things are."""
     state = ui.controller.session.state
     return [one for one in ALL.values() if one.panel == panel and (not one.within or state.applies(one))]
-
-
-def setting_rows(ui: Ui, panel: str, width: float, note: Callable[[Setting], str] = lambda one: "") -> None:
-    """Show the settings of a panel: a table of names and values, and the switches below it; `note` is added to what a
-    tooltip says."""
-    settings = in_panel(ui, panel)
-    with properties(panel, width) as shown:
-        for one in settings:
-            if shown and one.kind is not bool:
-                setting_row(ui, one, note(one))
-    for one in settings:
-        if one.kind is bool:
-            setting_switch(ui, one, note(one))
 
 
 def setting_switch(ui: Ui, one: Setting, note: str = "") -> None:
@@ -65,7 +52,7 @@ def setting_row(ui: Ui, one: Setting, note: str = "") -> None:
 
 
 def _choice(ui: Ui, one: Setting, now: Any) -> None:
-    if imgui.begin_combo(f"##{one.path}", one.text(now)):
+    if imgui.begin_combo(f"##{one.name}", one.text(now)):
         for choice, meaning in one.choices.items():
             if imgui.selectable(one.text(choice), choice == now)[0]:
                 ui.controller.settings.set(one, choice)
@@ -82,11 +69,11 @@ def _slider(one: Setting, now: Any) -> Any:
     low, high = one.slider or (one.low, one.high)
     flags = int(imgui.SliderFlags_.logarithmic) if one.log else 0
     if one.kind is int:
-        changed, number = imgui.slider_int(f"##{one.path}", now, int(low), int(high), f"%d{one.unit}", flags)
+        changed, number = imgui.slider_int(f"##{one.name}", now, int(low), int(high), f"%d{one.unit}", flags)
         return number if changed else None
     unit = " %%" if one.percent else one.unit
     shown = f"%{'+' if low < 0.0 else ''}.{one.digits}f{unit}"
-    changed, value = imgui.slider_float(f"##{one.path}", scale * now, scale * low, scale * high, shown, flags)
+    changed, value = imgui.slider_float(f"##{one.name}", scale * now, scale * low, scale * high, shown, flags)
     return value / scale if changed else None
 
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 from tests.viewer.fakes import make_frame, make_scene
 from viewer.output.comparison_figure import Crop, Shown, figure
-from viewer.output.recipe import Recipe, Style
+from viewer.state.draw_options import DrawOptions
 from viewer.state.tone import Tone
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 
@@ -23,7 +23,7 @@ def shown(view: View) -> Shown:
     color[1, 2] = 1.0 - np.clip(color[1, 2], 0.0, 0.4)
     other = replace(right, color=color, cost=10 * ones, saved=30 * ones)
     settings = replace(right.settings, width=w, height=h)
-    recipe = Recipe(Path("scene.aff"), 0.0, None, settings, view)
+    recipe = ViewState("scene.aff", settings=settings, draw=DrawOptions(view))
     return Shown(make_scene(), recipe, {"none": right, "paper": other}, right, (Crop(0, 0, 4, 3),))
 
 
@@ -37,7 +37,7 @@ def test_differences_are_counted() -> None:
 
 def test_pictures_have_the_tone_and_differences_are_of_what_was_traced() -> None:
     drawn = shown(View.COLOR)
-    bright = replace(drawn, recipe=replace(drawn.recipe, style=Style(tone=Tone(1.0))))
+    bright = replace(drawn, recipe=drawn.recipe.with_draw(tone=Tone(1.0)))
     assert (bright.pictures["none"] != drawn.pictures["none"]).any()
     assert np.array_equal(bright.difference("paper"), drawn.difference("paper"))
 
@@ -46,7 +46,7 @@ def test_maps_of_work_have_one_range() -> None:
     drawn = shown(View.COST)
     hit = drawn.reference.primitive >= 0
     assert drawn.span == (0.0, 40.0)
-    by_hand = replace(drawn, recipe=replace(drawn.recipe, style=Style(span=(5.0, 10.0))))
+    by_hand = replace(drawn, recipe=drawn.recipe.with_draw(spans=((drawn.recipe.draw.view, (5.0, 10.0)),)))
     assert by_hand.span == (5.0, 10.0) and (by_hand.pictures["paper"] != drawn.pictures["paper"]).any()
     none, paper = (drawn.pictures[method][hit] for method in ("none", "paper"))
     assert (none != paper).any(axis=-1).all(), "ten rays do not look like forty"

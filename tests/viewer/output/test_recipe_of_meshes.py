@@ -10,22 +10,21 @@ from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO, MeshOptions
 from tracer.settings import Settings
 from viewer.cli.main import viewer_parser
 from viewer.cli.options import mesh_arguments, mesh_options
-from viewer.output import recipe
-from viewer.output.recipe import Recipe
+from viewer.output import commands
 from viewer.state import codec
 from viewer.state.view_state import ViewState
 
 
 @pytest.mark.parametrize("meshes", [AS_IN_FILE, IN_STUDIO, MeshOptions(True, "-z", 12.5), MeshOptions(False, "x", 0.0)])
 def test_the_command_and_the_options_lead_back(meshes: MeshOptions) -> None:
-    made = Recipe(Path("/a.ply"), 0.0, None, Settings(method="none"), meshes=meshes)
-    words = recipe.arguments(made, None, "a.png")
+    made = ViewState("/a.ply", meshes, settings=Settings(method="none"))
+    words = commands.words(made, None, "a.png")
     assert (
         mesh_options(viewer_parser().parse_args([w for w in words if w.startswith(("--up", "--crease", "--no-st"))]))
         == meshes
     )
     assert mesh_options(viewer_parser().parse_args(["a.ply", *mesh_arguments(meshes)])) == meshes
-    of_aff = recipe.arguments(Recipe(Path("/a.aff"), 0.0, None, Settings(method="none"), meshes=meshes), None, "a.png")
+    of_aff = commands.words(ViewState("/a.aff", meshes, settings=Settings(method="none")), None, "a.png")
     assert not {"--no-studio", "--up=-z"} & set(of_aff)
 
 

@@ -68,7 +68,8 @@ def find(d: Driver, typed: str) -> None:
 def _undo(d: Driver) -> None:
     home = d.c.session.camera
     d.hold(KEY.d, 0.1)
-    d.drag(d.picture_centre(), (60.0, 10.0))
+    x, y = d.picture_centre()
+    d.drag((x + 120.0, y - 60.0), (60.0, 10.0))  # beside the legend, which can be dragged as well
     d.settle()
     slider = d.context.item_info("//View/view/##shading").rect_full
     middle, shading = (0.5 * (slider.min.x + slider.max.x), 0.5 * (slider.min.y + slider.max.y)), 0.35
@@ -101,7 +102,7 @@ def _presets(d: Driver) -> None:
     d.context.item_click("//Presets/##new preset")
     d.context.key_chars("mine")
     d.press(KEY.enter)
-    assert [preset["name"] for preset in d.c.presets.own] == ["mine"]
+    assert [preset.name for preset in d.c.presets.own] == ["mine"]
     kept = d.c.session.settings
     d.context.item_click("//Presets/As in the paper/As in the paper")
     d.settle()
@@ -117,7 +118,7 @@ def _presets(d: Driver) -> None:
     d.frames(2)
     d.context.key_chars("ours")
     d.press(KEY.enter)
-    assert d.c.presets.own[0]["name"] == "ours" and d.ui.state(NameField).place is None
+    assert d.c.presets.own[0].name == "ours" and d.ui.state(NameField).place is None
     d.press(KEY.escape)
     assert not d.ui.dialogs
     d.context.menu_click("//##MainMenuBar/Edit/Presets/ours##preset 5")

@@ -113,9 +113,9 @@ def _clusters(d: Driver) -> None:
     assert d.c.frame.statistics.cuts.most > 3
     expected = picture(d.c.frame, View.CUTS)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
-    d.context.item_input_value("//Culling/**/##cuts", 20.0)
+    d.context.item_input_value("//Culling/**/##lightcuts_error", 20.0)
     d.settle()  # the words above the sliders are of another length then, and the sliders elsewhere
-    d.context.item_input_value("//Culling/**/##nodes", 3)
+    d.context.item_input_value("//Culling/**/##lightcuts_nodes", 3)
     d.settle()
     assert (d.c.frame.settings.lightcuts_error, d.c.frame.settings.lightcuts_nodes) == (0.2, 3)
     assert d.c.frame.statistics.cuts.most == 3

@@ -57,7 +57,7 @@ def views(d: Driver) -> None:
         assert np.abs(expected - picture(d.c.frame, view)).max() > 20
     d.settle()
     assert d.c.history.frames == traced + 5, "only what a view needs more is traced for"
-    assert not d.c.session.settings.verify and not d.c.preferences.verify
+    assert not d.c.session.settings.verify
 
 
 def difference(d: Driver) -> None:

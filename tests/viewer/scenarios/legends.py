@@ -38,7 +38,8 @@ def legends(d: Driver) -> None:
     _in_saved_pictures(d)
     d.c.settings.finish()
     kept = load_preferences()[0]
-    assert (kept.legend, kept.legend_in_pictures, kept.legend_x, kept.legend_y) == (True, False, 1.0, 1.0)
+    draw = kept.state["draw"]
+    assert (draw["legend"], kept.legend_in_pictures, draw["legend_at"]) == (True, False, [1.0, 1.0])
 
 
 def _legend(d: Driver) -> tuple[float, float, float, float]:
@@ -106,10 +107,10 @@ def _in_saved_pictures(d: Driver) -> None:
     assert np.array_equal(saved("without"), d.shown())
     d.ui.show_panel("Saving")
     d.frames(3)
-    d.context.item_click("//Saving/With legend")
+    d.context.item_click("//Saving/Legend in saved pictures")
     assert p.legend_in_pictures
     other = (saved("with") != d.shown()).any(axis=-1)
     rows, columns = np.nonzero(other)
     assert other.any() and rows.min() > d.c.frame.height // 4 and columns.min() > d.c.frame.width // 4
-    d.context.item_click("//Saving/With legend")
+    d.context.item_click("//Saving/Legend in saved pictures")
     assert not p.legend_in_pictures

@@ -7,6 +7,7 @@ from imgui_bundle import glfw_utils, imgui
 
 from tests.sweeps import cases
 from tests.viewer.driver import Driver
+from viewer.state import codec
 from viewer.state.views import View
 from viewer.window.layout import PANELS, PICTURE
 from viewer.window.ui import Dialog
@@ -114,7 +115,7 @@ def looks(d: Driver) -> None:
     d.hold(KEY.d, 0.2)
     d.settle()
     camera, path = d.c.session.camera, d.c.session.scene.path
-    place = d.c.session.state.to_json()
+    place = codec.state_to_json(d.c.session.state)
     d.press(KEY.r)
     d.settle()
     assert p.start_where_left and d.c.session.camera != camera

@@ -36,7 +36,7 @@ def standing(d: Driver) -> None:
     d.settle()
     assert not studio.checked() and len(d.c.session.scene.lights) == 2
     turn = next(c for c in d.ui.commands if c.name == "Turn the model")
-    assert "no model stands" in turn.why_not
+    assert "no model is in a studio" in turn.why_not
     d.drop(d.folder / "pictures" / "lying.png")
     d.wait(lambda: up_in_studio(d.c.session.scene) == "x", "the picture's scene, as it stood")
     d.settle()

@@ -17,7 +17,7 @@ from viewer.state.comparison import CompareMode
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 from viewer.views.compare import composed
-from viewer.window.panels import save_as
+from viewer.window.panels import saving
 from viewer.window.ui import CaptureKind, Dialog
 
 KEY = imgui.Key
@@ -89,10 +89,10 @@ def _save_as(d: Driver) -> None:
     d.frames(3)
     plan = d.c.pictures.plan
     plan.multiple, plan.samples, plan.legend = 3, 2, True
-    d.context.item_click(f"//{save_as.TITLE}/**/Usual")
+    d.context.item_click(f"//{saving.TITLE}/**/Usual")
     d.frames(2)
     assert d.c.pictures.size == (288, 192)
-    d.context.item_click(f"//{save_as.TITLE}/Save")
+    d.context.item_click(f"//{saving.TITLE}/Save")
     d.wait(lambda: d.c.runs.current is None, "the picture")
     d.settle()
     assert Dialog.SAVE_AS not in d.ui.dialogs

@@ -207,7 +207,7 @@ def test_what_follows_the_newest_picture_gets_none_of_another_scene(desk: Desk):
 
 
 def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
-    c, said = desk.c, "the scene is being edited: start again when the picture shows it"
+    c, said = desk.c, "the scene is being edited; start again when the picture shows it"
     c.editing.hide("ball")
     desk.tick()
     c.editing.show("ball")  # it is being hidden nevertheless

@@ -15,8 +15,8 @@ from tests.commands import run
 from tests.viewer.desk import Desk
 from tests.viewer.marbles import write_marbles
 from viewer.output import capture, kept_modes, png
-from viewer.output.recipe import Recipe
 from viewer.services import stills
+from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
 
 
@@ -37,7 +37,7 @@ def saved(desk: Desk, view: View, name: str) -> Path:
     c = desk.c
     c.preferences.screenshot_template = name
     recipe = c.recipes.of(c.frame, view)
-    assert recipe is not None and recipe.history, "its modes come from other frames"
+    assert recipe is not None and recipe.warmup.unknown, "its modes come from other frames"
     pixels, _ = stills.draw(c.frame, c.session.scene, recipe)
     c.captures.capture(c.frame, pixels, None, recipe)
     job = c.captures.saving.pop()
@@ -128,9 +128,12 @@ def test_views_of_modes_say_how_to_save_what_can_be_made_again(desk: Desk, capfd
 
 def test_modes_come_back_as_they_were(desk: Desk) -> None:
     frame = desk.c.frame
-    recipe = Recipe(desk.c.session.scene.path, 0.0, None, replace(frame.settings, method="paper"), history="why")
+    recipe = ViewState(settings=replace(frame.settings, method="paper"), warmup=Warmup(unknown="why"))
     text = kept_modes.packed(frame, recipe)
     words = kept_modes.unpacked(text, len(frame.modes_before), frame.modes_before.dtype)
     assert text and np.array_equal(words, frame.modes_before) and words.dtype == frame.modes_before.dtype
-    for other in (replace(recipe, history=""), replace(recipe, settings=replace(frame.settings, method="certified"))):
+    for other in (
+        replace(recipe, warmup=Warmup()),
+        replace(recipe, settings=replace(frame.settings, method="certified")),
+    ):
         assert kept_modes.packed(frame, other) == ""

@@ -14,7 +14,7 @@ from PIL import Image
 from tests.commands import run
 from tests.viewer.desk import ELSEWHERE, Desk
 from tests.viewer.fakes import TINY_SCENE
-from viewer.output.recipe import BUILT
+from viewer.output.commands import BUILT
 from viewer.services import stills
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
@@ -159,11 +159,11 @@ def test_a_tree_that_rays_have_had_built_cannot_be_brought_back(odd: Desk) -> No
     odd.rest()
     assert odd.c.recipes.command() is not None and f"may differ: {BUILT}" in odd.said
     assert odd.c.pictures.save()
-    assert odd.runs.current.recipe.history == BUILT
+    assert odd.runs.current.recipe.warmup.unknown == BUILT
     odd.run_to_its_end()
     odd.c.films.plan = replace(odd.c.films.plan, first=0, last=1, size=(32, 24), video=False)
     odd.c.films.start()
-    assert odd.c.films.film.script.recipe.history == BUILT
+    assert odd.c.films.film.script.recipe.warmup.unknown == BUILT
     odd.run_to_its_end()
     odd.c.navigator.go(odd.c.history.frames - 1)
     assert odd.said.endswith(f"again, though {BUILT}"), odd.said

@@ -11,7 +11,7 @@ from tests.viewer.fakes import make_frame, make_scene, with_cuts
 from tracer.fit import overview
 from tracer.frame import Settings
 from tracer.statistics import CutCounts
-from viewer.state.arriving import fitting_view
+from viewer.state.methods import fitting_view
 from viewer.state.views import View
 
 FEW = "lightcuts is for 16 lights or more, and there are 6 here."

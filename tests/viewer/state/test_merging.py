@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from viewer.state.merging import merged
+from viewer.state.preferences import merged
 
 A, B, C, D = ({"name": name, "state": {}} for name in "ABCD")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from viewer.state.placing import Rect, beside
+from viewer.window.panels.area import Rect, beside
 
 SIZE, GAPS, ROOM = (40.0, 20.0), (12.0, 6.0), (0.0, 0.0, 200.0, 100.0)
 

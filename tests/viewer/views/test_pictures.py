@@ -43,6 +43,7 @@ from viewer.state.verified import largest_difference
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 from viewer.views import colorize
+from viewer.views.base import once
 from viewer.views.difference import RING_DIMMING
 from viewer.views.moving_shadow import MOVING_SHADOWS, MovingShadow
 from viewer.views.paint import CELL_LINE, FAINT_LINE
@@ -463,3 +464,9 @@ def test_each_view_declares_what_a_person_needs_to_find_it() -> None:
         assert view.help.endswith(".") and view.label[0].isupper(), view
     files = {path.stem for path in Path(views.__file__).parent.glob("*.py")}
     assert {view.value.replace("-", "_") for view in View} <= files
+
+
+def test_what_is_found_of_a_frame_is_never_that_of_one_that_lay_in_its_place(frame: Frame) -> None:
+    for number in range(50):
+        another = replace(frame)  # often where the last one lay
+        assert once(another, "number", iter([number, -1]).__next__) == number

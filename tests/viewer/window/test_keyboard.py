@@ -9,12 +9,14 @@ import pytest
 from imgui_bundle import imgui
 
 from viewer.services.controller import Controller
+from viewer.state.keymap import Keymap, is_place, tidy
 from viewer.state.preferences import Preferences
 from viewer.window import commands, widgets
 from viewer.window.keyboard import PLACES, Keyboard
 from viewer.window.ui import Ui
 
 KEY = imgui.Key
+DEFAULTS = {"Focus": ("F",), "Reset camera": ("R",), "Step back": ("LeftArrow",), "Shadow culling": ("C",), "Loop": ()}
 US = dict(zip(PLACES.values(), "abcdefghijklmnopqrstuvwxyz0123456789`-=[]\\,;'./", strict=True))
 FRENCH = US | {
     glfw.KEY_Q: "a", glfw.KEY_A: "q", glfw.KEY_W: "z", glfw.KEY_Z: "w", glfw.KEY_SEMICOLON: "m", glfw.KEY_M: ",",
@@ -122,3 +124,31 @@ def test_a_name_in_a_tooltip_is_never_taken_for_a_key(ui, monkeypatch: pytest.Mo
     ui.keymap.choose("Shadow culling", ["F9"])  # which has the key C otherwise
     widgets.tooltip_at("chair (C)")
     assert said == ["chair (C)"]
+
+
+def test_keys_are_those_of_commands_then_of_the_user():
+    p = Preferences()
+    keymap = Keymap(p, DEFAULTS)
+    assert keymap.of("Focus") == ("F",) and keymap.of("Fly forward") == ("W",) and keymap.shown("Loop") == ""
+    keymap.choose("Step back", ["Shift+Ctrl+B"])
+    assert keymap.of("Step back") == ("Ctrl+Shift+B",) and keymap.changed("Step back")
+    keymap.choose("Step back", ["LeftArrow"])
+    assert not keymap.changed("Step back") and p.keys == {}, "the usual key is none that was chosen"
+
+
+def test_conflicts_are_seen_from_both_sides_and_end():
+    keymap = Keymap(Preferences(), DEFAULTS)
+    assert not keymap.conflicts()
+    keymap.choose("Loop", ["W"])
+    assert keymap.conflicts() == {"Loop": ["Fly forward"], "Fly forward": ["Loop"]}
+    keymap.choose("Fly forward", [])
+    assert not keymap.conflicts() and keymap.of("Fly forward") == ()
+    keymap.reset("Fly forward")
+    assert keymap.conflicts()["Fly forward"] == ["Loop"]
+    keymap.reset()
+    assert keymap.of("Loop") == () and not keymap.conflicts()
+
+
+def test_places_and_letters_are_told_apart():
+    assert is_place("W") and is_place("Shift+H") and not is_place("Ctrl+Z") and not is_place("Ctrl+Shift+Z")
+    assert tidy("Shift+Alt+Ctrl+X") == "Ctrl+Alt+Shift+X"

@@ -7,12 +7,15 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state.placing import Rect, beside
 from viewer.state.zooming import Zoom
 from viewer.window.widgets import em
 
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
 _GAPS = 1.2, 0.6  # ems from the point: to the right of it or below it, and on its other sides
+
+Pair = tuple[float, float]
+Rect = tuple[float, float, float, float]
+"""Left, upper, right and lower edge."""
 
 
 @dataclass(frozen=True)
@@ -62,3 +65,27 @@ def write_beside(lines: Sequence[str], at: ImVec2, room: Rect, taken: Rect | Non
     draw.add_rect_filled(ImVec2(left, top), ImVec2(left + width, top + height), back, em(0.3))
     for number, text in enumerate(lines):
         draw.add_text(ImVec2(left + pad, top + pad + number * line), front, text)
+
+
+def beside(at: Pair, size: Pair, gaps: Pair, room: Rect, taken: Rect | None = None) -> Pair:
+    """The left and the upper edge of what is so large and stands beside a point.
+
+    It stands to the right and below by the first of the gaps, or else to the left or above by the second, wherever it
+    fits into the room and covers nothing that is taken; where all of that would, it covers it all the same."""
+    (x, y), (width, height), (after, before) = at, size, gaps
+    lefts, tops = (x + after, x - before - width), (y + after, y - before - height)
+    places = [(left, top) for top in tops for left in lefts if _inside((left, top), size, room)]
+    if not places:
+        return max(lefts[1], room[0]), max(tops[1], room[1])
+    free = [place for place in places if taken is None or not _meets(place, size, taken)]
+    return (free or places)[0]
+
+
+def _inside(place: Pair, size: Pair, room: Rect) -> bool:
+    left, top, right, lower = room
+    return place[0] >= left and place[1] >= top and place[0] + size[0] <= right and place[1] + size[1] <= lower
+
+
+def _meets(place: Pair, size: Pair, taken: Rect) -> bool:
+    left, top, right, lower = taken
+    return place[0] < right and place[0] + size[0] > left and place[1] < lower and place[1] + size[1] > top

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, imgui
 
-from viewer.window.panels import command_palette, keys, open_file, presets, save_as
+from viewer.window.panels import command_palette, keys, open_file, presets, saving
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import QUIET, centred, em, paragraph
 
@@ -12,7 +12,7 @@ from viewer.window.widgets import QUIET, centred, em, paragraph
 def show(ui: Ui) -> None:
     """All of them; each shows itself only when it is wanted."""
     ui.guard.overlay(open_file.TITLE, lambda: open_file.show(ui), lambda: ui.close(Dialog.OPEN_FILE))
-    ui.guard.overlay(save_as.NAME, lambda: save_as.show(ui), lambda: ui.close(Dialog.SAVE_AS))
+    ui.guard.overlay(saving.NAME, lambda: saving.show_dialog(ui), lambda: ui.close(Dialog.SAVE_AS))
     ui.guard.overlay("The question", lambda: _question(ui), ui.controller.questions.drop)
     ui.guard.overlay("The command palette", lambda: command_palette.show(ui), command_palette.close)
     ui.guard.overlay("The list of keys", lambda: keys.show(ui), lambda: ui.close(Dialog.KEYS))

@@ -66,7 +66,7 @@ def _way(ui: Ui, films: Films) -> None:
 def _looks(ui: Ui, films: Films) -> None:
     """The size and the quality of the pictures, and what is on them."""
     plan = films.plan
-    with properties("looks", 5.0) as shown:
+    with properties("looks", 7.6) as shown:
         if shown:
             size_row(ui, plan, "Size of the pictures.")
             plan_rows(plan, "samples")

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from imgui_bundle import ImVec2, imgui
 
 from viewer.state.palette import color_map, signed_map
-from viewer.state.placing import Rect
 from viewer.views import legend_of, picture_options
 from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, Swatch, fitting, lay_out
 from viewer.window import comparing
+from viewer.window.panels.area import Rect
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, tooltip_at
 

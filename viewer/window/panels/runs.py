@@ -22,6 +22,8 @@ from viewer.window.widgets import QUIET, WARNING, checkbox, clipped, em, row, si
 _SAVED_AS = {".json": ("JSON", "Save every figure"), ".csv": ("CSV", "Save the table"),
              ".png": ("Plot", "Save the plot as a picture")}  # fmt: skip
 
+_LEFT, _LEAST_PLOT = 14.0, 12.0  # ems of the controls, and of a plot beside them
+
 
 def plan_rows(plan: Any, *names: str) -> None:
     """Rows of `properties` for fields of a plan, by their declarations or, where they are settings of the tracer, by
@@ -78,36 +80,34 @@ def side_by_side(
     line stands above plot and table.
 
     Without a table, the plot has its room."""
-    room = imgui.get_content_region_avail()
-    spacing = imgui.get_style().item_spacing.x
-    left = em(14.0)
-    if table is None:
-        _two(controls, plot, left, spacing, room)
-        return
-    middle = room.x - left - table_width - 2.0 * spacing
-    if middle < em(16.0):  # before they go one below the other, the table gives what it can
+    room, spacing = imgui.get_content_region_avail(), imgui.get_style().item_spacing.x
+    beside = table_width + spacing if table is not None else 0.0
+    middle = room.x - em(_LEFT) - spacing - beside
+    if table is not None and middle < em(16.0):  # before they go one below the other, the table gives what it can
         table_width = max(em(11.0), table_width - (em(16.0) - middle))
-        middle = room.x - left - table_width - 2.0 * spacing
-    if middle < em(12.0):
+        middle = room.x - em(_LEFT) - table_width - 2.0 * spacing
+    if middle < em(_LEAST_PLOT):
         controls()
         heading()
         plot(ImVec2(room.x, em(14.0)))
-        if imgui.begin_child("table", ImVec2(0.0, em(14.0))):
-            table()
-        imgui.end_child()
+        if table is not None:
+            _in_child("table", ImVec2(0.0, em(14.0)), table)
         return
-    if imgui.begin_child("controls", ImVec2(left, 0.0)):
-        controls()
-    imgui.end_child()
+    _in_child("controls", ImVec2(em(_LEFT), 0.0), controls)
     imgui.same_line()
     imgui.begin_group()
     heading()
     plot(ImVec2(middle, max(imgui.get_content_region_avail().y, em(8.0))))
-    imgui.same_line()
-    if imgui.begin_child("table", ImVec2(table_width, 0.0)):
-        table()
-    imgui.end_child()
+    if table is not None:
+        imgui.same_line()
+        _in_child("table", ImVec2(table_width, 0.0), table)
     imgui.end_group()
+
+
+def _in_child(name: str, size: ImVec2, show: Callable[[], None]) -> None:
+    if imgui.begin_child(name, size):
+        show()
+    imgui.end_child()
 
 
 def in_tabs(
@@ -121,14 +121,11 @@ def in_tabs(
     little for a plot, both are tabs beside the controls; in a panel that is too narrow for that, they lie below one
     another."""
     room, spacing = imgui.get_content_region_avail(), imgui.get_style().item_spacing.x
-    left = em(14.0)
-    middle = room.x - left - spacing
-    if middle - table_width - spacing >= em(16.0) or middle < em(12.0):
+    middle = room.x - em(_LEFT) - spacing
+    if middle - table_width - spacing >= em(16.0) or middle < em(_LEAST_PLOT):
         side_by_side(controls, plot, table, max(table_width, 0.45 * middle), heading)
         return
-    if imgui.begin_child("controls", ImVec2(left, 0.0)):
-        controls()
-    imgui.end_child()
+    _in_child("controls", ImVec2(em(_LEFT), 0.0), controls)
     imgui.same_line()
     if imgui.begin_child("results", ImVec2(middle, 0.0)):
         heading()
@@ -142,22 +139,6 @@ def in_tabs(
                 imgui.end_tab_item()
             imgui.end_tab_bar()
     imgui.end_child()
-
-
-def _two(
-    controls: Callable[[], None], plot: Callable[[ImVec2], None], left: float, spacing: float, room: ImVec2
-) -> None:
-    """Controls and plot alone, side by side where there is room for that."""
-    middle = room.x - left - spacing
-    if middle < em(12.0):
-        controls()
-        plot(ImVec2(room.x, em(14.0)))
-        return
-    if imgui.begin_child("controls", ImVec2(left, 0.0)):
-        controls()
-    imgui.end_child()
-    imgui.same_line()
-    plot(ImVec2(middle, max(room.y, em(8.0))))
 
 
 def whose(ui: Ui, run: Experiment | ZoomTest) -> None:

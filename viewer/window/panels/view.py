@@ -13,7 +13,7 @@ from viewer.state.views import View
 from viewer.window.panels import legend, lights, slicing
 from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, em, paragraph, properties, right, row, tooltip
+from viewer.window.widgets import QUIET, WARNING, em, paragraph, properties, right, row, same_line_for, tooltip
 
 
 def show(ui: Ui) -> None:
@@ -33,9 +33,10 @@ def show(ui: Ui) -> None:
                 if one.kind is not bool:
                     setting_row(ui, one, _mid_grey(ui) if one.path == "draw.tone.curve" else "")
             _range(ui)
-    for one in settings:
-        if one.kind is bool:
-            setting_switch(ui, one)
+    for place, one in enumerate(one for one in settings if one.kind is bool):
+        if place:
+            same_line_for(one.label)
+        setting_switch(ui, one)
     if draw.view.shows_picture and not draw.tone.neutral and imgui.button("Reset tone", (-1.0, 0.0)):
         ui.controller.session.set_draw(tone=NEUTRAL)
     legend.in_panel(ui)

@@ -11,9 +11,11 @@ from tests.commands import ROOM
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
-from viewer.output.recipe import Recipe, cannot_come_back
+from viewer.output.commands import by_one_thread, cannot_come_back, needs_history
 from viewer.services import stills
+from viewer.state.draw_options import DrawOptions
 from viewer.state.readings import can_draw
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 
@@ -24,8 +26,10 @@ def test_without_frames_before_it_a_picture_is_the_same_unless_the_recipe_says_o
 ) -> None:
     (tmp_path / "room.aff").write_text(ROOM)
     scene = load_scene(tmp_path / "room.aff")
-    recipe = Recipe(scene.path, scene.frame_time(3), None, Settings(24, 18, method=method, threads=1), view)
-    if recipe.needs_history:
+    recipe = ViewState(
+        time=scene.frame_time(3), settings=Settings(24, 18, method=method, threads=1), draw=DrawOptions(view)
+    )
+    if needs_history(recipe):
         return
     alone, later = Renderer(scene, recipe.settings), Renderer(scene, recipe.settings)
     for number in range(3):
@@ -42,10 +46,10 @@ def test_what_becomes_of_rays_depends_on_what_an_exact_method_has_learnt(view: V
     for method in ("certified", "auto", "voxels", "none+cache", "certified+cache"):
         for threads in (1, 2):
             one, work = (
-                Recipe(Path("a.aff"), 0.0, None, Settings(method=method, threads=threads), shown)
+                ViewState(settings=Settings(method=method, threads=threads), draw=DrawOptions(shown))
                 for shown in (view, View.SAVED)
             )
-            assert one.needs_history and (one).needs_history
-            assert one.by_one_thread == work.by_one_thread
-            assert cannot_come_back(one.settings, view) == cannot_come_back(work.settings, View.SAVED)
-    assert not Recipe(Path("a.aff"), 0.0, None, Settings(method="none"), view).needs_history
+            assert needs_history(one)
+            assert by_one_thread(one) == by_one_thread(work)
+            assert cannot_come_back(one.settings, one.draw) == cannot_come_back(work.settings, work.draw)
+    assert not needs_history(ViewState(settings=Settings(method="none"), draw=DrawOptions(view)))

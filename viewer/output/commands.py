@@ -1,0 +1,149 @@
+"""A state as the options of `shadowcull render` that make its picture again, and whether that can be.
+
+Modes come from the frames before, and certificates and caches as well.  A picture that shows them can be made again
+where those frames are known (`ViewState.warmup`).  Where they are not, `warmup.unknown` says why, in words; a saved
+picture may then carry the modes themselves.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from tracer.method import Method
+from tracer.scene.load import AFF_EXTENSIONS
+from tracer.scene.model import Scene
+from tracer.setting import Setting, settings_of
+from tracer.settings import Settings
+from viewer.state import codec
+from viewer.state import edits as scene_edits
+from viewer.state.draw_options import DrawOptions
+from viewer.state.view_state import ViewState
+from viewer.state.views import View
+from viewer.util import resources
+from viewer.views.wipe import wipe_column
+
+CHANCE = "what is certified depends on time and threads"
+BUILT = "what rays have had built depends on all that has been seen"
+
+
+def needs_history(state: ViewState) -> bool:
+    """Return whether frames before it show in the picture of a state."""
+    return _shows_history(state.settings, state.draw.view, state.draw.savings is not None)
+
+
+def _shows_history(settings: Settings, view: View, counters: bool) -> bool:
+    method = Method.parse(settings.method)
+    of_culling = view is View.CERTIFICATE or ((view.needs_work or view.needs_fates) and method.culls)
+    return of_culling or counters or view.of_modes or view is View.TREE or not method.exact
+
+
+def by_chance(settings: Settings, draw: DrawOptions) -> bool:
+    """Return whether chance has a part in a picture: what is certified within a limit of time, or by several threads,
+    or what `auto` measures."""
+    method, view = Method.parse(settings.method), draw.view
+    limited = method.has_certificates and (math.isfinite(settings.certificate_seconds) or settings.threads != 1)
+    shows = _shows_history(settings, view, draw.savings is not None)
+    return shows and method.exact and not view.of_modes and (limited or method.adaptive)
+
+
+def cannot_come_back(settings: Settings, draw: DrawOptions) -> str:
+    """Return why no frames before it bring a picture of the window back, in words; empty where some do, or none
+    count."""
+    if draw.view is View.TREE:
+        return BUILT
+    return CHANCE if by_chance(settings, draw) else ""
+
+
+def by_one_thread(state: ViewState) -> bool:
+    """Return whether it takes a single thread to make the picture of a state again."""
+    return state.settings.threads == 1 and Method.parse(state.settings.method).has_certificates and needs_history(state)
+
+
+def words(state: ViewState, scene: Scene | None, output: str, folders: Sequence[Path] = ()) -> list[str]:
+    """Return the words after `shadowcull` that make the picture of a state again, to the bit; `scene` names frames by
+    their numbers, `folders` are those that it may read files from besides its own."""
+    settings, draw, warmup, path = state.settings, state.draw, state.warmup, Path(state.scene)
+    found = ["render", scene_word(path), "-o", f"./{output}" if output.startswith("-") else output]
+    found += ["--size", f"{settings.width}x{settings.height}", *_moment(state.time, scene)]
+    found += ["--method", settings.method, *_view(state)]
+    if state.camera is not None:
+        found += ["--camera", json.dumps(state.camera.to_json())]
+    for one in settings_of(ViewState):
+        if one.path not in _SPECIAL and _counts(one, state):
+            found += one.words(one.get(state))
+    for option, count in (("--warmup", warmup.of_path), ("--repeat", warmup.repeats)):
+        found += [option, str(count)] if count else []
+    if draw.legend and draw.legend_at != DrawOptions().legend_at:
+        found += ["--legend-at", f"{draw.legend_at[0]!r},{draw.legend_at[1]!r}"]
+    if draw.span is not None:
+        found += [f"--range={draw.span[0]!r}:{draw.span[1]!r}"]
+    if draw.savings is not None:
+        found += [f"--savings={draw.savings}"] if draw.savings else ["--savings"]
+    if draw.caption:
+        found += [f"--caption={draw.caption.replace('{', '{{').replace('}', '}}')}"]
+    if warmup.frames:
+        found += ["--before", codec.text(warmup.frames)]
+    found += scene_edits.as_options(state.edits)
+    for folder in folders:
+        found += ["--folder", str(folder.absolute())]
+    return found + ([] if path.suffix.lower() in AFF_EXTENSIONS else _meshes(state))
+
+
+_SPECIAL = {"settings.method", "draw.view", "draw.spans", "draw.savings", "draw.caption", "draw.shares"}
+"""Settings whose options are no plain values."""
+
+
+def _counts(one: Setting, state: ViewState) -> bool:
+    if one.path == "settings.threads":
+        return by_one_thread(state)
+    return one.path != "draw.slice" or state.draw.view.has_slice
+
+
+def _view(state: ViewState) -> list[str]:
+    """The view with its light, its line or its shares."""
+    draw, view = state.draw, state.draw.view
+    light = f":{state.edits.light_number(draw.light)}" if view.of_light else ""
+    line = f":{_line(draw.wipe, state.settings.width)}" if view is View.WIPE else ""
+    shares = ":share" if view.needs_work and draw.shares else ""
+    return [] if view is View.COLOR else ["--view", f"{view.value}{light}{line}{shares}"]
+
+
+def _line(wipe: float, width: int) -> str:
+    """The place of a wipe's line, as few digits as may be for the same column."""
+    column = wipe_column(width, wipe)
+    return "1" if column >= width else f"{(column + 0.5) / width:.9f}"
+
+
+def _meshes(state: ViewState) -> list[str]:
+    """How a mesh is read."""
+    meshes = state.meshes
+    up = [f"--up={meshes.up}"] if meshes.up is not None else []
+    crease = [f"--crease={meshes.crease!r}"] if meshes.crease is not None else []
+    return [*up, *crease, *([] if meshes.studio else ["--no-studio"])]
+
+
+def scene_word(path: Path) -> str:
+    """Return what names a scene on the command line: of one that comes with the program its name, else where its file
+    is."""
+    own = next((name for name, file in resources.embedded_scenes().items() if _same(file, path)), None)
+    return own or str(path.absolute())
+
+
+def _same(one: Path, other: Path) -> bool:
+    try:
+        return one.samefile(other)
+    except OSError:
+        return False
+
+
+def _moment(time: float, scene: Scene | None) -> list[str]:
+    """The number of the frame where it is one's time to the bit, else the time."""
+    if scene is not None:
+        start, end = scene.time_range
+        number = round((time - start) / (end - start) * (scene.frames - 1)) if scene.frames > 1 and end > start else 0
+        if scene.frame_time(number) == time:
+            return ["--frame", str(number)]
+    return [f"--time={time!r}"]
