@@ -71,7 +71,8 @@ class Comparison:
 
 def comparison_of(data: Any, size: tuple[int, int]) -> Comparison:
     """Return what a figure carries beside its state; raises ValueError in one line."""
-    return codec.patched(Comparison((), edition=1), data, "its figure").checked(size)
+    found = {"edition": 1} | data if isinstance(data, dict) else data
+    return codec.from_json(found, Comparison, "its figure").checked(size)
 
 
 @dataclass(frozen=True)
