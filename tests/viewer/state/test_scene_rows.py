@@ -130,6 +130,9 @@ def test_rows_keep_their_numbers_where_things_are_hidden(now: Edited) -> None:
 @pytest.mark.parametrize(
     ("text", "rows"),
     [
+        ("objects L", [0, 1, 2]),
+        ('objects object="left lamp"', [2]),
+        ("objects primitives>1 -is:dynamic", [0, 1]),
         ("", [0, 1, 2, 3, 4, 5, 6]),
         ("WALL", [1, 3]),
         ("4", [4]),
@@ -158,7 +161,8 @@ def test_rows_keep_their_numbers_where_things_are_hidden(now: Edited) -> None:
     ],
 )
 def test_filters_find_rows(tables: dict[Level, Table], text: str, rows: list[int]) -> None:
-    assert np.flatnonzero(matching(tables[Level.PRIMITIVES], text)).tolist() == rows
+    level = Level.OBJECTS if text.startswith("objects ") else Level.PRIMITIVES
+    assert np.flatnonzero(matching(tables[level], text.removeprefix("objects "))).tolist() == rows
 
 
 @pytest.mark.parametrize(
@@ -180,13 +184,6 @@ def test_what_is_not_understood_or_not_known_is_told_in_one_line(now: Edited, te
     with pytest.raises(FilterError, match=said.replace("?", r"\?")) as told:
         matching(tables_of(now, make_frame(), 0)[Level.PRIMITIVES], text)
     assert "\n" not in str(told.value)
-
-
-def test_objects_are_filtered_by_their_names(tables: dict[Level, Table]) -> None:
-    table = tables[Level.OBJECTS]
-    assert np.flatnonzero(matching(table, "L")).tolist() == [0, 1, 2]
-    assert np.flatnonzero(matching(table, 'object="left lamp"')).tolist() == [2]
-    assert np.flatnonzero(matching(table, "primitives>1 -is:dynamic")).tolist() == [0, 1]
 
 
 def test_a_frame_of_nothing_has_rows(now: Edited) -> None:

@@ -13,7 +13,6 @@ from tracer.scene.lights import named_light
 from viewer.output.light_cube import cross_of, depths_legend, lists_legend, seen
 from viewer.services.queries import Newest
 from viewer.state.readings import LIGHT_CUBES
-from viewer.views.legend import Legend
 from viewer.window.panels import legend, lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, em, paragraph
@@ -30,7 +29,7 @@ class Unfolded:
     """A cube as a picture (3 side, 4 side, 3), which becomes a texture, and its legend."""
 
     cross: np.ndarray
-    legend: Legend
+    key: legend.Legend
 
     def pixels(self, height: int = 0) -> np.ndarray:
         return self.cross
@@ -56,6 +55,7 @@ def show(ui: Ui) -> None:
         state.take(c.renderer.query(unfold, c.frame, c.session.draw.light, state.depths))
     checkbox("distance at which full shadow begins", state.depths, lambda on: setattr(state, "depths", on))
     imgui.same_line()
+    imgui.set_next_item_width(min(em(14.0), imgui.get_content_region_avail().x))
     lights.combo(ui)
     found = state.answer
     if not isinstance(found, Unfolded):
@@ -67,4 +67,4 @@ def show(ui: Ui) -> None:
     if texture is not None:
         imgui.image(imgui.ImTextureRef(texture), ImVec2(across * scale, down * scale))
         imgui.same_line()
-    legend.draw(found.legend)
+    legend.draw(found.key)
