@@ -12,12 +12,21 @@ from tests.viewer.fakes import make_frame
 from tracer.frame import Settings
 from tracer.statistics import FrameStatistics, ShadowCounts, WrongCounts
 from viewer.state.columns import NO_TIME, rows
-from viewer.state.comparison import CompareMode, Comparison, Side, elided, named, sizes_in_words
+from viewer.state.comparison import (
+    LEAST_MARKED,
+    MOST_SPOTS,
+    CompareMode,
+    Comparison,
+    Side,
+    elided,
+    named,
+    sizes_in_words,
+    with_rings,
+    worst_spots,
+)
 from viewer.state.in_turn import LEAST, InTurn
 from viewer.state.palette import LESS, MORE, SAME, WIPE_LINE, signed_map
 from viewer.state.views import View
-from viewer.state.worst import LEAST as LEAST_MARKED
-from viewer.state.worst import MOST, with_rings, worst_spots
 from viewer.state.zooming import Zoom
 from viewer.views.compare import (
     GAP,
@@ -272,7 +281,7 @@ def test_the_worst_come_first_and_none_beside_another():
     difference[50, 10] = 2.0 * LEAST_MARKED - 0.01
     assert len(worst_spots(difference)) == 2
     assert worst_spots(np.zeros((4, 4), np.float32)) == worst_spots(np.zeros((0, 0), np.float32)) == ()
-    assert len(worst_spots(np.random.default_rng(1).normal(size=(99, 99)).astype(np.float32))) == MOST
+    assert len(worst_spots(np.random.default_rng(1).normal(size=(99, 99)).astype(np.float32))) == MOST_SPOTS
 
 
 def test_modes_that_differ_are_marked_where_they_are_few():
