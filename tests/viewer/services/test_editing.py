@@ -16,7 +16,7 @@ from tests.viewer.desk import Desk
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edits
 from tracer.scene.things import things
-from viewer.services.before_edits import Lack
+from viewer.services.edit_effects import Lack
 
 SCENE = """
 b 0.3 0.4 0.5

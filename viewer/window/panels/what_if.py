@@ -12,9 +12,8 @@ from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
 from tracer.scene.things import Thing
 from tracer.why_in_words import primitive_in_words
-from viewer.services.before_edits import Lack
+from viewer.services.edit_effects import Effects, Lack, Transitions
 from viewer.state import terms
-from viewer.state.edit_effects import Effects, Transitions
 from viewer.state.edits import one_by_one
 from viewer.window.edit_commands import WhatIfState
 from viewer.window.panels import lights
