@@ -210,7 +210,7 @@ def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
     c, said = desk.c, "the scene is being edited; start again when the picture shows it"
     c.editing.hide("ball")
     desk.tick()
-    c.editing.show("ball")  # it is being hidden nevertheless
+    c.editing.hide("ball", False)  # it is being hidden nevertheless
     for start in (c.runs.start_experiment, c.hunts.start, c.films.start, c.runs.start_zoom_test):
         c.notices.message = None
         start()
@@ -255,7 +255,7 @@ def test_what_is_forgotten_is_forgotten_of_all_scenes(desk: Desk):
 def test_a_light_chosen_after_a_step_was_taken_back_stays(desk: Desk):
     session, editing = desk.c.session, desk.c.editing
     session.want(Edits(hidden=frozenset({"ball"})), 0)  # as undo does
-    editing.show("ball")
+    editing.hide("ball", False)
     session.set_draw(light=1)
     edit(desk, lambda: editing.hide("car"))
     assert session.draw.light == 1
