@@ -30,8 +30,9 @@ from tracer.version import program_version
 from viewer.cli import options
 from viewer.cli.arguments import FAILED, Parser
 from viewer.cli.console import Work, working
-from viewer.output import capture, comparison_figure, exr
+from viewer.output import capture, exr
 from viewer.output.commands import BUILT, CHANCE
+from viewer.output.comparison import comparison_of, text_of_pdf
 from viewer.services import comparison, stills
 from viewer.services.scene_files import find_scene
 from viewer.state import codec
@@ -192,7 +193,7 @@ class Checker:
 
     def _check_pdf(self, path: Path) -> Verdict:
         kept = read_regular(path)
-        text = comparison_figure.text_of_pdf(kept)
+        text = text_of_pdf(kept)
         if text is None:
             return Verdict(None, "a PDF, but not a figure of Shadowcull")
         data = json.loads(text)
@@ -202,18 +203,18 @@ class Checker:
 
     def _figure(self, path: Path, data: Mapping[str, Any], ending: str) -> bytes:
         """The file of a figure, made again."""
-        wanted = comparison.from_json(codec.picture_from_json(data), data["figure"])
-        scene, common = self._prepared(path, wanted.recipe, wanted.methods)
-        wanted = replace(wanted, recipe=common)
+        state = codec.picture_from_json(data)
+        wanted = comparison_of(data["figure"], state.size)
+        scene, state = self._prepared(path, state, wanted.methods)
 
         def tell(method: str, done: int, frames: int) -> None:
             self._work.count(f"{path.name}, {method}, frame {done + 1} of {frames}", done, frames)
 
-        shown = comparison.trace(scene, wanted, self._world_of(scene, common), tell, self._work.cancelled)
+        shown = comparison.trace(scene, state, wanted, self._world_of(scene, state), tell, self._work.cancelled)
         with tempfile.TemporaryDirectory() as folder:
             again = Path(folder) / f"again{ending}"
             # What it carries is what the other carried: times and versions are of then.
-            comparison_figure.save(shown, again, json.dumps(data))
+            comparison.save(shown, again, json.dumps(data))
             return again.read_bytes()
 
     def _prepared(self, path: Path, wanted: ViewState, methods: tuple[str, ...]) -> tuple[Scene, ViewState]:

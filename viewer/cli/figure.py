@@ -11,10 +11,8 @@ from tracer.scene.load import check_scene_file
 from viewer.cli import arguments, options, pictures
 from viewer.cli.arguments import Parser
 from viewer.cli.console import print_table, titled, working
-from viewer.output import comparison_figure
-from viewer.output.comparison_figure import ENDINGS, Crop
+from viewer.output.comparison import ENDINGS, Comparison, Crop
 from viewer.services import comparison
-from viewer.services.comparison import Comparison
 from viewer.state.views import View
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
@@ -69,7 +67,7 @@ def run(given: Namespace) -> int:
         scene = options.read_scene(given.path, given, work)
         state = pictures.wanted_state(scene, settings, given)
         crops = tuple(Crop(*crop) for crop in given.crops)
-        wanted = Comparison(state, tuple(given.methods), crops).checked()
+        wanted = Comparison(tuple(given.methods), crops).checked(state.size)
         pictures.check_lights(state, scene)
         options.warmup_times(scene, state.time, state.warmup.of_path, work)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, *wanted.methods)
@@ -78,9 +76,9 @@ def run(given: Namespace) -> int:
         def tell(method: str, done: int, total: int) -> None:
             work.count(f"{method}, frame {done + 1} of {total}", done, total)
 
-        shown = comparison.trace(scene, wanted, world, tell, work.cancelled)
+        shown = comparison.trace(scene, state, wanted, world, tell, work.cancelled)
         work.progress("drawing", 1.0)
-        comparison_figure.save(shown, given.output, comparison.text(shown, wanted))
+        comparison.save(shown, given.output)
     table = titled(f"{scene.path.name}, {state.time:.3f} s")
     table.add_column("")
     for method in shown.frames:

@@ -20,7 +20,7 @@ from tracer.scene.model import Cancelled, Scene
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, print_table, titled, working
-from viewer.services import counterexamples
+from viewer.services import comparison, counterexamples
 from viewer.state import flight
 from viewer.state.methods import NO_CULLING
 from viewer.util.messages import printable
@@ -107,10 +107,11 @@ def _write(found: hunt.Results, scene: Scene, search: Search, world: World, give
         counterexamples.save_json(find, found, scene, stem.with_suffix(".json"), options.mesh_arguments(meshes))
         if not work.stopped:
             work.count(f"figure {rank} of {len(found.finds)}", rank - 1, len(found.finds))
-            of_file, folders = meshes.of_file(Path(scene.path)), tuple(given.folder)
-            wanted = counterexamples.comparison_of(find, found, scene, search.settings, folders, of_file)
+            of_file = meshes.of_file(Path(scene.path))
+            wanted = counterexamples.comparison_of(find, found, scene, search.settings, of_file)
             try:
-                counterexamples.save_figure(wanted, scene, world, stem.with_suffix(".png"), cancelled=work.cancelled)
+                shown = comparison.trace(scene, *wanted, world, cancelled=work.cancelled)
+                comparison.save(shown, stem.with_suffix(".png"))
                 written.append(stem.with_suffix(".png"))
             except Cancelled:
                 work.note("cancelled: the figures from here on are not drawn")

@@ -51,11 +51,18 @@ SAID: dict[Verdict, str] = {
 class Shown(StrEnum):
     """Which shadow rays are to be seen."""
 
-    ALL = "all"
-    TRACED = "traced"
-    UNTRACED = "untraced"
-    BLOCKED = "blocked"
-    WRONG = "wrong"
+    meaning: str
+
+    def __new__(cls, value: str, meaning: str = "") -> Shown:
+        made = str.__new__(cls, value)
+        made._value_, made.meaning = value, meaning
+        return made
+
+    ALL = "all", "all lights, also those that the surface faces away from"
+    TRACED = "traced", "shadow rays that were traced through the scene"
+    UNTRACED = "untraced", "shadow rays that were due and not traced: culled, dynamic only, candidates and cache"
+    BLOCKED = "blocked", "shadow rays that do not reach their light"
+    WRONG = "wrong", "shadow rays with a wrong answer"
 
 
 class Filter(NamedTuple):

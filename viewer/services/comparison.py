@@ -1,10 +1,10 @@
-"""One frame by several methods, to be held side by side: what is asked for, how it is traced, and kept as JSON."""
+"""One frame by several methods, to be held side by side: traced, and drawn as a figure that says how it was made."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from pathlib import Path
 
 from tracer import fingerprint
 from tracer.frame import Frame
@@ -14,86 +14,31 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version
 from viewer.output import capture
-from viewer.output.comparison_figure import EDITION, Crop, Shown
+from viewer.output.comparison import Comparison, Shown
 from viewer.services import stills
 from viewer.state import codec
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 
-MOST_METHODS, MOST_CROPS = 6, 6
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """`recipe` is what all methods have in common; its own method does not count.  `marks` are pixels (x, y) that are
-    marked in the crops, and `words` stand below the title, which is of an `edition`."""
-
-    recipe: ViewState
-    methods: tuple[str, ...]
-    crops: tuple[Crop, ...]
-    marks: tuple[tuple[int, int], ...] = ()
-    words: str = ""
-    edition: int = EDITION
-
-    def checked(self) -> Comparison:
-        """The same; raises ValueError, in one line, for what cannot be drawn."""
-        width, height = self.recipe.size
-        if not 1 <= len(self.methods) <= MOST_METHODS or len(set(self.methods)) < len(self.methods):
-            raise ValueError(f"--methods: give 1 to {MOST_METHODS}, each once")
-        if len(self.crops) > MOST_CROPS:
-            raise ValueError(f"--crops: {MOST_CROPS} at most, not {len(self.crops)}")
-        for crop in self.crops:
-            inside = crop.x + crop.width <= width and crop.y + crop.height <= height
-            if not inside or crop.width < 1 or crop.height < 1:
-                raise ValueError(f"--crops {crop}: not inside the picture of {width} x {height} pixels")
-        for method in self.methods:
-            Method.parse(method)
-        return self
-
-    def to_json(self) -> dict[str, Any]:
-        """What a figure carries beside its state."""
-        crops = [[c.x, c.y, c.width, c.height] for c in self.crops]
-        more: dict[str, Any] = {"marks": [list(mark) for mark in self.marks]} if self.marks else {}
-        more |= {"words": self.words} if self.words else {}
-        more |= {"edition": self.edition} if self.edition > 1 else {}
-        return {"methods": list(self.methods), "crops": crops} | more
-
-
-def from_json(state: ViewState, data: Any) -> Comparison:
-    """Return the inverse of `to_json`; raises ValueError in one line."""
-    common = state
-    kept = codec.from_json(data, _Kept, "its figure")
-    crops = tuple(Crop(*sides) for sides in kept.crops)
-    return Comparison(common, kept.methods, crops, kept.marks, kept.words, kept.edition).checked()
-
-
-@dataclass(frozen=True)
-class _Kept:
-    """What a figure carries beside its state."""
-
-    methods: tuple[str, ...]
-    crops: tuple[tuple[int, int, int, int], ...]
-    marks: tuple[tuple[int, int], ...] = ()
-    words: str = ""
-    edition: int = 1
-
 
 def trace(
     scene: Scene,
+    state: ViewState,
     comparison: Comparison,
     world: World,
     on_frame: Callable[[str, int, int], None] = lambda method, done, total: None,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Shown:
-    """The frame by each method, and by "none" as what is right, with modes of their own; raises Cancelled.
+    """Trace the frame of a state by each method, and by "none" as what is right, with modes of their own; the state's
+    own method does not count.  Raises Cancelled.
 
     `on_frame` gets the method, and how many of its frames are done, of how many."""
     frames: dict[str, Frame] = {}
     for method in dict.fromkeys(("none", *comparison.methods)):
-        settings = replace(comparison.recipe.settings, method=method)
+        settings = replace(state.settings, method=method)
         if Method.parse(method).has_certificates:
             settings = replace(settings, threads=1)  # which certificates are made depends on the turns of threads
-        wanted = replace(comparison.recipe, settings=settings)
+        wanted = replace(state, settings=settings)
         renderer = Renderer(scene, wanted.settings, world=world)
 
         def tell(done: int, total: int, method: str = method) -> None:
@@ -104,19 +49,24 @@ def trace(
         frames[method] = stills.trace(renderer, wanted, on_frame=tell, cancelled=cancelled)
     reference = frames["none"]
     shown = {method: frames[method] for method in comparison.methods}
-    common = comparison.recipe
-    warmed = len(common.warmup.frames) + len(stills.times_before(scene, common.time, common.warmup.of_path))
-    marked = comparison.marks, comparison.words, warmed, comparison.edition
-    return Shown(scene, common, shown, reference, comparison.crops, *marked)
+    warmed = len(state.warmup.frames) + len(stills.times_before(scene, state.time, state.warmup.of_path))
+    return Shown(scene, state, comparison, shown, reference, warmed)
 
 
-def text(shown: Shown, comparison: Comparison) -> str:
-    """What a figure carries: what it compares, the counters of each method, and what they were made of."""
-    common, scene = comparison.recipe, shown.scene
+def save(shown: Shown, path: Path, text: str = "") -> None:
+    """Draw the figure and write it with the text that it carries, its own by default; raises OSError in one line."""
+    from viewer.output import comparison_figure  # loads matplotlib
+
+    comparison_figure.save(shown, path, text or _text(shown))
+
+
+def _text(shown: Shown) -> str:
+    """What is compared, the counters of each method, and what they were made of."""
+    state, scene = shown.state, shown.scene
     statistics = {method: frame.statistics.to_dict() for method, frame in shown.frames.items()}
     more = {
-        "figure": comparison.to_json(),
+        "figure": codec.to_json(shown.comparison),
         "made": {"version": program_version(), "scene": fingerprint.of_scene(scene)},
     }
-    number = Session(scene).frame_at(common.time)
-    return capture.metadata(common, shown.reference.camera, number, common.size, statistics, more)
+    number = Session(scene).frame_at(state.time)
+    return capture.metadata(state, shown.reference.camera, number, state.size, statistics, more)

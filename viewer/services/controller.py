@@ -99,7 +99,7 @@ class Controller:
         self.recipes = recipes = Recipes(session, preferences, scheduler, self.history, loader, notices)
         self.films = Films(session, preferences, runs, recipes, bookmarks)
         self.pictures = Pictures(session, preferences, runs, recipes, notices, wake)
-        self.hunts = Hunts(session, preferences, runs, navigator, recipes, notices)
+        self.hunts = Hunts(session, preferences, runs, navigator, notices)
         self.watcher = SceneWatcher(preferences, lambda: loader.files, self._may_reload, loader.reload_changed, wake)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last

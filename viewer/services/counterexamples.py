@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from tracer.experiments import counterexample, hunt
 from tracer.experiments.counterexample import Counterexample
 from tracer.frame import Settings
-from tracer.geometry.world import World
 from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Scene
+from tracer.setting import settings_of
 from tracer.version import program_version
-from viewer.output import comparison_figure
 from viewer.output.commands import scene_word
-from viewer.output.comparison_figure import Crop
-from viewer.services import comparison
-from viewer.services.comparison import Comparison
+from viewer.output.comparison import Comparison, Crop
 from viewer.state.methods import NO_CULLING
 from viewer.state.view_state import ViewState, Warmup
 from viewer.util.files import write_text
@@ -52,12 +49,12 @@ def comparison_of(
     found: hunt.Results,
     scene: Scene,
     settings: Settings,
-    folders: tuple[Path, ...] = (),
     meshes: MeshOptions = AS_IN_FILE,
     edits: Edits = NO_EDITS,
-) -> Comparison:
-    """The figure of a counterexample: the right picture and the method's, with the pixel's surroundings enlarged."""
-    common = ViewState(
+) -> tuple[ViewState, Comparison]:
+    """Return the figure of a counterexample: the right picture and the method's, with the pixel's surroundings
+    enlarged."""
+    state = ViewState(
         scene=str(Path(scene.path).absolute()),
         time=find.time,
         camera=find.seen_camera,
@@ -67,22 +64,9 @@ def comparison_of(
         edits=edits,
     )
     words = " ".join(counterexample.in_words(find, scene))
-    return Comparison(
-        common, (NO_CULLING, found.method), (crop_of(find, found.size),), ((find.x, find.y),), words
-    ).checked()
-
-
-def save_figure(
-    wanted: Comparison,
-    scene: Scene,
-    world: World,
-    path: Path,
-    on_frame: Callable[[str, int, int], None] = lambda method, done, total: None,
-    cancelled: Callable[[], bool] = lambda: False,
-) -> None:
-    """Trace and draw; raises OSError in one line, or Cancelled."""
-    shown = comparison.trace(scene, wanted, world, on_frame, cancelled)
-    comparison_figure.save(shown, path, comparison.text(shown, wanted))
+    return state, Comparison(
+        (NO_CULLING, found.method), (crop_of(find, found.size),), ((find.x, find.y),), words
+    ).checked(state.size)
 
 
 def save_json(
@@ -109,9 +93,7 @@ def explaining(find: Counterexample, found: hunt.Results, before: Path | str) ->
     words += ["--size", f"{width}x{height}", "--method", found.method, "--pixel", f"{find.x},{find.y}"]
     if not find.own_camera:
         words += ["--camera", json.dumps(find.camera.to_json())]
-    for option, default in (("depth", 10), ("zoom_factor", 4.0), ("lamp_radius", None), ("lamp_samples", None)):
-        value = found.settings.get(option, default)
-        if value != default:
-            words += [f"--{option.replace('_', '-')}", str(value)]
-    words += ["--symmetric"] if found.settings.get("symmetric") else []
+    for one in settings_of(Settings):
+        if one.name in ("depth", "zoom_factor", "lamp_radius", "lamp_samples", "symmetric"):
+            words += one.words(found.settings.get(one.name, one.default))
     return [*words, "--before", str(before), "--only", "wrong"]

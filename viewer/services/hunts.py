@@ -15,9 +15,8 @@ from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
 from viewer.output import exports
-from viewer.services import counterexamples
+from viewer.services import comparison, counterexamples
 from viewer.services.frame_history import FrameNavigator, JumpTarget
-from viewer.services.recipes import Recipes
 from viewer.services.runs import FileRun, Runs, check_size
 from viewer.state import flight, zooming
 from viewer.state.edits import as_options
@@ -34,10 +33,10 @@ class FigureRun(FileRun):
 
     def __init__(
         self, scene: Scene, found: hunt.Results, find: Counterexample, settings: Settings, folder: Path,
-        folders: tuple[Path, ...], meshes: MeshOptions, edits: Edits,
+        meshes: MeshOptions, edits: Edits,
     ) -> None:  # fmt: skip
-        self._found, self._find, self._folder, self._edits = found, find, folder, edits
-        self._comparison = counterexamples.comparison_of(find, found, scene, settings, folders, meshes, edits)
+        self._found, self._find, self._folder = found, find, folder
+        self._figure = counterexamples.comparison_of(find, found, scene, settings, meshes, edits)
         super().__init__(scene, len(find.before) + 2)
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
@@ -48,11 +47,11 @@ class FigureRun(FileRun):
                 self.progressed(f"{method}, frame {done + 1} of {total}")
 
         def write(path: Path) -> None:
-            counterexamples.save_figure(self._comparison, scene, world, path, tell, cancel)
+            comparison.save(comparison.trace(scene, *self._figure, world, tell, cancel), path)
 
         name = f"{Path(scene.path).stem}-find-{self._find.primitive}-{self._find.light}"
         self.output = exports.save(self._folder, name, ".png", write)
-        options = as_options(self._edits)
+        options = as_options(self._figure[0].edits)
         counterexamples.save_json(self._find, self._found, scene, self.output.with_suffix(".json"), options)
         self.traced = self.frames
         yield self.output
@@ -68,11 +67,10 @@ class Hunts:
         preferences: Preferences,
         runs: Runs,
         navigator: FrameNavigator,
-        recipes: Recipes,
         notices: Notices,
     ) -> None:
         self._session, self._preferences, self._runs, self._navigator = session, preferences, runs, navigator
-        self._recipes, self._notices = recipes, notices
+        self._notices = notices
         self.plan = HuntPlan()
         self.hunt: Hunt | None = None
         self.chosen: int | None = None
@@ -139,9 +137,6 @@ class Hunts:
         find, hunt, found = self.find(number), self.hunt, self.found
         if find is None or hunt is None or found is None:
             return
-        folder, folders = self._preferences.picture_folder, self._recipes.folders
-        meshes, edited = self._session.meshes, self._session.edited
+        folder, meshes, edited = self._preferences.picture_folder, self._session.meshes, self._session.edited
         edits = edited.edits if edited is not None else NO_EDITS
-        self._runs.start(
-            lambda scene: FigureRun(scene, found, find, hunt.search.settings, folder, folders, meshes, edits)
-        )
+        self._runs.start(lambda scene: FigureRun(scene, found, find, hunt.search.settings, folder, meshes, edits))

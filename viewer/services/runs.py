@@ -32,15 +32,12 @@ from viewer.services.render_request import RenderRequest, Task, Traced, Traces
 from viewer.services.selection import Selection
 from viewer.state.methods import BY_MODES, CERTIFIED
 from viewer.state.notices import Notices
-from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
+from viewer.state.plans import LONGEST_SIDE, ExperimentPlan, ZoomPlan, parse_factors
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
 from viewer.util.messages import failure
 from viewer.util.numbers import several
-
-LONGEST_SIDE = 4096
-"""Pixels of a run's pictures, of which there are many."""
 
 
 class FileRun(Run[Path]):

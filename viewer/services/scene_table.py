@@ -24,7 +24,7 @@ from viewer.services.selection import Selection
 from viewer.state.notices import Notices
 from viewer.state.parts import parts_of
 from viewer.state.preferences import Preferences
-from viewer.state.row_filter import Listing, Order, listed, quoted
+from viewer.state.row_filter import Listing, Order, listed
 from viewer.state.scene_rows import Level, Table, tables_of
 from viewer.state.session import Session
 
@@ -73,7 +73,6 @@ class SceneTable:
         self.level = Level.OBJECTS
         self.orders = dict.fromkeys(Level, Order(column="pixels", descending=True))
         self.all_lights = self.visible = self.held = self._watched = False
-        self._saves = False  # whether the table is to be saved as soon as it is that of the edited scene
         self.chosen = 0  # the serial of the selection that was made here last, or has been shown
         self._source: _Source | None = None  # the newest
         self._made: dict[Level, _Made] = {}
@@ -111,7 +110,8 @@ class SceneTable:
         original = self._session.original
         if original is not None:
             self.level = Level.PRIMITIVES
-            self.filter(f"object={quoted(parts_of(original).names[part])}")
+            name = parts_of(original).names[part].replace('"', "")
+            self.filter(f'object="{name}"')
 
     def select(self, row: int) -> None:
         """Select a row's object or primitive in the picture."""
@@ -164,34 +164,18 @@ class SceneTable:
         return int(found[0]) if len(found) else None
 
     def save(self) -> None:
-        """Write the rows that are seen as CSV into the folder of the pictures, once they are those of the scene as it
-        is edited."""
-        if self.listing is None or self._session.scene is None:
+        """Write the rows that are seen as CSV into the folder of the pictures."""
+        made, scene = self._made.get(self.level), self._session.scene
+        if made is None or scene is None:
             self._notices.say("there is no table yet: open the panel Find")
-        elif self._is_stale:
-            self._saves = True
-            self._notices.say("the table will be saved when the picture shows the edited scene")
+        elif self._session.edits != made.source.now.edits or made.listing.order != self.order or not made.in_order:
+            self._notices.say("the table is not up to date yet: save it when the picture shows the edited scene")
         else:
-            self._write()
-
-    @property
-    def _is_stale(self) -> bool:
-        """Whether rows are of the scene before it was edited, or not in the order that is asked for."""
-        made, edited = self._made.get(self.level), self._session.edited
-        if made is None or edited is not made.source.now or self._session.edits != made.source.now.edits:
-            return True
-        return made.listing.order != self.order or not made.in_order
-
-    def _write(self) -> None:
-        self._saves = False
-        listing, scene = self.listing, self._session.scene
-        if listing is None or scene is None:
-            return
-        name = f"{scene.path.stem}-{listing.table.level.value.lower()}"
-        folder, table, rows = self._preferences.picture_folder, listing.table, listing.rows
-        self._files.write(
-            lambda: exports.save(folder, name, ".csv", lambda path: exports.write_rows(table, rows, path))
-        )
+            table, rows, folder = made.listing.table, made.listing.rows, self._preferences.picture_folder
+            name = f"{scene.path.stem}-{table.level.value.lower()}"
+            self._files.write(
+                lambda: exports.save(folder, name, ".csv", lambda path: exports.write_rows(table, rows, path))
+            )
 
     # --- one frame of the window -----------------------------------------------------------------
 
@@ -210,8 +194,6 @@ class SceneTable:
         if self._job is not None and self._job.done:
             self._take(self._job)
             self._job = None
-        if self._saves and (not self.visible or not self._is_stale):
-            self._write()
         if not self.visible or now is None or self._job is not None:
             return
         if traced is not None and traced.whole and traced.request.divisor == 1:

@@ -13,6 +13,8 @@ from tracer.setting import setting
 MOST_FACTORS = 6  # that are compared in one zoom test
 MOST_MULTIPLE = 8
 MOST_FRAMES = 100_000
+LONGEST_SIDE = 4096
+"""Pixels of a run's pictures, of which there are many."""
 
 
 @dataclass
@@ -22,7 +24,7 @@ class ExperimentPlan:
 
     methods: set[str]
     frames: int = setting(100, "Frames", "Frames over the whole path of the scene.", low=1, high=MOST_FRAMES)
-    size: tuple[int, int] = (512, 512)
+    size: tuple[int, int] = setting((512, 512), "Size", "Size of the pictures.", high=LONGEST_SIDE)
     depth: int = 10
     accelerator: str = KD_TREE
     verify: bool = False
@@ -42,7 +44,10 @@ class ZoomPlan:
         0.94, "Ratio", "The part of the distance that is left after each step.", low=0.01, high=0.999,
         slider=(0.5, 0.99), digits=2,
     )  # fmt: skip
-    size: tuple[int, int] = (256, 256)
+    size: tuple[int, int] = setting(
+        (256, 256), "Size", "Size of the pictures: it decides the pixel counts, and what can be seen from afar.",
+        high=LONGEST_SIDE,
+    )  # fmt: skip
     same_start: bool = False
 
 
@@ -67,9 +72,9 @@ class FilmPlan:
         low=0.0, high=3600.0, digits=1,
     )  # fmt: skip
     fps: float = setting(25.0, "Frames / s", "Frames a second of the video.", low=1.0, high=240.0, digits=2)
-    size: tuple[int, int] = (640, 480)
+    size: tuple[int, int] = setting((640, 480), "Size", "Size of the pictures.", high=LONGEST_SIDE)
     samples: int = 1
-    caption: str = ""
+    caption: str = setting("", "Caption", "A line below each picture.", unset="none")
     legend: bool = False
     video: bool = False
 
@@ -92,7 +97,9 @@ class HuntPlan:
     )  # fmt: skip
     seed: int = setting(1, "Seed", "Seed of the extra views.", low=0, high=2**31 - 1)
     keep: int = 12
-    size: tuple[int, int] = (256, 256)
+    size: tuple[int, int] = setting(
+        (256, 256), "Size", "Size of the pictures: modes are those of a size.", high=LONGEST_SIDE
+    )
 
 
 @dataclass

@@ -33,13 +33,11 @@ HELP = """All of what you type must hold:
   -is:seen    all others"""
 _MODES = ("occlusion", "shadow")
 _TOKEN = re.compile(r'(?:[^\s"]|"[^"]*"?)+')
-_COMPARISON = re.compile(r"^([a-zA-Z_]+)(>=|<=|!=|>|<|=|:)(.*)$", re.DOTALL)
+_COMPARISON = re.compile(r"^([a-zA-Z_]+)(>=|<=|>|<|=|:)(.*)$", re.DOTALL)
 _RANGE = re.compile(r"^([\d.]+)-([\d.]+)$")
 _OPERATORS: dict[str, Callable[[NDArray, float], NDArray]] = {
     ">": operator.gt, "<": operator.lt, ">=": operator.ge, "<=": operator.le, "=": operator.eq, ":": operator.eq,
-    "!=": operator.ne,
 }  # fmt: skip
-_ALSO = {"name": "object", "id": "number", "primitive": "number", "lit": "non_shadow", "in_shadow": "full_shadow"}
 _WHEN_KNOWN = {
     "wrong": "wrong answers are known while frames are verified",
     "occlusion": "this picture has no modes",
@@ -61,11 +59,6 @@ def matching(table: Table, text: str) -> NDArray[np.bool_]:
     return found
 
 
-def quoted(name: str) -> str:
-    """A name as a filter takes it whole."""
-    return '"' + name.replace('"', "") + '"'
-
-
 def _holds(table: Table, token: str) -> NDArray[np.bool_]:
     comparison = _COMPARISON.match(token)
     if comparison is None:
@@ -76,16 +69,24 @@ def _holds(table: Table, token: str) -> NDArray[np.bool_]:
     if name == "is":
         return _state(table, wanted.lower())
     if name == "mode" and table.level is Level.PRIMITIVES:
-        return _mode(table, wanted)
+        return _modes(table, [mode for mode in _MODES if table.columns.get(mode) is not None], wanted)
     values = _column(table, name)
-    return _words(name, values, comparing, wanted) if values.words is not None else _number(values, comparing, wanted)
+    if values.words is None:
+        return _number(values, comparing, wanted)
+    if comparing not in (":", "="):
+        raise FilterError(f"{name} is a word: write {name}:{wanted}")
+    if name in _MODES:
+        return _modes(table, [name], wanted)
+    folded = wanted.casefold()
+    if comparing == ":":
+        return _with(values, [folded in word.casefold() for word in values.words])
+    return _with(values, [folded == word.replace('"', "").casefold() for word in values.words])
 
 
 def _column(table: Table, name: str) -> Values:
-    name = _ALSO.get(name, name)
     known = [column.name for column in COLUMNS[table.level]]
     if name not in known:
-        close = get_close_matches(name, [*known, *(word for word in _ALSO if _ALSO[word] in known)], 1)
+        close = get_close_matches(name, known, 1)
         hint = f"do you mean {close[0]}?" if close else f"there are {', '.join(known)}"
         raise FilterError(f"no column is called {name}: {hint}")
     values = table.columns.get(name)
@@ -111,44 +112,14 @@ def _with(values: Values, wanted: Sequence[bool]) -> NDArray[np.bool_]:
     return np.array([*wanted, False], np.bool_)[values.numbers]  # -1 finds the last of them
 
 
-def _words(name: str, values: Values, comparing: str, wanted: str) -> NDArray[np.bool_]:
-    assert values.words is not None
-    if comparing not in (":", "=", "!="):
-        raise FilterError(f"{name} is a word: write {name}:{wanted}")
-    if name in _MODES:
-        like = _modes_like(wanted, values.words)
-        if not any(like):
-            raise _no_mode(wanted, values.words)
-        return ~_with(values, like) if comparing == "!=" else _with(values, like)
-    folded = wanted.casefold()
-    if comparing == ":":
-        return _with(values, [folded in word.casefold() for word in values.words])
-    same = _with(values, [folded == word.replace('"', "").casefold() for word in values.words])
-    return same if comparing == "=" else ~same
-
-
-def _mode(table: Table, wanted: str) -> NDArray[np.bool_]:
-    """Rows with an occlusion mode or a shadow mode like this."""
-    known = [(name, values) for name in _MODES if (values := table.columns.get(name)) is not None]
-    if not known:
-        raise FilterError(_WHEN_KNOWN["occlusion"])
-    found, understood = np.zeros(table.rows, np.bool_), False
-    for _, values in known:
-        like = _modes_like(wanted, values.words or ())
-        understood |= any(like)
-        found |= _with(values, like)
-    if not understood:
-        raise _no_mode(wanted, [word for _, values in known for word in values.words or ()])
-    return found
-
-
-def _modes_like(wanted: str, words: Sequence[str]) -> list[bool]:
-    plain = re.sub(r"[_-]", " ", wanted.casefold())
-    return [plain in re.sub(r"[_-]", " ", word) for word in words]
-
-
-def _no_mode(wanted: str, words: Sequence[str]) -> FilterError:
-    return FilterError(f"no mode is called {wanted}: there are {', '.join(dict.fromkeys(words))}")
+def _modes(table: Table, names: Sequence[str], wanted: str) -> NDArray[np.bool_]:
+    """Rows with a mode like this in one of these columns."""
+    columns = [_column(table, name) for name in names or _MODES]
+    known = {word for values in columns for word in values.words or ()}
+    like = {word for word in known if re.sub(r"[_-]", " ", wanted.casefold()) in word}
+    if not like:
+        raise FilterError(f"no mode is called {wanted}: there are {', '.join(sorted(known))}")
+    return np.logical_or.reduce([_with(values, [word in like for word in values.words or ()]) for values in columns])
 
 
 def _number(values: Values, comparing: str, wanted: str) -> NDArray[np.bool_]:

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +23,6 @@ from viewer.state.readings import has_modes_of_cells
 from viewer.util.numbers import count
 
 UNKNOWN, SEVERAL = -1, 4  # beside the four modes
-SEVERAL_WORD = "several"
 NOTHING = "-"  # in the place of what is not known
 
 
@@ -119,121 +117,103 @@ class Table:
         return NOTHING if values is None else values.text(row)
 
 
-def mode_words(kind: type[OcclusionMode] | type[ShadowMode]) -> tuple[str, ...]:
-    """The modes in words, by their numbers, and what is said where there are several."""
-    return (*(mode.name.replace("_", " ").lower() for mode in kind), SEVERAL_WORD)
-
-
 _MOTION, _HIDDEN = ("static", "dynamic"), ("shown", "hidden")
-_OCCLUSION, _SHADOW = mode_words(OcclusionMode), mode_words(ShadowMode)
-
-
-class _Known(NamedTuple):
-    """(primitives,) what a frame knows of each, None for what it does not record."""
-
-    pixels: NDArray
-    due: NDArray | None
-    saved: NDArray | None
-    wrong: NDArray | None
-    occlusion: NDArray | None
-    shadow: NDArray | None
+_OCCLUSION, _SHADOW = (  # in words, by their numbers
+    (*(mode.name.replace("_", " ").lower() for mode in kind), "several") for kind in (OcclusionMode, ShadowMode)
+)
 
 
 def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table]:
     """Both tables as a frame of the edited scene knows them, with shadow modes for a light, or None for all.
 
     Their rows are the parts and primitives of the scene as it was read, in its order."""
-    total, here = now.original.primitive_count, len(now.primitives)
+    parts, total, here = parts_of(now.original), now.original.primitive_count, len(now.primitives)
     shown = frame.primitive.reshape(-1)
     hit = (shown >= 0) & (shown < here)
     at = now.primitives[shown[hit]]
+    shaded = True if frame.shaded is None else frame.shaded  # the others have the nearest's rays
+    counts = {"pixels": np.bincount(at, minlength=total).astype(np.int32)}
+    for name, buffer in (("due", frame.due_rays), ("saved", frame.saved), ("wrong", frame.wrong)):
+        if buffer is not None:
+            rays = np.where(shaded, buffer, 0).reshape(-1)[hit]
+            counts[name] = np.bincount(at, rays, minlength=total).astype(np.int64)
 
-    def summed(buffer: NDArray | None) -> NDArray | None:
-        if buffer is None:
-            return None
-        rays = buffer if frame.shaded is None else np.where(frame.shaded, buffer, 0)  # the others have the nearest's
-        return np.bincount(at, rays.reshape(-1)[hit], minlength=total).astype(np.int64)
-
-    def by_original(codes: NDArray | None) -> NDArray | None:
-        if codes is None or now.scene is now.original:
-            return codes
-        found = np.full(total, UNKNOWN, np.int8)
-        found[now.primitives] = codes
-        return found
-
-    occlusion, shadow = (by_original(codes) for codes in modes_of(frame, here, light))
-    pixels = np.bincount(at, minlength=total).astype(np.int32)
-    work = summed(frame.due_rays), summed(frame.saved), summed(frame.wrong)
-    known, parts = _Known(pixels, *work, occlusion, shadow), parts_of(now.original)
-    return {Level.PRIMITIVES: _primitives(now, parts, known), Level.OBJECTS: _objects(now, parts, known)}
-
-
-def moving_parts(now: Edited) -> NDArray[np.bool_]:
-    """(parts,) which can move, as the scene is edited."""
-    parts, resting = parts_of(now.original), dict(now.edits.static)
-    moving, named = now.edits.moving, zip(parts.names, parts.moving.tolist(), strict=True)
-    return np.array([name in moving or (moves and name not in resting) for name, moves in named], np.bool_)
+    modes_found: list[NDArray | None] = []
+    for codes in modes_of(frame, here, light):
+        if codes is not None and now.scene is not now.original:
+            found = np.full(total, UNKNOWN, np.int8)
+            found[now.primitives] = codes
+            codes = found
+        modes_found.append(codes)
+    return {
+        Level.PRIMITIVES: _primitives(now, parts, counts, *modes_found),
+        Level.OBJECTS: _objects(now, parts, counts, *modes_found),
+    }
 
 
-def hidden_parts(now: Edited) -> NDArray[np.bool_]:
-    """(parts,) which are hidden."""
-    return np.array([name in now.edits.hidden for name in parts_of(now.original).names], np.bool_)
-
-
-def _primitives(now: Edited, parts: Parts, known: _Known) -> Table:
-    scene, hidden = now.original, hidden_parts(now)[parts.part_of]
-    hidden[list(now.edits.hidden_primitives)] = True
+def _primitives(now: Edited, parts: Parts, counts: dict, occlusion: NDArray | None, shadow: NDArray | None) -> Table:
+    scene, of_part = now.original, _of_parts(now, parts)
+    hidden = of_part["hidden"].numbers[parts.part_of]
+    hidden[list(now.edits.hidden_primitives)] = 1
+    total = scene.primitive_count
     columns = {
-        "number": Values(np.arange(len(known.pixels), dtype=np.int32)),
+        "number": Values(np.arange(total, dtype=np.int32)),
         "object": Values(parts.part_of, parts.names),
         "kind": Values(parts.kind, KINDS),
         "material": Values(parts.material, tuple(material.name for material in scene.materials)),
         "texture": Values(parts.texture, tuple(texture.name for texture in scene.textures)),
-        "motion": Values(moving_parts(now)[parts.part_of].astype(np.int8), _MOTION),
-        "hidden": Values(hidden.astype(np.int8), _HIDDEN),
-        "pixels": Values(known.pixels),
-        "occlusion": None if known.occlusion is None else Values(known.occlusion, _OCCLUSION),
-        "shadow": None if known.shadow is None else Values(known.shadow, _SHADOW),
-        **_work(known.due, known.saved, known.wrong),
+        "motion": Values(of_part["motion"].numbers[parts.part_of], _MOTION),
+        "hidden": Values(hidden, _HIDDEN),
+        "occlusion": None if occlusion is None else Values(occlusion, _OCCLUSION),
+        "shadow": None if shadow is None else Values(shadow, _SHADOW),
+        **_counted(counts),
     }
-    return Table(Level.PRIMITIVES, len(known.pixels), columns)
+    return Table(Level.PRIMITIVES, total, columns)
 
 
-def _objects(now: Edited, parts: Parts, known: _Known) -> Table:
+def _objects(now: Edited, parts: Parts, counts: dict, occlusion: NDArray | None, shadow: NDArray | None) -> Table:
     number = len(parts.names)
-
-    def summed(values: NDArray | None) -> NDArray | None:
-        return None if values is None else np.bincount(parts.part_of, values, minlength=number).astype(np.int64)
-
-    def count_of(which: NDArray) -> Values:
-        return Values(np.bincount(parts.part_of[which], minlength=number).astype(np.int32))
 
     def having(codes: NDArray | None, mode: int) -> Values | None:
         return None if codes is None else count_of(codes == mode)
 
+    def count_of(which: NDArray) -> Values:
+        return Values(np.bincount(parts.part_of[which], minlength=number).astype(np.int32))
+
+    sums = {name: np.bincount(parts.part_of, one, minlength=number).astype(np.int64) for name, one in counts.items()}
     columns = {
+        **_of_parts(now, parts),
         "object": Values(np.arange(number, dtype=np.int32), parts.names),
-        "motion": Values(moving_parts(now).astype(np.int8), _MOTION),
-        "hidden": Values(hidden_parts(now).astype(np.int8), _HIDDEN),
         "primitives": Values(parts.sizes),
-        "seen": count_of(known.pixels > 0),
-        "pixels": Values(np.bincount(parts.part_of, known.pixels, minlength=number).astype(np.int64)),
-        "rendered": having(known.occlusion, OcclusionMode.FULLY_RENDERED),
-        "full_shadow": having(known.shadow, ShadowMode.FULL_SHADOW),
-        "non_shadow": having(known.shadow, ShadowMode.NON_SHADOW),
-        **_work(summed(known.due), summed(known.saved), summed(known.wrong)),
+        "seen": count_of(counts["pixels"] > 0),
+        "rendered": having(occlusion, OcclusionMode.FULLY_RENDERED),
+        "full_shadow": having(shadow, ShadowMode.FULL_SHADOW),
+        "non_shadow": having(shadow, ShadowMode.NON_SHADOW),
+        **_counted(sums),
     }
     return Table(Level.OBJECTS, number, columns)
 
 
-def _work(due: NDArray | None, saved: NDArray | None, wrong: NDArray | None) -> dict[str, Values | None]:
-    """The columns of rays."""
-    share = None
+def _of_parts(now: Edited, parts: Parts) -> dict[str, Values]:
+    """Of each part, whether it can move, as the scene is edited, and whether it is hidden."""
+    moving, resting = now.edits.moving, dict(now.edits.static)
+    named = zip(parts.names, parts.moving.tolist(), strict=True)
+    return {
+        "motion": Values(
+            np.array([name in moving or (moves and name not in resting) for name, moves in named], np.int8), _MOTION
+        ),
+        "hidden": Values(np.array([name in now.edits.hidden for name in parts.names], np.int8), _HIDDEN),
+    }
+
+
+def _counted(counts: dict[str, NDArray]) -> dict[str, Values | None]:
+    """The columns of pixels and rays; None for what the frame does not count."""
+    due, saved, share = counts.get("due"), counts.get("saved"), None
     if due is not None and saved is not None:
         share = np.full(len(due), np.nan, np.float32)
         np.divide(100.0 * saved, due, out=share, where=due > 0, casting="unsafe")
-    found = {"due": due, "saved": saved, "share": share, "wrong": wrong}
-    return {name: None if values is None else Values(values) for name, values in found.items()}
+    found = {"due": due, "saved": saved, "share": share, "wrong": counts.get("wrong"), "pixels": counts["pixels"]}
+    return {name: None if numbers is None else Values(numbers) for name, numbers in found.items()}
 
 
 def modes_of(frame: Frame, total: int, light: int | None) -> tuple[NDArray | None, NDArray | None]:
@@ -249,15 +229,13 @@ def modes_of(frame: Frame, total: int, light: int | None) -> tuple[NDArray | Non
         return _of_cells(frame, total, occlusion), _of_cells(frame, total, shadow) if lights else None
     if len(frame.modes) < total:
         return None, None
-    return occlusion[0][:total].astype(np.int8), _together(shadow, total) if lights else None
-
-
-def _together(planes: Sequence[NDArray], total: int) -> NDArray[np.int8]:
-    """One mode of several for each primitive."""
-    found = planes[0][:total].astype(np.int8)
-    for plane in planes[1:]:
-        found[found != plane[:total]] = SEVERAL
-    return found
+    found = occlusion[0][:total].astype(np.int8)
+    if not lights:
+        return found, None
+    together = shadow[0][:total].astype(np.int8)
+    for plane in shadow[1:]:
+        together[together != plane[:total]] = SEVERAL
+    return found, together
 
 
 def _of_cells(frame: Frame, total: int, planes: Sequence[NDArray]) -> NDArray[np.int8]:

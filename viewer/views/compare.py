@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.state.comparison import ENDLESS, CompareMode
+from viewer.state.comparison import ENDLESS, RING, CompareMode, Spot, worst_spots
 from viewer.state.draw_options import AXES
 from viewer.state.palette import LESS, MORE, SAME, WIPE_LINE
-from viewer.state.worst import RING, Spot, worst_spots
 from viewer.util.numbers import count, percent
 from viewer.views.base import Pixels, Values, Words
 from viewer.views.color import CHANNELS

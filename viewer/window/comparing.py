@@ -9,10 +9,9 @@ from dataclasses import replace
 from imgui_bundle import imgui
 
 from tracer.frame import Frame
-from viewer.state.comparison import CompareMode, Side
+from viewer.state.comparison import CompareMode, Side, Spot, with_rings
 from viewer.state.draw_options import DrawOptions
 from viewer.state.picking import pixel_at
-from viewer.state.worst import Spot, with_rings
 from viewer.views import words_at
 from viewer.views.base import Highlight, Pixels, Words
 from viewer.views.compare import Difference, composed, difference_legend

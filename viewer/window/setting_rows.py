@@ -10,13 +10,16 @@ from typing import Any
 from imgui_bundle import imgui
 
 from tracer.setting import Setting, settings_of
+from tracer.settings import Settings
 from viewer.state.preferences import Preferences
 from viewer.state.view_state import ViewState
 from viewer.window.command import Command
 from viewer.window.finder import Item, Kind
 from viewer.window.ui import Ui
-from viewer.window.widgets import checkbox, row, tooltip
+from viewer.window.widgets import checkbox, row, size_field, tooltip
 
+LONGEST_SLIDER = 200.0
+"""The range past which a number is typed, and has no slider."""
 ALL = {one.path: one for one in (*settings_of(ViewState), *settings_of(Preferences))}
 """All settings of the window, by their paths: "draw.outlines"."""
 
@@ -41,40 +44,75 @@ def setting_switch(ui: Ui, one: Setting, note: str = "") -> None:
 
 def setting_row(ui: Ui, one: Setting, note: str = "") -> None:
     """Show a row of `properties`: a setting's name, and its value to be changed."""
+    _row(ui, one, value_of(ui, one), partial(ui.controller.settings.set, one), note)
+
+
+def plan_rows(ui: Ui, plan: Any, *names: str) -> None:
+    """Show rows of `properties` for fields of a plan, by their declarations or, where they are settings of the tracer,
+    by those; a number out of range becomes the nearest in it."""
+    kind: type = type(plan)
+    declared = {one.name: one for one in (*settings_of(Settings), *settings_of(kind))}
+    for name in names:
+        one = declared[name]
+
+        def put(value: Any, one: Setting = one) -> None:
+            setattr(plan, one.name, min(max(value, one.low), one.high) if one.kind in (int, float) else value)
+
+        _row(ui, one, getattr(plan, name), put)
+
+
+def _row(ui: Ui, one: Setting, now: Any, change: Callable[[Any], None], note: str = "") -> None:
+    """The row of a value of any kind."""
     row(one.label, f"{one.help}{note}")
-    now = value_of(ui, one)
+    if one.kind is bool:
+        checkbox(f"##{one.name}", now, change)
+        return
+    value: Any = now
     if one.choices:
-        _choice(ui, one, now)
+        value = _choice(one, now)
     elif one.kind in (int, float):
-        value = _slider(one, now)
-        if value is not None and value != now:
-            ui.controller.settings.set(one, value)
+        value = _number(one, now)
+    elif one.kind is str:
+        _, value = imgui.input_text_with_hint(f"##{one.name}", one.unset, now)
+    elif one.kind is tuple:
+        value = size_field(now, int(one.high), ui.controller.notices.say)
+    if value != now:
+        change(value)
 
 
-def _choice(ui: Ui, one: Setting, now: Any) -> None:
+def _choice(one: Setting, now: Any) -> Any:
+    """A list; returns what is chosen now."""
+    chosen = now
     if imgui.begin_combo(f"##{one.name}", one.text(now)):
         for choice, meaning in one.choices.items():
             if imgui.selectable(one.text(choice), choice == now)[0]:
-                ui.controller.settings.set(one, choice)
+                chosen = choice
             if meaning:
                 tooltip(meaning)
         imgui.end_combo()
     elif one.choices[now]:
         tooltip(one.choices[now])
+    return chosen
 
 
-def _slider(one: Setting, now: Any) -> Any:
-    """A slider; returns what was chosen, or None.  More than it covers can be typed."""
+def _number(one: Setting, now: Any) -> Any:
+    """A slider, or a field where the range is too long for one; returns what the number is now.
+
+    More than a slider covers can be typed."""
     scale = 100.0 if one.percent else 1.0
     low, high = one.slider or (one.low, one.high)
+    if high - low > LONGEST_SLIDER and not one.log:
+        if one.kind is int:
+            return imgui.input_int(f"##{one.name}", now, 0)[1]
+        changed, value = imgui.input_float(f"##{one.name}", now, 0.0, 0.0, f"%.{one.digits}f")
+        return value if changed else now  # floats of C would be others
     flags = int(imgui.SliderFlags_.logarithmic) if one.log else 0
     if one.kind is int:
-        changed, number = imgui.slider_int(f"##{one.name}", now, int(low), int(high), f"%d{one.unit}", flags)
-        return number if changed else None
+        return imgui.slider_int(f"##{one.name}", now, int(low), int(high), f"%d{one.unit}", flags)[1]
     unit = " %%" if one.percent else one.unit
     shown = f"%{'+' if low < 0.0 else ''}.{one.digits}f{unit}"
     changed, value = imgui.slider_float(f"##{one.name}", scale * now, scale * low, scale * high, shown, flags)
-    return value / scale if changed else None
+    return value / scale if changed else now
 
 
 # --- menus and the palette -------------------------------------------------------------------------

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from tests.viewer.fakes import make_frame, make_scene
-from viewer.output.comparison_figure import Crop, Shown, figure
+from viewer.output.comparison import Comparison, Crop, Shown
+from viewer.output.comparison_figure import figure
 from viewer.state.draw_options import DrawOptions
 from viewer.state.tone import Tone
 from viewer.state.view_state import ViewState
@@ -23,8 +24,9 @@ def shown(view: View) -> Shown:
     color[1, 2] = 1.0 - np.clip(color[1, 2], 0.0, 0.4)
     other = replace(right, color=color, cost=10 * ones, saved=30 * ones)
     settings = replace(right.settings, width=w, height=h)
-    recipe = ViewState("scene.aff", settings=settings, draw=DrawOptions(view))
-    return Shown(make_scene(), recipe, {"none": right, "paper": other}, right, (Crop(0, 0, 4, 3),))
+    state = ViewState("scene.aff", settings=settings, draw=DrawOptions(view))
+    compared = Comparison(("none", "paper"), (Crop(0, 0, 4, 3),))
+    return Shown(make_scene(), state, compared, {"none": right, "paper": other}, right)
 
 
 def test_differences_are_counted() -> None:
@@ -37,7 +39,7 @@ def test_differences_are_counted() -> None:
 
 def test_pictures_have_the_tone_and_differences_are_of_what_was_traced() -> None:
     drawn = shown(View.COLOR)
-    bright = replace(drawn, recipe=drawn.recipe.with_draw(tone=Tone(1.0)))
+    bright = replace(drawn, state=drawn.state.with_draw(tone=Tone(1.0)))
     assert (bright.pictures["none"] != drawn.pictures["none"]).any()
     assert np.array_equal(bright.difference("paper"), drawn.difference("paper"))
 
@@ -46,7 +48,7 @@ def test_maps_of_work_have_one_range() -> None:
     drawn = shown(View.COST)
     hit = drawn.reference.primitive >= 0
     assert drawn.span == (0.0, 40.0)
-    by_hand = replace(drawn, recipe=drawn.recipe.with_draw(spans=((drawn.recipe.draw.view, (5.0, 10.0)),)))
+    by_hand = replace(drawn, state=drawn.state.with_draw(spans=((drawn.state.draw.view, (5.0, 10.0)),)))
     assert by_hand.span == (5.0, 10.0) and (by_hand.pictures["paper"] != drawn.pictures["paper"]).any()
     none, paper = (drawn.pictures[method][hit] for method in ("none", "paper"))
     assert (none != paper).any(axis=-1).all(), "ten rays do not look like forty"
@@ -57,11 +59,13 @@ def test_maps_of_work_have_one_range() -> None:
 
 def test_the_title_counts_the_frames_that_were_traced_before() -> None:
     drawn = shown(View.COLOR)
-    asked = replace(drawn, recipe=replace(drawn.recipe, warmup=2))
+    older = replace(drawn.comparison, edition=1)
     for warmed, words, of_old in (
         (0, "frame 0, ", "frame 0, "),
         (1, ", with what 1 earlier frame taught, ", ", after the frame before it, "),
         (2, ", with what 2 earlier frames taught, ", ", after the 2 frames before it, "),
     ):
-        assert words in figure(replace(asked, warmed=warmed)).get_suptitle()
-        assert of_old in figure(replace(asked, warmed=warmed, edition=1)).get_suptitle(), "older figures keep theirs"
+        assert words in figure(replace(drawn, warmed=warmed)).get_suptitle()
+        assert of_old in figure(replace(drawn, warmed=warmed, comparison=older)).get_suptitle(), (  # they keep theirs
+            "older figures keep theirs"
+        )

@@ -127,4 +127,4 @@ def test_the_command_saves_the_cube_and_says_what_is_wrong(capfd: pytest.Capture
     with Image.open(path) as picture:
         assert picture.size == (2 * 64 + 1, 48)
     assert "lights are" in complaint(run(capfd, "cube", "figure3", "--light", 99, "-o", path))
-    assert "power of two" in complaint(run(capfd, "cube", "figure3", "--side", 17, "-o", path))
+    assert "17 is not one of 16, 32" in complaint(run(capfd, "cube", "figure3", "--side", 17, "-o", path))

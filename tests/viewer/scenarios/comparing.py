@@ -10,10 +10,9 @@ from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
 from viewer.state.columns import rows
-from viewer.state.comparison import CompareMode, Source
+from viewer.state.comparison import CompareMode, Source, with_rings
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
-from viewer.state.worst import with_rings
 from viewer.views.compare import GAP, composed, signed_picture
 from viewer.views.wipe import wipe_column
 from viewer.window import comparing as seen

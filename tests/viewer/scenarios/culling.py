@@ -16,6 +16,7 @@ from viewer.state.views import View
 from viewer.views.slices import layer_of, slice_seen
 from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
+from viewer.window.panels.light_buffer import CubeState, Unfolded
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
 
@@ -112,17 +113,17 @@ def _clusters(d: Driver) -> None:
     assert d.c.frame.statistics.cuts.most > 3
     expected = picture(d.c.frame, View.CUTS)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
-    d.context.item_input_value("//Culling/**/##cuts", 20.0)
+    d.context.item_input_value("//Culling/**/##lightcuts_error", 20.0)
     d.settle()  # the words above the sliders are of another length then, and the sliders elsewhere
-    d.context.item_input_value("//Culling/**/##nodes", 3)
+    d.context.item_input_value("//Culling/**/##lightcuts_nodes", 3)
     d.settle()
     assert (d.c.frame.settings.lightcuts_error, d.c.frame.settings.lightcuts_nodes) == (0.2, 3)
     assert d.c.frame.statistics.cuts.most == 3
 
 
 def _space(d: Driver) -> None:
-    """What methods keep of space: a slice through voxels, which keys and a slider move; and cells by the lights that
-    they ask."""
+    """What methods keep of space: a slice through voxels, which keys and a slider move; cells by the lights that they
+    ask; and a light's cube in a panel."""
     d.c.settings.change(lamp_radius=None, lamp_samples=None)
     for view, name in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact")):
         d.press(chord(view.key))
@@ -136,6 +137,23 @@ def _space(d: Driver) -> None:
         if view is View.VOXELS:
             _slice(d)
     _tree(d)
+    _light_buffer(d)
+
+
+def _light_buffer(d: Driver) -> None:
+    """A line where the method has none; else the cube by lengths of lists, or by where full shadow begins."""
+    state = d.ui.state(CubeState)
+    d.ui.show_panel("Light buffer")
+    d.wait(lambda: isinstance(state.answer, str), "why there is none", 20.0)
+    d.c.settings.change(method="lightbuffer")
+    d.settle()
+    d.wait(lambda: isinstance(state.answer, Unfolded), "the cube", 20.0)
+    lists = state.answer
+    d.frames(3)
+    assert imgui.internal.find_window_by_name("Light buffer").draw_list.vtx_buffer.size() > 0
+    d.context.item_click("//Light buffer/distance at which full shadow begins")
+    d.wait(lambda: state.answer is not lists, "where full shadow begins", 20.0)
+    assert state.depths and (state.answer.cross != lists.cross).any()
 
 
 def _tree(d: Driver) -> None:
@@ -148,7 +166,7 @@ def _tree(d: Driver) -> None:
     d.c.settings.change(method="none")
     d.settle()
     at = d.c.session.draw.slice
-    assert "all that has been seen" in d.c.recipes.now().history
+    assert "all that has been seen" in d.c.recipes.now().warmup.unknown
     expected = picture(
         d.c.frame, View.TREE, shading=d.c.session.draw.shading, beneath=d.c.session.draw.beneath, slice=at
     )

@@ -98,24 +98,6 @@ def test_the_pointer_is_followed_and_nothing_is_traced_for_it(desk: PixelDesk):
     assert desk.c.history.frames == traced
 
 
-def test_what_is_kept_stays_wherever_the_pointer_and_the_camera_go(desk: PixelDesk):
-    desk.c.selection.hovered = desk.lit
-    desk.answered()
-    desk.c.selection.select(desk.shadow)
-    assert blocked(desk.answered())
-    first = desk.answer
-    desk.c.motion.move(navigation.look(desk.c.session.camera, 0.05, 0.03, desk.c.motion.world_up))
-    desk.until(lambda: not desk.c.active)
-    again = desk.answered()
-    assert again is not first
-    assert np.allclose(again.lights[0].point, first.lights[0].point, atol=0.3), "a pixel's breadth"
-    desk.c.motion.move(navigation.look(desk.c.session.camera, 2.5, 0.0, desk.c.motion.world_up))
-    desk.until(lambda: not desk.c.active)
-    assert desk.answer is again, "out of sight it is what it was"
-    desk.c.selection.picked = None
-    desk.until(lambda: desk.answer is None or desk.answer.x != again.x)
-
-
 def test_another_time_is_another_answer(desk: PixelDesk):
     desk.c.selection.select(desk.shadow)
     first = desk.answered()

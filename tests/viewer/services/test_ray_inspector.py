@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from tests.viewer.desk import Desk
-from viewer.output.ray_rows import Filter, Shown
 from viewer.services.ray_inspector import RayInspector
 from viewer.state import navigation
 from viewer.window.panels.ray_overlay import RayLine, ray_lines
@@ -83,19 +82,3 @@ def test_rays_follow_an_edit_of_the_scene(desk: Desk) -> None:
     assert len(lines(rays)) == len(drawn)
     again = replace(first, frame=replace(first.frame, color=first.frame.color.copy()))
     assert (again, again.frame) != (first, first.frame), "arrays alone cannot be compared as one"
-
-
-def test_filters_and_folds(desk: Desk) -> None:
-    rays = looked_at(desk)
-    desk.c.selection.select(middle(desk))
-    desk.until(lambda: rays.tree is not None)
-    whole = len(rays.seen)
-    rays.refilter(Filter(Shown.ALL, 1))
-    assert 1 < len(rays.seen) < whole
-    rays.refilter(Filter(Shown.WRONG))
-    assert len(rays.seen) == len(rays.tree.rays)
-    rays.refilter(Filter())
-    rays.toggle(rays.seen[0][1])
-    assert len(rays.seen) == 1
-    rays.toggle(rays.seen[0][1])
-    assert len(rays.seen) == whole and len(lines(rays)) > 0

@@ -16,15 +16,8 @@ from viewer.util.numbers import saved_in_words
 from viewer.window.panels import experiment_table
 from viewer.window.panels.method_choice import lights_to_fit, pale, said_of
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, go_to_experiment_frame, pointed_frame, wrong_axis
-from viewer.window.panels.runs import (
-    export_buttons,
-    in_tabs,
-    plan_rows,
-    side_by_side,
-    size_row,
-    start_or_progress,
-    whose,
-)
+from viewer.window.panels.runs import export_buttons, in_tabs, side_by_side, start_or_progress, whose
+from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
@@ -72,9 +65,7 @@ def _plan(ui: Ui) -> None:
         if shown:
             row("Methods", f"Methods to compare with {REFERENCE}, which traces every shadow ray.")
             _methods(plan, lights_to_fit(ui))
-            plan_rows(plan, "frames")
-            size_row(ui, plan, "Size of the pictures.")
-            plan_rows(plan, "depth", "accelerator", "verify")
+            plan_rows(ui, plan, "frames", "size", "depth", "accelerator", "verify")
     imgui.pop_style_var()
 
 

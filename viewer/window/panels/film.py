@@ -6,19 +6,10 @@ from imgui_bundle import ImVec2, imgui
 
 from viewer.services.film import FilmRun, Films
 from viewer.services.runs import duration
-from viewer.window.panels.runs import frames_row, plan_rows, size_row, start_or_progress
+from viewer.window.panels.runs import either, frames_row, start_or_progress
+from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
-from viewer.window.widgets import (
-    QUIET,
-    WARNING,
-    checkbox,
-    em,
-    paragraph,
-    properties,
-    row,
-    same_line_for,
-    tooltip,
-)
+from viewer.window.widgets import QUIET, WARNING, checkbox, em, paragraph, properties, row, tooltip
 
 _WIDE = 42.0  # ems of a panel that has room for its three parts side by side
 _HIGH = int(imgui.ChildFlags_.auto_resize_y)
@@ -47,20 +38,12 @@ def _way(ui: Ui, films: Films) -> None:
         if not shown:
             return
         row("Along", "The frames of the animation, or a flight through the bookmarks at an even speed.")
-        if imgui.radio_button("path", not plan.through_bookmarks):
-            plan.through_bookmarks = False
-        same_line_for(f"bookmarks ({marks})")
-        if imgui.radio_button(f"bookmarks ({marks})###bookmarks", plan.through_bookmarks):
-            plan.through_bookmarks = True
+        plan.through_bookmarks = either("path", f"bookmarks ({marks})###bookmarks", plan.through_bookmarks)
         if not plan.through_bookmarks:
             frames_row(plan, films.frames, "First and last frame of the animation.")
             row("Camera", "The scene's own camera, or the one in the picture now, which stays where it is.")
-            if imgui.radio_button("own", not plan.from_here):
-                plan.from_here = False
-            same_line_for("as here")
-            if imgui.radio_button("as here", plan.from_here):
-                plan.from_here = True
-        plan_rows(plan, "seconds", "fps")
+            plan.from_here = either("own", "as here", plan.from_here)
+        plan_rows(ui, plan, "seconds", "fps")
 
 
 def _looks(ui: Ui, films: Films) -> None:
@@ -68,10 +51,7 @@ def _looks(ui: Ui, films: Films) -> None:
     plan = films.plan
     with properties("looks", 7.6) as shown:
         if shown:
-            size_row(ui, plan, "Size of the pictures.")
-            plan_rows(plan, "samples")
-            row("Caption", "A line below each picture.")
-            _, plan.caption = imgui.input_text_with_hint("##caption", "none", plan.caption)
+            plan_rows(ui, plan, "size", "samples", "caption")
             tooltip(ui.template_help)
     checkbox("Video (mp4)", plan.video, lambda on: setattr(plan, "video", on), "Beside the numbered pictures.")
     checkbox("With legend", plan.legend, lambda on: setattr(plan, "legend", on), "Where the view has one.")

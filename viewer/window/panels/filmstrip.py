@@ -65,8 +65,12 @@ def _thumbnail(ui: Ui, test: RecordedZoomTest, shot: Shot, step: Step, height: f
 
 def in_words(step: Step) -> list[str]:
     """A step in numbers and words."""
-    wrong = f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture"
-    return [f"step {step.number}: {count(step.pixels)} pixels, {wrong}", *changes_in_words(step.changes)]
+    highest = f"highest count {count(step.highest)}" if step.highest else "not yet fully rendered"
+    return [
+        f"step {step.number}: {count(step.pixels)} pixels, {highest}",
+        f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture",
+        *changes_in_words(step.changes),
+    ]
 
 
 def screen(ui: Ui, room: ImVec2) -> bool:

@@ -4,7 +4,6 @@ Only the rows that are seen are drawn, however many there are."""
 
 from __future__ import annotations
 
-import numpy as np
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
@@ -13,7 +12,6 @@ from viewer.services.scene_table import Listing, SceneTable
 from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.state.row_filter import HELP, HINTS
 from viewer.state.scene_rows import COLUMNS, Column, Level
-from viewer.window.camera_commands import fly_to_selected
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.view_commands import FindState
@@ -43,7 +41,8 @@ _COLORS = {
 }
 _FIELD, _LIGHT = 12.0, 8.0  # ems of width, at least, for the filter, and for the name of a light
 _LEVEL_TIPS = {
-    Level.OBJECTS: "one row for each object, and for each named part of the static geometry",
+    Level.OBJECTS: "one row for each object, and for each named part of the static geometry; double-click one to list "
+    "its primitives",
     Level.PRIMITIVES: "one row for each triangle, sphere and cone",
 }
 
@@ -160,7 +159,8 @@ def _table(ui: Ui, table: SceneTable, listing: Listing) -> None:
     kinds = imgui.TableFlags_
     flags = kinds.scroll_x | kinds.scroll_y | kinds.row_bg | kinds.resizable | kinds.reorderable | kinds.hideable
     flags |= kinds.sortable | kinds.borders_inner_v
-    width = _inner_width(columns)
+    least = em(sum(_WIDTHS.get(column.name, _NAME) for column in columns) + 0.6 * len(columns))
+    width = max(least, imgui.get_content_region_avail().x - imgui.get_style().scrollbar_size)
     state.drawn = 0
     name = f"table{listing.table.level.value}"
     if not imgui.begin_table(name, len(columns), int(flags), ImVec2(0.0, 0.0), width):
@@ -183,22 +183,10 @@ def _table(ui: Ui, table: SceneTable, listing: Listing) -> None:
             imgui.table_set_column_index(0)
             below = imgui.get_cursor_screen_pos().y
             state.height, above = (below - above if above else state.height), below
-            _row(ui, table, listing, columns, row, row == selected)
+            _row(table, listing, columns, row, row == selected)
             state.drawn += 1
     clipper.end()
     imgui.end_table()
-
-
-def _inner_width(columns: tuple[Column, ...]) -> float:
-    """Of the table: what its columns need, and where only one has names, so much more for these that no column is cut
-    by the right edge before the table is scrolled."""
-    room = imgui.get_content_region_avail().x - imgui.get_style().scrollbar_size
-    least = em(sum(_WIDTHS.get(column.name, _NAME) for column in columns) + 0.6 * len(columns))
-    edges = np.cumsum([em(_WIDTHS.get(column.name, _NAME) + 0.5) + 1.0 for column in columns])
-    if least <= room or sum(column.name in _SHARES for column in columns) > 1:
-        return max(least, room)
-    seen = room - em(0.5)  # so that its border can be taken hold of
-    return float(edges[-1] + seen - max(edges[edges <= seen], default=seen))
 
 
 def _set_up(ui: Ui, table: SceneTable, number: int, column: Column) -> None:
@@ -257,7 +245,7 @@ def _scroll(ui: Ui, table: SceneTable, listing: Listing) -> None:
         imgui.set_scroll_y(max(0.0, top - 0.5 * room))
 
 
-def _row(ui: Ui, table: SceneTable, listing: Listing, columns: tuple[Column, ...], row: int, selected: bool) -> None:
+def _row(table: SceneTable, listing: Listing, columns: tuple[Column, ...], row: int, selected: bool) -> None:
     """The cells of a row, which has been begun."""
     imgui.push_id(row)
     flags = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_double_click
@@ -266,9 +254,6 @@ def _row(ui: Ui, table: SceneTable, listing: Listing, columns: tuple[Column, ...
         table.select(row)
         if imgui.is_mouse_double_clicked(0) and table.level is Level.OBJECTS:
             table.open_part(row)
-    if imgui.begin_popup_context_item("more"):
-        _menu(ui, table, listing, row)
-        imgui.end_popup()
     imgui.same_line(0.0, 0.0)
     hidden = table.is_hidden(row)
     _eye(table, row, hidden)
@@ -309,24 +294,3 @@ def _cell(listing: Listing, column: Column, row: int) -> None:
         if color is not None:
             swatch(color)
     imgui.text_unformatted(fitted(text, imgui.get_content_region_avail().x))
-
-
-def _menu(ui: Ui, table: SceneTable, listing: Listing, row: int) -> None:
-    """What can be done with a row; whatever it is, it is selected first."""
-    if imgui.is_window_appearing():
-        table.select(row)
-    here = table.selected == row
-    if imgui.menu_item(f"{icons.ICON_FA_PLANE}  Go there", ui.key("Focus").strip(" ()"), False, here)[0]:
-        fly_to_selected(ui)
-    if table.level is Level.OBJECTS:
-        if imgui.menu_item(f"{icons.ICON_FA_LIST}  List its primitives", "", False)[0]:
-            table.open_part(row)
-        copied = listing.table.cell("object", row)
-    else:
-        copied = str(row)
-    hidden = table.is_hidden(row)
-    verb = f"{icons.ICON_FA_EYE}  Show" if hidden else f"{icons.ICON_FA_EYE_SLASH}  Hide"
-    if imgui.menu_item(verb, "", False)[0]:
-        table.hide(row, not hidden)
-    if imgui.menu_item(f"{icons.ICON_FA_COPY}  Copy {copied if len(copied) < 24 else 'its name'}", "", False)[0]:
-        ui.desktop.copy(copied)

@@ -10,14 +10,8 @@ from tracer.experiments.counterexample import Counterexample
 from tracer.scene.model import Scene
 from viewer.services.hunts import Hunts
 from viewer.window.panels.method_choice import method_list
-from viewer.window.panels.runs import (
-    export_buttons,
-    frames_row,
-    plan_rows,
-    side_by_side,
-    size_row,
-    start_or_progress,
-)
+from viewer.window.panels.runs import export_buttons, frames_row, side_by_side, start_or_progress
+from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
@@ -69,8 +63,7 @@ def _plan(ui: Ui, hunts: Hunts) -> None:
         row("Method", "The method whose wrong pixels are searched; an exact one has none.")
         method_list(ui, "##method", plan.method, lambda name: setattr(plan, "method", name), combined=False)
         frames_row(plan, hunts.frames, "First and last frame of the path, traced one after another.")
-        plan_rows(plan, "step", "around", "radius", "seed")
-        size_row(ui, plan, "Size of the pictures: modes are those of a size.")
+        plan_rows(ui, plan, "step", "around", "radius", "seed", "size")
 
 
 def _finds(ui: Ui, hunts: Hunts, size: ImVec2) -> None:

@@ -52,8 +52,12 @@ def of_picture(ui: Ui) -> Legend | None:
 def in_panel(ui: Ui) -> None:
     """The whole legend at the cursor, where the picture does not show it."""
     legend = of_picture(ui)
-    if legend is None or ui.state(LegendState).shown:
-        return
+    if legend is not None and not ui.state(LegendState).shown:
+        draw(legend)
+
+
+def draw(legend: Legend) -> None:
+    """A whole legend at the cursor."""
     layout = fitting(legend, _width_of, imgui.get_text_line_height(), imgui.get_content_region_avail().x, 1e6)
     layout = layout or lay_out(legend, _width_of, imgui.get_text_line_height())
     at = imgui.get_cursor_screen_pos()

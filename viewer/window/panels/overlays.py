@@ -189,8 +189,7 @@ def clusters(cut: LightCut) -> list[Cluster]:
         if int(cut.lights[k]) == 1 or (box[:3] == box[3:]).all():
             found.append(([], place(cut.frame, box[:3]), fraction))
             continue
-        corners = np.array([[box[3 * (n >> axis & 1) + axis] for axis in range(3)] for n in range(8)])
-        found.append((_projected(cut.frame, ray_overlay.box_edges(corners)), None, fraction))
+        found.append((_projected(cut.frame, outline_of(box.reshape(2, 3))), None, fraction))
     return found
 
 

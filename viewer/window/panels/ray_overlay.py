@@ -10,12 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 from imgui_bundle import ImVec4
-from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.told_rays import AWAY, TRACED, RayTree
 from viewer.output.ray_rows import Filter, Row
-from viewer.state.palette import Color
 from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels.marks import SHADE, Pen, Point
 from viewer.window.ui import Ui
@@ -25,12 +23,12 @@ FAR = 3.0  # times the way to the first hit: how far a ray is drawn that leaves 
 
 
 class Part(Enum):
-    """What a line stands for."""
+    """What a line stands for, with its colour and its width in ems."""
 
-    PATH = "a reflected or refracted ray"
-    ASKED = "a shadow ray that was traced, as far as light comes"
-    SAVED = "a shadow ray that was culled, as far as light comes"
-    DARK = "the rest of a shadow ray, behind what blocks it"
+    PATH = (0.36, 0.93, 0.72), 0.2  # a reflected or refracted ray
+    ASKED = (0.98, 0.87, 0.25), 0.15  # a shadow ray that was traced, as far as light comes
+    SAVED = (0.98, 0.93, 0.66), 0.08  # one that was culled, as far as light comes
+    DARK = (0.06, 0.10, 0.24), 0.13  # the rest of a shadow ray, behind what blocks it
 
 
 class RayLine(NamedTuple):
@@ -81,18 +79,6 @@ def shadow_lines(frame: Frame, tree: RayTree, number: int, place: int) -> list[R
     ]
 
 
-def box_edges(corners: NDArray) -> list[NDArray]:
-    """The twelve edges (2, 3) of a box with corners (8, 3), whose numbers have a bit for each axis."""
-    return [corners[[a, a | 1 << axis]] for axis in range(3) for a in range(8) if not a >> axis & 1]
-
-
-_COLORS: dict[Part, Color] = {
-    Part.PATH: (0.36, 0.93, 0.72),
-    Part.ASKED: (0.98, 0.87, 0.25),
-    Part.SAVED: (0.98, 0.93, 0.66),
-    Part.DARK: (0.06, 0.10, 0.24),
-}
-_WIDTHS = {Part.PATH: 0.2, Part.ASKED: 0.15, Part.SAVED: 0.08, Part.DARK: 0.13}  # in ems
 _BEHIND = 0.4  # opacity of what lies behind something
 _FADED = 0.16  # of rays other than the one that is pointed at or selected
 _BLOCKED = ImVec4(0.84, 0.37, 0.0, 1.0)
@@ -132,10 +118,9 @@ def _of_row(tree: RayTree, frame: Frame, lines: Sequence[RayLine], row: Row) -> 
 
 def _line(made: Pen, line: RayLine, hole: Point | None, alpha: float, width: float = 1.0) -> None:
     """All of it but what would cover the clicked pixel."""
+    color, ems = line.part.value
     around = _PALE if line.part is Part.DARK else SHADE
-    made.strokes(
-        line.strokes, ImVec4(*_COLORS[line.part], alpha), width * _WIDTHS[line.part], _BEHIND, around, hole=hole
-    )
+    made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around, hole=hole)
 
 
 def _points(made: Pen, tree: RayTree, frame: Frame, chosen: Row | None) -> None:

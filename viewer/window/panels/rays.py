@@ -23,19 +23,7 @@ from viewer.window.widgets import (
 )
 
 _ROWS = 14  # of the tree that are seen at once
-_DRAWN = (
-    "over the picture, the shadow rays of the clicked pixel: yellow as far as light comes, then blue; outlined in "
-    "red is what blocks it, in orange what a certificate names; dashes are hidden. In the colour of partially "
-    "occluded, what hides its primitive; three squares are the pixel and the two that it is compared with (Figure 3)"
-)
 _LIGHT = 7.0  # ems of width, at least, for the name of a light
-_SHOWN_TIPS = {
-    Shown.ALL: "all lights, also those that the surface faces away from",
-    Shown.TRACED: "shadow rays that were traced through the scene",
-    Shown.UNTRACED: "shadow rays that were not, though they are due: culled, dynamic only, candidates and cache",
-    Shown.BLOCKED: "shadow rays that do not reach their light",
-    Shown.WRONG: "shadow rays with a wrong answer",
-}
 
 
 def section(ui: Ui) -> None:
@@ -51,32 +39,15 @@ def section(ui: Ui) -> None:
     if wanted:
         imgui.set_scroll_here_y(0.0)
     if opened:
-        _section(ui, rays)
+        rays.watch()
+        rays.pointed = None
+        if rays.rows is not None:
+            _tree(ui, rays)
+        elif ui.controller.selection.picked is None:
+            paragraph("Click a pixel to see what became of each of its rays.", QUIET)
+        else:
+            paragraph("The rays are listed when the picture is whole.", QUIET)  # what it waits for is said above
     setting_switch(ui, ALL["draw.rays"])
-
-
-def _section(ui: Ui, rays: RayInspector) -> None:
-    rays.watch()
-    rays.pointed = None
-    if rays.rows is None:
-        paragraph(_why_nothing(ui), QUIET)
-        return
-    _filters(ui, rays)
-    lines = min(len(rays.seen) + 1.3, _ROWS)
-    if imgui.begin_child("tree", ImVec2(0.0, lines * imgui.get_text_line_height_with_spacing())):
-        _tree(rays)
-    imgui.end_child()
-
-
-def _why_nothing(ui: Ui) -> str:
-    c = ui.controller
-    if c.runs.current is not None:
-        return f"Rays are listed when the {c.runs.current.name} has ended."
-    if c.selection.picked is None:
-        return "Click a pixel to see what became of each of its rays."
-    if c.selection.pixel is None:
-        return "The clicked point is not visible from here."
-    return c.inspector.problem or "The rays are listed when the picture is whole."
 
 
 # --- the tree ---------------------------------------------------------------------------------------
@@ -89,7 +60,7 @@ def _filters(ui: Ui, rays: RayInspector) -> None:
             same_line_for(shown.value)
         if imgui.radio_button(shown.value, rays.shown.shown is shown):
             rays.refilter(rays.shown._replace(shown=shown))
-        tooltip(_SHOWN_TIPS[shown])
+        tooltip(shown.meaning)
     edge = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
     if imgui.get_item_rect_max().x + em(_LIGHT) <= edge:
         imgui.same_line()
@@ -101,16 +72,18 @@ def _filters(ui: Ui, rays: RayInspector) -> None:
     lights.combo(ui, "rays", rays.shown.light, choose, lambda: choose(None))
 
 
-def _tree(rays: RayInspector) -> None:
+def _tree(ui: Ui, rays: RayInspector) -> None:
     """Those rows that are seen; resting on one picks its rays out in the picture."""
     assert rays.tree is not None
+    _filters(ui, rays)
+    height = imgui.get_text_line_height_with_spacing()
     clipped(totals(rays.tree), QUIET)
     if sum(rays.tree.counts.values()) > MOST_DRAWN:
         tooltip(f"{totals(rays.tree)}\n\nAt most {MOST_DRAWN} shadow rays are drawn at once, and the selected one.")
     changed: Row | None = None
-    if imgui.begin_child("rows"):
+    if imgui.begin_child("rows", ImVec2(0.0, min(len(rays.seen) + 0.3, _ROWS) * height)):
         selected, clipper = rays.selected, imgui.ListClipper()
-        clipper.begin(len(rays.seen), imgui.get_text_line_height_with_spacing())
+        clipper.begin(len(rays.seen), height)
         while clipper.step():
             for level, row in rays.seen[clipper.display_start : clipper.display_end]:
                 if _row(rays, level, row, selected is not None and selected.key == row.key):

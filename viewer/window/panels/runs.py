@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
-from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
@@ -12,47 +10,15 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.experiments.experiment import Experiment
 from tracer.experiments.runner import Run
 from tracer.experiments.zoom import ZoomTest
-from tracer.setting import settings_of
-from tracer.settings import Settings
-from viewer.services.runs import LONGEST_SIDE, described, duration
+from viewer.services.runs import described, duration
 from viewer.state.plans import FilmPlan, HuntPlan
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, checkbox, clipped, em, row, size_field, tooltip_above, wide_button
+from viewer.window.widgets import QUIET, WARNING, clipped, em, row, same_line_for, tooltip_above, wide_button
 
 _SAVED_AS = {".json": ("JSON", "Save every figure"), ".csv": ("CSV", "Save the table"),
              ".png": ("Plot", "Save the plot as a picture")}  # fmt: skip
 
 _LEFT, _LEAST_PLOT = 14.0, 12.0  # ems of the controls, and of a plot beside them
-
-
-def plan_rows(plan: Any, *names: str) -> None:
-    """Rows of `properties` for fields of a plan, by their declarations or, where they are settings of the tracer, by
-    those."""
-    kind: type = type(plan)
-    declared = {one.name: one for one in (*settings_of(Settings), *settings_of(kind))}
-    for name in names:
-        one = declared[name]
-        row(one.label, one.help)
-        now, label = getattr(plan, name), f"##{name}"
-        if one.kind is bool:
-            checkbox(label, now, partial(setattr, plan, name))
-        elif one.choices:
-            choices = list(one.choices)
-            changed, place = imgui.combo(label, choices.index(now), [one.text(choice) for choice in choices])
-            setattr(plan, name, choices[place])
-        elif one.kind is str:
-            setattr(plan, name, imgui.input_text(label, now)[1])
-        else:
-            value: float
-            low, high = one.slider or (one.low, one.high)
-            if one.kind is int:
-                changed, value = imgui.input_int(label, now, 0)
-            elif one.slider:
-                changed, value = imgui.slider_float(label, now, low, high, f"%.{one.digits}f")
-            else:
-                changed, value = imgui.input_float(label, now, 0.0, 0.0, f"%.{one.digits}f")
-            if changed:
-                setattr(plan, name, min(max(value, one.low), one.high))
 
 
 def frames_row(plan: FilmPlan | HuntPlan, frames: tuple[int, int], tip: str) -> None:
@@ -63,10 +29,12 @@ def frames_row(plan: FilmPlan | HuntPlan, frames: tuple[int, int], tip: str) -> 
         plan.first, plan.last = max(0, span[0]), max(0, span[1])
 
 
-def size_row(ui: Ui, plan: Any, tip: str) -> None:
-    """The row of the size of a run's pictures."""
-    row("Size", tip)
-    plan.size = size_field(plan.size, LONGEST_SIDE, ui.controller.notices.say)
+def either(no: str, yes: str, now: bool) -> bool:
+    """Show two buttons of which one is set, beside each other where there is room; returns whether it is the second."""
+    first = imgui.radio_button(no, not now)
+    same_line_for(yes.partition("##")[0])
+    second = imgui.radio_button(yes, now)
+    return second or (now and not first)
 
 
 def side_by_side(

@@ -13,7 +13,8 @@ from viewer.output.reports import changes_in_words, happenings, modes_in_words
 from viewer.services.runs import RecordedZoomTest
 from viewer.window.panels import filmstrip
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
-from viewer.window.panels.runs import export_buttons, plan_rows, side_by_side, size_row, start_or_progress, whose
+from viewer.window.panels.runs import either, export_buttons, side_by_side, start_or_progress, whose
+from viewer.window.setting_rows import plan_rows
 from viewer.window.style import MARK
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -29,6 +30,7 @@ from viewer.window.widgets import (
     row,
     tooltip,
     tooltip_above,
+    tooltip_at,
 )
 
 _TABLE = 20.0  # ems of the table
@@ -90,14 +92,10 @@ def _plan(ui: Ui) -> None:
             imgui.text_colored(WARNING, "Click a primitive")
         if start is not None:
             row("From", "Start where the camera is, or where the last test towards this primitive began.")
-            if imgui.radio_button("here", not plan.same_start):
-                plan.same_start = False
-            imgui.same_line()
-            if imgui.radio_button("start", plan.same_start):
-                plan.same_start = True
-        plan_rows(plan, "factors", "steps", "ratio")
+            plan.same_start = either("here", "start", plan.same_start)
+        plan_rows(ui, plan, "factors", "steps", "ratio")
         tooltip(f"The last step is at {100.0 * plan.ratio**plan.steps:.2g} % of the distance.")
-        size_row(ui, plan, "Size of the pictures: it decides the pixel counts, and what can be seen from afar.")
+        plan_rows(ui, plan, "size")
 
 
 def _plots(ui: Ui, test: RecordedZoomTest | None, results: Results | None, size: ImVec2) -> None:
@@ -185,22 +183,10 @@ def _plot(
     implot.plot_scatter("modes", changed, pixels[changed.astype(int)], mark)
     if implot.is_plot_hovered():
         step = steps[min(max(round(implot.get_plot_mouse_pos().x), 0), len(steps) - 1)]
-        _explain(step)
+        tooltip_at("\n".join(filmstrip.in_words(step)))
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
             filmstrip.show_step(ui, test, approach.factor, step.number)
     implot.end_plot()
-
-
-def _explain(step: Step) -> None:
-    """A step in numbers and words."""
-    if imgui.begin_tooltip():
-        what = " (highest count while fully rendered)" if step.highest else ""
-        highest = f"highest {count(step.highest)}" if step.highest else "no highest count yet"
-        imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {highest}{what}")
-        imgui.text_unformatted(f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture")
-        for line in changes_in_words(step.changes):
-            imgui.text_unformatted(line)
-        imgui.end_tooltip()
 
 
 def _table(ui: Ui, test: RecordedZoomTest | None, results: Results | None) -> None:
