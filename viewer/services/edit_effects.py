@@ -16,6 +16,7 @@ from tracer.frame import Frame
 from tracer.scene.edits import NO_EDITS, Edited
 from viewer.services.editing import Editing
 from viewer.state.palette import Certificate
+from viewer.state.picking import same_place
 from viewer.state.readings import has_modes_of_cells
 from viewer.state.session import Session
 
@@ -88,11 +89,6 @@ class Effects:
     def most(self) -> int:
         """The largest difference of a channel on the screen, 0 to 255."""
         return int(self.changes.max(initial=0)) if self.changes is not None else 0
-
-
-def same_place(one: Frame, other: Frame) -> bool:
-    """Whether two frames are of the same moment from the same place, in the same size."""
-    return (one.time, one.camera, one.width, one.height) == (other.time, other.camera, other.width, other.height)
 
 
 def effects(before: Frame, of: Edited, after: Frame, now: Edited) -> Effects:
