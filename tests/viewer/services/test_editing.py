@@ -16,7 +16,7 @@ from tests.viewer.desk import Desk
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edits
 from tracer.scene.things import things
-from viewer.services.before_edits import Lack
+from viewer.services.edit_effects import Lack
 
 SCENE = """
 b 0.3 0.4 0.5
@@ -178,7 +178,7 @@ def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
     c, said = desk.c, "the scene is being edited; start again when the picture shows it"
     c.editing.hide("ball")
     desk.tick()
-    c.editing.show("ball")  # it is being hidden nevertheless
+    c.editing.hide("ball", False)  # it is being hidden nevertheless
     for start in (c.runs.start_experiment, c.hunts.start, c.films.start, c.runs.start_zoom_test):
         c.notices.message = None
         start()
