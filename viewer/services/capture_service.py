@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.scene.model import Progress
 from viewer.output import capture
 from viewer.output.legend_picture import with_legend
 from viewer.output.savings_picture import with_savings
@@ -24,15 +24,17 @@ from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 from viewer.views.legend import Legend
 
+T = TypeVar("T")
+
 
 class CaptureService:
-    """`saving` are the jobs that write files now."""
+    """`saving` are the jobs that write files now, and those that bring pictures elsewhere."""
 
     def __init__(
         self, session: Session, preferences: Preferences, notices: Notices, wake: Callable[[], None] = lambda: None
     ) -> None:
         self._session, self._preferences, self._notices, self._wake = session, preferences, notices, wake
-        self.saving: list[Job[Path]] = []
+        self.saving: list[Job[Any]] = []
 
     @property
     def busy(self) -> bool:
@@ -44,16 +46,17 @@ class CaptureService:
             self.saving.remove(job)
             if job.failure is not None:
                 self._notices.report(job.failure)
-            else:
-                self._notices.say(f"saved {job.result}")
+            elif job.result is not None:
+                self._notices.say(f"saved {job.result}" if isinstance(job.result, Path) else job.result)
 
     def write(self, save: Callable[[], Path]) -> Job[Path]:
         """Let `save` write a file, whose path it returns, on a thread of its own."""
 
-        def work(_: Progress) -> Path:
-            return save()
+        return self.begin("Saving", save)
 
-        job = Job("Saving", work, self._wake)
+    def begin(self, title: str, work: Callable[[], T]) -> Job[T]:
+        """Let `work` do something of this kind on a thread of its own, and say at its end what it returns."""
+        job = Job(title, lambda _: work(), self._wake)
         self.saving.append(job)
         return job
 

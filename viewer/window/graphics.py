@@ -139,7 +139,7 @@ def capture(ui: Ui) -> None:
         if pixels is not None and compared:
             pixels = comparing.composed_picture(ui, pixels)
         described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
-        recipe = c.recipes.of(c.frame, options.view) if c.frame is not None and not compared else None
+        recipe = c.pictures.state_of(c.frame, options.view) if c.frame is not None and not compared else None
         if recipe is not None and c.frame is not None and recipe.draw.savings is not None:
             said = comparison_in_words(c.frame, savings.standing(c))
             recipe = recipe.with_draw(savings=said)

@@ -36,7 +36,7 @@ def saved(desk: Desk, view: View, name: str) -> Path:
         desk.rest()
     c = desk.c
     c.preferences.screenshot_template = name
-    recipe = c.recipes.of(c.frame, view)
+    recipe = c.pictures.state_of(c.frame, view)
     assert recipe is not None and recipe.warmup.unknown, "its modes come from other frames"
     pixels, _ = stills.draw(c.frame, c.session.scene, recipe)
     c.captures.capture(c.frame, pixels, None, recipe)

@@ -42,13 +42,13 @@ def fresh(desk: Desk) -> None:
 
 def shown(desk: Desk) -> np.ndarray:
     """The picture as the window's recipe draws the frame that is there."""
-    recipe = desk.c.recipes.of(desk.c.frame, desk.c.session.draw.view)
+    recipe = desk.c.pictures.state_of(desk.c.frame, desk.c.session.draw.view)
     return stills.draw(desk.c.frame, desk.c.session.scene, recipe)[0]
 
 
 def made(desk: Desk, capfd: pytest.CaptureFixture[str]) -> np.ndarray:
     """The picture that the copied command makes, started as a shell would."""
-    words = shlex.split(desk.c.recipes.command() or "")
+    words = shlex.split(desk.c.pictures.command() or "")
     assert words[0] == "shadowcull"
     code, _, errors = run(capfd, *words[1:])
     assert code == 0, errors
@@ -107,7 +107,7 @@ def test_a_copied_command_makes_the_same_picture(odd: Desk, capfd: pytest.Captur
     for change in (lambda _: None, exactly, later, elsewhere, soft, toned, ranged, *modes):
         change(odd)
         odd.rest()
-        assert np.array_equal(made(odd, capfd), shown(odd)), odd.c.recipes.command()
+        assert np.array_equal(made(odd, capfd), shown(odd)), odd.c.pictures.command()
         assert odd.said.startswith("copied: shadowcull render "), odd.said
 
 
@@ -115,20 +115,20 @@ def test_what_cannot_be_brought_back_is_said(odd: Desk) -> None:
     odd.c.session.set_draw(view=View.OCCLUSION)
     odd.c.motion.step(5)
     odd.rest()
-    assert odd.c.recipes.command() is not None
+    assert odd.c.pictures.command() is not None
     assert "may differ" in odd.said and "other frames" in odd.said and "Backspace" in odd.said
     fresh(odd)
-    assert odd.c.recipes.command() is not None and odd.said.startswith("copied: ")
+    assert odd.c.pictures.command() is not None and odd.said.startswith("copied: ")
     odd.c.session.change(settings=replace(odd.c.session.settings, method="certified"))
     odd.c.session.set_draw(view=View.CERTIFICATE)
     odd.rest()
     fresh(odd)
-    assert odd.c.recipes.command() is not None
+    assert odd.c.pictures.command() is not None
     assert "may differ" in odd.said and "time" in odd.said
 
 
 def test_scenes_of_the_program_are_named(figure4: Desk) -> None:
-    assert (figure4.c.recipes.command() or "").startswith("shadowcull render figure4 -o figure4-color-0000.png")
+    assert (figure4.c.pictures.command() or "").startswith("shadowcull render figure4 -o figure4-color-0000.png")
 
 
 def test_a_command_is_printed_for_a_saved_picture(
@@ -157,7 +157,7 @@ def test_a_tree_that_rays_have_had_built_cannot_be_brought_back(odd: Desk) -> No
     odd.c.settings.change(accelerator="kdtree-lazy")
     odd.c.session.set_draw(view=View.TREE)
     odd.rest()
-    assert odd.c.recipes.command() is not None and f"may differ: {BUILT}" in odd.said
+    assert odd.c.pictures.command() is not None and f"may differ: {BUILT}" in odd.said
     assert odd.c.pictures.save()
     assert odd.runs.current.recipe.warmup.unknown == BUILT
     odd.run_to_its_end()
