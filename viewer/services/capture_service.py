@@ -65,11 +65,11 @@ class CaptureService:
         frame: Frame | None,
         pixels: NDArray[np.uint8] | None,
         legend: Legend | None = None,
-        recipe: ViewState | None = None,
+        state: ViewState | None = None,
     ) -> None:
         """Save a picture, (h, w, 3) uint8, of a frame, with its legend, named by the user's template.
 
-        With the recipe that makes it again; without one it shows more than a picture, as the window, or two."""
+        With the state that makes it again; without one it shows more than a picture, as the window, or two."""
         session, preferences, scene = self._session, self._preferences, self._session.scene
         if frame is None or pixels is None or scene is None:
             self._notices.say("there is no picture to save yet", error=True)
@@ -87,11 +87,9 @@ class CaptureService:
             "width": width,
             "height": height,
         }
-        state = session.state_of(frame).with_settings(verify=session.settings.verify)  # a view may verify by itself
+        here = session.state_of(frame).with_settings(verify=session.settings.verify)  # a view may verify by itself
         size = (frame.width, frame.height)
-        text = capture.metadata(
-            state, frame.camera, number, size, frame.statistics.to_dict(), {"window": recipe is None}
-        )
+        text = capture.metadata(here, frame.camera, number, size, frame.statistics.to_dict(), {"window": state is None})
         folder = preferences.picture_folder
         try:
             name = capture.file_name(preferences.screenshot_template, values)
@@ -103,11 +101,11 @@ class CaptureService:
         def save() -> Path:
             described = with_legend(pixels, legend, place) if legend is not None else None
             saved = pixels if described is None else described
-            if recipe is not None:
-                saved = with_savings(saved, frame, recipe.draw.savings)
-            if recipe is None:
+            if state is not None:
+                saved = with_savings(saved, frame, state.draw.savings)
+            if state is None:
                 return capture.save(saved, folder, name, text)
-            kept = recipe if described is not None else recipe.with_draw(legend=False)
+            kept = state if described is not None else state.with_draw(legend=False)
             return capture.save(saved, folder, name, stills.text(saved, frame, scene, kept, by_gpu=True))
 
         self.write(save)

@@ -122,7 +122,8 @@ class Pictures:
         return state.with_warmup(repeats=repeats)
 
     def now(self) -> ViewState | None:
-        """Return what makes the picture that the window shows, or will show when it has all its samples; None before one."""
+        """Return what makes the picture that the window shows, or will show when it has all its samples; None before
+        one."""
         session, frame = self._session, self._scheduler.frame
         if session.scene is None or frame is None:
             return None

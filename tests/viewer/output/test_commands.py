@@ -1,4 +1,4 @@
-"""What a recipe says of the frames before its picture."""
+"""What a state says of the frames before its picture."""
 
 from __future__ import annotations
 

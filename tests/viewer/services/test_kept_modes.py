@@ -36,10 +36,10 @@ def saved(desk: Desk, view: View, name: str) -> Path:
         desk.rest()
     c = desk.c
     c.preferences.screenshot_template = name
-    recipe = c.pictures.state_of(c.frame, view)
-    assert recipe is not None and recipe.warmup.unknown, "its modes come from other frames"
-    pixels, _ = stills.draw(c.frame, c.session.scene, recipe)
-    c.captures.capture(c.frame, pixels, None, recipe)
+    state = c.pictures.state_of(c.frame, view)
+    assert state is not None and state.warmup.unknown, "its modes come from other frames"
+    pixels, _ = stills.draw(c.frame, c.session.scene, state)
+    c.captures.capture(c.frame, pixels, None, state)
     job = c.captures.saving.pop()
     assert job.join(10.0)
     return job.result
@@ -52,7 +52,7 @@ def check(capfd: pytest.CaptureFixture[str], path: Path) -> tuple[int, str]:
 
 
 def changed(path: Path, name: str, **warmup: object) -> Path:
-    """A copy of a picture whose recipe says something else."""
+    """A copy of a picture whose state says something else."""
     data = capture.read_data(path)
     data["state"]["warmup"] |= warmup
     with Image.open(path) as image:
@@ -128,12 +128,12 @@ def test_views_of_modes_say_how_to_save_what_can_be_made_again(desk: Desk, capfd
 
 def test_modes_come_back_as_they_were(desk: Desk) -> None:
     frame = desk.c.frame
-    recipe = ViewState(settings=replace(frame.settings, method="paper"), warmup=Warmup(unknown="why"))
-    text = kept_modes.packed(frame, recipe)
+    state = ViewState(settings=replace(frame.settings, method="paper"), warmup=Warmup(unknown="why"))
+    text = kept_modes.packed(frame, state)
     words = kept_modes.unpacked(text, len(frame.modes_before), frame.modes_before.dtype)
     assert text and np.array_equal(words, frame.modes_before) and words.dtype == frame.modes_before.dtype
     for other in (
-        replace(recipe, warmup=Warmup()),
-        replace(recipe, settings=replace(frame.settings, method="certified")),
+        replace(state, warmup=Warmup()),
+        replace(state, settings=replace(frame.settings, method="certified")),
     ):
         assert kept_modes.packed(frame, other) == ""

@@ -41,9 +41,9 @@ def fresh(desk: Desk) -> None:
 
 
 def shown(desk: Desk) -> np.ndarray:
-    """The picture as the window's recipe draws the frame that is there."""
-    recipe = desk.c.pictures.state_of(desk.c.frame, desk.c.session.draw.view)
-    return stills.draw(desk.c.frame, desk.c.session.scene, recipe)[0]
+    """The picture as the window's state draws the frame that is there."""
+    state = desk.c.pictures.state_of(desk.c.frame, desk.c.session.draw.view)
+    return stills.draw(desk.c.frame, desk.c.session.scene, state)[0]
 
 
 def made(desk: Desk, capfd: pytest.CaptureFixture[str]) -> np.ndarray:
@@ -159,11 +159,11 @@ def test_a_tree_that_rays_have_had_built_cannot_be_brought_back(odd: Desk) -> No
     odd.rest()
     assert odd.c.pictures.command() is not None and f"may differ: {BUILT}" in odd.said
     assert odd.c.pictures.save()
-    assert odd.runs.current.recipe.warmup.unknown == BUILT
+    assert odd.runs.current.state.warmup.unknown == BUILT
     odd.run_to_its_end()
     odd.c.films.plan = replace(odd.c.films.plan, first=0, last=1, size=(32, 24), video=False)
     odd.c.films.start()
-    assert odd.c.films.film.script.recipe.warmup.unknown == BUILT
+    assert odd.c.films.film.script.state.warmup.unknown == BUILT
     odd.run_to_its_end()
     odd.c.navigator.go(odd.c.history.frames - 1)
     assert odd.said.endswith(f"again, though {BUILT}"), odd.said
