@@ -27,14 +27,12 @@ from tracer.method import Method
 from tracer.scene.files import read_regular
 from tracer.scene.framing import bounds
 from tracer.scene.model import Camera, Scene
-from tracer.settings import Settings
+from tracer.setting import settings_of
+from tracer.settings import RECORDS, Settings
 from tracer.similar import did_you_mean, did_you_mean_file
 
-ASPECTS = (
-    "depth", "symmetric", "zoom_factor", "verify", "accelerator", "lamp_radius", "lamp_samples", "certificates",
-    "certificate_seconds", "certificate_memory", "lightcuts_error", "lightcuts_nodes", "light_buffer_side",
-    "light_buffer_memory",
-)  # fmt: skip
+_NOT_VARIED = {"width", "height", "method", "modes", "samples", "threads", "patient", *RECORDS} - {"verify"}
+ASPECTS = tuple(one.name for one in settings_of(Settings) if one.name not in _NOT_VARIED)
 """Settings that a study may vary, beside sizes and methods."""
 MOST_BYTES = 1 << 20
 MOST_SETTINGS = 10_000

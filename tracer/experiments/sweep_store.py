@@ -19,9 +19,11 @@ from filelock import FileLock, Timeout
 
 from tracer.experiments.experiment import FIGURES
 from tracer.experiments.study import ASPECTS
+from tracer.setting import settings_of
 from tracer.settings import Settings
 
 _COUNTERS = [name for name in FIGURES if name != "frame_seconds"]
+_TYPES: dict[type, pa.DataType] = {bool: pa.bool_(), int: pa.int32(), float: pa.float64(), str: pa.string()}
 _FIELDS: dict[str, pa.DataType] = {
     "task": pa.string(),
     "scene": pa.string(),
@@ -29,20 +31,8 @@ _FIELDS: dict[str, pa.DataType] = {
     "method": pa.string(),
     "width": pa.int32(),
     "height": pa.int32(),
-    "depth": pa.int32(),
-    "symmetric": pa.bool_(),
-    "zoom_factor": pa.float64(),
-    "verify": pa.bool_(),
-    "accelerator": pa.string(),
-    "lamp_radius": pa.float64(),
-    "lamp_samples": pa.int32(),
-    "certificates": pa.int64(),
-    "certificate_seconds": pa.float64(),
-    "certificate_memory": pa.float64(),
-    "lightcuts_error": pa.float64(),
-    "lightcuts_nodes": pa.int32(),
-    "light_buffer_side": pa.int32(),
-    "light_buffer_memory": pa.float64(),
+    **{one.name: _TYPES[one.kind] for one in settings_of(Settings) if one.name in ASPECTS},
+    "certificates": pa.int64(),  # as many as one likes
     "seed": pa.int64(),
     "shake": pa.float64(),
     "warmup": pa.int32(),
@@ -190,8 +180,8 @@ def _with_all_settings(table: pa.Table) -> pa.Table:
     for name in ASPECTS:
         if name not in table.column_names:
             usual = pa.array([getattr(Settings(), name)] * len(table), _FIELDS[name])
-            table = table.add_column(SCHEMA.get_field_index(name), name, usual)
-    return table
+            table = table.append_column(name, usual)
+    return table.select(SCHEMA.names)
 
 
 def keys_of(table: pa.Table) -> list[Key]:

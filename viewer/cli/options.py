@@ -292,8 +292,9 @@ def add_tracing(parser: Parser, accelerator: str = BVH8, many_lamps: bool = Fals
     """Add what all commands that trace have in common, with the structure that is theirs by default.
 
     `many_lamps`: several kinds of lamps are taken; `zoom_factor`: it is an option."""
-    common = "threads", "accelerator", "depth", "symmetric", "lightcuts_error", "lightcuts_nodes"
-    add_settings(parser, Settings, *common, *(["zoom_factor"] if zoom_factor else []), accelerator=accelerator)
+    others = ["method", "verify", "samples", "lamp_radius", "lamp_samples"] + ([] if zoom_factor else ["zoom_factor"])
+    common = [one.name for one in settings_of(Settings) if one.option and one.name not in others]
+    add_settings(parser, Settings, *common, accelerator=accelerator)
     add_lamps(parser, many_lamps)
     add_meshes(parser)
 

@@ -16,10 +16,10 @@ from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
 from viewer.services.baseline import Baseline
-from viewer.services.before_edits import BeforeEdits
 from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
+from viewer.services.edit_effects import BeforeEdits
 from viewer.services.editing import Editing
 from viewer.services.film import Films
 from viewer.services.frame_history import FrameHistory, FrameNavigator

@@ -160,17 +160,9 @@ class Editing:
             self._session.change(edits=edits.within(original))
             self._session.light_to_come = None
 
-    def hide(self, name: str) -> None:
-        """Hide an object, by the name of its thing (`tracer.scene.edits.things`)."""
-        self.change(self.now.with_thing(name, False))
-
-    def show(self, name: str) -> None:
-        """Show an object again."""
-        self.change(self.now.with_thing(name, True))
-
-    def toggle(self, name: str) -> None:
-        """Hide an object, or show it again."""
-        self.change(self.now.with_thing(name, name in self.now.hidden))
+    def hide(self, name: str, hidden: bool = True) -> None:
+        """Hide an object, or show it again, by the name of its thing (`tracer.scene.things`)."""
+        self.change(self.now.with_thing(name, not hidden))
 
     def hide_primitive(self, number: int, hidden: bool = True) -> None:
         """Hide a primitive, or show it again; its number is that in the scene as it was read."""

@@ -24,8 +24,7 @@ from tracer.scene.model import Cancelled
 from tracer.why import why
 from viewer.services.queries import Ask, Newest
 from viewer.services.selection import Selection
-from viewer.state.edit_effects import same_place
-from viewer.state.picking import pixel_at, pixel_of
+from viewer.state.picking import pixel_at, pixel_of, same_place
 
 MOST_OCCLUDERS = 8  # of one light that are named and drawn
 MOST_LIGHTS = 40  # that are drawn, and listed at once

@@ -137,10 +137,8 @@ class SceneTable:
 
     def hide(self, row: int, hidden: bool = True) -> None:
         """Hide a row's object or primitive, or show it again, with the object that it belongs to."""
-        if self.level is Level.OBJECTS and hidden:
-            self._editing.hide(self._object_of(row))
-        elif not hidden:
-            self._editing.show(self._object_of(row))
+        if self.level is Level.OBJECTS or not hidden:
+            self._editing.hide(self._object_of(row), hidden)
         if self.level is Level.PRIMITIVES:
             self._editing.hide_primitive(row, hidden)
 

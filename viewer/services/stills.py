@@ -163,4 +163,4 @@ def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, state: ViewState
 
 def _as_traced(options: DrawOptions) -> bool:
     """Whether a picture is shown as it was traced, without anything that is drawn."""
-    return options.view is View.COLOR and not options.outlines and options.tone.neutral and not options.clipping
+    return replace(options.of_pixels(), magnified=1) == DrawOptions()

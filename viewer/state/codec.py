@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any, TypeVar, get_args, get_origin
 
 import msgspec
 import numpy as np
 
 from tracer.setting import NEVER, PICTURES, settings_of
+from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 
 T = TypeVar("T")
@@ -193,5 +195,5 @@ def _of_today(data: Mapping[str, Any], picture: Mapping[str, Any] | None = None)
         raise ValueError("its saved state is damaged") from None
 
 
-_STYLE = ("shares", "magnified", "shading", "beneath", "outlines", "caption", "clipping", "savings")
+_STYLE = {one.name for one in fields(DrawOptions)} - {"legend"}  # which was its place, if there was one
 _WARMUP = {"before": "frames", "warmup": "of_path", "repeats": "repeats", "modes": "modes", "history": "unknown"}

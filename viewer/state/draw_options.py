@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
-from tracer.setting import setting
+from tracer.setting import setting, settings_of
 from viewer.state.palette import BENEATH
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
@@ -80,7 +81,8 @@ class DrawOptions:
     times as large.  `zoom` is the part of the picture that the window shows."""
 
     view: View = setting(View.COLOR, "View", "What is shown of the frame.", option="--view")
-    light: int = setting(0, "Light", "The light that the view is about.", low=0, remembered=False)
+    light: int = setting(0, "Light", "The light that the view is about.", low=0, remembered=False,
+                         applies=in_views(lambda view: view.of_light))  # fmt: skip
     wipe: float = setting(
         0.5, "Line", "Where the line between the two pictures is; or drag it in the picture.", low=0.0, high=1.0,
         percent=True, digits=0, panel="View", applies=in_views(lambda view: view is View.WIPE), remembered=False,
@@ -161,3 +163,14 @@ class DrawOptions:
             spans=() if span is None else ((view, span),),
             slice=self.slice if view.has_slice else MIDDLE,
         )
+
+    def of_pixels(self) -> DrawOptions:
+        """Return these with the defaults of all that does not count for the pixels of the view: another value whenever
+        these must be drawn anew."""
+        used, state = self.as_needed(), SimpleNamespace(draw=self)
+        unused = [one for one in settings_of(DrawOptions) if one.name in _AROUND or not one.applies(state)]
+        return replace(used, **{one.name: one.default for one in unused if not one.within})
+
+
+_AROUND = ("legend", "legend_at", "rays", "smooth", "savings", "caption", "zoom")
+"""What lies over the pixels of a view, or around them."""

@@ -92,6 +92,11 @@ def _seen(frame: Frame) -> tuple[float, Camera, int, int]:
     return frame.time, frame.camera, frame.width, frame.height
 
 
+def same_place(one: Frame, other: Frame) -> bool:
+    """Whether two frames are of the same moment from the same place, in the same size."""
+    return _seen(one) == _seen(other)
+
+
 def shadow_mode_of(frame: Frame, unit: int, light: int) -> ShadowMode | None:
     """A unit's shadow mode for a light; None where culling does not cover the light."""
     if not modes.has_shadow_mode(frame.modes, light):

@@ -52,13 +52,3 @@ def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
     if not view.everywhere and frame.primitive[y, x] < 0:
         return ("miss",)
     return view.words(frame, draw, x, y)
-
-
-def picture_options(draw: DrawOptions) -> tuple[object, ...]:
-    """Return what of the options counts for the pixels of a view: another one whenever they must be drawn anew."""
-    used = draw.as_needed()
-    light, wipe = draw.light if draw.view.of_light else 0, draw.wipe if draw.view is View.WIPE else 0.0
-    return (
-        used.view, light, wipe, used.slice, used.beneath, used.shading, used.tone, used.span, used.outlines,
-        used.shares, used.mark_wrong, used.clipping, used.magnified,
-    )  # fmt: skip

@@ -48,7 +48,7 @@ def by_class(
     kernels.paint_classes(
         index, classes, palette, palette if striped is None else striped, stripe, frame.color, np.float32(draw.shading),
         frame.primitive, _BACKGROUND, frame.primitive if cells is None else cells,
-        _ONE if cells is None else np.float32(CELL_LINE), np.float32(_outline(draw)), pixels,
+        _ONE if cells is None else np.float32(CELL_LINE), np.float32(outline(draw)), pixels,
     )  # fmt: skip
     return pixels
 
@@ -73,7 +73,7 @@ def by_number(
         place[~known] = np.nan
     kernels.paint_numbers(
         place, _MAP, _GREY, frame.color, np.float32(shading), frame.primitive, _BACKGROUND,
-        frame.primitive if cells is None else cells, 1.0 if cells is None else FAINT_LINE, _outline(draw), pixels,
+        frame.primitive if cells is None else cells, 1.0 if cells is None else FAINT_LINE, outline(draw), pixels,
     )  # fmt: skip
     return pixels
 
@@ -86,7 +86,7 @@ def by_color(
     colors = np.ascontiguousarray(colors, np.float32)
     kernels.paint_colors(
         colors, everywhere, frame.color, np.float32(shading), frame.primitive, _BACKGROUND,
-        np.float32(_outline(draw)), pixels,
+        np.float32(outline(draw)), pixels,
     )  # fmt: skip
     return pixels
 
@@ -145,5 +145,6 @@ def _empty(frame: Frame) -> Pixels:
     return np.empty((*frame.primitive.shape, 3), np.uint8)
 
 
-def _outline(draw: DrawOptions) -> float:
+def outline(draw: DrawOptions) -> float:
+    """Return how bright the borders of primitives are."""
     return OUTLINE if draw.outlines else 1.0

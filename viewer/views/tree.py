@@ -13,7 +13,7 @@ from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Layer, Lights, Pixels, Values, Words, hits, once, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Scale, fact
-from viewer.views.paint import FAINT_LINE, OUTLINE, checkered, in_range, mapped, on_line, shaded
+from viewer.views.paint import FAINT_LINE, checkered, in_range, mapped, on_line, outline, shaded
 from viewer.views.slices import (
     BORDER,
     HIDDEN,
@@ -107,8 +107,7 @@ def _behind(frame: Frame, draw: DrawOptions) -> Pixels:
     colors = np.where(
         hits(frame)[..., None], dimmed(frame, draw.tone, draw.beneath), np.asarray(BACKGROUND, np.float32)
     )
-    if draw.outlines:
-        colors[on_line(frame.primitive)] *= np.float32(OUTLINE)
+    colors[on_line(frame.primitive)] *= np.float32(outline(draw))
     return np.round(colors.astype(np.float64) * 255.0).astype(np.uint8)
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
-from viewer.views import AS_SAVED, Highlight, Pixels, colorize, picture_options
+from viewer.views import AS_SAVED, Highlight, Pixels, colorize
 from viewer.views.compare import Difference, signed_picture
 
 
@@ -108,7 +108,7 @@ class Display(PictureTexture):
         self.frame = frame
         if frame is None:
             return
-        wanted = frame, (picture_options(draw), window)
+        wanted = frame, (draw.of_pixels(), window)
         if wanted in (self._drawn, self._failed):  # frames are equal only where they are the same
             return
         self._failed = wanted
@@ -120,7 +120,7 @@ class Display(PictureTexture):
 
     def shows(self, draw: DrawOptions, window: InWindow = PLAIN) -> bool:
         """Return whether the frame is drawn like this."""
-        return self._drawn == (self.frame, (picture_options(draw), window))
+        return self._drawn == (self.frame, (draw.of_pixels(), window))
 
     def read_window(self, width: int, height: int) -> Pixels:
         """Return all of the window as it was just drawn, (height, width, 3) uint8, row 0 at the top."""

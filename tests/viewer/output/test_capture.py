@@ -1,7 +1,10 @@
-"""A captured picture carries what it needs, never overwrites, and fails in one line."""
+"""A captured picture carries what it needs, never overwrites, and fails in one line; captions and small pictures."""
 
 from __future__ import annotations
 
+import base64
+import io
+import stat
 from datetime import datetime
 from pathlib import Path
 
@@ -12,7 +15,9 @@ from PIL import Image, PngImagePlugin
 from tests.viewer.fakes import make_frame
 from tracer.scene.model import Camera
 from tracer.settings import Settings
-from viewer.output import capture
+from viewer.output import capture, clipboard
+from viewer.output.caption import with_caption
+from viewer.output.thumbnail import SIDE, as_text, from_text, thumbnail
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
@@ -144,3 +149,57 @@ def test_a_program_named_like_a_picture_is_not_run(tmp_path, monkeypatch):
     with pytest.raises(capture.CaptureError, match=r"saved\.png: cannot be read as a picture"):
         capture.read(path)
     assert not started
+
+
+def test_a_caption_breaks_where_it_must() -> None:
+    pixels = np.zeros((90, 120, 3), np.uint8)
+    one, many = with_caption(pixels, "short"), with_caption(pixels, "many words " * 12)
+    assert one.shape[1] == many.shape[1] == 120 and 90 < one.shape[0] < many.shape[0]
+    assert np.array_equal(one[:90], pixels) and with_caption(pixels, "") is pixels
+    strip = with_caption(pixels, "W" * 60)[90:]
+    assert (strip[:, :2] == 255).all() and (strip[:, -2:] == 255).all(), "nothing is cut at the edges"
+
+
+def test_the_clipboard_is_that_of_the_desktop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("DISPLAY", ":9")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    assert clipboard.program() is None
+    with pytest.raises(OSError, match="install xclip"):
+        clipboard.copy(b"png")
+    for name in ("xclip", "wl-copy"):
+        program = tmp_path / name
+        program.write_text(f'#!/bin/sh\nwhile read -r line; do echo "{name} $* $line" > {tmp_path}/got; done\n')
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    clipboard.copy(b"png\n")
+    assert (tmp_path / "got").read_text() == "xclip -selection clipboard -target image/png -in png\n"
+    monkeypatch.setenv("WAYLAND_DISPLAY", "wayland-0")
+    clipboard.copy(b"png\n")
+    assert (tmp_path / "got").read_text() == "wl-copy --type image/png png\n"
+    (tmp_path / "wl-copy").write_text("#!/bin/sh\nexit 3\n")
+    with pytest.raises(OSError, match="wl-copy failed with code 3"):
+        clipboard.copy(b"png")
+
+
+@pytest.mark.parametrize("size", [(480, 960), (1000, 500), (7, 3), (1, 1)])
+def test_a_picture_comes_back_small_and_of_its_shape_and_colours(size: tuple[int, int]):
+    color = np.zeros((*size, 3), np.float32)
+    color[: max(1, size[0] // 2), :, 0] = 1.0
+    text = as_text(thumbnail(color))
+    back = from_text(text)
+    assert back is not None and max(back.width, back.height) == min(SIDE, max(size)) and len(text) < 20_000
+    assert back.width / back.height == pytest.approx(size[1] / size[0], rel=0.02)
+    assert back.pixels().shape == (back.height, back.width, 3)
+    assert back.thumbnail(9)[0, 0, 0] > 200 and (size[0] < 2 or back.pixels()[-1, 0, 0] < 60)
+
+
+def test_what_is_no_number_is_black():
+    assert thumbnail(np.full((8, 8, 3), np.nan, np.float32)).pixels().max() < 8
+
+
+def test_anything_else_is_no_picture():
+    file = io.BytesIO()
+    Image.new("RGB", (4 * SIDE + 1, 4)).save(file, "JPEG")
+    large = base64.b64encode(file.getvalue()).decode()
+    for text in (None, "", 3, "no base64!", base64.b64encode(b"no picture").decode(), large, "A" * 300_000):
+        assert from_text(text) is None

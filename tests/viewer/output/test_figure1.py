@@ -13,7 +13,7 @@ import tracer
 from tests.tracing.shades import roof, shadow_scene
 from tests.tracing.worlds import moved
 from viewer.output.figure1 import Figure, Flow, figure_of
-from viewer.output.figure1_layout import Drawing, lay_out
+from viewer.output.figure1_layout import lay_out
 from viewer.output.figure1_svg import svg
 from viewer.state.views import View
 
@@ -153,22 +153,6 @@ def _from_to(words) -> tuple[float, float]:
     return (words.x - room, words.x) if words.right else (words.x, words.x + room)
 
 
-def test_what_finds_room_is_written_out_and_the_rest_are_tips():
-    figure = figure_of(frame_by("paper"))
-    rule = figure.stages[2].rule
-
-    def told(drawing: Drawing) -> str:
-        return " ".join(words.text for words in drawing.words)
-
-    roomy, low = lay_out(figure, measure, LINE, 1200, 800), lay_out(figure, measure, LINE, 720, 260)
-    assert rule[:30] in told(roomy) and rule[:30] not in told(low)
-    for drawing in (roomy, low):
-        assert drawing.height <= 800 and any(rule in area.tip for area in drawing.areas)
-    assert low.height <= 260
-    high = lay_out(figure, measure, LINE, 340, 100)
-    assert high.height > 100, "it is scrolled, not cut"
-
-
 @pytest.mark.parametrize("method, part", [("paper", 1.0), ("paper", 0.04), ("none", 0.04)])
 def test_it_fits_the_place_that_its_panel_has_at_first(method, part):
     """In a window of 1280 x 800, also in motion, so that boxes stay where they are when it begins and ends."""
@@ -179,13 +163,6 @@ def test_it_fits_the_place_that_its_panel_has_at_first(method, part):
     drawing = lay_out(figure, lambda text: 5.8 * len(text), LINE, 670, 191)
     assert drawing.height <= 191
     assert len(drawing.boxes) == 7 and len({box.x for box in drawing.boxes}) == 3
-
-
-@pytest.mark.parametrize("height", [1200, 600, 300])
-def test_no_word_is_cut_in_a_narrow_panel(height):
-    for method in ("paper", "none", "certified"):
-        drawing = lay_out(figure_of(frame_by(method, modes=True)), measure, LINE, 340, height)
-        assert not any(words.text.endswith("…") for words in drawing.words)
 
 
 def test_what_lies_at_a_point_opens_its_view():

@@ -2,19 +2,33 @@
 
 from __future__ import annotations
 
-from itertools import combinations, pairwise
+from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import matplotlib
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from PIL import Image
 
+from tests.viewer.drawn import picture
+from tests.viewer.fakes import make_frame, make_scene
 from tracer.experiments import experiment
+from tracer.experiments.zoom import Approach, Change, Results, Step
+from tracer.frame import Frame, Settings
+from tracer.scene.model import Camera
 from viewer.output import figures, run_figures
+from viewer.output.comparison import Comparison, Crop, Shown
+from viewer.output.comparison_figure import figure
+from viewer.output.filmstrip import Filmstrip
 from viewer.output.reports import frames_in_words
+from viewer.output.run_figures import COLUMNS, chosen_steps, film_figure
+from viewer.state.draw_options import DrawOptions
+from viewer.state.palette import WRONG
+from viewer.state.tone import Tone
+from viewer.state.view_state import ViewState
+from viewer.state.views import View
+from viewer.views.difference import Mark, ringed, wrong_marks
 
 FRAMES = [5, 6, 7, 8]
 PAPER = {"steps": [1.0, 0.4, 0.75, 0.85], "tests": [1.0, 0.95, 0.9, 0.5]}  # what is left of the work of `none`
@@ -155,13 +169,120 @@ def test_other_endings_are_refused(name: str) -> None:
         figures.check_ending(Path(name))
 
 
-@given(st.lists(st.floats(-0.2, 1.2), max_size=12), st.floats(0.01, 0.3))
-def test_labels_are_spread_in_their_order_as_little_as_need_be(heights: list[float], gap: float) -> None:
-    placed = figures.spread(heights, gap, 0.0, 1.0)
-    fitting = min(gap, 1.0 / max(len(heights), 1))
-    in_order = [placed[i] for i in np.argsort(heights, kind="stable")]
-    assert all(b - a >= fitting - 1e-9 for a, b in pairwise(in_order))
-    assert all(fitting / 2 - 1e-9 <= height <= 1.0 - fitting / 2 + 1e-9 for height in placed)
-    inside = all(gap / 2 <= height <= 1.0 - gap / 2 for height in heights)
-    if inside and all(abs(a - b) >= gap for a, b in combinations(heights, 2)):
-        assert placed == pytest.approx(heights)
+@pytest.fixture
+def frame() -> Frame:
+    return make_frame(Settings(width=64, height=48, verify=True))
+
+
+def step(number: int, wrong: int = 0, changes: tuple[Change, ...] = ()) -> Step:
+    return Step(number, 1.0, Camera((0, 0, 0), (0, 0, 1)), 9, 9, "INIT", [], list(changes), wrong, wrong, 1, 0, 0)
+
+
+def zoom_results(*approaches: Approach) -> Results:
+    return Results("room.aff", (64, 48), 3, 0.0, (0.0, 0.0, 0.0), 0.9, approaches=list(approaches))
+
+
+def test_a_shot_is_the_picture_with_rings_around_what_is_wrong(frame: Frame):
+    film = Filmstrip()
+    film.record(4.0, 0, frame)
+    pixels, ring = film.of(4.0)[0].pixels(), wrong_marks(frame) == Mark.RING
+    assert (pixels[ring] == np.round(255.0 * np.asarray(WRONG))).all() and ring.any()
+    np.testing.assert_array_equal(pixels[~ring], picture(frame)[~ring])
+    assert film.of(4.0)[0].thumbnail(24).shape == (24, 32, 3)
+    with pytest.raises(ValueError, match="not verified"):
+        ringed(replace(frame, wrong=None))
+
+
+@pytest.mark.parametrize("limit", [{"most_shots": 20}, {"most_bytes": 4000}])
+def test_however_long_the_way_memory_is_bounded(frame: Frame, limit: dict[str, int]):
+    film = Filmstrip(**limit)
+    for factor in (4.0, 16.0):
+        for number in range(200):
+            film.record(factor, number, frame)
+            kept = [*film.of(4.0), *film.of(16.0)]
+            assert len(kept) <= limit.get("most_shots", 1000)
+            assert sum(len(shot.png) for shot in kept) <= limit.get("most_bytes", 10**9)
+    numbers = [[shot.number for shot in film.of(factor)] for factor in (4.0, 16.0)]
+    assert numbers[0] == numbers[1] and len(numbers[0]) > 3
+    assert len(set(np.diff(numbers[0]))) == 1, "evenly thinned out"
+    assert film.nearest(4.0, 199).number == numbers[0][-1] and film.nearest(5.0, 3) is None
+
+
+def test_the_figure_draws_first_last_and_where_something_happens(frame: Frame):
+    film = Filmstrip()
+    for number in range(30):
+        film.record(4.0, number, frame)
+    approach = Approach(4.0, [step(n, wrong=int(11 <= n < 14)) for n in range(30)])
+    chosen = chosen_steps(zoom_results(approach), list(range(30)))
+    assert len(chosen) == COLUMNS and {0, 11, 14, 29} <= set(chosen) and chosen == sorted(chosen)
+    figure = film_figure(film, zoom_results(approach))
+    assert len(figure.axes) == COLUMNS
+    np.testing.assert_array_equal(figure.axes[0].images[0].get_array(), film.of(4.0)[0].pixels())
+
+
+def test_a_way_that_was_stopped_early_is_drawn_as_far_as_it_went(frame: Frame):
+    film = Filmstrip()
+    for factor, steps in ((4.0, 5), (16.0, 2)):
+        for number in range(steps):
+            film.record(factor, number, frame)
+    approaches = [Approach(4.0, [step(n) for n in range(5)]), Approach(16.0, [step(0)]), Approach(64.0)]
+    figure = film_figure(film, zoom_results(*approaches))
+    assert [len(panel.images) for panel in figure.axes] == [1, 1, 1, 1, 1, 1, 0, 0, 0, 0]
+    with pytest.raises(ValueError, match="no step"):
+        film_figure(Filmstrip(), zoom_results(Approach(4.0)))
+
+
+def shown(view: View) -> Shown:
+    right = make_frame()
+    h, w = right.primitive.shape
+    ones = np.ones((h, w), np.int32)
+    right = replace(right, saved=0 * ones, cost=40 * ones, due_rays=20 * ones)
+    color = right.color.copy()
+    color[1, 2] = 1.0 - np.clip(color[1, 2], 0.0, 0.4)
+    other = replace(right, color=color, cost=10 * ones, saved=30 * ones)
+    settings = replace(right.settings, width=w, height=h)
+    state = ViewState("scene.aff", settings=settings, draw=DrawOptions(view))
+    compared = Comparison(("none", "paper"), (Crop(0, 0, 4, 3),))
+    return Shown(make_scene(), state, compared, {"none": right, "paper": other}, right)
+
+
+def test_differences_are_counted() -> None:
+    drawn = shown(View.COLOR)
+    assert drawn.differing("none") == 0 and drawn.differing("paper") == 1
+    found = drawn.difference("paper")
+    assert found[1, 2] > 0.0 and np.count_nonzero(found) == 1
+    assert dict(drawn.counts("paper"))["pixels that differ"] == "1"
+
+
+def test_pictures_have_the_tone_and_differences_are_of_what_was_traced() -> None:
+    drawn = shown(View.COLOR)
+    bright = replace(drawn, state=drawn.state.with_draw(tone=Tone(1.0)))
+    assert (bright.pictures["none"] != drawn.pictures["none"]).any()
+    assert np.array_equal(bright.difference("paper"), drawn.difference("paper"))
+
+
+def test_maps_of_work_have_one_range() -> None:
+    drawn = shown(View.COST)
+    hit = drawn.reference.primitive >= 0
+    assert drawn.span == (0.0, 40.0)
+    by_hand = replace(drawn, state=drawn.state.with_draw(spans=((drawn.state.draw.view, (5.0, 10.0)),)))
+    assert by_hand.span == (5.0, 10.0) and (by_hand.pictures["paper"] != drawn.pictures["paper"]).any()
+    none, paper = (drawn.pictures[method][hit] for method in ("none", "paper"))
+    assert (none != paper).any(axis=-1).all(), "ten rays do not look like forty"
+    words = [text.get_text() for axes in figure(drawn).axes for text in axes.texts]
+    assert {"the reference", "A", "pixels that differ"} <= set(words)
+    assert "no difference" not in words
+
+
+def test_the_title_counts_the_frames_that_were_traced_before() -> None:
+    drawn = shown(View.COLOR)
+    older = replace(drawn.comparison, edition=1)
+    for warmed, words, of_old in (
+        (0, "frame 0, ", "frame 0, "),
+        (1, ", with what 1 earlier frame taught, ", ", after the frame before it, "),
+        (2, ", with what 2 earlier frames taught, ", ", after the 2 frames before it, "),
+    ):
+        assert words in figure(replace(drawn, warmed=warmed)).get_suptitle()
+        assert of_old in figure(replace(drawn, warmed=warmed, comparison=older)).get_suptitle(), (  # they keep theirs
+            "older figures keep theirs"
+        )

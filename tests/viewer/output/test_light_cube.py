@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +10,8 @@ from PIL import Image
 
 import tracer
 from tests.commands import complaint, run
-from tests.tracing.worlds import scene, wall
 from tracer.culling.lightbuffer.tell import listed
 from tracer.methods.lightbuffer import LightBuffer
-from tracer.scene.lights import Light, as_lamps
 from viewer.output import light_cube
 from viewer.output.light_cube import (
     COVERED,
@@ -104,20 +101,6 @@ def test_the_cube_of_a_light_is_drawn_and_told_cell_by_cell():
     plain = picture_of(cube).repeat(enlarged, 0)[:, : 4 * side].repeat(enlarged, 1)
     changed = (told[:, : 4 * side * enlarged] != plain).any(-1)
     assert changed.any() and not changed[: 2 * side * enlarged].any() and not changed[:, : 2 * side * enlarged].any()
-
-
-def test_why_a_light_has_no_cube_is_said():
-    made = replace(scene(wall(3, 2)), lights=tuple(Light(f"light {k}", (1.0, 1.0, 3.0 + k)) for k in range(33)))
-    made = replace(made, lights=(*made.lights[:1], *as_lamps(made.lights[1:2], 0.1, 16), *made.lights[2:]))
-    renderer = tracer.Renderer(made, tracer.Settings(width=8, height=8, method="lightbuffer", light_buffer_side=16))
-    cubes = renderer.render().structures["light cubes"]
-    method = renderer.state.method("lightbuffer")
-    assert isinstance(method, LightBuffer) and len(cubes) == 31
-    assert cubes[0].cube is not None and not cubes[0].why and (cubes[0].place == (1.0, 1.0, 3.0)).all()
-    assert cubes[1].cube is None and "lamp of 16 samples" in cubes[1].why
-    assert "first 31" in method.why_not(32) and not method.why_not(0)
-    renderer.settings = replace(renderer.settings, light_buffer_memory=0.0)
-    assert "no memory" in renderer.render().structures["light cubes"][0].why
 
 
 def test_the_command_saves_the_cube_and_says_what_is_wrong(capfd: pytest.CaptureFixture[str], tmp_path: Path):

@@ -1,4 +1,4 @@
-"""What a picture takes by two methods in turn: what is traced for it, when, and what becomes of the numbers."""
+"""Two methods in turn, on one world: what is traced for it, when, and what becomes of the numbers."""
 
 from __future__ import annotations
 
@@ -8,18 +8,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.tracing.same import assert_same
 from tests.viewer.fakes import FLYER_SCENE, FakeRenderer, make_frame
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Camera, Cancelled
-from tracer.statistics import FrameStatistics
 from viewer.services.baseline import FIRST, MOST, STILL, Baseline, Rounds, Subject, subject_of
+from viewer.services.pair import Pair
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.render_thread import RenderThread
-from viewer.state.in_turn import LEAST, InTurn, Spread
+from viewer.state.in_turn import LEAST, Spread
 
-CAMERA = Camera((0, 0, 5), (0, 0, -1))
+CAMERA = Camera((0.0, 1.0, 4.0), (0.0, -0.25, -1.0))
 SIZE = Settings(width=16, height=8)
 
 
@@ -79,19 +80,6 @@ def test_medians_quartiles_and_the_margin():
     assert Spread(1.004, 1.004, 1.004, 40).is_one, "written as 1.00"
 
 
-def test_one_slow_frame_changes_nothing():
-    ratio = [0.1] * LEAST
-    ratio[3] = 5.0
-
-    def took(seconds):
-        return FrameStatistics(seconds=seconds)
-
-    turns = InTurn(("none", "paper"), tuple((took(0.11), took(one)) for one in ratio))
-    assert turns.speed("paper", "none").median == pytest.approx(1.1)
-    assert turns.seconds("none").median == pytest.approx(0.11)
-    assert turns.seconds("paper", "shading") is None
-
-
 def test_methods_take_turns_after_frames_that_do_not_count_and_stop_once_it_is_known():
     renderer = Timed({"none": [9.0] * FIRST + [0.2], "paper": [9.0] * FIRST + [0.1]})
     renderer.seconds = {name: times[:FIRST] + times[FIRST:] * 60 for name, times in renderer.seconds.items()}
@@ -122,15 +110,6 @@ def test_nothing_counts_before_the_method_has_made_what_it_makes():
     rounds.step(renderer, lambda: False)
     rounds.step(renderer, lambda: False)
     assert not rounds.so_far.prepares and rounds.so_far.count == 1
-
-
-def test_a_frame_that_is_cut_short_is_traced_again():
-    renderer = Timed({"none": [0.1], "paper": [0.1]})
-    rounds = Rounds(subject("none", "paper"))
-    for _ in range(3):
-        with pytest.raises(Cancelled):
-            rounds.step(renderer, lambda: True)
-    assert run(rounds, renderer) == 2 * (FIRST + LEAST)
 
 
 def traced(method: str = "paper", at: float = 1.0, **more) -> Traced:
@@ -314,3 +293,81 @@ def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
         assert len(beside.state.histories) == histories, "no modes of other sizes, and none where none are kept"
     after, expected = window.render(1.0), alone.render(1.0)
     assert np.array_equal(after.modes, expected.modes) and after.statistics.shadow == expected.statistics.shadow
+
+
+def never() -> bool:
+    return False
+
+
+@pytest.mark.parametrize("keeps_modes", [True, False])
+def test_neither_knows_what_the_other_has_found_out(tmp_path, keeps_modes):
+    """While an object moves, and when it rests, which counts as static for one of the methods alone."""
+    (tmp_path / "scene.aff").write_text(FLYER_SCENE)
+    scene = load_scene(tmp_path / "scene.aff")
+    settings = Settings(width=48, height=32, threads=1, modes=keeps_modes, record_work=True)
+    methods = "paper", "certified"
+    alone = [Renderer(scene, replace(settings, method=method)) for method in methods]
+    first = Renderer(scene, replace(settings, method=methods[0]))
+    pair = Pair(first)
+    for moment in (1.0, 2.0, 2.0, 2.0, 4.0):
+        asked = RenderRequest(moment, CAMERA, settings, samples=2, second=methods[1], parts=(1, 8, 16))
+        steps = list(pair.refine(asked, never))
+        expected = [[frame for frame, _ in asked.refine(renderer, never)] for renderer in alone]
+        assert len(steps) == len(expected[0]) == 4
+        for both, *each in zip(steps, *expected, strict=True):
+            assert [frame.settings.method for frame in both] == list(methods)
+            for one, other in zip(both, each, strict=True):
+                assert_same(other, one, f"at {moment} s by {one.settings.method}")
+    saved = [step.statistics.shadow.dynamic_only for step in steps[-1]]
+    assert saved[0] != saved[1], "both cull the same, so this shows nothing"
+    assert pair.is_of(first) and not pair.is_of(alone[0])
+
+
+def test_the_world_is_left_to_the_first_whatever_becomes_of_the_picture():
+    first = FakeRenderer()
+    pair = Pair(first)
+    asked = RenderRequest(3.0, CAMERA, Settings(), second="none", parts=(1, 16))
+    pictures = pair.refine(asked, never)
+    one, other = next(pictures)
+    assert (one.settings.method, other.settings.method, one.time, other.time) == ("paper", "none", 3.0, 3.0)
+    pictures.close()
+    assert first.turns == ["paper"], "a picture that nobody wants any more"
+    list(pair.refine(asked, never))
+    assert first.turns == ["paper", "paper", "none", "paper"], "and between its parts, when questions are answered"
+    first.other.failing = ValueError("no")
+    with pytest.raises(ValueError, match="no"):
+        list(pair.refine(asked, never))
+    assert first.turns[-1] == "paper"
+
+
+def request(at: float, **kinds) -> RenderRequest:
+    return RenderRequest(at, CAMERA, Settings(width=8, height=8), **kinds)
+
+
+def come(thread: RenderThread, wanted) -> None:
+    end = time.monotonic() + 5.0
+    while time.monotonic() < end:
+        traced = thread.take()
+        if traced is not None and wanted(traced):
+            return
+        time.sleep(0.002)
+    raise AssertionError("no such frame came")
+
+
+def test_the_thread_traces_both_for_each_request_and_stops_when_it_may():
+    thread = RenderThread()
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    for at in (1.0, 2.0):
+        thread.submit(request(at, second="certified", parts=(4, 16)))
+        come(thread, lambda traced: traced.whole and traced.second is not None)
+    assert [moment for moment, _ in renderer.other.asked] == [1.0, 1.0, 2.0, 2.0]
+    assert {settings.method for _, settings in renderer.other.asked} == {"certified"}
+    other = renderer.other
+    thread.submit(request(2.0, second=""))
+    come(thread, lambda traced: traced.second is None)
+    assert len(other.asked) == 4, "one method again"
+    thread.submit(request(3.0, second="none"))
+    come(thread, lambda traced: traced.second is not None)
+    assert renderer.other is not other, "what it had learnt is gone"
+    assert thread.close(5.0)

@@ -65,19 +65,15 @@ def test_a_picture_is_of_a_whole_frame_from_there(parts: Parts, own_settings: Pa
     assert kept == codec.to_json(parts.marks.all)
 
 
-def test_names_are_new_and_can_be_changed(parts: Parts):
+def test_names_are_new_and_they_and_the_order_can_be_changed(parts: Parts):
     assert parts.names == ["frame 0", "frame 0 (2)", "frame 0 (3)"]
     parts.marks.rename(1, "  by   the door ")
     parts.marks.rename(0, "   ")
-    assert parts.names == ["frame 0", "by the door", "frame 0 (3)"]
-
-
-def test_order_and_deletion(parts: Parts):
     parts.marks.move(2, 0)
-    assert parts.names == ["frame 0 (3)", "frame 0", "frame 0 (2)"]
+    assert parts.names == ["frame 0 (3)", "frame 0", "by the door"]
     parts.marks.move(0, 99)
     parts.marks.forget(0)
-    assert parts.names == ["frame 0 (2)", "frame 0 (3)"]
+    assert parts.names == ["by the door", "frame 0 (3)"]
     parts.comes()
     assert parts.pictured == [False, True]
 

@@ -109,21 +109,6 @@ def test_one_wipe_at_a_time(desk: Desk) -> None:
     assert not comparing.state.on and "right picture" in desk.said
 
 
-def test_all_ways_in_turn(desk: Desk) -> None:
-    comparing = desk.c.comparing
-    keep(desk)
-    comparing.start(CompareMode.FLIP)
-    seen = []
-    for _ in CompareMode:
-        seen.append(comparing.state.mode)
-        comparing.next_mode()
-    assert seen == list(CompareMode) and comparing.state.mode is CompareMode.FLIP
-    comparing.toggle(CompareMode.FLIP)
-    assert not comparing.state.on
-    comparing.next_mode()
-    assert comparing.state.on and comparing.state.mode is CompareMode.FLIP, "where it was left"
-
-
 def test_a_second_method_is_traced_while_it_is_seen(desk: Desk) -> None:
     comparing = desk.c.comparing
     desk.c.settings.change(method="paper")

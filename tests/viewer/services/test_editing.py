@@ -16,7 +16,7 @@ from tests.viewer.desk import Desk
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edits
 from tracer.scene.things import things
-from viewer.services.before_edits import Lack
+from viewer.services.edit_effects import Lack
 
 SCENE = """
 b 0.3 0.4 0.5
@@ -135,21 +135,6 @@ def test_what_changed_is_told_against_the_picture_before(desk: Desk):
     assert c.before_edits.effects.exact > 0
 
 
-def test_a_hidden_occluder_changes_modes_to_unshadowed(desk: Desk):
-    c = desk.c
-    c.settings.change(method="paper")
-    desk.rest()
-    for _ in range(3):
-        c.scheduler.trace_again()
-        desk.rest()
-    edit(desk, lambda: c.editing.hide("ball"))
-    for _ in range(3):
-        c.scheduler.trace_again()
-        desk.rest()
-    changes = {(a, b) for one in c.before_edits.effects.shadows for a, b, _ in one.pairs()}
-    assert ("partial shadow", "non shadow") in changes
-
-
 def test_an_edit_made_while_the_others_are_put_aside_brings_them_back(desk: Desk):
     c = desk.c
     edit(desk, lambda: c.editing.hide("ball"))
@@ -189,28 +174,11 @@ def test_no_picture_of_an_edited_scene_comes_before_the_session_has_it(desk: Des
     assert np.array_equal(c.frame.color, fresh(desk))
 
 
-def test_what_follows_the_newest_picture_gets_none_of_another_scene(desk: Desk):
-    c, given = desk.c, []
-    c.settings.change(method="paper")
-    desk.rest()
-    follow = c.table.update
-
-    def watched(traced, moving):
-        if traced is not None:
-            given.append((len(traced.frame.modes), c.session.scene.primitive_count))
-        follow(traced, moving)
-
-    c.table.update = watched
-    edit(desk, lambda: c.editing.hide("ball"))
-    edit(desk, c.editing.clear)
-    assert given and all(modes == primitives for modes, primitives in given)
-
-
 def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
     c, said = desk.c, "the scene is being edited; start again when the picture shows it"
     c.editing.hide("ball")
     desk.tick()
-    c.editing.show("ball")  # it is being hidden nevertheless
+    c.editing.hide("ball", False)  # it is being hidden nevertheless
     for start in (c.runs.start_experiment, c.hunts.start, c.films.start, c.runs.start_zoom_test):
         c.notices.message = None
         start()
@@ -222,55 +190,6 @@ def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
     run = c.runs.current
     desk.run_to_its_end()
     assert run.whole
-
-
-def test_what_is_forgotten_is_forgotten_of_all_scenes(desk: Desk):
-    c, first = desk.c, desk.c.renderer._renderer
-    c.settings.change(method="paper")
-    desk.rest()
-    ask = c.scheduler.request
-
-    def known() -> int:
-        """Histories of the scene as it was read, once it is back and before a frame of it is traced."""
-        c.scheduler.request = lambda now: None
-        c.editing.clear()
-        desk.until(lambda: not c.editing.under_way)
-        assert c.renderer._renderer is first
-        c.scheduler.request = ask
-        found = len(first.state.histories)
-        desk.rest()
-        return found
-
-    edit(desk, lambda: c.editing.hide("ball"))
-    assert known() > 0, "it is kept"
-    edit(desk, lambda: c.editing.hide("ball"))
-    c.reset_modes()
-    desk.rest()
-    assert known() == 0
-    c.reset_modes()
-    edit(desk, lambda: c.editing.hide("ball"))  # before a picture
-    assert known() == 0
-
-
-def test_a_light_chosen_after_a_step_was_taken_back_stays(desk: Desk):
-    session, editing = desk.c.session, desk.c.editing
-    session.want(Edits(hidden=frozenset({"ball"})), 0)  # as undo does
-    editing.show("ball")
-    session.set_draw(light=1)
-    edit(desk, lambda: editing.hide("car"))
-    assert session.draw.light == 1
-    session.want(Edits(), 0)
-    editing._give_up()
-    assert session.light_to_come is None and session.edits == Edits(hidden=frozenset({"car"}))
-    # It is for what was wanted, not for what is made on the way to that.
-    session.set_draw(light=1)
-    editing.hide("ball")
-    desk.tick()
-    session.want(Edits(hidden_primitives=frozenset({0})), 0)
-    desk.until(lambda: "ball" in session.edited.edits.hidden)
-    assert session.draw.light == 1
-    desk.until(lambda: not editing.under_way)
-    assert session.draw.light == 0
 
 
 def test_edits_stay_when_the_scene_is_read_again_as_far_as_it_has_their_targets(desk: Desk):
@@ -334,22 +253,6 @@ def test_edits_of_what_is_not_there_are_one_line(
     code, _, err = run(capfd, "render", path, "-o", tmp_path / "out.png", option)
     lines = err.strip().splitlines()
     assert code != 0 and said in lines[-1] and not (tmp_path / "out.png").exists()
-
-
-def test_after_an_edit_that_fails_the_pixel_that_is_clicked_is_explained(desk: Desk, monkeypatch: pytest.MonkeyPatch):
-    c = desk.c
-
-    def no_memory(*_: object) -> None:
-        raise MemoryError("made to fail")
-
-    monkeypatch.setattr("viewer.services.editing.edited", no_memory)
-    c.editing.hide("ball")
-    desk.until(lambda: not c.editing.under_way)
-    assert "made to fail" in desk.said
-    desk.rest()
-    c.selection.select((0.5, 0.5))
-    desk.until(lambda: c.inspector.answer is not None)
-    assert c.inspector.answer.frame is c.frame
 
 
 def test_an_answer_that_fails_is_told_of_and_stops_nothing(desk: Desk, monkeypatch: pytest.MonkeyPatch):

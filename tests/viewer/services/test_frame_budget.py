@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tracer.statistics import FrameStatistics
-from viewer.services.frame_budget import PARTS, Cost, FrameBudget, divided
+from viewer.services.frame_budget import PARTS, Cost, FrameBudget
 
 FIXED, RAY, PIXEL = 5e-3, 1e-7, 1e-6
 
@@ -32,14 +32,6 @@ def test_fixed_and_growing_costs_are_learnt_apart():
         cost.observe(number, (5e-3 + 1e-7 * number) * noise.uniform(0.95, 1.05))
     assert cost.fixed == pytest.approx(5e-3, rel=0.4)
     assert cost(1e5) == pytest.approx(1.5e-2, rel=0.1) and cost(1e6) == pytest.approx(1.05e-1, rel=0.1)
-
-
-def test_where_all_frames_are_alike_the_cost_is_theirs_and_keeps_its_proportions():
-    cost = Cost(1e-3, 1e-8)
-    for _ in range(10):
-        cost.observe(1e5, 2e-2)
-    assert cost(1e5) == pytest.approx(2e-2, rel=0.01)
-    assert cost.fixed == pytest.approx(1e-2, rel=0.05)
 
 
 def test_old_costs_are_forgotten():
@@ -82,12 +74,6 @@ def test_what_was_whole_at_once_teaches_what_its_primary_rays_cost():
     assert budget.plan(640, 480, 0.05, coarse=False, playing=False).parts == (16,), "0.16 s do not take long"
 
 
-def test_steps_on_the_way_to_the_whole_are_worth_showing():
-    slow = taught(*(frame(400_000, part, slower=8.0) for part in (1, 4, 16) * 3)).plan(800, 500, 0.5)
-    quick = taught(*(frame(400_000, part, slower=0.2) for part in (1, 4, 16) * 3)).plan(800, 500, 0.02)
-    assert len(slow.parts) > len(quick.parts) == 2
-
-
 def test_what_does_not_take_long_is_whole_at_once_where_nothing_moves():
     quick = taught(*(frame(400_000, part, slower=0.5) for part in (1, 4, 16) * 3))
     assert quick.plan(800, 500, 0.1).parts[0] < 16, "in motion as much as fits"
@@ -111,11 +97,6 @@ def test_what_else_is_in_a_frame_leaves_less_time():
     assert beside.seconds(400_000, 1) == pytest.approx(alone.seconds(400_000, 1) + 0.1, rel=0.01)
     beside.forget()
     assert beside.seconds(400_000, 1) == FrameBudget().seconds(400_000, 1), "another scene"
-
-
-def test_divided_sizes_are_never_empty():
-    assert divided(3, 1, 8) == (1, 1)
-    assert divided(1000, 500, 3) == (333, 167)
 
 
 def test_a_frame_that_was_slept_through_changes_nothing_but_slow_ones_do():

@@ -1,23 +1,29 @@
-"""Back to a frame that was traced; and which frames set a mode."""
+"""Back to a frame that was traced; which frames set a mode, against a record kept mode by mode; frames a second."""
 
 from __future__ import annotations
 
-import threading
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import tracer
 from tests.viewer.desk import ELSEWHERE, Desk
+from tests.viewer.fakes import make_frame, make_scene
 from tracer.culling import modes
-from tracer.frame import Frame
+from tracer.culling.modes import FULLY_RENDERED
+from tracer.experiments import warmup_frames
+from tracer.experiments.warmup_frames import WarmupFrame
+from tracer.frame import Frame, Settings
 from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.scene.edits import NO_EDITS, Edits
-from tracer.scene.model import Cancelled
-from viewer.services.frame_history import JumpTarget
+from tracer.scene.model import Camera, Cancelled
+from viewer.services.frame_history import FrameHistory, JumpTarget
 from viewer.services.origin_pixels import trace_once_more
+from viewer.services.render_request import RenderRequest, Traced
+from viewer.state.history import FrameRate, FrameRecord, FrameRecords, rate_in_words
+from viewer.state.session import Session
+from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 
@@ -62,14 +68,6 @@ def test_an_exact_picture_comes_back_bit_for_bit(desk: Desk, method: str) -> Non
         assert (c.session.settings.method, c.session.settings.depth) == (method, frame.settings.depth)
         assert np.array_equal(c.frame.color.view(np.uint32), frame.color.view(np.uint32))
     assert {c.history.records.get(number).state.draw.view for number in seen} == {View.COLOR, View.DEPTH}
-
-
-def test_frames_of_an_experiment_are_told_from_those_of_the_path(desk: Desk) -> None:
-    c, scene = desk.c, desk.c.session.scene
-    every = [scene.frame_time(number) for number in range(scene.frames)]
-    runs = [SimpleNamespace(times=times, shown="paper", is_of=lambda scene: True) for times in (every, every[::5])]
-    assert c.navigator.name_in_experiment(runs[0], 2) == "frame 2 of the path, by paper"
-    assert c.navigator.name_in_experiment(runs[1], 2) == "frame 2 of the experiment, by paper, frame 10 of the path"
 
 
 def test_going_back_can_be_undone_with_its_time(desk: Desk) -> None:
@@ -120,15 +118,6 @@ def test_a_frozen_picture_knows_what_its_warmup_frames_teach_and_no_more(desk: D
     c.motion.move(ELSEWHERE)
     desk.rest()
     assert c.frame.settings.samples == 4, "having moved, it gets its samples"
-
-
-def test_who_set_which_mode_is_noted_beside_the_window(monkeypatch: pytest.MonkeyPatch, desk: Desk) -> None:
-    """As it looks at all units of a frame, for which the window would wait."""
-    threads: set[threading.Thread] = set()
-    add = ModeOrigins.add
-    monkeypatch.setattr(ModeOrigins, "add", lambda *args: (threads.add(threading.current_thread()), add(*args))[1])
-    flown(desk, "paper")
-    assert threads and threading.main_thread() not in threads
 
 
 def test_a_mode_names_the_frame_and_the_pixels_that_taught_it(desk: Desk) -> None:
@@ -216,3 +205,119 @@ def test_tracing_a_frame_once_more_for_who_set_a_mode_can_be_cancelled(desk: Des
     scene, settings = desk.c.session.scene, replace(desk.c.session.settings, width=64, height=48)
     with pytest.raises(Cancelled):
         trace_once_more(tracer.Renderer(scene, settings), 0.0, scene.camera_at(0.0), settings, 0, False, lambda: True)
+
+
+UNITS = 600
+
+
+@pytest.mark.parametrize(("lights", "word"), [(3, np.uint32), (20, np.uint64)])
+def test_the_first_frame_of_each_answer_is_known(lights: int, word: type) -> None:
+    """Words drawn by lot, which gain and lose modes; and lights that move, so that what they had was forgotten."""
+    lots, origins = np.random.default_rng(3), ModeOrigins(lights)
+    first: dict[tuple[int, int], int] = {}  # by unit and bit
+    whole: dict[int, int] = {}
+    words = np.zeros(UNITS, word)
+    for number in range(12):
+        moved = lots.random(lights) < 0.2
+        gained = lots.integers(0, 1 << 62, UNITS).astype(word) & lots.integers(0, 1 << 62, UNITS).astype(word)
+        lost = np.where(lots.random(UNITS) < 0.1, lots.integers(0, 1 << 62, UNITS), 0).astype(word)
+        gained &= word(4 ** (lights + 1) - 1)
+        before, words = words, (words | np.where(lots.random(UNITS) < 0.3, gained, word(0))) & ~lost
+        origins.add(number, words, moved)
+        for unit in range(UNITS):
+            for bit in range(2, 2 + 2 * lights):
+                has, had = int(words[unit]) >> bit & 1, int(before[unit]) >> bit & 1 and not moved[(bit - 2) // 2]
+                if has and not had:
+                    first[unit, bit] = number
+                elif not has:
+                    first.pop((unit, bit), None)
+            is_whole = int(words[unit]) & 3 == FULLY_RENDERED
+            if is_whole and (int(before[unit]) & 3 != FULLY_RENDERED or moved.any()):
+                whole[unit] = number
+            elif not is_whole:
+                whole.pop(unit, None)
+    assert len(first) > UNITS and whole
+    for unit in range(UNITS):
+        known = origins.of(unit)
+        for light in range(lights):
+            expected = tuple(first.get((unit, 2 + 2 * light + bit), NEVER) for bit in (0, 1))
+            assert expected == (NEVER, NEVER) if known is None else known.lights[light] == expected
+        assert (NEVER if known is None else known.whole) == whole.get(unit, NEVER)
+
+
+def test_memory_is_bounded() -> None:
+    origins = ModeOrigins(3, most_bytes=100 * 4 * 7)
+    origins.add(0, np.full(UNITS, 4, np.uint32))
+    assert origins.full and origins.of(99) is not None and origins.of(100) is None
+    origins.add(1, np.full(UNITS, 4 | 8, np.uint32))
+    assert origins.of(7).lights[0] == (0, 1) and origins.of(-1) is None and origins.of(UNITS) is None
+
+
+def test_frames_are_kept_by_their_numbers() -> None:
+    records, camera = FrameRecords(5), Camera((0, 0, 0), (0, 0, 1))
+
+    def put(number: int, time: float = 0.0) -> None:
+        records.put(FrameRecord(number, ViewState(time=time), camera, Settings(), (8, 8), True))
+
+    for number in range(8):
+        put(number)
+    assert records.get(2) is None and records.get(8) is None
+    assert [records.get(number).number for number in range(3, 8)] == [3, 4, 5, 6, 7]
+    put(7, 1.5)
+    assert records.get(7).state.time == 1.5 and records.get(3).number == 3
+    put(9)
+    assert records.get(9).number == 9 and records.get(8) is None and records.get(7).number == 7
+    put(0)
+    assert records.get(0).number == 0 and records.get(7) is None
+
+
+def test_frames_before_a_picture_are_json() -> None:
+    frames = (WarmupFrame(0.1), WarmupFrame(1 / 3, Camera((1, 2, 3), (0, 0, -1), angle=33.0)))
+    data = warmup_frames.to_json(frames)
+    assert warmup_frames.from_json(data) == frames == warmup_frames.from_json({"before": data})
+    for wrong in ("x", {}, [[1]], [["a", None]], [[float("nan"), None]], [[0.0, {"position": 1}]]):
+        with pytest.raises(ValueError) as raised:
+            warmup_frames.from_json(wrong)
+        assert "\n" not in str(raised.value)
+
+
+def test_as_many_as_came_within_the_last_second() -> None:
+    rate = FrameRate()
+    assert rate.per_second(0.0) is None
+    for n in range(50):
+        rate.count(5.0 + 0.04 * n)
+        assert n == 0 or rate.per_second(5.0 + 0.04 * n) == pytest.approx(25.0)
+    for n in range(20):
+        rate.count(7.0 + 0.1 * n)
+    assert rate.per_second(9.0) == pytest.approx(10.0), "what came before that second does not count"
+
+
+def test_a_picture_counts_once_however_often_more_of_it_comes() -> None:
+    now = iter(0.1 * n for n in range(1000))
+    history = FrameHistory(Session(make_scene()), clock=lambda: next(now))
+    for n in range(6):
+        frame = make_frame(time=float(n))
+        request = RenderRequest(frame.time, frame.camera, frame.settings)
+        for _ in range(3):
+            history.take([], Traced(request, frame, frame.statistics), 0.01)
+    assert history.frames_per_second == pytest.approx(10.0), "the clock ticks at each picture, not at its parts"
+
+
+def test_no_rate_reads_as_none_at_all() -> None:
+    assert [rate_in_words(rate) for rate in (27.4, 9.4, 0.06, 0.04)] == [
+        "27 frames/s",
+        "9.4 frames/s",
+        "0.1 frames/s",
+        "",
+    ]
+
+
+def test_slow_pictures_count_by_their_distance_and_none_that_have_ended() -> None:
+    rate = FrameRate()
+    for now in (0.0, 4.0, 8.0):
+        rate.count(now)
+    assert rate.per_second(12.0) == pytest.approx(0.25)
+    assert rate.per_second(16.5) is None, "nothing comes any more"
+    rate.count(17.0)
+    rate.clear()
+    assert rate.per_second(17.0) is None

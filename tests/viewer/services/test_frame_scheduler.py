@@ -1,7 +1,8 @@
-"""What the render thread is asked for, at idle and in motion: in which order, and with which modes."""
+"""What the render thread is asked for, at idle and in motion: in which order, with which modes, and verified when."""
 
 from __future__ import annotations
 
+import json
 import time
 from dataclasses import replace
 from itertools import count
@@ -9,13 +10,21 @@ from threading import Event, Thread
 from types import SimpleNamespace
 from typing import Any
 
-from tests.viewer.fakes import FakeRenderer, make_scene
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
+from tracer.culling.mode_changes import ModeChanges
 from tracer.frame import Settings
 from tracer.scene.model import Camera, Cancelled
+from tracer.statistics import FrameStatistics
 from viewer.services.controller import Controller
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.jobs import Wake
+from viewer.services.refinement import MOST_FRAMES, MOST_LEARNING, Refinement
 from viewer.services.render_request import RenderRequest, Traced
+from viewer.state import codec
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
@@ -134,3 +143,199 @@ def test_a_window_stays_until_nobody_is_just_waking_it():
     closing.join(20.0)
     assert gone.is_set()
     wake()  # does nothing
+
+
+SIZE = (16, 8)
+
+
+class Desk:
+    """A controller at work on a renderer that traces nothing."""
+
+    def __init__(self, controller: Controller) -> None:
+        self.c, self.renderer = controller, FakeRenderer()
+        controller.show(make_scene(), self.renderer, {})
+        assert self.rest() == [False, False]  # one that teaches the modes, and one that shows what they save
+
+    def rest(self) -> list[bool]:
+        """Tick until all has been traced; for each frame asked for meanwhile, whether it was to be verified."""
+        before, quiet, end = len(self.renderer.asked), 0, time.monotonic() + 20.0
+        while quiet < 10:
+            assert time.monotonic() < end, "it does not come to rest"
+            advance(self.c, SIZE)
+            quiet = 0 if self.c.active else quiet + 1
+            time.sleep(0.002)
+        return [settings.verify for _, settings in self.renderer.asked[before:]]
+
+
+@pytest.fixture
+def desk():
+    controller = Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}}))
+    yield Desk(controller)
+    assert controller.close()
+
+
+@pytest.mark.parametrize("view", [View.SAVED, View.COST])
+def test_a_view_of_work_has_it_counted_once_and_other_views_trace_nothing(desk: Desk, view: View):
+    desk.c.session.set_draw(view=view)
+    assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "nothing has been counted yet"
+    assert "counting" in desk.c.scheduler.title
+    assert desk.rest() == [False]
+    assert desk.c.frame.settings.record_work and desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
+    for other in (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE):
+        desk.c.session.set_draw(view=other)
+        assert not desk.c.scheduler.outdated
+        assert desk.rest() == []
+    desk.c.motion.step(1)
+    desk.rest()
+    assert not desk.c.frame.settings.record_work, "only frames of such a view"
+    assert not desk.c.session.settings.record_work
+
+
+@pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
+def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(desk: Desk, view: View):
+    desk.c.session.set_draw(view=view)
+    assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "nothing has been verified yet"
+    assert "verifying" in desk.c.scheduler.title
+    assert desk.rest() == [True]
+    assert desk.c.frame.wrong is not None and desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
+    for other in (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH):
+        desk.c.session.set_draw(view=other)
+        assert not desk.c.scheduler.outdated
+        assert desk.rest() == []
+    assert not desk.c.session.settings.verify
+
+
+def test_only_frames_of_such_a_view_are_verified(desk: Desk):
+    desk.c.session.set_draw(view=View.DIFFERENCE)
+    assert set(desk.rest()) == {True}
+    desk.c.motion.step(1)
+    assert set(desk.rest()) == {True}
+    desk.c.session.set_draw(view=View.COLOR)
+    assert desk.rest() == []
+    desk.c.motion.step(1)
+    assert set(desk.rest()) == {False}
+
+
+def test_the_users_own_setting_counts_in_every_view(desk: Desk):
+    desk.c.settings.change(verify=True)
+    assert desk.rest() == [True]
+    desk.c.session.set_draw(view=View.DIFFERENCE)
+    desk.c.settings.change(verify=False)
+    assert desk.rest() == [], "verified it is already"
+    desk.c.session.set_draw(view=View.COLOR)
+    desk.c.settings.change(verify=True)
+    desk.c.settings.change(verify=False)
+    desk.c.scheduler.trace_again()
+    assert desk.rest() == [False]
+
+
+def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: Desk, tmp_path):
+    own = desk.c.session.scene.camera
+    elsewhere = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
+    assert desk.c.session.on_path and desk.c.session.frame == 0
+    desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "{frame:04d}.png"
+    for camera, follow in ((elsewhere, False), (own, True)):
+        frame = make_frame(time=7.0, camera=camera)
+        desk.c.scheduler.show(Traced(RenderRequest(7.0, camera, frame.settings), frame, frame.statistics))
+        desk.c.captures.capture(desk.c.frame, np.zeros((8, 16, 3), np.uint8))
+        name = "0007.png" if camera == elsewhere else "0007-2.png"
+        assert desk.c.captures.saving.pop().join(10.0)
+        with Image.open(tmp_path / name) as image:
+            kept = json.loads(image.text["shadowcull"])
+        state = codec.picture_from_json(kept)
+        assert (kept["frame"], state.time, state.camera is None) == (7, 7.0, follow)
+        desk.c.restore(state)
+        assert (desk.c.session.camera, desk.c.session.frame) == (camera, 7)
+        desk.c.motion.reset_camera()
+
+
+ELSEWHERE = Camera((1.0, 0.0, 0.0), CAMERA.direction, CAMERA.up)
+
+
+def traced(request: RenderRequest, certificates: int, part: float = 1.0) -> Traced:
+    """A frame, or a part of one, that made so many certificates."""
+    statistics = FrameStatistics(certificates=certificates, part=part)
+    frame: Any = SimpleNamespace(statistics=statistics, width=8, height=8)
+    return Traced(request, frame, statistics)
+
+
+def frames(
+    refinement: Refinement, made: list[int], camera: Camera = CAMERA, view: View = View.COLOR, **settings: Any
+) -> int:
+    """How many frames of a view are traced, the k-th of which makes so many certificates."""
+    for k, certificates in enumerate(made):
+        request = RenderRequest(0.0, camera, Settings(8, 8, **settings), 1, k)
+        assert not refinement.wants_another(traced(request, certificates, 0.25), view, False), "not whole yet"
+        whole = traced(request, certificates)
+        if not refinement.wants_another(whole, view, False):
+            return k + 1
+        assert not refinement.wants_another(whole, view, False), "once for each frame"
+    return len(made)
+
+
+@pytest.mark.parametrize(
+    ("method", "made", "expected"),
+    [
+        ("none", [0] * 20, 2),
+        ("paper", [0] * 20, 2),
+        ("certified", [0] * 20, 2),
+        ("certified", [9, 9, 9, 0, 0, 0], 4),
+        ("auto", [9] * 20, 2),
+        ("certified+cache", [9] * 2 * MOST_FRAMES, 1 + MOST_FRAMES),
+    ],
+)
+def test_frames_follow_as_long_as_they_know_more(method: str, made: list[int], expected: int):
+    refinement = Refinement()
+    assert frames(refinement, made, method=method) == expected
+    assert frames(refinement, made, method=method) == 1, "nothing is refined twice"
+    assert frames(refinement, made, ELSEWHERE, method=method) == expected, "another view"
+    refinement.forget()
+    assert frames(refinement, made, ELSEWHERE, method=method) == expected, "what was known is lost"
+
+
+def test_frames_follow_until_modes_no_longer_change():
+    """As where many primitives are examined anew: one frame says so, one learns, and one shows what that saves."""
+    changes = [ModeChanges(examined_anew=3), ModeChanges(fully_rendered=3, full_shadow=2), ModeChanges(), ModeChanges()]
+    refinement, count = Refinement(), 0
+    for k, changed in enumerate([ModeChanges(fully_rendered=9), *changes]):
+        whole = traced(RenderRequest(0.0, CAMERA, Settings(8, 8, method="paper"), 1, k), 0)
+        whole.frame.statistics.mode_changes = changed
+        count += 1
+        if not refinement.wants_another(whole, View.COLOR, False):
+            break
+    assert count == 4
+    for k in range(20):  # however often they change
+        whole = traced(RenderRequest(0.0, ELSEWHERE, Settings(8, 8, method="paper"), 1, k), 0)
+        whole.frame.statistics.mode_changes = ModeChanges(full_shadow=1)
+        if not refinement.wants_another(whole, View.COLOR, False):
+            break
+    assert k == MOST_LEARNING
+
+
+def test_progress_is_that_of_certificates_alone():
+    refinement = Refinement()
+    for method, expected in (("auto", (0, 0)), ("paper", (0, 0)), ("certified", (1, MOST_FRAMES))):
+        assert refinement.progress == (0, 0) and not refinement.proves
+        whole = traced(RenderRequest(0.0, CAMERA, Settings(8, 8, method=method), 1), 9)
+        assert refinement.wants_another(whole, View.COLOR, False)
+        assert refinement.progress == expected and refinement.proves == bool(expected[0]), method
+    assert not refinement.wants_another(traced(whole.request, 9, 0.5), View.COLOR, False)
+    refinement.forget()
+    assert refinement.progress == (0, 0) and not refinement.proves
+
+
+def test_the_view_of_certificates_asks_for_more_of_them():
+    refinement = Refinement()
+    assert frames(refinement, [9] * 20, method="auto") == 2
+    assert frames(refinement, [9] * 5 + [0] * 3, view=View.CERTIFICATE, method="auto") == 6
+    assert frames(refinement, [0] * 5, view=View.CERTIFICATE, method="paper") == 2
+
+
+def test_frames_go_on_where_the_user_says_so_and_coarse_ones_teach_nothing():
+    refinement = Refinement()
+    for k in range(10):
+        request = RenderRequest(0.0, CAMERA, Settings(8, 8, method="none"), 1, k)
+        assert refinement.wants_another(traced(request, 0), View.COLOR, keep_tracing=True)
+    coarse = RenderRequest(0.0, ELSEWHERE, Settings(8, 8, method="paper"), 2)
+    assert not refinement.wants_another(traced(coarse, 0), View.COLOR, keep_tracing=False)
+    assert not refinement.wants_another(None, View.COLOR, keep_tracing=True)

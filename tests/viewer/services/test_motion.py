@@ -1,15 +1,22 @@
-"""Camera and time, moved by hand, glided and played: driven by a session, preferences and a clock."""
+"""Camera and time, moved by hand, glided and played, and how fast in the preview before the first picture."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+import trimesh
 
 from tests.viewer.fakes import make_frame, make_scene
-from tracer.scene.model import Camera
+from tracer.scene.load import load_scene
+from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO, MeshOptions
+from tracer.scene.model import Camera, Scene
+from viewer.services import preview, scene_files
 from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
+from viewer.services.preview import Preview
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -17,62 +24,52 @@ from viewer.state.session import Session
 ELSEWHERE = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 
 
-class Clock:
-    def __init__(self) -> None:
-        self.now = 100.0
-
-    def monotonic(self) -> float:
-        return self.now
-
-
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    clock = Clock()
-    monkeypatch.setattr(time, "monotonic", clock.monotonic)
-    return clock
-
-
 class Moving:
-    def __init__(self) -> None:
+    """A session with a camera and time that move, and a clock that is set by hand."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now = 100.0
+        monkeypatch.setattr(time, "monotonic", lambda: self.now)
         self.session, self.preferences, self.notices = Session(), Preferences(), Notices()
         self.session.open(make_scene())
         self.locked = False
         self.motion = Motion(self.session, self.preferences, self.notices, lambda: self.locked)
 
+    def after(self, seconds: float, shown: float | None = None) -> None:
+        self.now += seconds
+        self.motion.advance(shown)
+
 
 @pytest.fixture
-def moving(clock: Clock) -> Moving:
-    return Moving()
+def moving(monkeypatch: pytest.MonkeyPatch) -> Moving:
+    return Moving(monkeypatch)
 
 
-def test_a_hand_that_moves_the_camera_is_motion_for_a_moment(moving: Moving, clock: Clock):
+def test_a_hand_that_moves_the_camera_is_motion_for_a_moment(moving: Moving):
     moving.motion.move(ELSEWHERE)
     assert moving.session.camera == ELSEWHERE and moving.motion.under_way
-    clock.now += IDLE_AFTER
+    moving.now += IDLE_AFTER
     assert not moving.motion.under_way and not moving.motion.is_animating
 
 
-def test_a_glide_ends_where_it_goes_and_a_hand_ends_it(moving: Moving, clock: Clock):
+def test_a_glide_ends_where_it_goes_and_a_hand_ends_it(moving: Moving):
     start = moving.session.camera
     for halt in (False, True):
         moving.session.change(camera=start)
         moving.motion.glide(ELSEWHERE)
-        clock.now += 0.5 * GLIDE_SECONDS
-        moving.motion.advance(None)
+        moving.after(0.5 * GLIDE_SECONDS)
         assert moving.session.camera not in (start, ELSEWHERE) and moving.motion.under_way
         if halt:
             moving.motion.move(start)
-        clock.now += GLIDE_SECONDS
-        moving.motion.advance(None)
+        moving.after(GLIDE_SECONDS)
         assert moving.session.camera == (start if halt else ELSEWHERE)
 
 
-def test_time_is_played_as_it_passes_or_frame_by_frame(moving: Moving, clock: Clock):
+def test_time_is_played_as_it_passes_or_frame_by_frame(moving: Moving):
     session, motion = moving.session, moving.motion
     moving.preferences.playback_rate = 2.0
     motion.toggle_play()
-    clock.now += 0.1
-    motion.advance(None)
+    moving.after(0.1)
     assert session.time == pytest.approx(0.2) and motion.under_way
     session.go_to_frame(0)
     moving.session.set_pace(every_frame=True)
@@ -85,6 +82,10 @@ def test_time_is_played_as_it_passes_or_frame_by_frame(moving: Moving, clock: Cl
     session.go_to_frame(session.scene.frames - 1)
     motion.toggle_play()
     assert session.frame == 0, "played from the beginning once the end is reached"
+    session.open(make_scene(frames=1))
+    session.playing = False
+    motion.toggle_play()
+    assert moving.notices.current.text == "this scene has no animation" and not session.playing
 
 
 def test_nothing_moves_while_it_is_locked(moving: Moving):
@@ -99,12 +100,6 @@ def test_nothing_moves_while_it_is_locked(moving: Moving):
     assert (session.camera, session.time) == before and session.on_path and not session.playing
 
 
-def test_a_scene_without_animation_says_so(moving: Moving):
-    moving.session.open(make_scene(frames=1))
-    moving.motion.toggle_play()
-    assert moving.notices.current.text == "this scene has no animation" and not moving.session.playing
-
-
 def test_the_pace_is_that_of_the_first_frame_until_another_scene(moving: Moving):
     motion, frame = moving.motion, make_frame()
     motion.enter(((-80.0, -80.0, -80.0), (80.0, 80.0, 80.0)))
@@ -117,14 +112,50 @@ def test_the_pace_is_that_of_the_first_frame_until_another_scene(moving: Moving)
     assert motion.pace == wide
 
 
-def test_a_window_that_slept_on_the_way_has_arrived(moving: Moving, clock: Clock):
+def test_a_window_that_slept_on_the_way_has_arrived(moving: Moving):
     start = moving.session.camera
     far = Camera((400.0, 2.0, 3.0), start.direction, start.up, start.angle)
     moving.motion.fly_to(far)
     for _ in range(3):
-        clock.now += 0.05
-        moving.motion.advance(None)
+        moving.after(0.05)
     assert moving.motion.under_way
-    clock.now += 3600.0
-    moving.motion.advance(None)
+    moving.after(3600.0)
     assert moving.session.camera == far and not moving.motion.under_way
+
+
+class FirstStart:
+    """A session in which a scene waits for kernels."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.session, notices = Session(), Notices()
+        self.motion = Motion(self.session, Preferences(), notices, lambda: False)
+        loader = SimpleNamespace(waiting=(scene, None, None))
+        self.preview = Preview(self.session, loader, self.motion, notices, lambda: None)
+        end = time.monotonic() + 20.0
+        self.preview.update(traced=False)
+        while self.preview._job is not None:
+            assert time.monotonic() < end, "in vain"
+            time.sleep(0.002)
+            self.preview.update(traced=False)
+        assert notices.current is None, notices.current
+
+
+@pytest.mark.parametrize("meshes", [IN_STUDIO, AS_IN_FILE])
+def test_the_camera_is_as_fast_in_the_preview_as_in_the_traced_scene(tmp_path: Path, meshes: MeshOptions):
+    path = tmp_path / "box.ply"
+    trimesh.creation.box((1, 2, 3)).export(path)
+    scene = load_scene(path, meshes=meshes)
+    first = FirstStart(scene)
+    assert first.preview.geometry is not None
+    before = first.motion.pace
+    opened = scene_files.open_scene(lambda: scene, first.session.settings, lambda: True, lambda what, fraction: None)
+    first.motion.enter(opened.info["bounds"])
+    assert before == pytest.approx(first.motion.pace, rel=1e-6) and before != 1.0
+
+
+def test_spheres_and_cones_count_where_a_scene_is_too_large_for_a_preview(monkeypatch: pytest.MonkeyPatch):
+    scene = make_scene()
+    for most, there in ((scene.primitive_count, True), (scene.triangle_count, False)):
+        monkeypatch.setattr(preview, "MOST_READ", most)
+        first = FirstStart(scene)
+        assert (first.preview.geometry is not None) == (first.session.previewed is not None) == there

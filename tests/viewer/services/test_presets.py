@@ -40,7 +40,11 @@ def parts() -> Parts:
     return Parts()
 
 
-def test_as_in_the_paper_is_what_the_paper_says(parts: Parts):
+def test_all_can_be_applied_and_as_in_the_paper_is_what_the_paper_says(parts: Parts):
+    for preset in BUILT_IN:
+        parts.presets.apply(preset.name)
+        assert not parts.notices.message.error and parts.presets.tip(preset.name)
+    parts.named.clear()
     parts.settings.change(method="certified", symmetric=True, zoom_factor=9.0, depth=2, lamp_radius=0.5)
     parts.session.set_draw(view=View.DEPTH)
     parts.presets.apply("As in the paper")
@@ -51,12 +55,6 @@ def test_as_in_the_paper_is_what_the_paper_says(parts: Parts):
     assert pace.every_frame, "frame-to-frame coherence is that of one frame and the next"
     assert parts.session.draw.view is View.DEPTH, "it says nothing of the view"
     assert parts.named == ["preset As in the paper"] and parts.notices.message.text.endswith("As in the paper")
-
-
-@pytest.mark.parametrize("name", [preset.name for preset in BUILT_IN])
-def test_all_of_the_program_can_be_applied(parts: Parts, name: str):
-    parts.presets.apply(name)
-    assert not parts.notices.message.error and parts.presets.tip(name)
 
 
 def test_one_is_saved_and_applied_again_by_another_window(parts: Parts, own_settings: Path):
@@ -87,16 +85,13 @@ def test_names_are_unique(parts: Parts):
     assert parts.presets.names[-1] == "two" and len(parts.presets.own) == 1
 
 
-def test_a_damaged_one_changes_nothing_and_says_so(parts: Parts):
+def test_a_damaged_one_changes_nothing_and_says_so_and_nothing_is_applied_while_locked(parts: Parts):
     parts.preferences.presets = [Preset("odd", {"settings": {"method": "fast"}}), Preset("empty", {})]
     before = parts.now
     for name in ("odd", "empty", "none such"):
         parts.notices.message = None
         parts.presets.apply(name)
         assert parts.notices.message.error and parts.now == before and parts.named == []
-
-
-def test_nothing_is_applied_while_it_is_locked(parts: Parts):
-    parts.locked, before = True, parts.now
+    parts.locked = True
     parts.presets.apply("Every ray traced")
     assert parts.now == before

@@ -1,8 +1,9 @@
-"""The newest request wins, what is worthless is cancelled, and nothing blocks or dies."""
+"""The newest request wins, what is worthless is cancelled, queries are answered between frames, and nothing blocks."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from threading import Event
 
@@ -10,11 +11,15 @@ import pytest
 
 from tests.viewer.fakes import FakeRenderer
 from tracer.frame import Settings
-from tracer.scene.model import Camera
+from tracer.scene.model import Camera, Cancelled
+from viewer.services import render_thread
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.render_thread import RenderThread
+from viewer.util.messages import Failure
 
 CAMERA = Camera((0, 0, 5), (0, 0, -1))
+PATIENCE = 60.0
+"""Seconds after which something does not come: the thread steps back behind all others, and machines may be busy."""
 
 
 def request(at: float, **kinds) -> RenderRequest:
@@ -25,46 +30,44 @@ def request(at: float, **kinds) -> RenderRequest:
 def thread():
     thread = RenderThread()
     yield thread
-    assert thread.close(5.0)
+    assert thread.close(PATIENCE)
 
 
-def taken(thread: RenderThread, timeout: float = 5.0) -> Traced:
-    end = time.monotonic() + timeout
-    while time.monotonic() < end:
-        if (traced := thread.take()) is not None:
-            return traced
-        time.sleep(0.002)
-    raise AssertionError("no frame came")
+def until(happens: Callable[[], object]) -> None:
+    end = time.monotonic() + PATIENCE
+    while not happens():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.001)
 
 
-def idle(thread: RenderThread, timeout: float = 5.0) -> None:
-    end = time.monotonic() + timeout
-    while thread.busy and time.monotonic() < end:
-        time.sleep(0.002)
-    assert not thread.busy
+def taken(thread: RenderThread) -> Traced:
+    came: list[Traced] = []
+    until(lambda: came.extend(filter(None, [thread.take()])) or came)
+    return came[0]
 
 
-def held_at(thread: RenderThread, first: RenderRequest) -> FakeRenderer:
+def shown(thread: RenderThread, at: float, **kinds):
+    """The frame of a request, once it has come."""
+    thread.submit(request(at, **kinds))
+    while (traced := taken(thread)).frame.time != at:
+        pass
+    return traced.frame
+
+
+def idle(thread: RenderThread) -> None:
+    until(lambda: not thread.busy)
+
+
+def held_at(thread: RenderThread, first: RenderRequest, renderer: FakeRenderer | None = None) -> FakeRenderer:
     """A renderer that is at work on this, and goes on when it is let go."""
-    renderer = FakeRenderer()
+    if renderer is None:
+        renderer = FakeRenderer()
+        thread.use(renderer)
     renderer.go.clear()
-    thread.use(renderer)
+    renderer.started.clear()
     thread.submit(first)
-    assert renderer.started.wait(5.0)
+    assert renderer.started.wait(PATIENCE)
     return renderer
-
-
-def wait_until_cancelled(renderer: FakeRenderer) -> None:
-    end = time.monotonic() + 5.0
-    while not renderer.cancelled and time.monotonic() < end:
-        time.sleep(0.002)
-
-
-def test_a_request_becomes_a_frame_once(thread):
-    thread.use(FakeRenderer())
-    thread.submit(request(1.0))
-    assert taken(thread).frame.time == 1.0
-    assert thread.take() is None
 
 
 def test_of_those_that_wait_only_the_newest_is_traced(thread):
@@ -79,7 +82,7 @@ def test_of_those_that_wait_only_the_newest_is_traced(thread):
 def test_a_fine_frame_is_cut_short_by_a_newer_request(thread):
     renderer = held_at(thread, request(0.0))
     thread.submit(request(1.0, quick=True))
-    wait_until_cancelled(renderer)
+    until(lambda: renderer.cancelled)
     renderer.go.set()
     assert taken(thread).frame.time == 1.0
     assert renderer.cancelled == [0.0]
@@ -101,7 +104,7 @@ def test_where_a_motion_ended_comes_before_what_is_under_way_and_once(thread):
     thread.hurry(request(2.0, final=True))
     assert renderer.cancelled == [], "it is not what waits"
     thread.hurry(request(1.0, final=True))
-    wait_until_cancelled(renderer)
+    until(lambda: renderer.cancelled)
     renderer.go.set()
     assert taken(thread).frame.time == 1.0
     thread.hurry(request(1.0, final=True))
@@ -119,7 +122,7 @@ def test_what_has_set_modes_is_handed_out_once_and_in_order(thread):
     thread.submit(left)
     assert taken(thread).frame.time == 1.0
     thread.submit(request(2.0, parts=(8, 16), samples=2))
-    wait_until_cancelled(renderer)
+    until(lambda: renderer.cancelled)
     renderer.go.set()
     idle(thread)
     learnt = thread.take_learnt()
@@ -157,27 +160,13 @@ def test_errors_are_one_line_and_the_thread_lives_on(thread):
 
 
 def test_a_frame_of_a_scene_that_was_left_is_not_delivered(thread):
-    old, new = FakeRenderer(), FakeRenderer()
-    old.go.clear()
-    thread.use(old)
-    thread.submit(request(0.0))
-    assert old.started.wait(5.0)
-    thread.use(new)
+    old = held_at(thread, request(0.0))
+    thread.use(FakeRenderer())
     old.go.set()
     idle(thread)
     assert thread.take() is None
     thread.submit(request(5.0))
     assert taken(thread).frame.time == 5.0
-
-
-def test_modes_are_reset_on_the_threads_own_time(thread):
-    renderer = FakeRenderer()
-    thread.use(renderer)
-    thread.reset_modes()
-    assert renderer.resets == 0
-    thread.submit(request(0.0))
-    taken(thread)
-    assert renderer.resets == 1
 
 
 class FakeTask:
@@ -198,13 +187,9 @@ class FakeTask:
 
 
 def test_a_task_has_the_thread_to_itself_and_the_newest_request_waits(thread):
-    renderer, task = FakeRenderer(), FakeTask()
-    renderer.go.clear()
-    thread.use(renderer)
-    thread.submit(request(0.0))
-    assert renderer.started.wait(5.0)
+    renderer, task = held_at(thread, request(0.0)), FakeTask()
     thread.perform(task)
-    assert task.started.wait(5.0)
+    assert task.started.wait(PATIENCE)
     assert renderer.cancelled == [0.0], "what was under way is cut short"
     renderer.go.set()
     for at in (1.0, 2.0):
@@ -218,40 +203,21 @@ def test_a_task_has_the_thread_to_itself_and_the_newest_request_waits(thread):
     idle(thread)
 
 
-def test_another_renderer_ends_a_task(thread):
-    task = FakeTask()
-    thread.use(FakeRenderer())
-    thread.perform(task)
-    assert task.started.wait(5.0)
-    thread.use(FakeRenderer())
-    idle(thread)
-    assert task.cancelled
-
-
 def test_a_task_that_waits_while_the_scene_changes_gets_its_own_renderer_and_ends(thread):
     old, new, first, task = FakeRenderer(), FakeRenderer(), FakeTask(), FakeTask()
     held = Event()
-    first.work = lambda renderer, cancelled: (first.started.set(), held.wait(5.0))
+    first.work = lambda renderer, cancelled: (first.started.set(), held.wait(PATIENCE))
     thread.use(old)
     thread.perform(first)
-    assert first.started.wait(5.0)
+    assert first.started.wait(PATIENCE)
     thread.perform(task)
     thread.use(new)
     held.set()
-    assert task.started.wait(5.0)
+    assert task.started.wait(PATIENCE)
     idle(thread)
     assert task.renderer is old and task.cancelled, "what was asked of the old scene is over"
     thread.submit(request(1.0))
     assert taken(thread).frame.time == 1.0 and [at for at, _ in new.asked] == [1.0]
-
-
-def test_closing_ends_a_task():
-    thread, task = RenderThread(), FakeTask()
-    thread.use(FakeRenderer())
-    thread.perform(task)
-    assert task.started.wait(5.0)
-    assert thread.close(5.0)
-    assert task.cancelled
 
 
 def test_nothing_is_traced_without_a_scene_and_nothing_waits_for_it(thread):
@@ -262,14 +228,9 @@ def test_nothing_is_traced_without_a_scene_and_nothing_waits_for_it(thread):
 
 
 def test_closing_cuts_a_trace_short():
-    thread, renderer = RenderThread(), FakeRenderer()
-    renderer.go.clear()
-    thread.use(renderer)
-    thread.submit(request(0.0))
-    assert renderer.started.wait(5.0)
-    began = time.monotonic()
-    assert thread.close(5.0)
-    assert time.monotonic() - began < 1.0
+    thread = RenderThread()
+    renderer = held_at(thread, request(0.0))
+    assert thread.close(PATIENCE), "it hangs"
     assert renderer.cancelled == [0.0]
     thread.submit(request(1.0))
     assert not thread.busy
@@ -299,9 +260,144 @@ def test_a_picture_of_which_a_part_was_shown_is_left_for_a_newer_one(thread):
 
     renderer.render = with_news  # type: ignore[method-assign]
     thread.submit(request(1.0, quick=True, parts=(4, 16)))
-    end = time.monotonic() + 5.0
     while not (traced := taken(thread)).whole:
-        assert time.monotonic() < end
+        pass
     idle(thread)
     assert [at for at, _ in renderer.asked] == [1.0, 2.0, 2.0]
     assert traced.request.time == 2.0
+
+
+def column(renderer, frame, x, cancelled):
+    return renderer, frame, x
+
+
+def row(renderer, frame, y, cancelled):
+    return y
+
+
+def failing(renderer, frame, cancelled):
+    raise ValueError("no such light")
+
+
+def traced_so_far(renderer, frame, cancelled):
+    return len(renderer.asked)
+
+
+BEGUN = Event()
+
+
+def endless(renderer, frame, number, cancelled):
+    BEGUN.set()
+    while not cancelled():
+        time.sleep(0.001)
+    raise Cancelled()
+
+
+def begun() -> None:
+    assert BEGUN.wait(PATIENCE)
+    BEGUN.clear()
+
+
+def test_the_same_query_has_the_same_future_however_many_samples_come(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    frame = shown(thread, 1.0)
+    answer = thread.query(column, frame, 3)
+    assert answer.result(PATIENCE) == (renderer, frame, 3)
+    sampled = replace(frame, color=frame.color + 1.0)
+    assert thread.query(column, sampled, 3) is answer
+    other = thread.query(column, frame, 4)
+    assert other.result(PATIENCE)[2] == 4 and thread.query(column, frame, 3) is answer, "both are known"
+    assert thread.query(column, replace(frame, primitive=frame.primitive.copy()), 3) is not answer, "another picture"
+
+
+def test_of_each_function_the_newest_query_alone_is_answered_and_between_frames(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    frame = shown(thread, 1.0)
+    held_at(thread, request(1.0, serial=1), renderer)
+    older, other, newer = thread.query(column, frame, 1), thread.query(row, frame, 1), thread.query(column, frame, 2)
+    assert older.cancelled() and not newer.done()
+    renderer.go.set()
+    assert newer.result(PATIENCE)[2] == 2 and other.result(PATIENCE) == 1
+    assert len(renderer.asked) == 2, "and no frame was traced for it"
+
+
+def test_a_query_about_a_moment_that_has_passed_is_cancelled_and_can_be_asked_anew(thread):
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    frame = shown(thread, 1.0)
+    held_at(thread, request(2.0), renderer)
+    left = thread.query(column, frame, 1)
+    renderer.go.set()
+    newest = shown(thread, 2.0)
+    assert left.cancelled()
+    assert thread.query(column, newest, 1).result(PATIENCE)[1] is newest
+
+
+def test_what_is_shown_can_be_asked_about_though_a_later_frame_has_failed(thread):
+    """Else it would be looked into for ever."""
+    renderer = FakeRenderer()
+    thread.use(renderer)
+    frame = shown(thread, 1.0)
+    renderer.failing = OSError("the disk is full")
+    thread.submit(request(2.0))
+    until(thread.take_failure)
+    turns = len(renderer.turns)
+    assert thread.query(column, frame, 1).result(PATIENCE)[1] is frame
+    assert len(renderer.turns) == turns + 1, "the world was put back for it"
+
+
+def test_another_scene_cancels_what_was_asked(thread):
+    thread.use(FakeRenderer())
+    frame = shown(thread, 1.0)
+    running = thread.query(endless, frame, 1)
+    begun()
+    waiting = thread.query(column, frame, 1)
+    thread.use(FakeRenderer())
+    assert running.cancelled() and waiting.cancelled()
+    shown(thread, 1.0)
+
+
+def test_an_error_is_in_the_future_and_told_in_one_line_but_is_no_failed_frame(thread):
+    thread.use(FakeRenderer())
+    frame = shown(thread, 1.0)
+    assert isinstance(thread.query(failing, frame).exception(PATIENCE), ValueError)
+    told: list[Failure] = []
+    until(lambda: told.extend(thread.take_complaints()) or told)
+    assert [one.text for one in told] == ["no answer: no such light"]
+    assert thread.take_failure() is None
+    shown(thread, 3.0)
+
+
+def test_a_query_that_takes_long_gives_way_to_a_picture_and_to_a_newer_query(thread, monkeypatch):
+    monkeypatch.setattr(render_thread, "QUERY_SECONDS", 0.01)
+    thread.use(FakeRenderer())
+    frame = shown(thread, 1.0)
+    first = thread.query(endless, frame, 1)
+    begun()
+    second = thread.query(endless, frame, 2)
+    begun()
+    assert first.cancelled() and not second.done()
+    shown(thread, 2.0)
+    assert second.cancelled()
+
+
+def test_a_picture_is_asked_about_before_its_next_sample(thread):
+    renderer, asked, sampled = FakeRenderer(), Event(), Event()
+    thread.use(renderer)
+    render = renderer.render
+
+    def slowly(time, camera, cancel):
+        if len(renderer.asked) == 3:
+            sampled.set()
+            assert asked.wait(PATIENCE)
+        return render(time, camera, cancel)
+
+    renderer.render = slowly
+    frame = shown(thread, 1.0, samples=50)
+    assert sampled.wait(PATIENCE)
+    assert not thread.busy, "more samples are nothing to wait for"
+    answer = thread.query(traced_so_far, frame)
+    asked.set()
+    assert answer.result(PATIENCE) == 4

@@ -1,8 +1,12 @@
-"""Experiments and zoom tests at the controller: what they show, and that nothing disturbs them."""
+"""Experiments and zoom tests at the controller: what they show, and how they end; nothing disturbs them."""
 
 from __future__ import annotations
 
+import gc
+import threading
 import time
+import weakref
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import datetime
 
@@ -10,13 +14,18 @@ import numpy as np
 import pytest
 
 from tests.viewer.desk import ELSEWHERE, SIZE, Desk, is_the_same_picture
-from tests.viewer.fakes import make_frame, make_scene
-from tracer.experiments import experiment, zoom
+from tests.viewer.fakes import FakeRenderer, make_scene
+from tracer.experiments import experiment
 from tracer.experiments.experiment import Experiment
-from tracer.experiments.zoom import ZoomTest
-from tracer.frame import Settings
+from tracer.frame import Frame, Settings
+from tracer.scene.model import Camera, Cancelled
+from viewer.services.controller import Controller
+from viewer.services.render_request import Traced
 from viewer.services.runs import described, duration, shown_of
+from viewer.state.preferences import Preferences
 from viewer.state.views import View
+from viewer.util.resources import embedded_scenes
+from viewer.window.app import advance
 
 
 def same_figures(one: experiment.Results, other: experiment.Results) -> bool:
@@ -170,9 +179,73 @@ def test_results_name_their_scene_and_that_it_is_not_the_one_that_is_open():
     assert described(run, None) == (f"kitchen.aff{rest}", True)
 
 
-def test_a_zoom_test_names_its_primitive_and_the_time_of_today():
-    scene = make_scene()
-    test = ZoomTest(scene, Settings(width=64, height=64), zoom.aim(make_frame(), 3))
-    said, elsewhere = described(test, scene)
-    assert not elsewhere
-    assert said == f"scene.aff, 64 x 64, towards primitive 3, begun {test.began:%H:%M}"
+def test_restoring_a_place_ends_a_run(desk: Desk) -> None:
+    snapshot = desk.c.session.state
+    desk.runs.experiment_plan.frames = 5000
+    desk.runs.start_experiment()
+    desk.until(lambda: desk.runs.experiment.traced > 2)
+    desk.c.restore(replace(snapshot, camera=ELSEWHERE))
+    desk.run_to_its_end()
+    assert desk.c.frame.camera == ELSEWHERE
+
+
+def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*arguments: object, **options: object) -> None:
+        raise AttributeError("no world")
+
+    monkeypatch.setattr(experiment, "run", fail)
+    controller = Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}}))
+    controller.show(make_scene(), FakeRenderer(), {})
+    controller.runs.experiment_plan.frames = 2
+    controller.runs.start_experiment()
+    end = time.monotonic() + 20.0
+    while controller.runs.current is not None or controller.frame is None:
+        assert time.monotonic() < end
+        advance(controller, SIZE)
+    assert controller.notices.newest_fault.text == "the experiment failed: AttributeError: no world"
+    assert "no world" in controller.notices.newest_fault.details
+    assert controller.close()
+
+
+def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_short_is_traced(desk: Desk) -> None:
+    renderer, begun = desk.c.renderer._renderer, threading.Event()
+
+    def never(_time: float, _camera: Camera, cancel: Callable[[], bool], *_how: object) -> Iterator[Frame]:
+        begun.set()
+        while not cancel():
+            time.sleep(0.001)
+        yield from ()
+        raise Cancelled()
+
+    renderer.refine = never
+    desk.c.scheduler.trace_again()
+    desk.tick()
+    assert begun.wait(20.0)
+    desk.came.clear()
+    desk.runs.start_experiment()
+    desk.runs.stop()
+    del renderer.refine
+    desk.run_to_its_end()
+    assert desk.runs.experiment.results is None
+    assert desk.said == "experiment stopped after 0 of 5 frames"
+    assert {(frame.width, frame.height) for frame in desk.came} == {SIZE}
+
+
+def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> None:
+    scene, frames = weakref.ref(desk.c.session.scene), []
+    show = desk.c.scheduler.show
+
+    def showing(traced: Traced) -> None:
+        frames.append(weakref.ref(traced.frame))
+        show(traced)
+
+    desk.c.scheduler.show = showing
+    desk.runs.start_experiment()
+    desk.run_to_its_end()
+    desk.came.clear()
+    assert desk.runs.experiment.whole and frames
+    desk.open(embedded_scenes()["figure4"])
+    desk.came.clear()
+    gc.collect()
+    assert scene() is None and not any(frame() for frame in frames)
+    assert desk.runs.experiment.scene_path.name == "tiny.aff"

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from tests.viewer.fakes import make_scene
 from tracer.scene.model import Camera
 from viewer.services.bookmarks import Bookmarks
@@ -50,24 +52,16 @@ def test_a_setting_is_changed_and_remembered_unless_it_is_no_good_or_locked():
     assert parts.session.settings.depth == 3
 
 
-def test_culling_is_turned_off_and_on_as_it_was():
+@pytest.mark.parametrize(
+    ("chosen", "toggled"), [("paper+rest", ["none", "paper+rest"]), ("none+rest", ["paper+rest", "none", "paper+rest"])]
+)
+def test_culling_is_turned_off_and_on_as_it_was_with_what_was_added_meanwhile(chosen: str, toggled: list[str]):
     parts = Parts()
-    parts.change(method="paper+rest")
-    parts.settings.toggle_culling()
-    assert parts.session.settings.method == "none"
-    parts.settings.toggle_culling()
-    assert parts.session.settings.method == "paper+rest"
-
-
-def test_what_was_added_while_culling_was_off_stays():
-    parts = Parts()
-    parts.settings.change(method="none+rest")
-    parts.settings.toggle_culling()
-    assert parts.session.settings.method == "paper+rest"
-    parts.settings.note_method()
-    parts.settings.toggle_culling()
-    parts.settings.toggle_culling()
-    assert parts.session.settings.method == "paper+rest"
+    parts.change(method=chosen)
+    for method in toggled:
+        parts.settings.toggle_culling()
+        parts.settings.note_method()
+        assert parts.session.settings.method == method
 
 
 def test_lights_are_counted_around():
@@ -87,13 +81,6 @@ def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
     assert parts.session.draw.view is View.COLOR and parts.session.settings.depth == 10
     stored = json.loads((own_settings / "settings.json").read_text())
     assert stored["state"]["draw"]["view"] == "color" and len(stored["bookmarks"]) == 1
-
-
-def test_settings_that_cannot_be_written_are_one_line(own_settings: Path):
-    own_settings.write_text("a file where the folder should be")
-    parts = Parts()
-    parts.settings.finish()
-    assert parts.notices.current.text.startswith("settings not saved: ") and parts.notices.current.error
 
 
 def test_bookmarks_are_found_again_without_settings_and_a_damaged_one_is_one_line():
@@ -170,4 +157,4 @@ def test_preferences_that_cannot_be_saved_are_said_once(own_settings: Path, monk
             now[0] += REST_SECONDS
             parts.follow_settings()
     said = [entry.text for entry in parts.notices.log.entries()]
-    assert len(said) == 1 and said[0].startswith("settings not saved"), said
+    assert len(said) == 1 and said[0].startswith("settings not saved: ") and parts.notices.current.error, said

@@ -75,47 +75,60 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Desk:
     return Desk(monkeypatch)
 
 
-def test_each_change_is_a_step_with_a_name(desk: Desk):
-    desk.settings.change(method="certified")
-    desk.frame()
-    desk.session.set_draw(view=View.DEPTH)
-    desk.frame()
-    assert desk.undo.undoes == "view Depth" and desk.undo.redoes == ""
+def compare(desk: Desk, **fields: object) -> None:
+    vars(desk.session.comparison).update(fields)
+
+
+CHANGES = {
+    "method certified": lambda desk: desk.settings.change(method="certified"),
+    "view Depth": lambda desk: desk.session.set_draw(view=View.DEPTH),
+    "light 1": lambda desk: desk.settings.set_light(1),
+    "range changed": lambda desk: desk.session.change(draw=desk.session.draw.with_span((1.0, 2.0), View.DEPTH)),
+    "mark clipped pixels on": lambda desk: desk.session.set_draw(clipping=True),
+    "exposure +0.5 EV": lambda desk: desk.session.set_draw(tone=Tone(0.5)),
+    "zoom to 2 x": lambda desk: desk.session.set_draw(zoom=Zoom(2.0)),
+    "comparison: side by side": lambda desk: compare(desk, on=True, mode=CompareMode.SIDE),
+    "A in the view of B": lambda desk: compare(desk, same_view=True),
+}
+
+
+def test_each_change_is_a_step_with_a_name_and_comes_back(desk: Desk):
+    held = []
+    desk.session.comparison.kept = kept = object()
+    for name, change in CHANGES.items():
+        held.append((desk.session.state, desk.session.comparison.chosen))
+        change(desk)
+        desk.frame()
+        assert (desk.undo.undoes, desk.undo.redoes) == (name, "")
+    held.append((desk.session.state, desk.session.comparison.chosen))
+    for before, name in zip(reversed(held[:-1]), reversed(CHANGES), strict=True):
+        desk.undo.undo()
+        assert desk.said == f"undone: {name}" and (desk.session.state, desk.session.comparison.chosen) == before
+    assert desk.undo.undoes == ""
+    for after, name in zip(held[1:], CHANGES, strict=True):
+        desk.undo.redo()
+        assert desk.said == f"redone: {name}" and (desk.session.state, desk.session.comparison.chosen) == after
+    assert desk.session.comparison.kept is kept, "what was kept is no part of a step"
     desk.undo.undo()
-    assert desk.said == "undone: view Depth" and desk.session.draw.view is View.COLOR
-    assert desk.session.settings.method == "certified"
-    desk.undo.undo()
-    assert desk.session.settings.method == "paper" and desk.undo.undoes == ""
-    desk.undo.redo()
-    assert desk.said == "redone: method certified" and desk.session.settings.method == "certified"
-    assert desk.undo.redoes == "view Depth"
     desk.settings.change(depth=3)
     desk.frame()
-    assert desk.undo.redoes == "", "another way was taken"
     desk.undo.redo()
-    assert desk.said == "there is nothing to redo"
+    assert desk.undo.redoes == "" and desk.said == "there is nothing to redo", "another way was taken"
 
 
-def test_a_drag_is_one_step_whatever_it_passes(desk: Desk):
+@pytest.mark.parametrize(("depths", "name"), [((9, 8, 4, 2), "bounces 2"), ((9, 10), "")])
+def test_a_drag_is_one_step_whatever_it_passes_and_none_if_it_comes_back(
+    desk: Desk, depths: tuple[int, ...], name: str
+):
     desk.undo.held = True
-    for depth in (9, 8, 4, 2):
+    for depth in depths:
         desk.settings.change(depth=depth)
         desk.frame(1.0)
     desk.undo.held = False
     desk.frame()
-    assert desk.undo.undoes == "bounces 2"
+    assert desk.undo.undoes == name
     desk.undo.undo()
     assert desk.session.settings.depth == 10 and desk.undo.undoes == ""
-
-
-def test_a_drag_that_comes_back_is_none(desk: Desk):
-    desk.undo.held = True
-    for depth in (9, 10):
-        desk.settings.change(depth=depth)
-        desk.frame()
-    desk.undo.held = False
-    desk.frame()
-    assert desk.undo.undoes == ""
 
 
 def test_a_flight_is_one_step_and_glides_back(desk: Desk):
@@ -138,7 +151,7 @@ def test_a_flight_is_one_step_and_glides_back(desk: Desk):
     assert desk.undo.undoes == "", "the way back is no step"
 
 
-def test_a_view_chosen_in_flight_is_a_step_of_its_own(desk: Desk):
+def test_a_view_chosen_in_flight_is_a_step_of_its_own_and_a_step_is_undone_while_it_goes_on(desk: Desk):
     desk.motion.move(AWAY)
     desk.frame()
     desk.session.set_draw(view=View.NORMAL)
@@ -147,9 +160,7 @@ def test_a_view_chosen_in_flight_is_a_step_of_its_own(desk: Desk):
     assert desk.undo.undoes == "view Normals"
     desk.undo.undo()
     assert desk.undo.undoes == "camera"
-
-
-def test_a_step_is_undone_while_it_goes_on(desk: Desk):
+    desk.undo.undo()
     desk.motion.move(AWAY)
     desk.undo.undo()
     assert desk.session.on_path and desk.undo.redoes == "camera"
@@ -165,7 +176,7 @@ def test_time_is_no_step_and_stays(desk: Desk):
     assert desk.session.time == 5.0
 
 
-def test_what_is_named_is_one_step_with_that_name(desk: Desk):
+def test_what_is_named_is_one_step_and_a_name_for_nothing_names_nothing_else(desk: Desk):
     desk.undo.begin_step("preset mine")
     desk.settings.change(method="certified", depth=2)
     desk.session.set_draw(view=View.DEPTH)
@@ -173,9 +184,6 @@ def test_what_is_named_is_one_step_with_that_name(desk: Desk):
     assert desk.undo.undoes == "preset mine"
     desk.undo.undo()
     assert (desk.session.settings.method, desk.session.settings.depth) == ("paper", 10)
-
-
-def test_a_name_for_nothing_names_nothing_else(desk: Desk):
     desk.undo.begin_step("preset mine")
     desk.frame()
     desk.settings.change(depth=2)
@@ -262,47 +270,3 @@ def test_turns_of_the_wheel_are_one_step_and_a_rest_begins_another(desk: Desk):
     assert desk.session.draw.zoom == Zoom(8.0) and desk.undo.undoes == "zoom to 8 x"
     desk.undo.undo()
     assert desk.session.draw.zoom.fits and desk.undo.undoes == ""
-
-
-def test_strokes_of_other_kinds_are_steps_of_their_own(desk: Desk):
-    desk.session.set_draw(tone=Tone(0.5))
-    desk.frame()
-    desk.session.set_draw(zoom=Zoom(2.0))
-    desk.frame()
-    desk.undo.undo()
-    assert (
-        desk.session.draw.zoom.fits and desk.session.draw.tone == Tone(0.5) and desk.undo.undoes == "exposure +0.5 EV"
-    )
-    desk.undo.undo()
-    assert desk.session.draw.tone.neutral
-    desk.undo.redo()
-    assert desk.session.draw.tone == Tone(0.5)
-
-
-def test_ranges_and_stripes_come_back(desk: Desk):
-    desk.session.change(draw=desk.session.draw.with_span((1.0, 2.0), View.DEPTH))
-    desk.frame()
-    desk.session.set_draw(clipping=True)
-    desk.frame()
-    assert desk.undo.undoes == "mark clipped pixels on"
-    desk.undo.undo()
-    desk.undo.undo()
-    assert not desk.session.draw.spans and not desk.session.draw.clipping
-    desk.undo.redo()
-    assert desk.session.draw.spans == ((View.DEPTH, (1.0, 2.0)),) and desk.undo.undoes == "range changed"
-
-
-def test_a_comparison_is_a_step_but_what_is_kept_stays(desk: Desk):
-    comparison = desk.session.comparison
-    comparison.on, comparison.mode = True, CompareMode.SIDE
-    desk.frame()
-    comparison.kept = kept = object()
-    comparison.same_view = True
-    desk.frame()
-    assert desk.undo.undoes == "A in the view of B"
-    desk.undo.undo()
-    assert comparison.on and not comparison.same_view and desk.undo.undoes == "comparison: side by side"
-    desk.undo.undo()
-    assert not comparison.on and comparison.kept is kept
-    desk.undo.redo()
-    assert comparison.on and comparison.mode is CompareMode.SIDE

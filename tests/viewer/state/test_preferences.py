@@ -24,6 +24,7 @@ def test_what_was_saved_is_read(tmp_path: Path):
     mine.presets = [Preset("mine", {"settings": {"depth": 3}})]
     assert save_preferences(mine, tmp_path) is None
     assert load_preferences(tmp_path) == (mine, None)
+    assert load_preferences(tmp_path / "nowhere") == (Preferences(), None)
 
 
 def test_what_a_window_starts_with_is_what_the_last_one_remembered():
@@ -78,10 +79,6 @@ def test_formats_1_and_2_are_read(tmp_path: Path):
     draw = {"view": "normal", "light": 1, "wipe": 0.5}
     assert preset == Preset("mine", {"settings": {"depth": 2}, "draw": draw, "pace": {"every_frame": True}})
     assert read.bookmarks == {"/a.aff": [Bookmark("here", {"time": 1.0})]}
-
-
-def test_without_a_file_there_are_defaults(tmp_path: Path):
-    assert load_preferences(tmp_path / "nowhere") == (Preferences(), None)
 
 
 def test_odd_values_keep_their_defaults_and_the_rest_is_read(tmp_path: Path):

@@ -1,4 +1,4 @@
-"""Legends count what the frame holds; colours can be told apart; picks tell what is there."""
+"""Colours can be told apart, tones do what they say; picks and the history tell what is there."""
 
 from __future__ import annotations
 
@@ -15,32 +15,14 @@ from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificat
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
-from tracer.statistics import SampleCounts
 from viewer.state import palette
 from viewer.state.history import History, counters
 from viewer.state.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
+from viewer.state.tone import MOST_EXPOSURE, Curve, Tone, brighter, clipped, toned
 from viewer.state.views import View
 from viewer.views.difference import Mark, wrong_marks
 from viewer.views.penumbra import ARRIVALS
-from viewer.views.wipe import wipe_column
-from viewer.window.widgets import in_window_style, percent
-
-
-def test_the_shadow_legend_counts_what_moves_apart():
-    rows = {r.name: r.units for r in classes_in(make_frame(), View.SHADOW)}
-    assert rows == {
-        "INIT": 2, "FULL_SHADOW": 1, "FULL_SHADOW, untrusted": 0, "NON_SHADOW": 1, "NON_SHADOW, untrusted": 0,
-        "PARTIAL_SHADOW": 1, "DYNAMIC": 2,
-    }  # fmt: skip
-    frame = make_frame()
-    doubted = replace(
-        frame, modes=frame.modes & ~np.uint32(3) | np.where(frame.modes & 3 == 3, np.uint32(3), np.uint32(1))
-    )
-    rows = {r.name: (r.units, r.striped) for r in classes_in(doubted, View.SHADOW)}
-    assert rows["FULL_SHADOW"] == rows["NON_SHADOW"] == (0, False)
-    assert rows["FULL_SHADOW, untrusted"] == rows["NON_SHADOW, untrusted"] == (1, True)
-    assert rows["PARTIAL_SHADOW"] == (1, False) and rows["DYNAMIC"] == (2, False)
-    assert classes_in(make_frame(), View.SHADOW, 31) == classes_in(make_frame(), View.SHADOW, 15) == []
+from viewer.window.widgets import percent
 
 
 def test_the_certificate_legend_counts_the_cells_that_are_seen():
@@ -114,14 +96,6 @@ def test_a_small_share_does_not_look_like_none(part, whole, said):
     assert percent(part, whole) == said
 
 
-def test_numbers_of_other_places_are_written_as_in_the_window():
-    assert in_window_style("1,234,570 (0.499%), lights 0, 2: 12") == "1,234,570 (0.499 %), lights 0, 2: 12"
-
-
-def test_the_line_of_a_wipe_reaches_both_edges():
-    assert [wipe_column(10, wipe) for wipe in (-1.0, 0.0, 0.05, 0.5, 0.99, 1.0, 2.0)] == [0, 0, 0, 5, 9, 10, 10]
-
-
 @pytest.mark.parametrize("palette", [palette.OCCLUSION_COLORS, palette.SHADOW_COLORS, palette.CERTIFICATE_COLORS])
 def test_mode_colours_can_be_told_apart_without_red_green_vision(palette):
     for a, b in itertools.combinations(palette.values(), 2):
@@ -140,19 +114,9 @@ def test_one_fate_stands_out_and_words_can_be_read_on_each():
         assert (light + 0.05) / (dark + 0.05) >= 3.0, color
 
 
-def test_there_is_a_colour_for_each_fate_in_their_order():
-    assert list(palette.FATE_COLORS) == list(Fate)
-
-
 def test_the_colour_map_grows_lighter_all_the_way():
     grey = palette.color_map() @ np.array([0.2126, 0.7152, 0.0722])
     assert (np.diff(grey) > -1e-3).all() and grey[-1] - grey[0] > 0.6
-
-
-def test_the_depth_range_ignores_misses():
-    assert View.DEPTH.declared.span(make_frame())[0] == pytest.approx(2.0)
-    empty = replace(make_frame(), depth=np.full((8, 16), np.inf, np.float32))
-    assert View.DEPTH.declared.span(empty) == (0.0, 1.0)
 
 
 def test_a_pick_tells_what_the_pixel_shows():
@@ -225,15 +189,6 @@ def test_history_keeps_the_newest_in_order_and_contiguous():
     assert len(history) == 0 and len(history.values("due")) == 0
 
 
-def test_history_keeps_what_lights_send_to_pixels():
-    history, frame = History(), make_frame()
-    frame.statistics.samples = SampleCounts(due=90, reached=70, penumbra=8)
-    history.add(frame, 0.0)
-    history.add(make_frame(), 0.0)
-    for name, number in (("samples_due", 90), ("samples_reached", 70), ("penumbra", 8)):
-        assert list(history.values(name)) == [number, 0], "0 where nothing was recorded"
-
-
 def test_fates_of_shadow_rays_add_up_to_those_due():
     history, frame = History(), make_frame()
     shadow = frame.statistics.shadow
@@ -270,3 +225,52 @@ def test_a_picture_that_becomes_whole_is_one_frame_of_the_history():
         frame.statistics.shadow.due = round(100 * part)
         history.add(frame, 0.0, again)
     assert history.frames == 2 and list(history.values("due")) == [100, 25]
+
+
+GREYS = np.repeat(np.linspace(0.0, 8.0, 161, dtype=np.float32)[:, None, None], 3, axis=2)
+
+
+def test_a_neutral_tone_leaves_colours_as_they_are():
+    color = np.random.default_rng(0).normal(size=(4, 5, 3)).astype(np.float32)
+    assert toned(color, Tone()) is color, "not even rounded"
+
+
+@pytest.mark.parametrize("curve", Curve)
+@pytest.mark.parametrize("white", [0.5, 1.0, 4.0])
+def test_curves_rise_from_black_to_the_white_point(curve, white):
+    shown = toned(GREYS, Tone(0.0, white, curve))
+    assert shown.dtype == np.float32
+    assert shown[0].max() == pytest.approx(0.0, abs=1e-6) and (np.diff(shown[:, 0, 0]) > 0.0).all()
+    at_white = toned(np.full((1, 1, 3), white, np.float32), Tone(0.0, white, curve))
+    assert at_white == pytest.approx(1.0, abs=1e-6)
+    found = clipped(GREYS, Tone(0.0, white, curve))
+    assert np.array_equal(found.bright[:, 0], GREYS[:, 0, 0] > white * (1.0 + 1e-6))
+
+
+def test_a_stop_of_exposure_doubles_colours():
+    assert np.array_equal(toned(GREYS, Tone(1.0)), 2.0 * GREYS)
+    for curve in Curve:
+        assert toned(GREYS, Tone(-2.0, 1.0, curve)) == pytest.approx(toned(GREYS / 4.0, Tone(0.0, 1.0, curve)))
+
+
+def test_known_values_of_the_curves():
+    half = np.full((1, 1, 3), 0.5, np.float32)
+    assert toned(half, Tone(0.0, 1.0, Curve.SRGB)) == pytest.approx(0.735357, abs=1e-5)
+    assert toned(half, Tone(0.0, 2.0, Curve.REINHARD)) == pytest.approx(0.5 * (1 + 0.5 / 4.0) / 1.5)
+
+    def hable(x):
+        return (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 0.02 / 0.3
+
+    assert toned(half, Tone(0.0, 11.2, Curve.FILMIC)) == pytest.approx(hable(0.5) / hable(11.2), rel=1e-5)
+
+
+def test_what_is_negative_is_black_and_a_single_channel_clips():
+    color = np.array([[[-1.0, -0.5, 0.0], [0.0, 1.5, 0.2], [0.0, 0.0, 0.01]]], np.float32)
+    found = clipped(color, Tone())
+    assert found.black.tolist() == [[True, False, False]] and found.bright.tolist() == [[False, True, False]]
+
+
+def test_exposure_has_limits_and_comes_back_to_none():
+    tone = brighter(brighter(Tone(), 0.1), -0.1)
+    assert tone.neutral
+    assert brighter(Tone(MOST_EXPOSURE), 1.0).exposure == MOST_EXPOSURE

@@ -1,4 +1,4 @@
-"""Two pictures in one: their signed difference in numbers, colours and words, and both side by side."""
+"""Two pictures in one: their signed difference, where it is largest, and what is said of both."""
 
 from __future__ import annotations
 
@@ -8,9 +8,23 @@ import numpy as np
 import pytest
 
 from tests.viewer.drawn import values_in
-from tests.viewer.fakes import make_frame, with_certificates
+from tests.viewer.fakes import make_frame
 from tracer.frame import Settings
-from viewer.state.comparison import CompareMode
+from tracer.statistics import FrameStatistics, ShadowCounts, WrongCounts
+from viewer.state.columns import NO_TIME, rows
+from viewer.state.comparison import (
+    LEAST_MARKED,
+    MOST_SPOTS,
+    CompareMode,
+    Comparison,
+    Side,
+    elided,
+    named,
+    sizes_in_words,
+    with_rings,
+    worst_spots,
+)
+from viewer.state.in_turn import LEAST, InTurn
 from viewer.state.palette import LESS, MORE, SAME, WIPE_LINE, signed_map
 from viewer.state.views import View
 from viewer.state.zooming import Zoom
@@ -96,16 +110,6 @@ def test_modes_differ_or_do_not_and_what_hits_nothing_differs_without_end():
     assert (summed.pixels, summed.largest, summed.limit) == (gone.sum(), 0.0, 1.0)
 
 
-def test_certificates_and_work_are_compared_where_both_have_them():
-    a = with_certificates(make_frame(Settings(width=160, height=80)))
-    b = replace(a, certificates=a.certificates ^ a.certificates.dtype.type(1 << 4), cost=a.cost + 2)
-    assert (difference_of(values_in(a, View.COST), values_in(b, View.COST)).pixels == 2.0).all()
-    found = difference_of(values_in(a, View.CERTIFICATE, 1), values_in(b, View.CERTIFICATE, 1)).pixels
-    assert (found == 1.0).all() and not difference_of(*[values_in(f, View.CERTIFICATE, 0) for f in (a, b)]).pixels.any()
-    with pytest.raises(ValueError, match="nothing for the view Rays traced"):
-        values_in(make_frame(), View.COST)
-
-
 def test_a_difference_is_put_into_words():
     depths, modes = (values_in(make_frame(), view) for view in (View.DEPTH, View.OCCLUSION))
     difference = np.array([[0.0, 0.25, -1.5, 1e30, -1e30]], np.float32)
@@ -169,3 +173,131 @@ def test_the_gpu_shows_crisp_pixels():
         magnifier.release()
         compared.release()
     context.release()
+
+
+def side(frame, view=View.COLOR, light=0, scene="study", number=3) -> Side:
+    return Side(frame, view, light, scene, number)
+
+
+def test_sizes_that_differ_are_told_and_the_nearest_pixel_counts():
+    a, b = make_frame(Settings(width=16, height=8)), make_frame(Settings(width=32, height=16))
+    assert sizes_in_words(a, a) == ""
+    more = make_frame(replace(a.settings, samples=16))
+    assert sizes_in_words(a, more).startswith("A has 1 sample a pixel, B 16: edges differ by that.")
+    assert sizes_in_words(a, b) == "A has 16 x 8 pixels, B 32 x 16: A is shown in B's size."
+    assert sizes_in_words(make_frame(Settings(width=16, height=16)), b).endswith("size, stretched.")
+
+
+def test_each_is_called_by_its_method_and_what_sets_it_apart():
+    a = side(make_frame(Settings(width=16, height=8, method="none")))
+    b = side(make_frame(Settings(width=16, height=8, method="paper")))
+    assert (named(a, b), named(b, a), named(a, None)) == ("none", "paper", "none")
+    later = side(make_frame(Settings(width=16, height=8, method="none"), time=2.0), number=7)
+    assert (named(a, later), named(later, a)) == ("none, frame 3", "none, frame 7")
+    shadow = replace(b, view=View.SHADOW, light=2)
+    assert named(shadow, b) == "paper, shadow mode, light 2" and named(b, shadow) == "paper, colour"
+    assert named(replace(a, scene="hall"), b) == "none, hall, frame 3"
+    deep = side(make_frame(Settings(width=16, height=8, method="paper", depth=1)))
+    assert named(deep, b) == "paper, depth 1"
+
+
+def test_it_is_in_turn_that_pictures_blink():
+    state = Comparison(on=True, mode=CompareMode.BLINK, rate=2.0)
+    assert [state.shows_a(seconds) for seconds in (0.0, 0.26, 0.51, 0.76)] == [False, True, False, True]
+    state.mode = CompareMode.FLIP
+    assert not state.shows_a(0.26)
+    state.held = True
+    assert state.shows_a(0.0)
+
+
+def test_columns_have_differences_and_shares():
+    a, b = make_frame(), make_frame()
+    a = replace(a, statistics=FrameStatistics(shadow=ShadowCounts(due=1000, rays=1000)))
+    b = replace(b, statistics=FrameStatistics(shadow=ShadowCounts(due=1000, culled=250, rays=750)))
+    found = {row.name: row for row in rows(a, b)}
+    culled, traced = found["Culled"], found["Traced"]
+    assert (culled.difference, culled.share, culled.written_share) == (250, None, "-")
+    assert culled.written(culled.difference, signed=True) == "+250"
+    assert (traced.difference, traced.written_share) == (-250, "-25.0 %")
+    assert found["Due"].written_share == "0 %"
+    assert "Wrong answers" not in found and "Certificates made" not in found, "what neither has is left out"
+    verified = replace(b, statistics=replace(b.statistics, wrong=WrongCounts(answers=3, due=1000, pixels=2)))
+    wrong = {row.name: row for row in rows(a, verified)}["Wrong answers"]
+    assert (wrong.written(wrong.a), wrong.written(wrong.b), wrong.written_share) == ("-", "3", "-")
+
+
+def test_times_are_those_of_many_frames_in_turn_or_none():
+    def took(seconds: float) -> FrameStatistics:
+        return FrameStatistics(seconds=seconds, phases={"shading": seconds / 2.0})
+
+    a, b = (replace(make_frame(Settings(method=method)), statistics=took(9.0)) for method in ("none", "paper"))
+    rounds = tuple((took(0.2 + 0.001 * i), took(0.1)) for i in range(LEAST))
+    timed = InTurn(("none", "paper"), rounds, prepares=False)
+    found = {row.name: row for row in rows(a, b, timed)}
+    frame, shading = found["Frame"], found["  shading"]
+    assert (frame.written(frame.a), frame.written(frame.b), shading.written(shading.b)) == (
+        "203.5 ms", "100.0 ms", "50.0 ms",
+    )  # fmt: skip
+    assert "2.0" in frame.tip
+    other = replace(b, settings=Settings(method="certified"))
+    for kept in (rows(a, b), rows(a, b, replace(timed, rounds=rounds[1:])), rows(a, other, timed)):
+        frame = next(row for row in kept if row.name == "Frame")
+        assert (frame.a, frame.b) == (None, None) and frame.tip == NO_TIME
+
+
+def test_columns_say_what_is_shaded_so_far():
+    a, b = make_frame(), make_frame()
+    b.statistics.part = 0.25
+    first = rows(a, b)[0]
+    assert (first.name, first.a, first.b) == ("Shaded pixels", 128, 32)
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "room", "shown"),
+    [
+        ("paper", "certified", 9, "paper"),
+        ("certified+cache, frame 3", "certified+cache, frame 12", 24, "certified+cache, frame 3"),
+        ("certified+cache, frame 3", "certified+cache, frame 12", 16, "certified+ca...3"),
+        ("certified+cache, frame 3", "certified+cache, frame 12", 6, "ce...3"),
+        ("certified+cache", "certified+rest", 10, "ce...cache"),
+        ("certified+cache", "certified", 8, "certi..."),
+        ("certified+cache, depth 10", "certified+cache, depth 2", 5, "...10"),
+        ("certified, frame 3", "certified, depth 3, frame 3", 12, "ce...frame 3"),
+        ("certified", "certified", 6, "cer..."),
+        ("certified", "paper", 6, "cer..."),
+    ],
+)
+def test_of_two_names_in_little_room_what_differs_is_seen(name: str, other: str, room: int, shown: str) -> None:
+    found = elided(name, other, lambda text: len(text) <= room)
+    assert found == shown and len(found) <= room
+
+
+def test_the_worst_come_first_and_none_beside_another():
+    difference = np.random.default_rng(3).normal(0.0, 0.01, (60, 90)).astype(np.float32)
+    difference[10, 20], difference[11, 21], difference[40, 70] = -2.0, 1.9, 1.0
+    difference[5, 80] = 1e30
+    assert worst_spots(difference) == ((20, 10), (70, 40)), "what only one picture hits is told without rings"
+    assert difference[10, 20] == -2.0, "the difference stays"
+    difference[50, 10] = 2.0 * LEAST_MARKED - 0.01
+    assert len(worst_spots(difference)) == 2
+    assert worst_spots(np.zeros((4, 4), np.float32)) == worst_spots(np.zeros((0, 0), np.float32)) == ()
+    assert len(worst_spots(np.random.default_rng(1).normal(size=(99, 99)).astype(np.float32))) == MOST_SPOTS
+
+
+def test_modes_that_differ_are_marked_where_they_are_few():
+    difference = np.zeros((80, 80), np.float32)
+    difference[10:12, 10:12] = difference[60, 5] = 1.0
+    assert set(worst_spots(difference, classes=True)) == {(10, 10), (5, 60)}
+    difference[::9, ::9] = 1.0
+    assert worst_spots(difference, classes=True) == ()
+
+
+def test_rings_leave_what_they_mark():
+    picture = np.full((120, 160, 3), 90, np.uint8)
+    drawn = with_rings(picture, ((50, 40), (0, 119)))
+    changed = (drawn != picture).any(axis=-1)
+    assert changed.any() and not changed[39:42, 49:52].any() and not changed[119, 0]
+    assert (drawn == 255).any() and (drawn == 0).any() and (picture == 90).all()
+    rows, columns = np.nonzero(changed[:100])
+    assert np.hypot(rows - 40, columns - 50).max() < 8
+    assert with_rings(picture, ()) is picture

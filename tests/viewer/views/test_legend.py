@@ -32,6 +32,7 @@ from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.legend_picture import with_legend
 from viewer.state.draw_options import Slice
 from viewer.state.palette import FATE_COLORS, FATE_NAMES, GREY, OCCLUSION_COLORS, WRONG
+from viewer.state.readings import can_draw
 from viewer.state.views import View
 from viewer.util.numbers import count, percent
 from viewer.util.resources import embedded_scenes
@@ -45,7 +46,6 @@ from viewer.views.legend import (
     NoteKind,
     fitting,
     lay_out,
-    wrapped,
 )
 from viewer.views.voxels import voxels_of
 
@@ -75,9 +75,9 @@ def test_every_view_but_the_picture_has_a_legend(frame: Frame):
     assert legend_in(frame, View.COLOR) is None
     for view in View:
         if view is not View.COLOR:
-            legend = of(frame, view)
+            legend, bare = of(frame, view), make_frame()
             assert legend.title and (legend.entries or legend.scale or legend.facts or legend.notes), view
-    assert legend_in(make_frame(), View.DIFFERENCE) is legend_in(make_frame(), View.SAVED) is None
+            assert can_draw(bare, view) or not legend_in(bare, view), view
 
 
 def test_voxels_are_counted_in_the_slice_and_in_all(frame: Frame):
@@ -91,27 +91,36 @@ def test_voxels_are_counted_in_the_slice_and_in_all(frame: Frame):
     assert [fact.values for fact in legend.facts] == [("-0.875",), ("4 of 16",), ("16 x 8 x 8",)]
     lamp = of(frame, View.VOXELS, light=2)
     assert not lamp.entries and "Nothing is known of this light" in lamp.notes[0].text
-    assert legend_in(make_frame(), View.VOXELS) is None
 
 
-def test_what_rays_have_built_is_counted(frame: Frame):
-    legend = of(frame, View.TREE, slice=Slice(0, 0.01))
-    said = {fact.name: fact.values for fact in legend.facts}
-    assert said["slice at x"] == ("-1.94",) and said["built of the slice"] == ("100.0 %",)
-    assert said["nodes built"] == ("123",) and said["primitives in them"] == ("25.0 % of 160",)
-    assert (legend.scale.low, legend.scale.high) == ("level 0", "8") and "kdtree-lazy" in legend.title
-    assert of(frame, View.TREE, span=(1.0, 2.5)).scale.high == "2.5" and legend_in(make_frame(), View.TREE) is None
-
-
-def test_the_lights_that_cells_ask_are_counted(frame: Frame):
-    asked = frame.layers["cell lights"]
-    seen, legend = asked >= 0, of(frame, View.CELL_LIGHTS)
-    cells = len(np.unique(frame.cell[seen]))
-    assert [fact.values for fact in legend.facts] == [(f"{asked[seen].mean():.4g} of 3 lights",), (str(cells),)]
-    assert (legend.scale.low, legend.scale.high) == ("0", "3")
-    assert [entry.name for entry in legend.entries] == ["not known yet"]
-    assert of(frame, View.CELL_LIGHTS, span=(1.0, 2.5)).scale.high == "2.5"
-    assert legend_in(make_frame(), View.CELL_LIGHTS) is None
+def test_maps_of_numbers_have_their_mean_and_their_range(frame: Frame):
+    asked, nodes, bound = (frame.layers[name] for name in ("cell lights", "cut nodes", "cut bound"))
+    known = (frame.primitive >= 0) & (nodes >= 0)
+    expected = {
+        View.CELL_LIGHTS: {
+            "per pixel": f"{asked[asked >= 0].mean():.4g} of 3 lights",
+            "cells in view": str(len(np.unique(frame.cell[asked >= 0]))),
+        },
+        View.CUTS: {
+            "per pixel": f"{nodes[known].mean():.4g} for 100 samples of 3 lights",
+            "each may be wrong by": "2.0 % of the light",
+            "all of them together": f"{percent(float(np.median(bound[known])), 1.0)} at most",
+        },
+        View.TREE: {
+            "slice at x": "-1.94",
+            "built of the slice": "100.0 %",
+            "nodes built": "123",
+            "primitives in them": "25.0 % of 160",
+        },
+    }
+    cut = Slice(0, 0.01)
+    for view, scale in ((View.CELL_LIGHTS, ("0", "3")), (View.CUTS, ("0", "40")), (View.TREE, ("level 0", "8"))):
+        legend = of(frame, view, slice=cut)
+        said = {fact.name: fact.values[0] for fact in legend.facts}
+        assert said | expected[view] == said, view
+        assert (legend.scale.low, legend.scale.high) == scale
+        assert view is View.TREE or [entry.name for entry in legend.entries] == ["not known yet"]
+        assert of(frame, view, span=(1.0, 2.5), slice=cut).scale.high == "2.5"
 
 
 def test_modes_come_with_shares_and_counts(frame: Frame):
@@ -182,7 +191,6 @@ def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
     between = (reached > 0) & (reached < asked)
     share = [percent(reached[between].sum(), asked[between].sum())] if between.any() else []
     assert [fact.values[0] for fact in legend.facts[1:]] == share and bool(share) == (light != 1)
-    assert legend_in(make_frame(), View.PENUMBRA, light) is None
 
 
 @pytest.mark.parametrize("light", [0, 1, 2])
@@ -204,7 +212,6 @@ def test_fates_come_with_shares_of_pixels_and_of_the_rays_that_are_due(frame: Fr
     said = {fact.name: fact.values[1] for fact in legend.facts}
     assert said == {"saved": percent(saved, due), "traced": percent((fates >= Fate.PARTLY_OCCLUDED).sum(), due)}
     assert not legend.notes and "nearest" in of(in_part(frame), View.FATE, light=light).notes[0].text
-    assert legend_in(make_frame(), View.FATE, light) is None
 
 
 def test_shadows_of_moving_objects_are_counted(frame: Frame):
@@ -244,21 +251,6 @@ def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):
     assert [entry.name for entry in of(part, View.LIGHTS).entries] == ["not known yet"]
     unknown = {entry.name: entry.values for entry in of(part, View.PENUMBRA).entries}["not known yet"]
     assert unknown == (percent((hit & ~part.shaded).sum(), hit.sum()),)
-    assert legend_in(make_frame(), View.LIGHTS) is None
-
-
-def test_clusters_of_lights_per_pixel_with_the_bound_of_their_error(frame: Frame):
-    nodes, bound = frame.layers["cut nodes"], frame.layers["cut bound"]
-    seen, legend = (frame.primitive >= 0) & (nodes >= 0), of(frame, View.CUTS)
-    assert [fact.values for fact in legend.facts] == [
-        (f"{nodes[seen].mean():.4g} for 100 samples of 3 lights",),
-        ("2.0 % of the light",),
-        (f"{percent(float(np.median(bound[seen])), 1.0)} at most",),
-    ]
-    assert legend.scale is not None and (legend.scale.low, legend.scale.middle, legend.scale.high) == ("0", "20", "40")
-    assert [entry.name for entry in legend.entries] == ["not known yet"]
-    assert of(frame, View.CUTS, span=(2.0, 9.0)).scale.high == "9"
-    assert legend_in(make_frame(), View.CUTS) is None
 
 
 def test_pictures_by_clusters_of_lights_tell_their_errors(frame: Frame):
@@ -283,15 +275,6 @@ def test_heat_maps_say_whether_they_count_or_share(frame: Frame):
     total = f"{100 * frame.saved.sum() / frame.due_rays.sum():.1f} % of those due"
     assert total in counts.facts[0].values[0]
     assert "without culling" in of(frame, View.COST, shares=True).title
-
-
-@pytest.mark.parametrize("method, rests", [("paper", False), ("paper+rest", True), ("auto", True), ("none", True)])
-@pytest.mark.parametrize("view", [View.OCCLUSION, View.SHADOW])
-def test_what_is_dynamic_says_whether_what_rests_is(view: View, method: str, rests: bool):
-    frame = make_frame(Settings(width=16, height=8, method=method, modes=True))
-    (dynamic,) = (entry for entry in of(frame, view).entries if entry.name == "dynamic")
-    assert ("rests counts as static" in dynamic.meaning) == rests
-    assert ("also while it rests" in dynamic.meaning) != rests
 
 
 def test_work_of_a_picture_in_part_is_counted_where_it_was_done():
@@ -343,12 +326,6 @@ def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame
     assert off.kind is NoteKind.WARNING and off.text.startswith("Every shadow ray was traced")
 
 
-def test_a_wrong_answer_that_no_screen_shows_is_not_a_difference_of_none(frame: Frame):
-    hardly = replace(frame, reference=frame.color + np.float32(1e-4) * (frame.wrong[..., None] > 0))
-    facts = {fact.name: fact.values[0] for fact in of(hardly, View.DIFFERENCE).facts}
-    assert facts["of them look otherwise"] == "0" and facts["largest difference"] == "0.026 of 255"
-
-
 @pytest.mark.parametrize("view", [view for view in View if view is not View.COLOR])
 def test_all_parts_lie_inside_and_no_two_texts_touch(frame: Frame, view: View):
     layout = lay_out(of(frame, view), measure, LINE)
@@ -372,12 +349,6 @@ def test_in_little_room_less_is_said_and_in_none_nothing(frame: Frame):
     assert {words.text for words in bare.words} >= {"full shadow"} and len(bare.words) < len(narrower.words)
     assert fitting(legend, measure, LINE, 50.0, whole.height) is None
     assert fitting(legend, measure, LINE, whole.width, 30.0) is None
-
-
-def test_words_wrap_at_the_edge():
-    lines = wrapped("one two three four five", measure, 45.0)
-    assert lines == ["one two", "three", "four five"] and max(map(measure, lines)) <= 45.0
-    assert wrapped("unbreakable", measure, 5.0) == ["unbreakable"]
 
 
 @pytest.mark.parametrize("picture", [0.0, 0.5, 1.0])

@@ -1,8 +1,9 @@
-"""The exact value of a pixel, as a number and in words; histograms of regions; watched pixels."""
+"""The exact value of a pixel, as a number and in words; regions, watched pixels, and zooming into the picture."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,17 +23,13 @@ from tracer.frame import Settings
 from viewer.state.pixels import ALL, MOST_WATCHED, Pixels, Region, region_between
 from viewer.state.readings import can_draw
 from viewer.state.views import View
+from viewer.state.zooming import FIT, MOST, Zoom, panned, pixels_shown, zoomed
 from viewer.views.base import histogram
 
 FRAME = with_cuts(
     with_lamps(with_certificates(make_frame(Settings(width=16, height=8, verify=True, record_work=True))))
 )
 FRAME = with_tree(with_cell_lights(with_voxels(FRAME)))
-
-
-def test_no_axis_is_minus_nothing():
-    frame = replace(FRAME, normal=np.full_like(FRAME.normal, -1e-4))
-    assert words_in(frame, View.NORMAL, 0, 3, 2) == ("+0.000",) * 3
 
 
 def test_pixels_are_put_into_words():
@@ -118,4 +115,50 @@ def test_pixels_are_pinned_once_and_let_go():
     assert "no longer" in pixels.pin(FRAME, (0.52, 0.51)) and pixels.watched == []
     for x in range(MOST_WATCHED):
         pixels.pin(FRAME, ((x + 0.5) / 16, 0.1))
-    assert "no more can be" in pixels.pin(FRAME, (0.5, 0.9)) and len(pixels.watched) == MOST_WATCHED
+    assert "which is the most" in pixels.pin(FRAME, (0.5, 0.9)) and len(pixels.watched) == MOST_WATCHED
+
+
+def test_what_is_under_the_pointer_stays_there():
+    lots = np.random.default_rng(5)
+    zoom = FIT
+    for _ in range(200):
+        at = tuple(lots.uniform(0.2, 0.8, 2))
+        before, closer = zoom.to_picture(*at), zoomed(zoom, 1.3, at)
+        if closer.scale < MOST:
+            assert closer.to_picture(*at) == pytest.approx(before)
+        left, top, right, bottom = closer.shown()
+        assert -1e-9 <= left < right <= 1.0 + 1e-9 and -1e-9 <= top < bottom <= 1.0 + 1e-9
+        zoom = closer if lots.random() < 0.7 else FIT
+
+
+def test_there_is_an_end_to_both_sides():
+    assert zoomed(FIT, 1e6, (0.5, 0.5)).scale == MOST
+    assert zoomed(Zoom(2.0, 0.75, 0.25), 0.1, (0.1, 0.9)) == FIT
+    there_and_back = zoomed(zoomed(FIT, 2.0**0.5, (0.3, 0.4)), 2.0**-0.5, (0.8, 0.9))
+    assert there_and_back == FIT
+
+
+def test_a_hand_moves_the_picture_as_far_as_its_edge():
+    zoom = Zoom(4.0, 0.5, 0.5)
+    assert panned(zoom, 0.5, -0.25) == Zoom(4.0, 0.375, 0.5625)
+    assert panned(zoom, 100.0, 100.0).shown()[:2] == (0.0, 0.0)
+    assert panned(zoom, -100.0, -100.0).shown()[2:] == (1.0, 1.0)
+    assert panned(FIT, 1.0, 1.0) is FIT
+
+
+def test_the_pixels_that_are_seen():
+    assert pixels_shown(FIT, 16, 8) == (range(0, 16), range(0, 8))
+    columns, rows = pixels_shown(Zoom(4.0, 0.5, 0.5), 16, 8)
+    assert (columns, rows) == (range(6, 10), range(3, 5))
+    assert pixels_shown(Zoom(4.0, 0.53, 0.5), 16, 8)[0] == range(6, 11), "those seen in part count too"
+
+
+def test_another_scene_is_not_watched_where_the_last_one_was() -> None:
+    pixels = Pixels()
+    pixels.enter(Path("kitchen.aff"))
+    pixels.watched.append((0.25, 0.5))
+    pixels.region = Region(0.0, 0.0, 0.5, 0.5)
+    pixels.enter(Path("kitchen.aff"))  # as when its file has changed
+    assert pixels.watched and pixels.region is not None
+    pixels.enter(Path("robot.aff"))
+    assert not pixels.watched and pixels.region is None

@@ -12,7 +12,7 @@ from PIL import Image
 
 from tracer.frame import Frame
 from tracer.scene.lights import light_in_words
-from viewer.state import edit_effects
+from viewer.state.palette import WRONG
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.views import View
 from viewer.window.edit_commands import WhatIfState
@@ -23,6 +23,7 @@ from viewer.window.widgets import count, em, tooltip_at
 _REACH = 0.7  # ems from a mark's middle at which it can be taken hold of
 _ON, _HELD, _OFF = ImVec4(1.0, 0.93, 0.45, 1.0), ImVec4(0.42, 0.70, 0.96, 1.0), ImVec4(0.62, 0.65, 0.70, 1.0)
 _MOST_MARKS = 64  # of lights: more would hide the picture
+_DIMMED, _LEAST = 0.3, 0.25  # the picture beneath changed pixels, and the colour of those that have changed least
 _DIGITS = 6  # of a place to which a light is dragged
 
 
@@ -39,13 +40,17 @@ class Mark:
 
 @dataclass(frozen=True)
 class ChangedPixels:
-    """The picture with changed pixels in magenta."""
+    """The picture dimmed, and changed pixels the brighter in magenta the more they have changed."""
 
     frame: Frame
     changes: NDArray[np.uint8]
 
     def pixels(self) -> NDArray[np.uint8]:
-        return edit_effects.picture_of(self.frame, self.changes)
+        drawn = (self.frame.pixels * _DIMMED).astype(np.float32)
+        changed = self.changes > 0
+        strength = _LEAST + (1.0 - _LEAST) * np.sqrt(self.changes[changed] / max(1, int(self.changes.max(initial=0))))
+        drawn[changed] = strength[:, None] * 255.0 * np.array(WRONG) + (1.0 - strength[:, None]) * drawn[changed]
+        return drawn.astype(np.uint8)
 
     def thumbnail(self, height: int) -> NDArray[np.uint8]:
         image = Image.fromarray(self.pixels())

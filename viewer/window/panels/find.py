@@ -94,7 +94,8 @@ def _tools(ui: Ui, table: SceneTable) -> None:
     _filter(ui, table)
     imgui.same_line()
     imgui.set_next_item_width(light)
-    lights.combo_of_all(ui, "find", None if table.all_lights else ui.controller.session.draw.light, choose_light)
+    shown = None if table.all_lights else ui.controller.session.draw.light
+    lights.combo(ui, "find", shown, choose_light, lambda: choose_light(None))
     tooltip(f"the light that shadow modes are of{ui.key('Next light')}, or all lights together")
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK}##save"):

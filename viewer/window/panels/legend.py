@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from imgui_bundle import ImVec2, imgui
 
 from viewer.state.palette import color_map, signed_map
-from viewer.views import legend_of, picture_options
+from viewer.views import legend_of
 from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, Swatch, fitting, lay_out
 from viewer.window import comparing
 from viewer.window.panels.area import Rect
@@ -44,7 +44,7 @@ def of_picture(ui: Ui) -> Legend | None:
     kept = "legend" if frame is c.frame else "legend of A"
     lights = scene.lights
     found: Legend | None = ui.cached(
-        kept, frame, (picture_options(options), lights), lambda: legend_of(frame, options, lights)
+        kept, frame, (options.of_pixels(), lights), lambda: legend_of(frame, options, lights)
     )
     return found
 

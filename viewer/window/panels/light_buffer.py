@@ -56,7 +56,7 @@ def show(ui: Ui) -> None:
     checkbox("distance at which full shadow begins", state.depths, lambda on: setattr(state, "depths", on))
     imgui.same_line()
     imgui.set_next_item_width(min(em(14.0), imgui.get_content_region_avail().x))
-    lights.combo(ui)
+    lights.combo(ui, "light buffer", c.session.draw.light, c.settings.set_light)
     found = state.answer
     if not isinstance(found, Unfolded):
         paragraph(state.problem or found or "The light buffer is drawn when the picture is whole.", QUIET)

@@ -15,23 +15,17 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.scene.lights import Light, as_lamps, number_of
 from tracer.scene.model import Scene
 from viewer.services.refinement import OFFERED
+from viewer.window.setting_rows import ALL
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph, row, tooltip
 
 FEW = 8
 """Lights that are listed without a field to find them."""
 _ROWS = 6  # of the list that are seen at once
-_MOST_IN_COMBO = 64
 _SMALLEST, _LARGEST = 1e-5, 0.1  # radius on the slider, of the scene's diagonal
 _SCENE_SAYS = "as the scene says"
-_RADIUS = (
-    "of the lamp that every point light and sphere becomes, in the scene's units; at the left end they are points. A "
-    "larger lamp has softer shadows, and more pixels in its penumbra, where no ray can be saved"
-)
-_SAMPLES = (
-    "points from which each lamp shines: more make shadows smoother, and take a shadow ray each. In motion there are "
-    "few; at idle more follow, up to these"
-)
+_RADIUS = " A larger lamp has softer shadows, and more pixels in its penumbra, where no ray can be saved."
+_SAMPLES = " Each takes a shadow ray. In motion there are few; at idle more follow, up to these."
 
 
 @dataclass
@@ -47,22 +41,23 @@ def lamp_rows(ui: Ui) -> None:
     s = c.session.settings
     scene = c.session.scene
     assert scene is not None
-    row("Lamp radius", _RADIUS)
+    radius, samples = ALL["settings.lamp_radius"], ALL["settings.lamp_samples"]
+    row(radius.label, radius.help + _RADIUS)
     size = diagonal(c.info.get("bounds"))
     smallest, largest = _SMALLEST * size, _LARGEST * size
     button = imgui.get_frame_height() if s.lamp_radius is not None else 0.0
     imgui.set_next_item_width(-button - (em(0.2) if button else 0.0) - 1.0)
     shown = "%.7g" if s.lamp_radius else ("points" if s.lamp_radius == 0.0 else _SCENE_SAYS)
     flags = int(imgui.SliderFlags_.logarithmic)
-    changed, radius = imgui.slider_float("##lamp-radius", s.lamp_radius or 0.0, smallest, largest, shown, flags)
+    changed, size = imgui.slider_float("##lamp-radius", s.lamp_radius or 0.0, smallest, largest, shown, flags)
     if changed:
-        c.settings.change(lamp_radius=0.0 if radius <= smallest else float(f"{radius:.3g}"))
+        c.settings.change(lamp_radius=0.0 if size <= smallest else float(f"{size:.3g}"))
     if button:
         imgui.same_line(0.0, em(0.2))
         if imgui.button("x##lamp-radius", (button, button)):
             c.settings.change(lamp_radius=None)
         tooltip("lights as the scene says")
-    row("Lamp samples", _SAMPLES)
+    row(samples.label, samples.help + _SAMPLES)
     most = c.scheduler.lamps.wanted
     imgui.begin_disabled(most == 1 and not c.scheduler.lamps.any)
     if imgui.begin_combo("##lamp-samples", str(s.lamp_samples) if s.lamp_samples else _SCENE_SAYS):
@@ -83,33 +78,24 @@ def table(ui: Ui) -> None:
     shown = found(ui, "table")
     height = min(max(len(shown), 1), _ROWS) * imgui.get_text_line_height_with_spacing() + 2.0
     if imgui.begin_child("lights", (0.0, height)):
-        _rows(ui, shown, described=True)
+        _rows(ui, shown, ui.controller.session.draw.light, ui.controller.settings.set_light, described=True)
     imgui.end_child()
 
 
-def combo(ui: Ui) -> None:
-    """The light that the view shows, to choose another."""
-    if imgui.begin_combo("##light", ui.light_name(ui.controller.session.draw.light)):
-        if imgui.is_window_appearing():
-            ui.state(LightFilters).texts["combo"] = ""
-        shown = found(ui, "combo")
-        if imgui.begin_child("lights", (0.0, min(max(len(shown), 1), 2 * _ROWS) * _line() + 2.0)):
-            if _rows(ui, shown, described=False):
-                imgui.close_current_popup()
-        imgui.end_child()
-        imgui.end_combo()
-
-
-def combo_of_all(ui: Ui, place: str, chosen: int | None, choose: Callable[[int | None], None]) -> None:
-    """One light, or None for all of them together."""
+def combo(
+    ui: Ui, place: str, chosen: int | None, choose: Callable[[int], None], all_of_them: Callable[[], None] | None = None
+) -> None:
+    """A light to choose, or `all_of_them` together, which is None of them."""
     if imgui.begin_combo("##light", "all lights" if chosen is None else ui.light_name(chosen)):
         if imgui.is_window_appearing():
             ui.state(LightFilters).texts[place] = ""
-        if imgui.selectable("all lights", chosen is None)[0]:
-            choose(None)
-        for number in list(found(ui, place))[:_MOST_IN_COMBO]:
-            if imgui.selectable(f"{ui.light_name(number)}##{number}", chosen == number)[0]:
-                choose(number)
+        if all_of_them is not None and imgui.selectable("all lights", chosen is None)[0]:
+            all_of_them()
+        shown = found(ui, place)
+        if imgui.begin_child("lights", (0.0, min(max(len(shown), 1), 2 * _ROWS) * _line() + 2.0)):
+            if _rows(ui, shown, chosen, choose, described=False):
+                imgui.close_current_popup()
+        imgui.end_child()
         imgui.end_combo()
 
 
@@ -143,12 +129,10 @@ def matching(lights: Sequence[Light], text: str) -> Sequence[int]:
     return [i for i, one in enumerate(said) if all(word in one for word in words)]
 
 
-def _rows(ui: Ui, numbers: Sequence[int], described: bool) -> bool:
-    """Those rows of a list that are seen; whether one was chosen."""
-    c = ui.controller
-    scene = c.session.scene
+def _rows(ui: Ui, numbers: Sequence[int], chosen: int | None, choose: Callable[[int], None], described: bool) -> bool:
+    """Those rows of a list that are seen; whether one was clicked."""
+    scene, s, any_clicked = ui.controller.session.scene, ui.controller.session.settings, False
     assert scene is not None
-    s, chosen = c.session.settings, False
     clipper = imgui.ListClipper()
     clipper.begin(len(numbers), _line())
     while clipper.step():
@@ -157,15 +141,14 @@ def _rows(ui: Ui, numbers: Sequence[int], described: bool) -> bool:
             (light,) = as_lamps((scene.lights[index],), s.lamp_radius, s.lamp_samples)
             _color(index, light)
             imgui.same_line()
-            clicked, _ = imgui.selectable(f"{ui.light_name(index)}{_remarks(index, light)}##{index}",
-                                          c.session.draw.light == index)  # fmt: skip
+            clicked, _ = imgui.selectable(f"{ui.light_name(index)}{_remarks(index, light)}##{index}", chosen == index)
             if described:
                 tooltip(description(light))
             if clicked:
-                c.settings.set_light(index)
-                chosen = True
+                choose(index)
+                any_clicked = True
     clipper.end()
-    return chosen
+    return any_clicked
 
 
 def _line() -> float:

@@ -14,7 +14,7 @@ from viewer.state.picking import pixel_at
 from viewer.state.pixels import ALL
 from viewer.state.readings import can_draw
 from viewer.state.views import View
-from viewer.views import picture_options, values_of, words_at
+from viewer.views import values_of, words_at
 from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
 from viewer.window import comparing, picture_commands
@@ -136,7 +136,7 @@ def _histogram(ui: Ui) -> None:
     if difference is not None:
         values = ui.cached("differing", difference, None, lambda: difference.differing)
     else:
-        values = ui.cached("values", frame, picture_options(options), lambda: values_of(frame, options))
+        values = ui.cached("values", frame, options.of_pixels(), lambda: values_of(frame, options))
     if values.classes:
         paragraph("Modes and numbers of primitives have no histogram; the legend counts them.", QUIET)
         return

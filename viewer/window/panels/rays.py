@@ -65,7 +65,11 @@ def _filters(ui: Ui, rays: RayInspector) -> None:
     if imgui.get_item_rect_max().x + em(_LIGHT) <= edge:
         imgui.same_line()
     imgui.set_next_item_width(min(em(2.0 * _LIGHT), imgui.get_content_region_avail().x))
-    lights.combo_of_all(ui, "rays", rays.shown.light, lambda light: rays.refilter(rays.shown._replace(light=light)))
+
+    def choose(light: int | None) -> None:
+        rays.refilter(rays.shown._replace(light=light))
+
+    lights.combo(ui, "rays", rays.shown.light, choose, lambda: choose(None))
 
 
 def _tree(ui: Ui, rays: RayInspector) -> None:

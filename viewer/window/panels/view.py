@@ -26,7 +26,7 @@ def show(ui: Ui) -> None:
             _views(ui)
             if draw.view.of_light and ui.controller.session.scene is not None and ui.controller.session.scene.lights:
                 row("Light", "The light that the view is about (L and Shift+L).")
-                lights.combo(ui)
+                lights.combo(ui, "view", draw.light, ui.controller.settings.set_light)
             if draw.view.has_slice:
                 slicing.rows(ui)
             for one in settings:

@@ -12,9 +12,8 @@ from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
 from tracer.scene.things import Thing
 from tracer.why_in_words import primitive_in_words
-from viewer.services.before_edits import Lack
+from viewer.services.edit_effects import Effects, Lack, Transitions
 from viewer.state import terms
-from viewer.state.edit_effects import Effects, Transitions
 from viewer.state.edits import one_by_one
 from viewer.window.edit_commands import WhatIfState
 from viewer.window.panels import lights
@@ -178,10 +177,12 @@ def _light(ui: Ui, edited: Edited, number: int) -> None:
     x, y, z = moved or edited.original.light_positions(ui.controller.session.time)[number].tolist()
     names = max(em(4.0), imgui.get_content_region_avail().x - em(13.0) - button)
     start = imgui.get_cursor_pos_x()
-    _clipped_to(name, names)
+    imgui.align_text_to_frame_padding()
+    imgui.text_unformatted(fitted(name, names - em(0.4)))
     imgui.same_line(start + names)
     imgui.set_next_item_width(-button - 1.0)
-    changed, place = imgui.drag_float3("##place", [x, y, z], _speed(ui), -LARGEST, LARGEST, "%.4g")
+    speed = 0.001 * lights.diagonal(ui.controller.info.get("bounds"))  # units for each pixel of the pointer's way
+    changed, place = imgui.drag_float3("##place", [x, y, z], speed, -LARGEST, LARGEST, "%.4g")
     tooltip(f"where {name} is: x, y, z. Drag a number, or double-click it to type")
     if changed and list(place) != [x, y, z]:
         editing.move_light(number, (float(f"{place[0]:.6g}"), float(f"{place[1]:.6g}"), float(f"{place[2]:.6g}")))
@@ -192,17 +193,6 @@ def _light(ui: Ui, edited: Edited, number: int) -> None:
             editing.move_light(number, None)
         tooltip("back to where it was")
     imgui.pop_id()
-
-
-def _clipped_to(text: str, room: float) -> None:
-    """One line of text in so much room."""
-    imgui.align_text_to_frame_padding()
-    imgui.text_unformatted(fitted(text, room - em(0.4)))
-
-
-def _speed(ui: Ui) -> float:
-    """Units that a light moves for each pixel that a number is dragged: a thousandth of the scene."""
-    return 0.001 * lights.diagonal(ui.controller.info.get("bounds"))
 
 
 # --- what has changed --------------------------------------------------------------------------------
@@ -246,10 +236,11 @@ def _counters(found: Effects) -> None:
     flags = int(imgui.TableFlags_.sizing_stretch_prop)
     if not imgui.begin_table("counters", 4, flags):
         return
-    for name, width in (("", 1.5), ("before", 1.0), ("now", 1.0), ("change", 1.1)):
+    columns = {"": 1.5, "before": 1.0, "now": 1.0, "change": 1.1}
+    for name, width in columns.items():
         imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
     imgui.table_next_row()
-    for name in ("", "before", "now", "change"):
+    for name in columns:
         imgui.table_next_column()
         right(name, QUIET)
     for one in found.counters:
