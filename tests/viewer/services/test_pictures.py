@@ -286,7 +286,7 @@ def test_views_of_modes_say_how_to_save_what_can_be_made_again(desk: Desk, capfd
 
 @pytest.mark.parametrize("method", ("none", "certified", "voxels", "lie-exact", "certified+cache"))
 @pytest.mark.parametrize("view", View)
-def test_without_frames_before_it_a_picture_is_the_same_unless_the_recipe_says_otherwise(
+def test_without_frames_before_it_a_picture_is_the_same_unless_its_state_says_otherwise(
     tmp_path: Path, method: str, view: View
 ) -> None:
     (tmp_path / "room.aff").write_text(ROOM)
