@@ -2,39 +2,27 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Future
 from dataclasses import replace
 
 import pytest
 
-from tests.viewer.fakes import make_frame, make_scene, with_lamps
+from tests.viewer.fakes import make_frame, make_scene
 from tracer.frame import Settings
 from tracer.scene.lights import Light, as_lamps
 from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
 from viewer.services.frame_budget import FrameBudget
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
-from viewer.services.refinement import LampSamples, after, first, has_lamps
+from viewer.services.refinement import LampSamples, has_lamps
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.preferences import Preferences
-from viewer.state.readings import MOST_RECORDED, MOST_TOGETHER
+from viewer.state.readings import MOST_RECORDED
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 HERE = FrameInputs(size=(16, 8))
 MOVING = replace(HERE, moving=True)
-
-
-@pytest.mark.parametrize(
-    ("most", "steps"),
-    [(1, [1]), (4, [4]), (7, [7]), (16, [4, 16]), (20, [4, 20]), (64, [4, 16, 64]), (256, [4, 16, 64, 256])],
-)
-def test_each_step_takes_four_times_as_many(most: int, steps: list[int]):
-    taken = [first(most)]
-    while taken[-1] < most:
-        taken.append(after(taken[-1], most))
-    assert taken == steps
 
 
 @pytest.mark.parametrize("radius", [None, 0.0, 0.5])
@@ -205,42 +193,6 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
         assert window.scheduler.title == title
 
 
-def test_the_chosen_light_alone_is_asked_for_where_there_are_too_many():
-    window = Window(make_scene(lights=MOST_TOGETHER + 1))
-    scheduler, asked = window.scheduler, []
-
-    def query(_function, frame, light):
-        if not asked or (asked[-1][0], asked[-1][1]) != (frame, light):
-            asked.append((frame, light, Future()))
-        return asked[-1][2]
-
-    window.renders.query = query
-    window.rest()
-    scheduler.record_light()
-    assert not asked, "the picture needs none"
-    window.session.set_draw(view=View.PENUMBRA)
-    for _ in range(3):
-        scheduler.record_light()
-    ((frame, light, _),) = asked
-    assert (frame, light) == (scheduler.frame, 0)
-    window.session.set_draw(light=1)
-    scheduler.record_light()
-    *_, (frame, _, future) = asked
-    first = with_lamps(frame)
-    found = replace(first, asked=first.asked[..., 1:2], reached=first.reached[..., 1:2], only_light=1)
-    future.set_result(found)
-    scheduler.record_light()
-    assert scheduler.frame.only_light == 1 and scheduler.drawn_view is View.PENUMBRA
-    scheduler.record_light()
-    assert len(asked) == 2
-    window.session.set_draw(light=2)
-    scheduler.record_light()
-    assert scheduler.drawn_view is View.COLOR and len(asked) == 3, "another light"
-    asked[-1][2].set_exception(ValueError("no memory"))
-    scheduler.record_light()
-    assert scheduler.frame.only_light == 1, "what fails is reported by the render thread"
-
-
 def test_between_steps_it_is_known_that_more_is_to_come():
     """Whatever the thread is at: it may be between two pictures."""
     window = Window(lamp_radius=0.5, lamp_samples=64)
@@ -257,29 +209,3 @@ def test_between_steps_it_is_known_that_more_is_to_come():
     assert scheduler.awaits
     scheduler.give_up()
     assert not scheduler.awaits and not scheduler.adds_samples, "it has failed"
-
-
-def test_samples_of_pixels_come_after_certificates():
-    window = Window()
-    window.session.change(settings=replace(window.session.settings, method="certified", samples=4))
-    scheduler = window.scheduler
-    scheduler.request(HERE)
-    assert scheduler.awaits and not scheduler.certifies, "there is no picture yet"
-    scheduler.take()
-    scheduler.request(HERE)
-    assert scheduler.certifies and not scheduler.adds_samples
-    for _ in range(3):
-        scheduler.take()
-        scheduler.request(HERE)
-    assert not scheduler.certifies and not scheduler.awaits and not scheduler.adds_samples, "all samples are there"
-    part = replace(scheduler.traced.frame, settings=replace(scheduler.traced.frame.settings, samples=2))
-    scheduler.traced = replace(scheduler.traced, frame=part)
-    assert scheduler.adds_samples and not scheduler.awaits
-    scheduler.traced = None
-    assert scheduler.awaits
-    window = Window()
-    window.session.change(settings=replace(window.session.settings, method="auto"))
-    window.scheduler.request(HERE)
-    window.scheduler.take()
-    window.scheduler.request(HERE)
-    assert window.scheduler.awaits and not window.scheduler.certifies, "where it chooses by itself, what follows learns"
