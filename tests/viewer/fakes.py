@@ -241,7 +241,7 @@ def in_cells(frame: Frame) -> Frame:
 
 
 PATIENCE = 60.0
-"""Seconds after which something does not come: threads that trace step back behind all others, and machines are busy."""
+"""Seconds after which something does not come: threads that trace step back behind all others, on busy machines."""
 
 
 def until(happens: Callable[[], object]) -> None:
