@@ -109,7 +109,7 @@ def run(given: Namespace) -> int:
 
 def _in_turn(scene: Scene, script: Script, work: Work) -> int:
     """Trace frame after frame; returns how many there are, fewer than all where that was cancelled."""
-    renderer = Renderer(scene, script.recipe.settings, work.progress)
+    renderer = Renderer(scene, script.state.settings, work.progress)
     done, count = 0, len(script.takes)
     work.count(f"frame 1 of {count}", 0, count)
     with suppress(Cancelled):

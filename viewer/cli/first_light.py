@@ -48,38 +48,36 @@ def show(path: Path, given: Namespace) -> None:
         options.prepare_kernels(work, len(scene.lights), settings.accelerator, BY_MODES)
         time = scene.frame_time(min(FRAMES, scene.frames) - 1)
         meshes = options.mesh_options(given).of_file(path)
-        recipe = ViewState(
-            str(path.absolute()), meshes, time=time, settings=settings, warmup=Warmup(of_path=FRAMES - 1)
-        )
-        frame, all_traced = _trace(scene, recipe, work)
+        state = ViewState(str(path.absolute()), meshes, time=time, settings=settings, warmup=Warmup(of_path=FRAMES - 1))
+        frame, all_traced = _trace(scene, state, work)
         work.progress("writing", 1.0)
-        write_picture(PICTURE, scene, frame, recipe)
+        write_picture(PICTURE, scene, frame, state)
         figure1_svg.write(FIGURE, frame, scene)
-    frames = len(stills.times_before(scene, time, recipe.warmup.of_path)) + 1
-    print_table(_table(path, recipe, frames, frame, all_traced))
+    frames = len(stills.times_before(scene, time, state.warmup.of_path)) + 1
+    print_table(_table(path, state, frames, frame, all_traced))
     for file in (PICTURE, FIGURE):
         print(printable(file.absolute()))
 
 
-def _trace(scene: Scene, recipe: ViewState, work: Work) -> tuple[Frame, Frame]:
+def _trace(scene: Scene, state: ViewState, work: Work) -> tuple[Frame, Frame]:
     """The last frame by the paper's method, and by none."""
-    renderer, steps = Renderer(scene, recipe.settings, work.progress), FRAMES + _AGAIN
+    renderer, steps = Renderer(scene, state.settings, work.progress), FRAMES + _AGAIN
 
     def tell(done: int, frames: int) -> None:
         work.count(f"frame {done + 1} of {frames}, {BY_MODES}", done, steps)
 
-    frame = stills.trace(renderer, recipe, on_frame=tell, cancelled=work.cancelled)
+    frame = stills.trace(renderer, state, on_frame=tell, cancelled=work.cancelled)
     beside = renderer.beside()
-    beside.settings = replace(recipe.settings, method=NO_CULLING)
+    beside.settings = replace(state.settings, method=NO_CULLING)
     for again in range(_AGAIN):
         work.count(f"the last frame, {NO_CULLING}", FRAMES + again, steps)
-        all_traced = beside.render(recipe.time, cancel=work.cancelled)
+        all_traced = beside.render(state.time, cancel=work.cancelled)
     return frame, all_traced
 
 
-def _table(path: Path, recipe: ViewState, frames: int, frame: Frame, all_traced: Frame) -> Table:
+def _table(path: Path, state: ViewState, frames: int, frame: Frame, all_traced: Frame) -> Table:
     """What each stage did, beside what `none` did, and what that saved."""
-    size, end = f"{frame.width} × {frame.height}", f"{recipe.time:.2f} s"
+    size, end = f"{frame.width} × {frame.height}", f"{state.time:.2f} s"
     title = f"{TITLE}: {path.name}, {size}, the last of {frames} frames, at {end}"
     table = titled(title, _caption(frame, all_traced))
     for name in ("", BY_MODES, "", NO_CULLING, "saved"):

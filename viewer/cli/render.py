@@ -198,7 +198,7 @@ def _check_outputs(given: Namespace) -> None:
 
 
 def write_picture(path: Path, scene: Scene, frame: Frame, wanted: ViewState) -> None:
-    """Write the frame as its recipe draws it; a PNG remembers, as the window's captures do, how it was made."""
+    """Write the frame as its state draws it; a PNG remembers, as the window's captures do, how it was made."""
     pixels, missing = stills.draw(frame, scene, wanted)
     if missing:
         say(missing)

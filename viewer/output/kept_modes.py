@@ -1,7 +1,7 @@
 """The modes that a picture's shadow testing went by, as text that the picture carries.
 
 Where the frames that taught them cannot be traced again, as pictures in motion, of which only some pixels were shaded,
-these modes are all that the picture depends on besides its recipe.
+these modes are all that the picture depends on besides its state.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ LARGEST = 1 << 20
 """Bytes of the text, at most: pictures of more modes do without them."""
 
 
-def suffice(recipe: ViewState) -> bool:
+def suffice(state: ViewState) -> bool:
     """Whether modes are all that its history means to the picture: other methods learn more, and views of modes show
     what the frame itself has taught, which depends on more."""
-    method = Method.parse(recipe.settings.method)
-    return method.uses_modes and len(method.kinds) == 1 and not recipe.draw.view.of_modes and needs_history(recipe)
+    method = Method.parse(state.settings.method)
+    return method.uses_modes and len(method.kinds) == 1 and not state.draw.view.of_modes and needs_history(state)
 
 
-def packed(frame: Frame, recipe: ViewState) -> str:
+def packed(frame: Frame, state: ViewState) -> str:
     """What `unpacked` makes the modes of again; empty where they are not needed, or do not suffice."""
-    if not recipe.warmup.unknown or not suffice(recipe):
+    if not state.warmup.unknown or not suffice(state):
         return ""
     words = np.ascontiguousarray(frame.modes_before)
     text = base64.b64encode(zlib.compress(words.astype(words.dtype.newbyteorder("<")).tobytes(), 6)).decode()

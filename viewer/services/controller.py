@@ -34,7 +34,6 @@ from viewer.services.presets import Presets
 from viewer.services.preview import Preview
 from viewer.services.questions import Questions
 from viewer.services.ray_inspector import RayInspector
-from viewer.services.recipes import Recipes
 from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import Runs
@@ -96,9 +95,10 @@ class Controller:
         self.questions = questions = Questions(runs, captures, wake)
         self.loader = loader = SceneLoader(session, preferences, notices, questions.before_opening, wake)
         self.preview = Preview(session, loader, motion, notices, wake)
-        self.recipes = recipes = Recipes(session, preferences, scheduler, self.history, loader, notices)
-        self.films = Films(session, preferences, runs, recipes, bookmarks)
-        self.pictures = Pictures(session, preferences, runs, recipes, notices, wake)
+        self.pictures = pictures = Pictures(
+            session, preferences, scheduler, self.history, loader, runs, captures, notices
+        )
+        self.films = Films(session, preferences, runs, pictures, bookmarks)
         self.hunts = Hunts(session, preferences, runs, navigator, notices)
         self.watcher = SceneWatcher(preferences, lambda: loader.files, self._may_reload, loader.reload_changed, wake)
         self.reloaded = False
@@ -125,7 +125,6 @@ class Controller:
     def active(self) -> bool:
         """Whether anything goes on."""
         working = self.renderer.busy or self.loader.busy or self.captures.busy or self.runs.current is not None
-        working = working or bool(self.pictures.jobs)
         return working or self.motion.is_animating
 
     # --- what happens in each frame of the window (see `viewer.window.app.advance`) ---------------

@@ -31,7 +31,7 @@ from viewer.output.commands import cannot_come_back, needs_history
 from viewer.output.movie import VIDEO, Video, frame_name, video
 from viewer.services import stills
 from viewer.services.bookmarks import Bookmarks
-from viewer.services.recipes import Recipes
+from viewer.services.pictures import Pictures
 from viewer.services.runs import FileRun, Runs, check_size
 from viewer.state import codec, flight
 from viewer.state.flight import Stop, Take
@@ -47,17 +47,17 @@ if TYPE_CHECKING:
 FILMED = "its modes were learnt from the frames of its film before it"
 FRAMES = "-frames"
 """What the folder of the pictures of a video is called after it."""
-Pictures = Iterator[tuple[int, bytes, str]]
+Drawn = Iterator[tuple[int, bytes, str]]
 """The number of a take, its picture's file, and a remark or nothing."""
 
 
 @dataclass(frozen=True)
 class Script:
-    """What to film: the takes, how each is traced and drawn (`recipe`, whose caption has fields), the folder that the
+    """What to film: the takes, how each is traced and drawn (`state`, whose caption has fields), the folder that the
     pictures go to, the video if one is wanted, and its frames a second."""
 
     takes: Sequence[Take]
-    recipe: ViewState
+    state: ViewState
     folder: Path
     video: Path | None = None
     fps: float = 25.0
@@ -69,18 +69,18 @@ class Script:
         numbers = of_path if len(of_path) == len(self.takes) else list(range(len(self.takes)))
         return [self.folder / frame_name(number, max(numbers)) for number in numbers]
 
-    def recipe_of(self, take: Take, scene: Scene) -> ViewState:
+    def state_of(self, take: Take, scene: Scene) -> ViewState:
         """How to make a take again, alone: after as many frames of the scene's path, where these were before it."""
-        recipe = replace(self.recipe, time=take.time, camera=take.camera)
-        if needs_history(recipe) and not recipe.warmup.unknown:  # where chance has a part in it, nothing brings it back
+        state = replace(self.state, time=take.time, camera=take.camera)
+        if needs_history(state) and not state.warmup.unknown:  # where chance has a part in it, nothing brings it back
             unknown = take.warmup is None
-            recipe = recipe.with_warmup(unknown=FILMED) if unknown else recipe.with_warmup(of_path=take.warmup or 0)
-        return stills.with_caption_filled(recipe, scene)
+            state = state.with_warmup(unknown=FILMED) if unknown else state.with_warmup(of_path=take.warmup or 0)
+        return stills.with_caption_filled(state, scene)
 
-    def recipes_alone(self, scene: Scene) -> list[ViewState]:
+    def states_alone(self, scene: Scene) -> list[ViewState]:
         """How each picture is made by a process of one thread that may work in another folder."""
-        recipe = self.recipe.with_settings(threads=1)
-        return [replace(self, recipe=recipe).recipe_of(take, scene) for take in self.takes]
+        state = self.state.with_settings(threads=1)
+        return [replace(self, state=state).state_of(take, scene) for take in self.takes]
 
 
 def places(output: Path) -> tuple[Path, Path | None]:
@@ -112,10 +112,10 @@ def kept_pictures(script: Script, scene: Scene) -> set[int]:
     """Which pictures of the film are in its folder already.
 
     Raises OSError, in one line, where a numbered picture in it is none of this film."""
-    there, paths, recipes = _pictures_in(script.folder), script.paths, script.recipes_alone(scene)
+    there, paths, states = _pictures_in(script.folder), script.paths, script.states_alone(scene)
     found = {number for number, path in enumerate(paths) if path in there}
     for number in sorted(found):
-        other = _difference(paths[number], recipes[number], scene)
+        other = _difference(paths[number], states[number], scene)
         if other:
             raise OSError(f"{paths[number]}: a picture of another film ({other}); give another folder")
     for path in there:
@@ -124,8 +124,8 @@ def kept_pictures(script: Script, scene: Scene) -> set[int]:
     return found
 
 
-def _difference(path: Path, recipe: ViewState, scene: Scene) -> str:
-    """In what a picture differs from what the recipe makes, in words; empty where it is the same."""
+def _difference(path: Path, state: ViewState, scene: Scene) -> str:
+    """In what a picture differs from what the state makes, in words; empty where it is the same."""
     try:
         data = capture.read_data(path)
     except capture.CaptureError as error:
@@ -134,8 +134,8 @@ def _difference(path: Path, recipe: ViewState, scene: Scene) -> str:
     expected: dict[str, tuple[Any, Any]] = {
         "version": (made.get("version"), program_version()),
         "scene": (made.get("scene"), fingerprint.of_scene(scene)),
-        "size": (data.get("size"), list(recipe.size)),
-        "settings": (data.get("state"), _as_json(codec.state_to_json(stills.as_kept(recipe), of_picture=True))),
+        "size": (data.get("size"), list(state.size)),
+        "settings": (data.get("state"), _as_json(codec.state_to_json(stills.as_kept(state), of_picture=True))),
     }
     return ", ".join(f"another {name}" for name, (old, new) in expected.items() if old != new)
 
@@ -149,15 +149,15 @@ def _as_json(data: Any) -> Any:
 
 def drawn(
     renderer: Renderer,
-    recipe: ViewState,
+    state: ViewState,
     cancelled: Callable[[], bool],
     on_frame: Callable[[Frame], None] = lambda frame: None,
 ) -> tuple[bytes, str]:
     """A picture's file, and why it has no legend where one was wanted; `on_frame` gets its frame."""
-    frame = stills.trace(renderer, recipe.with_warmup(of_path=0), cancelled=cancelled)
-    pixels, missing = stills.draw(frame, renderer.scene, recipe)
+    frame = stills.trace(renderer, state.with_warmup(of_path=0), cancelled=cancelled)
+    pixels, missing = stills.draw(frame, renderer.scene, state)
     on_frame(frame)
-    return png.encoded(pixels, stills.text(pixels, frame, renderer.scene, recipe)), missing
+    return png.encoded(pixels, stills.text(pixels, frame, renderer.scene, state)), missing
 
 
 def in_turn(
@@ -165,10 +165,10 @@ def in_turn(
     script: Script,
     cancelled: Callable[[], bool],
     on_frame: Callable[[Frame], None] = lambda frame: None,
-) -> Pictures:
+) -> Drawn:
     """The pictures one after another; raises Cancelled."""
     for number, take in enumerate(script.takes):
-        yield number, *drawn(renderer, script.recipe_of(take, renderer.scene), cancelled, on_frame)
+        yield number, *drawn(renderer, script.state_of(take, renderer.scene), cancelled, on_frame)
 
 
 def by_processes(
@@ -178,20 +178,20 @@ def by_processes(
     kept: Collection[int],
     cancelled: Callable[[], bool],
     on_wait: Callable[[], None],
-) -> Pictures:
+) -> Drawn:
     """The pictures but those `kept`, as they come; raises Cancelled, and RuntimeError in one line."""
     from tracer.experiments import distributed_film  # needs Dask
 
     missing = [number for number in range(len(script.takes)) if number not in kept]
-    recipes = script.recipes_alone(scene)
-    wanted = [(recipes[number].settings, recipes[number]) for number in missing]
+    states = script.states_alone(scene)
+    wanted = [(states[number].settings, states[number]) for number in missing]
     for place, data, remark in distributed_film.pictures(cluster, scene, drawn, wanted, cancelled, on_wait):
         yield missing[place], data, remark
 
 
 def write(
     script: Script,
-    pictures: Pictures,
+    pictures: Drawn,
     kept: Collection[int] = (),
     note: Callable[[str], object] = lambda line: None,
 ) -> Iterator[int]:
@@ -228,14 +228,14 @@ class FilmRun(FileRun):
     name = "film"
 
     def __init__(self, scene: Scene, script: Script) -> None:
-        self.script, self.view = script, script.recipe.draw.view
-        self.verifies = script.recipe.settings.verify or self.view.needs_verify
+        self.script, self.view = script, script.state.draw.view
+        self.verifies = script.state.settings.verify or self.view.needs_verify
         super().__init__(scene, len(script.takes))
         self.output = script.video or script.folder
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
         check_folder(self.script.folder)
-        renderer = Renderer(scene, self.script.recipe.settings, world=world)
+        renderer = Renderer(scene, self.script.state.settings, world=world)
 
         def on_frame(frame: Frame) -> None:
             self.progressed(f"frame {self.traced + 1} of {self.frames}", frame)
@@ -248,10 +248,10 @@ class Films:
     """`plan` is what to film next, `film` the last one: under way, done or stopped."""
 
     def __init__(
-        self, session: Session, preferences: Preferences, runs: Runs, recipes: Recipes, bookmarks: Bookmarks
+        self, session: Session, preferences: Preferences, runs: Runs, pictures: Pictures, bookmarks: Bookmarks
     ) -> None:
         self._session, self._preferences, self._runs = session, preferences, runs
-        self._recipes, self._bookmarks = recipes, bookmarks
+        self._pictures, self._bookmarks = pictures, bookmarks
         self.plan = FilmPlan()
         self.film: FilmRun | None = None
 
@@ -280,22 +280,22 @@ class Films:
         self._runs.start(make)
 
     def _script(self, scene: Scene) -> Script:
-        plan, p, recipe = self.plan, self._preferences, self._recipes.now()
-        if recipe is None:
+        plan, p, state = self.plan, self._preferences, self._pictures.now()
+        if state is None:
             raise ValueError("there is nothing to film yet")
         check_size(plan.size)
         if plan.video:
             movie.check_video()
         takes = self._takes(scene)
         settings: Settings = replace(
-            recipe.settings, width=plan.size[0], height=plan.size[1], samples=plan.samples,
+            state.settings, width=plan.size[0], height=plan.size[1], samples=plan.samples,
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()  # fmt: skip
-        recipe = replace(recipe, settings=settings, warmup=Warmup(unknown=cannot_come_back(settings, recipe.draw)))
-        recipe = recipe.with_draw(magnified=1, caption=plan.caption, legend=plan.legend)
+        state = replace(state, settings=settings, warmup=Warmup(unknown=cannot_come_back(settings, state.draw)))
+        state = state.with_draw(magnified=1, caption=plan.caption, legend=plan.legend)
         name = f"{scene.path.stem}-film-{datetime.now():%Y-%m-%d-%H-%M-%S}"
         mp4 = p.picture_folder / (name + VIDEO) if plan.video else None
-        return Script(takes, recipe, p.picture_folder / name, mp4, plan.fps)
+        return Script(takes, state, p.picture_folder / name, mp4, plan.fps)
 
     def _takes(self, scene: Scene) -> list[Take]:
         plan = self.plan

@@ -1,8 +1,9 @@
-"""Pictures that leave the window otherwise than as they are shown: larger, with a caption, as EXR, to the clipboard, or
-to tev."""
+"""What makes the window's pictures again, and how they leave it: as a command, larger, with a caption, as EXR, to the
+clipboard, or to tev."""
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from io import BytesIO
@@ -12,26 +13,31 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from tracer.frame import Frame
+from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
-from viewer.output import clipboard, exr, png, tev
-from viewer.output.commands import cannot_come_back, needs_history
+from viewer.output import clipboard, commands, exr, png, tev
+from viewer.output.commands import BUILT, cannot_come_back, needs_history
 from viewer.output.legend_picture import with_legend
 from viewer.services import stills
-from viewer.services.jobs import Job
-from viewer.services.recipes import Recipes
+from viewer.services.capture_service import CaptureService
+from viewer.services.frame_history import FrameHistory
+from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.runs import FileRun, Runs
+from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.plans import MOST_MULTIPLE, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
+from viewer.state.views import View
+from viewer.state.zooming import FIT
 from viewer.util.files import write_new
 from viewer.views.legend import Legend
 
 MOST_PIXELS = 1 << 26
+UNKNOWN = "its modes were learnt from other frames as well"
 JPEG = ".jpg"
 
 
@@ -49,20 +55,20 @@ class PictureRun(FileRun):
 
     name = "picture"
 
-    def __init__(self, scene: Scene, recipe: ViewState, folder: Path, ending: str) -> None:
-        self.recipe, self.folder, self.ending = recipe, folder, ending
-        super().__init__(scene, 1 + recipe.warmup.repeats)
+    def __init__(self, scene: Scene, state: ViewState, folder: Path, ending: str) -> None:
+        self.state, self.folder, self.ending = state, folder, ending
+        super().__init__(scene, 1 + state.warmup.repeats)
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
-        (width, height), as_exr = self.recipe.size, self.ending == exr.ENDING
-        renderer = Renderer(scene, self.recipe.settings, world=world)
+        (width, height), as_exr = self.state.size, self.ending == exr.ENDING
+        renderer = Renderer(scene, self.state.settings, world=world)
 
         def tell(done: int, total: int) -> None:
             self.traced, self.label = done, f"{width} x {height}"
 
-        frame = stills.trace(renderer, self.recipe, as_exr, tell, cancel)
-        pixels, _ = (frame.pixels, "") if as_exr else stills.draw(frame, scene, self.recipe)
-        text = stills.text(pixels, frame, scene, self.recipe)
+        frame = stills.trace(renderer, self.state, as_exr, tell, cancel)
+        pixels, _ = (frame.pixels, "") if as_exr else stills.draw(frame, scene, self.state)
+        text = stills.text(pixels, frame, scene, self.state)
 
         def write(path: Path) -> None:
             if as_exr:
@@ -70,7 +76,7 @@ class PictureRun(FileRun):
             else:
                 write_picture(path, pixels, text)
 
-        stem = f"{Path(scene.path).stem}-{self.recipe.draw.view.value}-{width}x{height}"
+        stem = f"{Path(scene.path).stem}-{self.state.draw.view.value}-{width}x{height}"
         self.output = write_new(self.folder, stem, self.ending, write)
         self.traced = self.frames
         yield self.output
@@ -83,44 +89,104 @@ class Pictures:
         self,
         session: Session,
         preferences: Preferences,
+        scheduler: FrameScheduler,
+        history: FrameHistory,
+        loader: SceneLoader,
         runs: Runs,
-        recipes: Recipes,
+        files: CaptureService,
         notices: Notices,
-        wake: Callable[[], None] = lambda: None,
     ) -> None:
-        self._session, self._preferences, self._runs, self._recipes = session, preferences, runs, recipes
-        self._notices, self._wake = notices, wake
+        self._session, self._preferences, self._scheduler, self._history = session, preferences, scheduler, history
+        self._loader, self._runs, self._files, self._notices = loader, runs, files, notices
         self.plan = PicturePlan()
-        self.jobs: list[tuple[Job[str], str]] = []
+
+    # --- states ------------------------------------------------------------------------------------
+
+    def state_of(self, frame: Frame, view: View) -> ViewState | None:
+        """Return what makes a frame's picture again in a view; None without a scene."""
+        session = self._session
+        if session.scene is None:
+            return None
+        draw = replace(
+            session.draw, view=view, legend=self._preferences.legend_in_pictures, zoom=FIT,
+            magnified=self._scheduler.magnified if view.needs_verify else 1,
+            savings="" if self._preferences.savings_in_pictures else None,
+        ).as_needed()  # fmt: skip
+        state = replace(session.state_of(frame), draw=draw, warmup=Warmup())
+        state = state.with_settings(verify=session.settings.verify, modes=False)
+        if not needs_history(state):
+            return state
+        why, repeats = cannot_come_back(frame.settings, draw), self._history.repeats_of(frame)
+        if why or repeats is None:
+            return state.with_warmup(unknown=why or UNKNOWN)
+        return state.with_warmup(repeats=repeats)
+
+    def now(self) -> ViewState | None:
+        """Return what makes the picture that the window shows, or will show when it has all its samples; None before
+        one."""
+        session, frame = self._session, self._scheduler.frame
+        if session.scene is None or frame is None:
+            return None
+        width, height = self._scheduler.full_size
+        settings: Settings = replace(
+            self._scheduler.settings, width=width, height=height, samples=session.settings.samples
+        )
+        as_wanted = replace(frame, time=session.time, camera=session.camera, settings=settings)
+        return self.state_of(as_wanted, session.draw.view)
+
+    def command(self) -> str | None:
+        """Return the command line that makes the picture again; None, and one line, where there is no picture."""
+        state = self.now()
+        if state is None:
+            self._notices.say("there is no picture yet", error=True)
+            return None
+        name = f"{Path(state.scene).stem}-{state.draw.view.value}-{self._session.frame:04d}.png"
+        words = shlex.join(
+            ["shadowcull", *commands.words(state, self._session.scene, name, tuple(self._loader.folders))]
+        )
+        try:
+            words.encode()
+        except UnicodeEncodeError:
+            self._notices.say("not copied: the name of the scene's file is no text", error=True)
+            return None
+        if state.warmup.unknown == BUILT:
+            self._notices.say(f"copied, but the picture may differ: {state.warmup.unknown}")
+        elif state.warmup.unknown:
+            self._notices.say(f"copied, but the picture may differ: {state.warmup.unknown} (Backspace forgets them)")
+        else:
+            self._notices.say(f"copied: {words}")
+        return words
+
+    # --- as a file of its own -----------------------------------------------------------------------
 
     @property
     def size(self) -> tuple[int, int]:
         """Of the picture that is planned; 0, 0 before there is one to take it of."""
-        recipe = self._recipes.now()
-        return (0, 0) if recipe is None else (recipe.size[0] * self.plan.multiple, recipe.size[1] * self.plan.multiple)
+        width, height = self._scheduler.full_size if self.now() is not None else (0, 0)
+        return width * self.plan.multiple, height * self.plan.multiple
 
     def save(self) -> bool:
         """Begin to trace and write what is planned; returns whether it has begun, and else has said why not."""
 
         def make(scene: Scene) -> PictureRun:
-            recipe = self._recipes.now()
-            if recipe is None:
+            state = self.now()
+            if state is None:
                 raise ValueError("there is no picture to save yet")
-            return PictureRun(scene, self._planned(recipe, scene), self._preferences.picture_folder, self.plan.ending)
+            return PictureRun(scene, self._planned(state, scene), self._preferences.picture_folder, self.plan.ending)
 
         return self._runs.start(make)
 
-    def _planned(self, recipe: ViewState, scene: Scene) -> ViewState:
+    def _planned(self, state: ViewState, scene: Scene) -> ViewState:
         plan = self.plan
         width, height = self.size
         if not 1 <= plan.multiple <= MOST_MULTIPLE or width * height > MOST_PIXELS:
             raise ValueError(f"{width} x {height} are more than {MOST_PIXELS:,} pixels; choose a smaller multiple")
         if plan.ending == exr.ENDING:
             exr.check()
-        settings = replace(recipe.settings, width=width, height=height, samples=plan.samples).validated()
+        settings = replace(state.settings, width=width, height=height, samples=plan.samples).validated()
         # Modes are those of a resolution, and begin anew in another; once more, and they show what they are.
-        repeats, unknown = 1 if needs_history(recipe) else 0, cannot_come_back(settings, recipe.draw)
-        wanted = replace(recipe, settings=settings, warmup=Warmup(repeats=repeats, unknown=unknown))
+        repeats, unknown = 1 if needs_history(state) else 0, cannot_come_back(settings, state.draw)
+        wanted = replace(state, settings=settings, warmup=Warmup(repeats=repeats, unknown=unknown))
         wanted = wanted.with_draw(magnified=1, legend=plan.legend, caption=plan.caption)
         stills.check_light(wanted, scene)
         if not stills.lights_fit(wanted, scene, plan.ending == exr.ENDING):
@@ -134,11 +200,11 @@ class Pictures:
         pixels: NDArray[np.uint8] | None,
         frame: Frame | None,
         legend: Legend | None = None,
-        recipe: ViewState | None = None,
+        state: ViewState | None = None,
     ) -> None:
         """Put what is shown, (h, w, 3), on the clipboard, with its legend.
 
-        With the recipe that makes it again; without one, as for two pictures, it says nothing."""
+        With the state that makes it again; without one, as for two pictures, it says nothing."""
         scene, place = self._session.scene, self._session.draw.legend_at
         if pixels is None or frame is None or scene is None:
             self._notices.say("there is no picture to copy yet", error=True)
@@ -149,10 +215,10 @@ class Pictures:
 
         def work() -> str:
             file = BytesIO()
-            if recipe is not None:
-                drawn, _ = stills.dressed(pixels, frame, scene, recipe)
+            if state is not None:
+                drawn, _ = stills.dressed(pixels, frame, scene, state)
                 Image.fromarray(drawn).save(
-                    file, "PNG", pnginfo=png.notes(stills.text(drawn, frame, scene, recipe, by_gpu=True))
+                    file, "PNG", pnginfo=png.notes(stills.text(drawn, frame, scene, state, by_gpu=True))
                 )
             else:
                 described = with_legend(pixels, legend, place) if legend is not None else None
@@ -161,7 +227,7 @@ class Pictures:
             clipboard.copy(file.getvalue())
             return f"the picture, {drawn.shape[1]} x {drawn.shape[0]}, is on the clipboard"
 
-        self._begin("Copying", work)
+        self._files.begin("Copying", work)
 
     def to_tev(self, frame: Frame | None) -> None:
         """Send the frame and its buffers to where the preferences say."""
@@ -180,17 +246,4 @@ class Pictures:
             tev.send(to, name, frame)
             return f"sent to {to[0]}:{to[1]} as {name!r}"
 
-        self._begin("Sending", work)
-
-    def _begin(self, title: str, work: Callable[[], str]) -> None:
-        self.jobs.append((Job(title, lambda _: work(), self._wake), title))
-
-    def report_done(self) -> None:
-        """Report what has been done, or could not be."""
-        for entry in [entry for entry in self.jobs if entry[0].done]:
-            self.jobs.remove(entry)
-            job = entry[0]
-            if job.failure is not None:
-                self._notices.report(job.failure)
-            elif job.result is not None:
-                self._notices.say(job.result)
+        self._files.begin("Sending", work)

@@ -1,4 +1,4 @@
-"""One picture by its recipe: traced with the frames before it, drawn, and with what is kept of it.
+"""A picture by its state: traced with the frames before it, drawn, and with what is kept of it.
 
 What the command `render`, films, figures and the window's own saved pictures have in common.
 """
@@ -34,11 +34,11 @@ from viewer.views import colorize, legend_of
 from viewer.views.legend import lights_in_words
 
 
-def check_light(recipe: ViewState, scene: Scene) -> None:
+def check_light(state: ViewState, scene: Scene) -> None:
     """Raise ValueError, in one line, where the view speaks of a light that the scene does not have."""
-    if recipe.draw.view.of_light and recipe.draw.light >= len(scene.lights):
-        number, lights = recipe.edits.light_number(recipe.draw.light), len(scene.lights) + len(recipe.edits.lights_off)
-        raise ValueError(f"--view {recipe.draw.view.value}:{number}: {lights_in_words(lights)}")
+    if state.draw.view.of_light and state.draw.light >= len(scene.lights):
+        number, lights = state.edits.light_number(state.draw.light), len(scene.lights) + len(state.edits.lights_off)
+        raise ValueError(f"--view {state.draw.view.value}:{number}: {lights_in_words(lights)}")
 
 
 def times_before(scene: Scene, time: float, count: int) -> list[float]:
@@ -61,26 +61,26 @@ def times_before(scene: Scene, time: float, count: int) -> list[float]:
 
 def trace(
     renderer: Renderer,
-    recipe: ViewState,
+    state: ViewState,
     everything: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, total: None,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Frame:
-    """The recipe's frame, after those before it; `everything`: with modes, and all lights recorded.
+    """The state's frame, after those before it; `everything`: with modes, and all lights recorded.
 
     `on_frame` is told how many of these are done, before each.  Raises Cancelled."""
-    scene, settings, view = renderer.scene, recipe.settings, recipe.draw.view
-    times = times_before(scene, recipe.time, recipe.warmup.of_path) + [recipe.time] * recipe.warmup.repeats
-    earlier = [*recipe.warmup.frames, *(WarmupFrame(time, recipe.camera) for time in times)]
-    before = earlier if not recipe.warmup.modes else []
-    modes = settings.modes or view.of_modes or everything or recipe.draw.savings is not None
+    scene, settings, view = renderer.scene, state.settings, state.draw.view
+    times = times_before(scene, state.time, state.warmup.of_path) + [state.time] * state.warmup.repeats
+    earlier = [*state.warmup.frames, *(WarmupFrame(time, state.camera) for time in times)]
+    before = earlier if not state.warmup.modes else []
+    modes = settings.modes or view.of_modes or everything or state.draw.savings is not None
     renderer.settings = replace(settings, samples=1, verify=False, modes=modes)
     for done, one in enumerate(before):
         on_frame(done, len(before) + 1)
         renderer.render(one.time, one.camera, cancelled)
-    if recipe.warmup.modes:
+    if state.warmup.modes:
         word = np.dtype(word_type(len(scene.lights)))
-        renderer.begin_with(kept_modes.unpacked(recipe.warmup.modes, renderer.units, word))
+        renderer.begin_with(kept_modes.unpacked(state.warmup.modes, renderer.units, word))
     on_frame(len(before), len(before) + 1)
     lights = everything or records_lights(view, settings.width * settings.height, len(scene.lights))
     renderer.settings = replace(
@@ -91,27 +91,27 @@ def trace(
         record_fates=view.needs_fates,
         record_work=view.needs_work,
     )
-    frame = renderer.render(recipe.time, recipe.camera, cancelled)
-    return with_light(renderer, frame, recipe.draw.light) if view.needs_lights and not lights else frame
+    frame = renderer.render(state.time, state.camera, cancelled)
+    return with_light(renderer, frame, state.draw.light) if view.needs_lights and not lights else frame
 
 
-def lights_fit(recipe: ViewState, scene: Scene, everything: bool = False) -> bool:
+def lights_fit(state: ViewState, scene: Scene, everything: bool = False) -> bool:
     """Whether there is memory for what all lights send to each pixel, where that is to be recorded."""
-    width, height = recipe.size
-    recorded = everything or recipe.draw.view is View.LIGHTS or recipe.draw.view.needs_fates
+    width, height = state.size
+    recorded = everything or state.draw.view is View.LIGHTS or state.draw.view.needs_fates
     return not recorded or can_record_lights(width * height, len(scene.lights))
 
 
-def draw(frame: Frame, scene: Scene, recipe: ViewState) -> tuple[NDArray[np.uint8], str]:
-    """(h, w, 3) uint8, the frame as the recipe draws it, with all that goes with it; and why there is no legend where
+def draw(frame: Frame, scene: Scene, state: ViewState) -> tuple[NDArray[np.uint8], str]:
+    """(h, w, 3) uint8, the frame as the state draws it, with all that goes with it; and why there is no legend where
     one was wanted, in words."""
-    pixels = colorize(frame, recipe.draw)
-    return dressed(pixels, frame, scene, recipe)
+    pixels = colorize(frame, state.draw)
+    return dressed(pixels, frame, scene, state)
 
 
-def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: ViewState) -> tuple[NDArray[np.uint8], str]:
+def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, state: ViewState) -> tuple[NDArray[np.uint8], str]:
     """What lies over a drawn view (h, w, 3), above and below it; as `draw`."""
-    options, missing = recipe.draw, ""
+    options, missing = state.draw, ""
     if options.legend:
         legend = legend_of(frame, options, scene.lights)
         described = with_legend(pixels, legend, options.legend_at) if legend is not None else None
@@ -122,22 +122,22 @@ def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: ViewS
     return with_caption(pixels, options.caption), missing
 
 
-def with_caption_filled(recipe: ViewState, scene: Scene) -> ViewState:
-    """The recipe with the fields of its caption (`capture.FIELDS`) filled in; raises CaptureError."""
-    if not recipe.draw.caption:
-        return recipe
+def with_caption_filled(state: ViewState, scene: Scene) -> ViewState:
+    """The state with the fields of its caption (`capture.FIELDS`) filled in; raises CaptureError."""
+    if not state.draw.caption:
+        return state
     values = {
         "scene": scene.path.stem,
-        "view": recipe.draw.view.value,
-        "frame": Session(scene).frame_at(recipe.time),
-        "seconds": recipe.time,
-        "method": recipe.settings.method,
-        "light": recipe.draw.light,
-        "width": recipe.settings.width,
-        "height": recipe.settings.height,
+        "view": state.draw.view.value,
+        "frame": Session(scene).frame_at(state.time),
+        "seconds": state.time,
+        "method": state.settings.method,
+        "light": state.draw.light,
+        "width": state.settings.width,
+        "height": state.settings.height,
     }
-    caption = capture.filled(recipe.draw.caption, values, what="caption")
-    return recipe.with_draw(caption=caption)
+    caption = capture.filled(state.draw.caption, values, what="caption")
+    return state.with_draw(caption=caption)
 
 
 def as_kept(state: ViewState) -> ViewState:
@@ -145,12 +145,12 @@ def as_kept(state: ViewState) -> ViewState:
     return state if by_one_thread(state) else state.with_settings(threads=0)
 
 
-def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, recipe: ViewState, by_gpu: bool = False) -> str:
+def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, state: ViewState, by_gpu: bool = False) -> str:
     """Return what a picture carries: its state, its statistics, and what they were made of; and its modes, where these
     cannot be learnt again.  Where it was drawn `by_gpu`, which may round otherwise, that too."""
-    kept = as_kept(recipe).with_warmup(modes=kept_modes.packed(frame, recipe))
+    kept = as_kept(state).with_warmup(modes=kept_modes.packed(frame, state))
     more = {
-        "picture": {"by_gpu": by_gpu and not _as_traced(recipe.draw)},
+        "picture": {"by_gpu": by_gpu and not _as_traced(state.draw)},
         "made": {
             "version": program_version(),
             "scene": fingerprint.of_scene(scene),

@@ -62,7 +62,6 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Showing a scene that was read", c.take_scene)
     step("Reloading what has changed", c.watcher.reload_changed)
     step("Saving files", c.captures.report_saved)
-    step("Saving pictures", c.pictures.report_done)
     step("Quitting once all is saved", c.questions.leave_when_saved)
     step("Taking the newest frame", c.take_frame)
     step("Previewing the scene", lambda: c.preview.update(traced=c.frame is not None))

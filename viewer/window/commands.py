@@ -86,7 +86,7 @@ def _meshes(ui: Ui) -> list[Command]:
 
 def copy_command(ui: Ui) -> None:
     """Put the command that makes the picture on the clipboard."""
-    words = ui.controller.recipes.command()
+    words = ui.controller.pictures.command()
     if words is not None:
         ui.desktop.copy(words)
 

@@ -139,14 +139,14 @@ def capture(ui: Ui) -> None:
         if pixels is not None and compared:
             pixels = comparing.composed_picture(ui, pixels)
         described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
-        recipe = c.recipes.of(c.frame, options.view) if c.frame is not None and not compared else None
-        if recipe is not None and c.frame is not None and recipe.draw.savings is not None:
+        state = c.pictures.state_of(c.frame, options.view) if c.frame is not None and not compared else None
+        if state is not None and c.frame is not None and state.draw.savings is not None:
             said = comparison_in_words(c.frame, savings.standing(c))
-            recipe = recipe.with_draw(savings=said)
+            state = state.with_draw(savings=said)
         if wanted is CaptureKind.CLIPBOARD:
-            c.pictures.copy(pixels, c.frame, described, recipe)
+            c.pictures.copy(pixels, c.frame, described, state)
         else:
-            c.captures.capture(c.frame, pixels, described, recipe)
+            c.captures.capture(c.frame, pixels, described, state)
 
 
 def _why_none(c: Controller) -> str:

@@ -153,27 +153,6 @@ def _from_to(words) -> tuple[float, float]:
     return (words.x - room, words.x) if words.right else (words.x, words.x + room)
 
 
-@pytest.mark.parametrize("method, part", [("paper", 1.0), ("paper", 0.04), ("none", 0.04)])
-def test_it_fits_the_place_that_its_panel_has_at_first(method, part):
-    """In a window of 1280 x 800, also in motion, so that boxes stay where they are when it begins and ends."""
-    frame = frame_by(method, modes=True)
-    frame.statistics.part = part
-    frame.statistics.mode_changes.units["init"] = 80_000
-    figure = replace(figure_of(frame), title="")
-    drawing = lay_out(figure, lambda text: 5.8 * len(text), LINE, 670, 191)
-    assert drawing.height <= 191
-    assert len(drawing.boxes) == 7 and len({box.x for box in drawing.boxes}) == 3
-
-
-def test_what_lies_at_a_point_opens_its_view():
-    drawing = lay_out(figure_of(frame_by("paper")), measure, LINE, 1200, 800)
-    for name, view in (("Occlusion testing", View.OCCLUSION), ("→ examined anew", View.PIXEL_COUNT)):
-        words = next(words for words in drawing.words if words.text.startswith(name))
-        area = drawing.at(words.x + 1.0, words.y + 1.0)
-        assert area is not None and area.view is view and name in area.tip
-    assert drawing.at(-5.0, 0.0) is None
-
-
 def test_the_svg_is_well_formed_and_has_the_numbers():
     frame = frame_by("paper")
     text = svg(figure_of(frame, "<scene> & more"))

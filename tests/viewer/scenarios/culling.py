@@ -166,7 +166,7 @@ def _tree(d: Driver) -> None:
     d.c.settings.change(method="none")
     d.settle()
     at = d.c.session.draw.slice
-    assert "all that has been seen" in d.c.recipes.now().warmup.unknown
+    assert "all that has been seen" in d.c.pictures.now().warmup.unknown
     expected = picture(
         d.c.frame, View.TREE, shading=d.c.session.draw.shading, beneath=d.c.session.draw.beneath, slice=at
     )

@@ -33,7 +33,7 @@ def taking(d: Driver) -> None:
     d.press(int(KEY.c) | CTRL | ALT)
     d._in_frame.append(lambda: copied.append(imgui.get_clipboard_text()))
     d.wait(lambda: bool(copied), "the clipboard")
-    assert copied[0] == d.c.recipes.command() and copied[0].startswith("shadowcull render ")
+    assert copied[0] == d.c.pictures.command() and copied[0].startswith("shadowcull render ")
     d.c.preferences.screenshot_template = "taken.png"
     d.press(KEY.f12)
     d.wait(lambda: not d.c.captures.busy, "the picture")
@@ -44,7 +44,7 @@ def taking(d: Driver) -> None:
     _copy(d)
     d.c.preferences.tev = "127.0.0.1:1"
     next(c for c in d.ui.commands if c.name == "Send to tev").run()
-    d.wait(lambda: not d.c.pictures.jobs, "nobody to listen")
+    d.wait(lambda: not d.c.captures.busy, "nobody to listen")
     assert d.c.notices.message.error and "is tev or HDRView open there?" in d.c.notices.message.text
     d.settle()
 
@@ -63,7 +63,7 @@ def _nothing_to_save(d: Driver) -> None:
         assert said.error and "Certificates" in said.text and "The method paper makes no certificates" in said.text
         d.press(KEY._1)
         d.settle()
-        assert not d.c.captures.busy and not d.c.pictures.jobs
+        assert not d.c.captures.busy
     d.ui.capture_wanted = CaptureKind.PICTURE
     d.c.session.set_draw(view=View.DIFFERENCE)
     d.wait(lambda: d.ui.capture_wanted is None, "the picture that was asked for")
@@ -126,7 +126,7 @@ def _copy(d: Driver) -> None:
         program.write_text(f"#!/bin/sh\n/bin/cat > {folder}/got.png\n")
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
         d.press(int(KEY.c) | CTRL)
-        d.wait(lambda: (folder / "got.png").exists() and not d.c.pictures.jobs, "the copy")
+        d.wait(lambda: (folder / "got.png").exists() and not d.c.captures.busy, "the copy")
         d.frames(2)
         assert "is on the clipboard" in d.c.notices.message.text
         with Image.open(folder / "got.png") as image:
@@ -135,7 +135,7 @@ def _copy(d: Driver) -> None:
         d.c.comparing.start(CompareMode.SIDE)
         d.settle()
         d.press(int(KEY.c) | CTRL)
-        d.wait(lambda: not d.c.pictures.jobs and d.ui.capture_wanted is None, "the copy of both")
+        d.wait(lambda: not d.c.captures.busy and d.ui.capture_wanted is None, "the copy of both")
         d.frames(2)
     finally:
         os.environ["PATH"] = path

@@ -215,7 +215,7 @@ def test_the_command_makes_the_edited_picture_again(
     edit(desk, lambda: c.editing.make_static("car"))
     edit(desk, lambda: c.editing.hide_primitive(0))
     edit(desk, lambda: c.editing.let_move("ball"))
-    words = shlex.split(c.recipes.command())
+    words = shlex.split(c.pictures.command())
     assert words[0] == "shadowcull" and "--without-light=0" in words
     monkeypatch.chdir(tmp_path)
     assert run(capfd, *words[1:], "--threads", 1)[0] == 0

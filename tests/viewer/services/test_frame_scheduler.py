@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import time
 from dataclasses import replace
-from itertools import count
 from threading import Event, Thread
 from types import SimpleNamespace
 from typing import Any
@@ -17,7 +16,7 @@ from PIL import Image
 from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
 from tracer.culling.mode_changes import ModeChanges
 from tracer.frame import Settings
-from tracer.scene.model import Camera, Cancelled
+from tracer.scene.model import Camera
 from tracer.statistics import FrameStatistics
 from viewer.services.controller import Controller
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
@@ -85,39 +84,6 @@ def test_until_certificates_can_be_made_pictures_come_without():
     assert scheduler.settings.method == "paper"
 
 
-def test_a_hand_that_falters_starves_no_picture():
-    """While something moves, each picture that has begun is shown, however often the camera stands still in between."""
-    preferences = Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}})
-    controller, renderer = Controller(preferences), FakeRenderer()
-    controller.show(make_scene(), renderer, {})
-    trace, size = renderer.refine, (16, 8)
-
-    def slow(time_: float, camera: Camera | None = None, cancel: Any = None, *rest: Any) -> Any:
-        end = time.monotonic() + 0.06
-        while time.monotonic() < end:
-            if cancel():
-                raise Cancelled
-            time.sleep(0.002)
-        yield from trace(time_, camera, cancel, *rest)
-
-    renderer.refine = slow  # type: ignore[method-assign]
-    shown, end = set(), time.monotonic() + 1.0
-    try:
-        for step in count():
-            if time.monotonic() > end:
-                break
-            if step % 2:
-                x = 0.001 * step
-                controller.motion.move(replace(controller.session.camera, position=(x, 0.0, 0.0)))
-            advance(controller, size)
-            if controller.traced is not None:
-                shown.add(controller.traced.request.camera)
-            time.sleep(0.016)
-        assert len(shown) >= 5
-    finally:
-        assert controller.close()
-
-
 def test_a_window_stays_until_nobody_is_just_waking_it():
     """A thread that refreshed a window which has gone would call into what is no more."""
     wake, waking, go_on, gone = Wake(), Event(), Event(), Event()
@@ -174,46 +140,36 @@ def desk():
     assert controller.close()
 
 
-@pytest.mark.parametrize("view", [View.SAVED, View.COST])
-def test_a_view_of_work_has_it_counted_once_and_other_views_trace_nothing(desk: Desk, view: View):
+@pytest.mark.parametrize(
+    ("view", "doing", "others"),
+    [
+        (View.SAVED, "counting", (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE)),
+        (View.COST, "counting", (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE)),
+        (View.DIFFERENCE, "verifying", (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH)),
+        (View.WIPE, "verifying", (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH)),
+    ],
+)
+def test_what_a_view_needs_is_traced_once_and_for_such_views_alone(
+    desk: Desk, view: View, doing: str, others: tuple[View, ...]
+):
+    verifies = doing == "verifying"
     desk.c.session.set_draw(view=view)
-    assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "nothing has been counted yet"
-    assert "counting" in desk.c.scheduler.title
-    assert desk.rest() == [False]
-    assert desk.c.frame.settings.record_work and desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
-    for other in (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE):
+    assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "it is not there yet"
+    assert doing in desk.c.scheduler.title
+    assert desk.rest() == [verifies]
+    assert desk.c.frame.settings.record_work is not verifies and (desk.c.frame.wrong is not None) is verifies
+    assert desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
+    for other in others:
         desk.c.session.set_draw(view=other)
         assert not desk.c.scheduler.outdated
         assert desk.rest() == []
-    desk.c.motion.step(1)
-    desk.rest()
-    assert not desk.c.frame.settings.record_work, "only frames of such a view"
-    assert not desk.c.session.settings.record_work
-
-
-@pytest.mark.parametrize("view", [View.DIFFERENCE, View.WIPE])
-def test_a_view_of_what_is_wrong_verifies_once_and_other_views_trace_nothing(desk: Desk, view: View):
-    desk.c.session.set_draw(view=view)
-    assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "nothing has been verified yet"
-    assert "verifying" in desk.c.scheduler.title
-    assert desk.rest() == [True]
-    assert desk.c.frame.wrong is not None and desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
-    for other in (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH):
-        desk.c.session.set_draw(view=other)
-        assert not desk.c.scheduler.outdated
-        assert desk.rest() == []
-    assert not desk.c.session.settings.verify
-
-
-def test_only_frames_of_such_a_view_are_verified(desk: Desk):
-    desk.c.session.set_draw(view=View.DIFFERENCE)
-    assert set(desk.rest()) == {True}
-    desk.c.motion.step(1)
-    assert set(desk.rest()) == {True}
-    desk.c.session.set_draw(view=View.COLOR)
-    assert desk.rest() == []
-    desk.c.motion.step(1)
-    assert set(desk.rest()) == {False}
+    for shown, wanted in ((view, True), (View.COLOR, False)):
+        desk.c.session.set_draw(view=shown)
+        desk.rest()
+        desk.c.motion.step(1)
+        assert set(desk.rest()) == {verifies and wanted}
+        assert desk.c.frame.settings.record_work is (wanted and not verifies)
+    assert not desk.c.session.settings.verify and not desk.c.session.settings.record_work
 
 
 def test_the_users_own_setting_counts_in_every_view(desk: Desk):
@@ -310,18 +266,6 @@ def test_frames_follow_until_modes_no_longer_change():
         if not refinement.wants_another(whole, View.COLOR, False):
             break
     assert k == MOST_LEARNING
-
-
-def test_progress_is_that_of_certificates_alone():
-    refinement = Refinement()
-    for method, expected in (("auto", (0, 0)), ("paper", (0, 0)), ("certified", (1, MOST_FRAMES))):
-        assert refinement.progress == (0, 0) and not refinement.proves
-        whole = traced(RenderRequest(0.0, CAMERA, Settings(8, 8, method=method), 1), 9)
-        assert refinement.wants_another(whole, View.COLOR, False)
-        assert refinement.progress == expected and refinement.proves == bool(expected[0]), method
-    assert not refinement.wants_another(traced(whole.request, 9, 0.5), View.COLOR, False)
-    refinement.forget()
-    assert refinement.progress == (0, 0) and not refinement.proves
 
 
 def test_the_view_of_certificates_asks_for_more_of_them():

@@ -1,4 +1,4 @@
-"""What is said over a picture in a view that its method has nothing to show in."""
+"""Which methods and views there are, which has something to show, and what is said where one has not."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.viewer.drawn import legend_in
 from tests.viewer.fakes import (
     make_frame,
+    make_scene,
     with_cell_lights,
     with_certificates,
     with_cuts,
@@ -16,10 +18,27 @@ from tests.viewer.fakes import (
     with_tree,
     with_voxels,
 )
+from tracer.experiments.experiment import with_reference
+from tracer.fit import overview
 from tracer.frame import Settings
-from tracer.method import bases
+from tracer.method import DEFAULT_METHOD, Method, bases, in_order
+from tracer.statistics import CutCounts
+from viewer.state import codec
+from viewer.state.methods import (
+    ADAPTIVE,
+    BY_MODES,
+    CERTIFIED,
+    NO_CULLING,
+    SHOWN_BY,
+    default_for,
+    fitting_view,
+    groups,
+    toggled,
+    with_base,
+)
 from viewer.state.missing import missing
 from viewer.state.readings import MOST_RECORDED, can_draw
+from viewer.state.session import Session
 from viewer.state.views import View
 from viewer.views import lights
 from viewer.views.penumbra import arrivals
@@ -106,3 +125,99 @@ def test_certificates_that_may_still_come_are_promised():
     frame.statistics.certificates = 12
     assert "More are made" in missing(View.CERTIFICATE, frame, more=True).text
     assert "More are made" not in missing(View.CERTIFICATE, frame).text, "it has come to rest"
+
+
+FEW = "lightcuts is for 16 lights or more, and there are 6 here."
+FEW_SAMPLES = "lightcuts is for 16 light samples or more, and there are 6 here."
+LAMPS = {"lamp_radius": 0.1, "lamp_samples": 16}
+
+
+@pytest.mark.parametrize(
+    ("view", "method", "lights", "lamps", "shown", "said"),
+    [
+        (View.CUTS, "lightcuts", 6, {}, View.COLOR, f"The view is Colour, not Clusters of lights, as {FEW}"),
+        (View.DEPTH, "lightcuts", 6, {}, View.DEPTH, f"The method {FEW}"),
+        (View.CUTS, "lightcuts", 40, {}, View.CUTS, ""),
+        (View.CUTS, "lightcuts", 6, LAMPS, View.CUTS, ""),
+        (View.VOXELS, "voxels", 6, LAMPS, View.COLOR, "knows nothing of lamps of several samples."),
+        (View.CERTIFICATE, "certified+voxels", 6, LAMPS, View.CERTIFICATE, "it answers no ray."),
+        (View.VOXELS, "voxels", 40, {}, View.VOXELS, "Of 40 lights, voxels answers for the first 31; rays to the"),
+        (View.SHADOW, "paper", 0, {}, View.COLOR, "The view is Colour, not Shadow mode, as there are no lights."),
+        (View.SAVED, "paper", 0, {}, View.COLOR, "not Untraced shadow rays, as there are no lights."),
+        (View.DIFFERENCE, "paper", 0, {}, View.COLOR, "not Difference, as there are no lights."),
+        (View.SAVED, "paper", 6, {}, View.SAVED, ""),
+        (View.COST, "paper", 0, {}, View.COST, ""),  # rays that are reflected make it of several colours
+        (View.SHADOW, "auto", 6, {}, View.SHADOW, ""),
+    ],
+)
+def test_a_view_with_nothing_to_show_gives_way_to_the_picture(view, method, lights, lamps, shown, said):
+    found, told = fitting_view(view, replace(Settings(method=method), **lamps), make_scene(lights).lights)
+    assert found is shown and told.endswith(said) if not said.startswith("Of 40") else told.startswith(said)
+
+
+def test_a_map_of_clusters_in_which_each_light_is_one_says_so():
+    frame = with_cuts(make_frame(Settings(16, 8, method="lightcuts")))
+    assert legend_in(frame, View.CUTS).notes == ()
+    for cuts, said in (
+        (CutCounts(3, 7, 20, 0, 3), f"Nearly every light is a cluster of its own: {FEW.replace('are 6', 'are 3')}"),
+        (CutCounts(6, 7, 40, 0, 6), f"Nearly every sample of a light is a cluster of its own: {FEW_SAMPLES}"),
+        (CutCounts(100, 7, 700, 0, 100), "Nearly every sample of a light is a cluster of its own."),
+    ):
+        frame.statistics.cuts = cuts
+        (note,) = legend_in(frame, View.CUTS).notes
+        assert note.text == said
+    assert legend_in(frame, View.CUTS).facts[0].values[0].endswith(" for 100 samples of 3 lights")
+
+
+def test_the_overview_names_every_method_that_leaves_lights_to_tracing():
+    assert overview(6, 0) == ""
+    every = "All lights are taken into account by certified, auto, lightcuts, lightcuts-stochastic and "
+    assert overview(4096, 0) == (
+        f"{every}lightcuts-certified; the first 31 by paper, cells, voxels and lightbuffer; some by lie-exact and lie."
+    )
+    assert overview(256, 256) == (
+        f"{every}lightcuts-certified; the first 31 by paper and cells; some by lie-exact and lie; none by voxels and "
+        "lightbuffer, which leave lamps of several samples to tracing."
+    )
+    assert overview(6, 3).endswith("; some by lie-exact and lie; voxels and lightbuffer leave the 3 lamps of several "
+                                   "samples to tracing.")  # fmt: skip
+
+
+def test_methods_that_are_chosen_by_name_can_do_what_they_are_chosen_for():
+    assert not Method.parse(NO_CULLING).culls and Method.parse(BY_MODES).uses_modes
+    certified = Method.parse(CERTIFIED)
+    assert certified.has_certificates and not certified.adaptive
+    assert Method.parse(ADAPTIVE).adaptive and Method.parse(ADAPTIVE).exact
+
+
+def test_one_method_is_the_default_everywhere_that_has_something_to_show():
+    assert DEFAULT_METHOD == Settings().method == Session().settings.method == codec.recalled({}).settings.method
+    assert Method.parse(DEFAULT_METHOD).uses_modes and Method.parse(DEFAULT_METHOD).culls
+    assert {view: default_for(view) for view in View if default_for(view) != DEFAULT_METHOD} == SHOWN_BY
+
+
+def test_a_base_is_exchanged_and_an_addition_put_on_and_taken_off():
+    assert with_base("paper+rest", "certified") == "certified+rest"
+    assert with_base("cells+rest+cache", "paper") == "paper+cache+rest", "additions come in their usual order"
+    assert toggled("certified+rest", "cache") == "certified+cache+rest"
+    assert toggled("certified+cache+rest", "rest") == "certified+cache"
+
+
+def test_methods_are_ordered_by_base_then_by_their_additions():
+    methods = {"certified+cache", "certified", "paper+rest", "none", "cells", "paper", "certified+cache+rest"}
+    ordered = ["none", "paper", "paper+rest", "cells", "certified", "certified+cache", "certified+cache+rest"]
+    assert in_order(methods) == ordered == with_reference(in_order(methods))
+
+
+def test_the_list_of_methods_has_each_once_among_its_like():
+    listed = [kind for _, kinds in groups() for kind in kinds]
+    assert sorted(kind.name for kind in listed) == sorted(kind.name for kind in bases())
+    (_, exact), (_, wrong) = groups()
+    assert {kind.exact for kind in exact} == {True} and {kind.exact for kind in wrong} == {False}
+
+
+def test_each_method_says_what_it_trusts_and_whether_it_is_exact():
+    for kind in bases(measures=True):
+        assert kind.summary.startswith(("Trusts ", "Lightcuts ")) and kind.summary.endswith("."), kind.name
+        assert ("Exact" in kind.summary) == kind.exact, kind.name
+        assert ("Wrong now and then." in kind.summary or "Not exact." in kind.summary) != kind.exact, kind.name

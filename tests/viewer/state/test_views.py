@@ -134,15 +134,6 @@ def test_a_pick_tells_what_the_pixel_shows():
     assert pick(frame, scene, 0.99, 0.5).primitive == -1
 
 
-def test_a_kept_pick_follows_its_primitives_modes():
-    frame = make_frame()
-    found = pick(frame, make_scene(), (2 * 3 + 0.5) / 16, 0.5)
-    later = make_frame()
-    later.modes[3] = 1
-    assert refreshed(found, later).occlusion is OcclusionMode.PARTIALLY_OCCLUDED
-    assert refreshed(found, later).point == found.point
-
-
 def test_a_kept_pick_goes_by_cells_where_those_carry_the_modes():
     frame, cells = make_frame(), in_cells(make_frame())
     at = ((2 * 3 + 1.5) / 16, 0.5)  # the fourth primitive's second column

@@ -50,14 +50,14 @@ def fresh(desk: Desk) -> None:
 
 
 def shown(desk: Desk) -> np.ndarray:
-    """The picture as the window's recipe draws the frame that is there."""
-    recipe = desk.c.recipes.of(desk.c.frame, desk.c.session.draw.view)
-    return stills.draw(desk.c.frame, desk.c.session.scene, recipe)[0]
+    """The picture as the window's state draws the frame that is there."""
+    state = desk.c.pictures.state_of(desk.c.frame, desk.c.session.draw.view)
+    return stills.draw(desk.c.frame, desk.c.session.scene, state)[0]
 
 
 def made(desk: Desk, capfd: pytest.CaptureFixture[str]) -> np.ndarray:
     """The picture that the copied command makes, started as a shell would."""
-    words = shlex.split(desk.c.recipes.command() or "")
+    words = shlex.split(desk.c.pictures.command() or "")
     assert words[0] == "shadowcull"
     code, _, errors = run(capfd, *words[1:])
     assert code == 0, errors
@@ -116,7 +116,7 @@ def test_a_copied_command_makes_the_same_picture(odd: Desk, capfd: pytest.Captur
     for change in (lambda _: None, exactly, later, elsewhere, soft, toned, ranged, *modes):
         change(odd)
         odd.rest()
-        assert np.array_equal(made(odd, capfd), shown(odd)), odd.c.recipes.command()
+        assert np.array_equal(made(odd, capfd), shown(odd)), odd.c.pictures.command()
         assert odd.said.startswith("copied: shadowcull render "), odd.said
 
 
@@ -124,20 +124,20 @@ def test_what_cannot_be_brought_back_is_said(odd: Desk) -> None:
     odd.c.session.set_draw(view=View.OCCLUSION)
     odd.c.motion.step(5)
     odd.rest()
-    assert odd.c.recipes.command() is not None
+    assert odd.c.pictures.command() is not None
     assert "may differ" in odd.said and "other frames" in odd.said and "Backspace" in odd.said
     fresh(odd)
-    assert odd.c.recipes.command() is not None and odd.said.startswith("copied: ")
+    assert odd.c.pictures.command() is not None and odd.said.startswith("copied: ")
     odd.c.session.change(settings=replace(odd.c.session.settings, method="certified"))
     odd.c.session.set_draw(view=View.CERTIFICATE)
     odd.rest()
     fresh(odd)
-    assert odd.c.recipes.command() is not None
+    assert odd.c.pictures.command() is not None
     assert "may differ" in odd.said and "time" in odd.said
 
 
 def test_scenes_of_the_program_are_named(figure4: Desk) -> None:
-    assert (figure4.c.recipes.command() or "").startswith("shadowcull render figure4 -o figure4-color-0000.png")
+    assert (figure4.c.pictures.command() or "").startswith("shadowcull render figure4 -o figure4-color-0000.png")
 
 
 def test_a_command_is_printed_for_a_saved_picture(
@@ -166,13 +166,13 @@ def test_a_tree_that_rays_have_had_built_cannot_be_brought_back(odd: Desk) -> No
     odd.c.settings.change(accelerator="kdtree-lazy")
     odd.c.session.set_draw(view=View.TREE)
     odd.rest()
-    assert odd.c.recipes.command() is not None and f"may differ: {BUILT}" in odd.said
+    assert odd.c.pictures.command() is not None and f"may differ: {BUILT}" in odd.said
     assert odd.c.pictures.save()
-    assert odd.runs.current.recipe.warmup.unknown == BUILT
+    assert odd.runs.current.state.warmup.unknown == BUILT
     odd.run_to_its_end()
     odd.c.films.plan = replace(odd.c.films.plan, first=0, last=1, size=(32, 24), video=False)
     odd.c.films.start()
-    assert odd.c.films.film.script.recipe.warmup.unknown == BUILT
+    assert odd.c.films.film.script.state.warmup.unknown == BUILT
     odd.run_to_its_end()
     odd.c.navigator.go(odd.c.history.frames - 1)
     assert odd.said.endswith(f"again, though {BUILT}"), odd.said
@@ -194,10 +194,10 @@ def saved(desk: Desk, view: View, name: str) -> Path:
         desk.rest()
     c = desk.c
     c.preferences.screenshot_template = name
-    recipe = c.recipes.of(c.frame, view)
-    assert recipe is not None and recipe.warmup.unknown, "its modes come from other frames"
-    pixels, _ = stills.draw(c.frame, c.session.scene, recipe)
-    c.captures.capture(c.frame, pixels, None, recipe)
+    state = c.pictures.state_of(c.frame, view)
+    assert state is not None and state.warmup.unknown, "its modes come from other frames"
+    pixels, _ = stills.draw(c.frame, c.session.scene, state)
+    c.captures.capture(c.frame, pixels, None, state)
     job = c.captures.saving.pop()
     assert job.join(10.0)
     return job.result
@@ -210,7 +210,7 @@ def check(capfd: pytest.CaptureFixture[str], path: Path) -> tuple[int, str]:
 
 
 def changed(path: Path, name: str, **warmup: object) -> Path:
-    """A copy of a picture whose recipe says something else."""
+    """A copy of a picture whose state says something else."""
     data = capture.read_data(path)
     data["state"]["warmup"] |= warmup
     with Image.open(path) as image:
@@ -286,22 +286,22 @@ def test_views_of_modes_say_how_to_save_what_can_be_made_again(desk: Desk, capfd
 
 @pytest.mark.parametrize("method", ("none", "certified", "voxels", "lie-exact", "certified+cache"))
 @pytest.mark.parametrize("view", View)
-def test_without_frames_before_it_a_picture_is_the_same_unless_the_recipe_says_otherwise(
+def test_without_frames_before_it_a_picture_is_the_same_unless_its_state_says_otherwise(
     tmp_path: Path, method: str, view: View
 ) -> None:
     (tmp_path / "room.aff").write_text(ROOM)
     scene = load_scene(tmp_path / "room.aff")
-    recipe = ViewState(
+    state = ViewState(
         time=scene.frame_time(3), settings=Settings(24, 18, method=method, threads=1), draw=DrawOptions(view)
     )
-    if needs_history(recipe):
+    if needs_history(state):
         return
-    alone, later = Renderer(scene, recipe.settings), Renderer(scene, recipe.settings)
+    alone, later = Renderer(scene, state.settings), Renderer(scene, state.settings)
     for number in range(3):
         later.render(scene.frame_time(number))
-    one, other = (stills.trace(renderer, recipe) for renderer in (alone, later))
+    one, other = (stills.trace(renderer, state) for renderer in (alone, later))
     if can_draw(one, view):
-        drawn = (stills.draw(frame, scene, recipe)[0] for frame in (one, other))
+        drawn = (stills.draw(frame, scene, state)[0] for frame in (one, other))
         np.testing.assert_array_equal(*drawn)
 
 
