@@ -39,7 +39,7 @@ def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
     found = comparing.difference(a, b)
     assert comparing.difference(a, b) is found, "found out once"
     assert np.array_equal(found.pixels != 0.0, (b.frame.color != color).any(axis=-1)) and found.stats.pixels
-    comparing.state.limit = 0.25
+    comparing.change(limit=0.25)
     assert comparing.limit(found) == 0.25
     comparing.forget()
     assert comparing.sides is None and comparing.a is None
@@ -53,7 +53,7 @@ def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
     desk.rest()
     a, b = comparing.sides
     assert (a.view, b.view) == (View.COLOR, View.COST)
-    comparing.state.same_view = True
+    comparing.change(same_view=True)
     assert comparing.a.view is View.COLOR, "what it has not recorded it cannot show"
     comparing.start(CompareMode.DIFFERENCE)
     assert comparing.difference(*comparing.sides) is None and "keep A in this one" in comparing.remark

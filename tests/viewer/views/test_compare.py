@@ -15,8 +15,8 @@ from viewer.state.columns import NO_TIME, rows
 from viewer.state.comparison import (
     LEAST_MARKED,
     MOST_SPOTS,
+    Compare,
     CompareMode,
-    Comparison,
     Side,
     elided,
     named,
@@ -162,12 +162,9 @@ def test_each_is_called_by_its_method_and_what_sets_it_apart():
 
 
 def test_it_is_in_turn_that_pictures_blink():
-    state = Comparison(on=True, mode=CompareMode.BLINK, rate=2.0)
+    state = Compare(on=True, mode=CompareMode.BLINK, rate=2.0)
     assert [state.shows_a(seconds) for seconds in (0.0, 0.26, 0.51, 0.76)] == [False, True, False, True]
-    state.mode = CompareMode.FLIP
-    assert not state.shows_a(0.26)
-    state.held = True
-    assert state.shows_a(0.0)
+    assert not replace(state, mode=CompareMode.FLIP).shows_a(0.26)
 
 
 def test_columns_have_differences_and_shares():
