@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
+from time import monotonic, sleep
 
 import numpy as np
 from numpy.typing import NDArray
@@ -237,6 +238,18 @@ def in_cells(frame: Frame) -> Frame:
     highest = np.repeat(frame.highest_count, 2)
     before = np.repeat(frame.modes_before, 2)
     return replace(frame, cells=cells, modes=words, modes_before=before, pixel_count=counts, highest_count=highest)
+
+
+PATIENCE = 60.0
+"""Seconds after which something does not come: threads that trace step back behind all others, on busy machines."""
+
+
+def until(happens: Callable[[], object]) -> None:
+    """Wait for what another thread brings about."""
+    end = monotonic() + PATIENCE
+    while not happens():
+        assert monotonic() < end, "waited in vain"
+        sleep(0.001)
 
 
 class FakeRenderer:

@@ -6,11 +6,12 @@ What is drawn of the two, and what is told, is decided here; `viewer.state.compa
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from tracer.frame import Frame
 from tracer.method import Method, bases
 from viewer.services.frame_scheduler import FrameScheduler
-from viewer.state.comparison import CompareMode, Side, Source, named, sizes_in_words
+from viewer.state.comparison import Compare, CompareMode, Side, Source, named, sizes_in_words
 from viewer.state.draw_options import DrawOptions, Slice
 from viewer.state.methods import BY_MODES, NO_CULLING
 from viewer.state.notices import Notices
@@ -23,13 +24,23 @@ from viewer.views.compare import Difference, difference_of
 
 
 class Comparing:
-    """`state` is what was chosen; panels and commands may change it by the methods here."""
+    """`kept` is A as it was kept, `held` says that A is to be seen while a key is held; the rest is in the state."""
 
     def __init__(self, session: Session, scheduler: FrameScheduler, notices: Notices) -> None:
         self._session, self._scheduler, self._notices = session, scheduler, notices
-        self.state = session.comparison
+        self.kept: Side | None = None
+        self.held = False
         self._difference: tuple[Side, Side, Slice, Difference | None] | None = None
         self._span: tuple[Frame, Frame, dict[View, tuple[float, float]]] | None = None
+
+    @property
+    def state(self) -> Compare:
+        """Whether and how pictures are compared."""
+        return self._session.state.compare
+
+    def change(self, **fields: Any) -> None:
+        """Compare otherwise."""
+        self._session.change(compare=replace(self.state, **fields))
 
     # --- what is compared ------------------------------------------------------------------------
 
@@ -49,7 +60,7 @@ class Comparing:
                 return None
             view = self._scheduler.drawn_view
             return self._side(second, view if can_draw(second, view, session.draw.light) else View.COLOR)
-        kept = state.kept
+        kept = self.kept
         if kept is not None and state.same_view and can_draw(kept.frame, session.draw.view, session.draw.light):
             view, light = self._scheduler.drawn_view, session.draw.light
             return replace(kept, view=view, light=light, light_number=session.light_number)
@@ -129,23 +140,24 @@ class Comparing:
         if b is None:
             self._notices.say("there is no picture to keep yet", error=True)
             return
-        self.state.kept, self.state.source = b, Source.KEPT
+        self.kept = b
+        self.change(source=Source.KEPT)
         part = b.frame.statistics.part
         coarse = f", of which {whole_percent(part)} of the pixels are shaded yet" if part < 1.0 else ""
         self._notices.say(f"kept as A: {b.method}, {b.view.label.lower()}, frame {b.number}{coarse}")
 
     def forget(self) -> None:
         """Clear A: forget what was kept."""
-        self.state.kept = self._difference = None
+        self.kept = self._difference = None
         if self.state.source is Source.KEPT:
             self.end()
 
     def start(self, mode: CompareMode) -> None:
         """Compare in this way."""
-        self.state.on, self.state.mode = True, mode
+        self.change(on=True, mode=mode)
         if self._session.draw.view is View.WIPE:  # one line is enough
             self._session.set_draw(view=View.COLOR)
-        if self.state.source is Source.KEPT and self.state.kept is None:
+        if self.state.source is Source.KEPT and self.kept is None:
             self._notices.say(self.remark)
 
     def toggle(self, mode: CompareMode) -> None:
@@ -162,26 +174,26 @@ class Comparing:
         self.start(modes[(now + 1) % len(modes)] if self.state.on else self.state.mode)
 
     def end(self) -> None:
-        self.state.on = self.state.held = False
+        self.change(on=False)
+        self.held = False
         self._difference = self._span = None
 
     def use(self, source: Source) -> None:
         """Take A from here."""
-        self.state.source = source
+        self.change(source=source, second=self.state.second or self._other_method())
 
     def trace_by(self, method: str) -> None:
         """Let this be the second method, and compare with it."""
-        self.state.second = method
-        self.use(Source.METHOD)
+        self.change(source=Source.METHOD, second=method)
 
     def toggle_methods(self) -> None:
         """Trace each frame by a second method as well, side by side, or no longer."""
         if self.state.on and self.state.source is Source.METHOD:
             self.end()
             return
-        if not self.state.second or self.state.second == self._session.settings.method:
-            self.state.second = self._other_method()
-        self.state.source = Source.METHOD
+        if self.state.second == self._session.settings.method:
+            self.change(second="")
+        self.use(Source.METHOD)
         self.start(CompareMode.SIDE)
 
     def _other_method(self) -> str:
@@ -201,10 +213,7 @@ class Comparing:
     @property
     def second_method(self) -> str:
         """The method by which frames are traced as well, while that is to be seen; else ""."""
-        if not self.state.on or self.state.source is not Source.METHOD:
-            return ""
-        self.state.second = self.state.second or self._other_method()
-        return self.state.second
+        return self.state.second if self.state.on and self.state.source is Source.METHOD else ""
 
     def blinks(self) -> bool:
         """Whether the window must be drawn again and again."""

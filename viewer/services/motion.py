@@ -36,7 +36,7 @@ class _Glide:
     start: Camera
     end: Camera
     began: float
-    seconds: float = GLIDE_SECONDS
+    seconds: float
 
 
 class Motion:
@@ -127,17 +127,15 @@ class Motion:
         self._session.change(camera=camera)
         self.by_hand()
 
-    def glide(self, camera: Camera, start: Camera | None = None) -> None:
+    def glide(self, camera: Camera, start: Camera | None = None, seconds: float = GLIDE_SECONDS) -> None:
         """Move the camera there in a moment's time, from where it is or from `start`."""
         if not self._locked():
-            self._glide = _Glide(start or self._session.camera, camera, time.monotonic())
+            self._glide = _Glide(start or self._session.camera, camera, time.monotonic(), seconds)
 
     def fly_to(self, camera: Camera, start: Camera | None = None) -> None:
         """The same, for as long as the way is: a flight that the eye can follow."""
         start = start or self._session.camera
-        seconds = navigation.flight_seconds(start, camera, self.pace)
-        if not self._locked():
-            self._glide = _Glide(start, camera, time.monotonic(), seconds)
+        self.glide(camera, start, navigation.flight_seconds(start, camera, self.pace))
 
     def halt(self) -> None:
         """Leave the camera where it is."""
@@ -149,10 +147,6 @@ class Motion:
             return
         self.halt()
         self._session.change(camera=None if follow else self._session.camera)
-
-    def reset_camera(self) -> None:
-        """Go back to the scene's own camera, now."""
-        self.follow_path(True)
 
     # --- time -------------------------------------------------------------------------------------
 

@@ -15,7 +15,6 @@ from tracer.scene.mesh_options import MeshOptions
 from tracer.setting import ALWAYS, settings_of
 from viewer.services.motion import Motion
 from viewer.state import edits as scene_edits
-from viewer.state.comparison import Comparison
 from viewer.state.notices import Notices
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
@@ -27,28 +26,21 @@ _STROKE_SECONDS = 0.6  # from one stroke to the next, at most, for both to be on
 
 
 @dataclass(frozen=True)
-class Place:
-    """All that a step brings back; `with_time`, it goes to another time as well."""
-
-    state: ViewState
-    compared: Comparison
-    with_time: bool = False
-
-
-@dataclass(frozen=True)
 class Step:
-    """What was done, in a few words, and what held before and after."""
+    """What was done, in a few words, and what held before and after; `with_time`, it goes to another time as well."""
 
     name: str
-    before: Place
-    after: Place
+    before: ViewState
+    after: ViewState
+    with_time: bool = False
 
 
 @dataclass(frozen=True)
 class _Coming:
     """What is brought back once the mesh has been read for it, what to say then, and the steps as they were before."""
 
-    place: Place
+    state: ViewState
+    with_time: bool
     said: str
     done: list[Step]
     undone: list[Step]
@@ -58,7 +50,7 @@ class _Coming:
 class _Open:
     """A step that may go on."""
 
-    before: Place
+    before: ViewState
     fields: dict[str, str] = field(default_factory=dict)
 
 
@@ -87,7 +79,7 @@ class Undo:
         self._undone: list[Step] = []
         self._open: _Open | None = None
         self._coming: _Coming | None = None
-        self._last: Place | None = None
+        self._last: ViewState | None = None
         self._changed_at = 0.0
         self._name = ""
         self._time: float | None = None  # before what is about to change, if that goes to another time
@@ -115,13 +107,13 @@ class Undo:
         self.note_changes()
         change()
         if self._last is not None:
-            self._last = self._place()
+            self._last = self._state()
 
     def note_changes(self) -> None:
         """Take up what has changed since the last frame of the window."""
         if self._coming is not None and not self._come():
             return
-        now = self._place()
+        now = self._state()
         if now is None:
             return
         if self._last is None:
@@ -130,13 +122,11 @@ class Undo:
         changed = {} if now == self._last else _changes(self._last, now)
         name, self._name = self._name, ""
         before, self._time = self._time, None
-        moved = before is not None and before != now.state.time
+        moved = before is not None and before != now.time
         if name and (changed or moved):
             self._close()
-            then, after = self._last, now
-            if moved:
-                then, after = replace(_at(then, before), with_time=True), replace(now, with_time=True)
-            self._add(Step(name, then, after))
+            then = self._last if before is None else replace(self._last, time=before)
+            self._add(Step(name, then, now, with_time=moved))
         elif changed:
             if self._open is not None and not changed.keys() <= self._open.fields.keys():
                 self._close()
@@ -170,7 +160,8 @@ class Undo:
         before = list(self._done), list(self._undone)
         step = steps.pop()
         others.append(step)
-        self._start(step.before if back else step.after, f"{way}ne: {step.name}", *before)
+        state = step.before if back else step.after
+        self._start(_Coming(state, step.with_time, f"{way}ne: {step.name}", *before))
 
     @property
     def _goes_on(self) -> bool:
@@ -194,13 +185,13 @@ class Undo:
         self._done = [*self._done, step][-MOST_STEPS:]
         self._undone = []
 
-    def _start(self, place: Place, said: str, done: list[Step], undone: list[Step]) -> None:
-        """Bring a place back, now or once its mesh is read; `done` and `undone` are the steps as they were before."""
-        if place.state.meshes == self._session.meshes:
-            self._bring(place, said)
+    def _start(self, coming: _Coming) -> None:
+        """Bring a state back, now or once its mesh is read."""
+        if coming.state.meshes == self._session.meshes:
+            self._bring(coming)
         else:
-            self._coming = _Coming(place, said, done, undone)
-            self._read_as(place.state.meshes)
+            self._coming = coming
+            self._read_as(coming.state.meshes)
 
     def _come(self) -> bool:
         """Bring back what a mesh is being read for, or forget of it where nothing has come of the reading; whether
@@ -209,48 +200,42 @@ class Undo:
         if coming is None or self._reading():
             return coming is None
         self._coming = None
-        if coming.place.state.meshes == self._session.meshes:
-            self._bring(coming.place, coming.said)
+        if coming.state.meshes == self._session.meshes:
+            self._bring(coming)
         else:
             self._done, self._undone = coming.done, coming.undone
         return True
 
-    def _bring(self, place: Place, said: str) -> None:
-        session, wanted, playing = self._session, place.state, self._session.playing
+    def _bring(self, coming: _Coming) -> None:
+        session, wanted, playing = self._session, coming.state, self._session.playing
         start = session.camera
-        if not place.with_time:
+        if not coming.with_time:
             wanted = replace(wanted, time=session.time)
         self._motion.halt()
         session.restore(wanted)
-        session.comparison.choose(place.compared)
-        session.playing = playing and not place.with_time
+        session.change(compare=wanted.compare)
+        session.playing = playing and not coming.with_time
         if wanted.camera is not None and wanted.camera != start:
             self._motion.glide(wanted.camera, start)
-        self._last = self._place()
-        self._notices.say(said)
+        self._last = self._state()
+        self._notices.say(coming.said)
 
-    def _place(self) -> Place | None:
+    def _state(self) -> ViewState | None:
         session = self._session
         if session.scene is None:
             return None
         # On its way the camera is where it goes: a glide is one step, and one that undo began is none.
-        state = replace(session.state, camera=self._motion.destination or session.state.camera)
-        return Place(state, session.comparison.chosen)
+        return replace(session.state, camera=self._motion.destination or session.state.camera)
 
 
-def _at(place: Place, time: float | None) -> Place:
-    return place if time is None else replace(place, state=replace(place.state, time=time))
-
-
-def _changes(before: Place, after: Place) -> dict[str, str]:
+def _changes(old: ViewState, new: ViewState) -> dict[str, str]:
     """What has changed from the one to the other: for each field, in a few words, what it is now."""
-    old, new = before.state, after.state
     changed = {
         one.path: one.in_words(one.get(new))
         for one in settings_of(ViewState)
         if one.stored == ALWAYS and one.get(old) != one.get(new)
     }
-    changed |= {f"comparison.{name}": said for name, said in before.compared.changes(after.compared).items()}
+    changed |= {f"comparison.{name}": said for name, said in old.compare.changes(new.compare).items()}
     if old.meshes != new.meshes:
         return changed | {"meshes": _meshes_in_words(old.meshes, new.meshes)}  # which has a first camera of its own
     if old.camera != new.camera:

@@ -97,6 +97,7 @@ def _plain(value: Any) -> Any:
 def state_to_json(state: ViewState, of_picture: bool = False) -> dict[str, Any]:
     """Return what is stored of a state; `of_picture`: with what it takes to make the same picture on any machine."""
     data = _without(to_json(state), (NEVER,) if of_picture else (NEVER, PICTURES))
+    del data["compare"]
     if of_picture:
         del data["pace"]  # which is how a window got there
     return {"format": FORMAT, **data}
@@ -107,7 +108,8 @@ def state_from_json(data: Any, onto: ViewState | None = None) -> ViewState:
     if not isinstance(data, Mapping):
         raise ValueError("no saved state in it")
     today = _of_today(data) if "draw" not in data and "view" in data else data
-    return patched(onto or ViewState(), _without(dict(today), (NEVER,)), "its saved state").validated()
+    stored = {name: value for name, value in today.items() if name != "compare"}
+    return patched(onto or ViewState(), _without(stored, (NEVER,)), "its saved state").validated()
 
 
 def picture_from_json(data: Mapping[str, Any]) -> ViewState:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -108,31 +108,20 @@ def sizes_in_words(a: Frame, b: Frame) -> str:
     return f"A has {a.width} x {a.height} pixels, B {b.width} x {b.height}: A is shown in B's size{stretched}."
 
 
-@dataclass
-class Comparison:
-    """What is compared, and how: `kept` is A as it was kept; with `same_view` it is shown in the view of B; `limit` is
-    the range of the difference, None for one that fits; `held` says that A is to be seen while a key is held."""
+@dataclass(frozen=True)
+class Compare:
+    """Whether and how two pictures are compared: with `same_view` A is shown in the view of B; `limit` is the range of
+    the difference, None for one that fits; `second` is the method that traces A, where it is not kept."""
 
     on: bool = False
     mode: CompareMode = CompareMode.WIPE
     source: Source = Source.KEPT
-    kept: Side | None = None
     same_view: bool = False
     rate: float = 1.5
     limit: float | None = None
-    held: bool = False
     second: str = ""
 
-    @property
-    def chosen(self) -> Comparison:
-        """What undo brings back: whether and how pictures are compared.  What was kept is no part of it."""
-        return replace(self, kept=None, held=False)
-
-    def choose(self, chosen: Comparison) -> None:
-        """Bring it back."""
-        vars(self).update(vars(chosen) | {"kept": self.kept, "held": self.held})
-
-    def changes(self, after: Comparison) -> dict[str, str]:
+    def changes(self, after: Compare) -> dict[str, str]:
         """What has changed since, in a few words for each."""
         changed: dict[str, str] = {}
         if (self.on, self.mode) != (after.on, after.mode):
@@ -150,9 +139,7 @@ class Comparison:
         return changed
 
     def shows_a(self, seconds: float) -> bool:
-        """Whether, of the ways that show one picture at a time, it is A's turn at this time in seconds."""
-        if self.held:
-            return True
+        """Whether pictures blink, and it is A's turn at this time in seconds."""
         return self.mode is CompareMode.BLINK and int(2.0 * self.rate * seconds) % 2 == 1
 
 

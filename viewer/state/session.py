@@ -12,7 +12,6 @@ from tracer.scene.lights import number_of
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
-from viewer.state.comparison import Comparison
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import Pace, ViewState
 from viewer.state.zooming import FIT
@@ -33,7 +32,6 @@ class Session:
     light_to_come: int | None = None
     playing: bool = False
     counting: bool = False
-    comparison: Comparison = field(default_factory=Comparison)
     _on_path: tuple[Scene, float, Camera] | None = field(default=None, init=False, repr=False, compare=False)
 
     # --- the state -------------------------------------------------------------------------------
@@ -84,7 +82,8 @@ class Session:
             return
         start, end = self.scene.time_range
         light = min(state.draw.light, max(len(self.scene.lights) - 1, 0))
-        here = replace(state, scene=self.state.scene, meshes=self.meshes, edits=self.edits, warmup=self.state.warmup)
+        here = replace(state, scene=self.state.scene, meshes=self.meshes, edits=self.edits, warmup=self.state.warmup,
+                       compare=self.state.compare)  # fmt: skip
         here = replace(here, time=min(max(state.time, start), end)).with_draw(light=light)
         self.state, self.playing = here.on_machine_of(self.state), False
         self.want(state.edits, state.draw.light)

@@ -15,6 +15,7 @@ from tracer.scene.limits import LARGEST
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.setting import ALWAYS, AS_DEFAULT, Setting, check_all, setting, settings_of
 from tracer.settings import Settings
+from viewer.state.comparison import Compare
 from viewer.state.draw_options import DrawOptions
 
 LONGEST_SIDE = 8192
@@ -85,7 +86,7 @@ class ViewState:
     """All that a picture depends on.
 
     `scene` is the path of its file, `meshes` says how it is read, `edits` what is otherwise in it; `camera` None is the
-    scene's own, which goes along its path."""
+    scene's own, which goes along its path.  `compare` is the window's alone, and never stored."""
 
     scene: str = ""
     meshes: MeshOptions = AS_IN_FILE
@@ -96,6 +97,7 @@ class ViewState:
     draw: DrawOptions = field(default_factory=DrawOptions)
     pace: Pace = field(default_factory=Pace)
     warmup: Warmup = field(default_factory=Warmup)
+    compare: Compare = field(default_factory=Compare)
 
     @staticmethod
     def in_window() -> ViewState:

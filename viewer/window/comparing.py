@@ -28,9 +28,9 @@ Seen = tuple[Side, Side, CompareMode]
 
 def read_key(ui: Ui) -> None:
     """While the key is held, A is seen."""
-    io, state = imgui.get_io(), ui.controller.comparing.state
+    io, comparing = imgui.get_io(), ui.controller.comparing
     free = not (io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or io.key_shift)
-    state.held = state.on and free and ui.keyboard.is_down(ui.keymap.of("Show A"))
+    comparing.held = comparing.state.on and free and ui.keyboard.is_down(ui.keymap.of("Show A"))
 
 
 def draw_options(ui: Ui) -> DrawOptions:
@@ -53,7 +53,7 @@ def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
     found = comparing.difference(a, b) if comparing.state.mode is CompareMode.DIFFERENCE else None
     if found is not None:
         compared.draw_difference(found, comparing.limit(found))
-    if found is None or comparing.state.held:
+    if found is None or comparing.held:
         spans = options.spans if a.view is b.view else ui.controller.session.draw.spans
         of_a = replace(options, view=a.view, light=a.light, spans=spans)
         compared.a.draw(a.frame, of_a, InWindow(smooth=smooth, highlight=Highlight(line=False)))
@@ -89,9 +89,10 @@ def marked(ui: Ui) -> tuple[Spot, ...]:
 
 def shows_a(ui: Ui) -> bool:
     """Return whether A alone is seen, in the modes that show one at a time or while the key is held."""
-    state, compared = ui.controller.comparing.state, ui.graphics.compared
+    comparing, compared = ui.controller.comparing, ui.graphics.compared
+    state, now = comparing.state, time.monotonic()
     there = compared is not None and compared.a.texture_id is not None and shown(ui) is not None
-    return there and state.shows_a(time.monotonic()) and state.mode is not CompareMode.SIDE
+    return there and (comparing.held or state.shows_a(now)) and state.mode is not CompareMode.SIDE
 
 
 def filling(ui: Ui) -> PictureTexture | None:

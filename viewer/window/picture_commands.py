@@ -25,9 +25,9 @@ _NAMES = {
 def comparing(ui: Ui) -> list[Command]:
     """The menu Compare."""
     c = ui.controller
-    comparing, state = c.comparing, c.comparing.state
+    comparing = c.comparing
     there = Condition(lambda: comparing.b is not None, "there is no picture yet")
-    kept = Condition(lambda: state.kept is not None, "nothing is kept as A")
+    kept = Condition(lambda: comparing.kept is not None, "nothing is kept as A")
 
     def keep() -> None:
         comparing.keep()
@@ -35,7 +35,7 @@ def comparing(ui: Ui) -> list[Command]:
 
     def by(mode: CompareMode) -> Command:
         return Command(_NAMES[mode], "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.meaning,
-                       checked=lambda: state.on and state.mode is mode)  # fmt: skip
+                       checked=lambda: comparing.state.on and comparing.state.mode is mode)  # fmt: skip
 
     return [
         Command("Keep as A", "Compare", keep, "Ctrl+A", enabled=there),
@@ -45,7 +45,8 @@ def comparing(ui: Ui) -> list[Command]:
                 tip="trace each frame by a second method as well, with modes and counters of its own"),
         Command("Next compare mode", "Compare", comparing.next_mode, "Shift+Z", enabled=there, separated=True),
         *[by(way) for way in CompareMode],
-        Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not state.on, separated=True),
+        Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not comparing.state.on,
+                separated=True),
     ]  # fmt: skip
 
 

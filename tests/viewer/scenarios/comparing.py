@@ -28,13 +28,13 @@ def comparing(d: Driver) -> None:
     d.fix_resolution(160, 120)
     d.c.settings.change(method="none")
     d.settle()
-    state = d.c.comparing.state
+    comparing = d.c.comparing
     d.press(int(KEY.z) | SHIFT)
     assert "choose Keep as A" in d.c.notices.message.text and seen.shown(d.ui) is None, "nothing is kept yet"
     d.press(int(KEY.a) | CTRL | SHIFT)
     d.press(int(KEY.a) | CTRL)
     kept = d.c.frame
-    assert state.kept.frame is kept and state.kept.method == "none" and not state.on
+    assert comparing.kept.frame is kept and comparing.kept.method == "none" and not comparing.state.on
     d.hold(KEY.d, 0.2)
     d.settle()
     assert d.c.frame is not kept and d.c.session.camera != kept.camera, "Ctrl+A has flown, or D has not"
@@ -42,7 +42,7 @@ def comparing(d: Driver) -> None:
     for way in (CompareMode.WIPE, CompareMode.SIDE, CompareMode.DIFFERENCE, CompareMode.BLINK, CompareMode.FLIP):
         d.press(int(KEY.z) | SHIFT) if way is not CompareMode.WIPE else d.c.comparing.start(way)
         d.settle()
-        assert state.on and seen.shown(d.ui)[2] is state.mode is way
+        assert comparing.state.on and seen.shown(d.ui)[2] is comparing.state.mode is way
         assert d.c.frame.primitive.shape == kept.primitive.shape, "both can be compared pixel by pixel"
         saved = _saved(d, f"{way.value}.png")
         if way is CompareMode.DIFFERENCE:
@@ -86,7 +86,7 @@ def comparing(d: Driver) -> None:
     assert np.abs(_saved(d, "toned.png").astype(int) - expected).max() <= 1, "both have the tone"
     d.press(KEY._9)
     d.settle()
-    assert not state.on and d.ui.graphics.compared.a.texture_id is None, "one line at a time"
+    assert not comparing.state.on and d.ui.graphics.compared.a.texture_id is None, "one line at a time"
     d.press(KEY._1)
     d.c.session.set_draw(tone=Tone())
     d.c.session.set_pace(width=80, height=60)
@@ -95,7 +95,7 @@ def comparing(d: Driver) -> None:
     d.settle()
     assert "A is shown in B's size" in d.c.comparing.remark
     d.c.comparing.forget()
-    assert not state.on and state.kept is None
+    assert not comparing.state.on and comparing.kept is None
     _two_methods(d)
 
 
@@ -151,14 +151,19 @@ def _two_methods(d: Driver) -> None:
     d.settle()
     d.press(int(KEY.c) | SHIFT)
     d.settle()
-    state = d.c.comparing.state
-    assert state.on and state.source is Source.METHOD and state.mode is CompareMode.SIDE and state.second == "none"
+    comparing = d.c.comparing
+    assert (
+        comparing.state.on
+        and comparing.state.source is Source.METHOD
+        and comparing.state.mode is CompareMode.SIDE
+        and comparing.state.second == "none"
+    )
     d.press(int(KEY.z) | CTRL)
     d.settle()
-    assert not state.on and d.c.traced.second is None, "a comparison can be undone"
+    assert not comparing.state.on and d.c.traced.second is None, "a comparison can be undone"
     d.press(int(KEY.z) | CTRL | SHIFT)
     d.settle()
-    assert state.on and d.c.traced.second.settings.method == "none"
+    assert comparing.state.on and d.c.traced.second.settings.method == "none"
     d.press(KEY.t)
     d.settle()
     frame, second = d.c.frame, d.c.traced.second
@@ -191,6 +196,6 @@ def _two_methods(d: Driver) -> None:
     d.settle()
     d.press(int(KEY.c) | SHIFT)
     d.settle()
-    assert not state.on and d.c.traced.second is None and d.ui.graphics.compared.a.texture_id is None, (
+    assert not comparing.state.on and d.c.traced.second is None and d.ui.graphics.compared.a.texture_id is None, (
         "what is not seen takes no memory"
     )

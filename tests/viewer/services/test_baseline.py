@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.tracing.same import assert_same
-from tests.viewer.fakes import FLYER_SCENE, FakeRenderer, make_frame
+from tests.viewer.fakes import FLYER_SCENE, PATIENCE, FakeRenderer, make_frame, until
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
@@ -232,13 +232,6 @@ class Work:
         raise Cancelled()
 
 
-def until(happens) -> None:
-    end = time.monotonic() + 5.0
-    while not happens():
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.001)
-
-
 def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back():
     thread, renderer, work, came = RenderThread(), FakeRenderer(), Work(), []
 
@@ -258,13 +251,13 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
     def column(renderer, frame, cancelled) -> float:
         return frame.time
 
-    assert thread.query(column, came[-1].frame).result(5.0) == 2.0
+    assert thread.query(column, came[-1].frame).result(PATIENCE) == 2.0
     until(lambda: work.begun == 3)
     thread.in_spare_time(None)
     until(lambda: work.ended == 3 and len(renderer.turns) == 3)
     thread.in_spare_time(work)
     until(lambda: work.begun == 4)
-    assert thread.close(5.0), "the thread hangs"
+    assert thread.close(PATIENCE), "the thread hangs"
 
 
 def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
@@ -345,13 +338,7 @@ def request(at: float, **kinds) -> RenderRequest:
 
 
 def come(thread: RenderThread, wanted) -> None:
-    end = time.monotonic() + 5.0
-    while time.monotonic() < end:
-        traced = thread.take()
-        if traced is not None and wanted(traced):
-            return
-        time.sleep(0.002)
-    raise AssertionError("no such frame came")
+    until(lambda: (traced := thread.take()) is not None and wanted(traced))
 
 
 def test_the_thread_traces_both_for_each_request_and_stops_when_it_may():
@@ -370,4 +357,4 @@ def test_the_thread_traces_both_for_each_request_and_stops_when_it_may():
     thread.submit(request(3.0, second="none"))
     come(thread, lambda traced: traced.second is not None)
     assert renderer.other is not other, "what it had learnt is gone"
-    assert thread.close(5.0)
+    assert thread.close(PATIENCE)

@@ -11,7 +11,7 @@ from tests.viewer.drawn import values_in
 from tests.viewer.fakes import make_frame, with_tree
 from tracer.frame import Settings
 from tracer.geometry.accelerators import BVH8, LAZY
-from viewer.state.comparison import CompareMode, Side, Source
+from viewer.state.comparison import CompareMode, Side
 from viewer.state.draw_options import Slice
 from viewer.state.views import View
 
@@ -39,7 +39,7 @@ def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
     found = comparing.difference(a, b)
     assert comparing.difference(a, b) is found, "found out once"
     assert np.array_equal(found.pixels != 0.0, (b.frame.color != color).any(axis=-1)) and found.stats.pixels
-    comparing.state.limit = 0.25
+    comparing.change(limit=0.25)
     assert comparing.limit(found) == 0.25
     comparing.forget()
     assert comparing.sides is None and comparing.a is None
@@ -53,7 +53,7 @@ def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
     desk.rest()
     a, b = comparing.sides
     assert (a.view, b.view) == (View.COLOR, View.COST)
-    comparing.state.same_view = True
+    comparing.change(same_view=True)
     assert comparing.a.view is View.COLOR, "what it has not recorded it cannot show"
     comparing.start(CompareMode.DIFFERENCE)
     assert comparing.difference(*comparing.sides) is None and "keep A in this one" in comparing.remark
@@ -94,57 +94,6 @@ def test_a_whose_tree_is_gone_is_shown_as_a_picture(desk: Desk) -> None:
     gc.collect()
     assert comparing.b.view is View.TREE and comparing.a.view is View.COLOR
     assert comparing.span(View.TREE) is None
-
-
-def test_one_wipe_at_a_time(desk: Desk) -> None:
-    comparing = desk.c.comparing
-    keep(desk)
-    desk.c.session.set_draw(view=View.WIPE)
-    comparing.start(CompareMode.WIPE)
-    assert desk.c.session.draw.view is View.COLOR
-    desk.rest()
-    assert comparing.state.on
-    desk.c.session.set_draw(view=View.WIPE)
-    desk.rest()
-    assert not comparing.state.on and "right picture" in desk.said
-
-
-def test_a_second_method_is_traced_while_it_is_seen(desk: Desk) -> None:
-    comparing = desk.c.comparing
-    desk.c.settings.change(method="paper")
-    desk.rest()
-    assert desk.c.traced.second is None
-    comparing.toggle_methods()
-    assert comparing.sides is None and "none as well" in comparing.remark
-    desk.rest()
-    a, b = comparing.sides
-    assert (a.method, b.method) == ("none", "paper") and a.frame is desk.c.traced.second
-    assert np.array_equal(a.frame.primitive, b.frame.primitive) and comparing.state.mode is CompareMode.SIDE
-    comparing.trace_by("certified")
-    desk.rest()
-    assert desk.c.traced.second.settings.method == "certified"
-    came = len(desk.came)
-    desk.rest()
-    assert len(desk.came) == came, "both are there, and are traced again and again"
-    desk.c.settings.change(method="certified")
-    comparing.end()
-    desk.rest()
-    assert desk.c.traced.second is None and desk.c.comparing.second_method == ""
-    comparing.toggle_methods()
-    assert comparing.state.second == "none", "a method is not compared with itself"
-    keep(desk)
-    assert comparing.state.source is Source.KEPT and desk.c.comparing.second_method == ""
-
-
-def test_a_run_shows_its_frames_beside_what_was_kept(desk: Desk) -> None:
-    comparing = desk.c.comparing
-    keep(desk)
-    comparing.start(CompareMode.WIPE)
-    desk.runs.start_experiment()
-    desk.until(lambda: desk.runs.current is not None and desk.c.frame is not comparing.state.kept.frame)
-    assert comparing.sides is not None and comparing.sides[1].frame.width == 32
-    assert "A is shown in B's size" in comparing.remark
-    desk.run_to_its_end()
 
 
 def test_a_difference_is_that_of_the_chosen_slice(desk: Desk) -> None:

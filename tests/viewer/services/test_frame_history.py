@@ -70,22 +70,6 @@ def test_an_exact_picture_comes_back_bit_for_bit(desk: Desk, method: str) -> Non
     assert {c.history.records.get(number).state.draw.view for number in seen} == {View.COLOR, View.DEPTH}
 
 
-def test_going_back_can_be_undone_with_its_time(desk: Desk) -> None:
-    seen, c = flown(desk, "paper"), desk.c
-    here = c.session.state
-    number = list(seen)[1]
-    c.navigator.go(number)
-    desk.rest()
-    assert c.session.time == seen[number].time != here.time and c.session.draw.view is View.COLOR
-    assert c.undo.undoes == f"going to picture {number}"
-    c.undo.undo()
-    desk.rest()
-    assert c.session.state == here
-    c.undo.redo()
-    desk.rest()
-    assert c.session.time == seen[number].time and c.session.settings.depth == 3
-
-
 def test_the_modes_of_a_frame_that_depends_on_them_are_learnt_anew(desk: Desk) -> None:
     """Nothing that later frames have taught is in its picture."""
     seen, c = flown(desk, "paper"), desk.c

@@ -202,7 +202,7 @@ def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: 
         assert (kept["frame"], state.time, state.camera is None) == (7, 7.0, follow)
         desk.c.restore(state)
         assert (desk.c.session.camera, desk.c.session.frame) == (camera, 7)
-        desk.c.motion.reset_camera()
+        desk.c.motion.follow_path(True)
 
 
 ELSEWHERE = Camera((1.0, 0.0, 0.0), CAMERA.direction, CAMERA.up)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from threading import Event
 
 import pytest
 
-from tests.viewer.fakes import FakeRenderer
+from tests.viewer.fakes import PATIENCE, FakeRenderer, until
 from tracer.frame import Settings
 from tracer.scene.model import Camera, Cancelled
 from viewer.services import render_thread
@@ -18,8 +17,6 @@ from viewer.services.render_thread import RenderThread
 from viewer.util.messages import Failure
 
 CAMERA = Camera((0, 0, 5), (0, 0, -1))
-PATIENCE = 60.0
-"""Seconds after which something does not come: the thread steps back behind all others, and machines may be busy."""
 
 
 def request(at: float, **kinds) -> RenderRequest:
@@ -31,13 +28,6 @@ def thread():
     thread = RenderThread()
     yield thread
     assert thread.close(PATIENCE)
-
-
-def until(happens: Callable[[], object]) -> None:
-    end = time.monotonic() + PATIENCE
-    while not happens():
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.001)
 
 
 def taken(thread: RenderThread) -> Traced:

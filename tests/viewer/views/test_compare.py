@@ -15,8 +15,8 @@ from viewer.state.columns import NO_TIME, rows
 from viewer.state.comparison import (
     LEAST_MARKED,
     MOST_SPOTS,
+    Compare,
     CompareMode,
-    Comparison,
     Side,
     elided,
     named,
@@ -27,7 +27,6 @@ from viewer.state.comparison import (
 from viewer.state.in_turn import LEAST, InTurn
 from viewer.state.palette import LESS, MORE, SAME, WIPE_LINE, signed_map
 from viewer.state.views import View
-from viewer.state.zooming import Zoom
 from viewer.views.compare import (
     GAP,
     Difference,
@@ -136,45 +135,6 @@ def test_the_legend_of_a_difference():
     assert [entry.color for entry in told(difference, View.OCCLUSION).entries] == [MORE, SAME]
 
 
-@pytest.mark.gui
-def test_the_gpu_shows_crisp_pixels():
-    """Enlarged, each pixel of a picture stays one colour; what is shown already is not drawn again."""
-    moderngl = pytest.importorskip("moderngl")
-    from viewer.window.display import Compared
-    from viewer.window.magnifier import Magnifier
-
-    frame = make_frame(Settings(width=33, height=19))
-    a, b = (values_in(one, View.DEPTH) for one in (replace(frame, depth=frame.depth * 2), frame))
-    found = difference_of(a, b)
-    context = moderngl.create_context(standalone=True, require=330)
-    with context:
-        compared, magnifier = Compared(context), Magnifier(context)
-        compared.draw_difference(found, 1.3)
-        drawn, version = compared.difference, compared.difference.version
-        compared.draw_difference(found, 1.3)
-        assert drawn.version == version, "it is there"
-        compared.draw_difference(replace(found), 1.3)
-        assert drawn.version == version + 1, "another one may differ"
-        expected = signed_picture(found.pixels, 1.3)
-        read = np.frombuffer(drawn.picture.read(alignment=1), np.uint8).reshape(19, 33, 3)
-        assert np.array_equal(read, expected)
-        for zoom in (Zoom(), Zoom(1.7, 0.4, 0.55), Zoom(64.0, 0.99, 0.01)):
-            size = 140, 90
-            magnifier.draw("one", drawn.picture, drawn.version, zoom, size)
-            assert magnifier.texture_of("one", drawn.texture_id, zoom, size) is not None
-            assert magnifier.texture_of("one", drawn.texture_id, zoom, (1, 1)) is None
-            data = magnifier._targets["one"].read(components=3, alignment=1)
-            shown = np.frombuffer(data, np.uint8).reshape(size[1], size[0], 3)
-            left, top, right, bottom = zoom.shown()
-            x = np.floor((left + (np.arange(size[0]) + 0.5) / size[0] * (right - left)) * 33).astype(int)
-            y = np.floor((top + (np.arange(size[1]) + 0.5) / size[1] * (bottom - top)) * 19).astype(int)
-            wrong = (shown != expected[y[:, None], x[None]]).any(axis=-1)
-            assert wrong.mean() < 0.01, "but where rounding decides between two pixels"
-        magnifier.release()
-        compared.release()
-    context.release()
-
-
 def side(frame, view=View.COLOR, light=0, scene="study", number=3) -> Side:
     return Side(frame, view, light, scene, number)
 
@@ -202,12 +162,9 @@ def test_each_is_called_by_its_method_and_what_sets_it_apart():
 
 
 def test_it_is_in_turn_that_pictures_blink():
-    state = Comparison(on=True, mode=CompareMode.BLINK, rate=2.0)
+    state = Compare(on=True, mode=CompareMode.BLINK, rate=2.0)
     assert [state.shows_a(seconds) for seconds in (0.0, 0.26, 0.51, 0.76)] == [False, True, False, True]
-    state.mode = CompareMode.FLIP
-    assert not state.shows_a(0.26)
-    state.held = True
-    assert state.shows_a(0.0)
+    assert not replace(state, mode=CompareMode.FLIP).shows_a(0.26)
 
 
 def test_columns_have_differences_and_shares():

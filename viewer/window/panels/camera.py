@@ -24,6 +24,11 @@ from viewer.window.widgets import (
     wide_button,
 )
 
+_MODES = {
+    "Fly": "drag to look around, W A S D Q E to move",
+    "Orbit": "drag to turn around the point that was clicked",
+}
+
 
 def show(ui: Ui) -> None:
     """The panel."""
@@ -62,7 +67,7 @@ def _place(ui: Ui) -> None:
         focus(ui)
     imgui.same_line()
     if wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Reset", f"back to the scene's own camera{ui.key('Reset camera')}"):
-        c.motion.reset_camera()
+        c.motion.follow_path(True)
 
 
 def _moving(ui: Ui) -> None:
@@ -71,13 +76,12 @@ def _moving(ui: Ui) -> None:
     with properties("moving", 5.0) as shown:
         if shown:
             row("Mode")
-            if imgui.radio_button("Fly", p.navigation == "fly"):
-                p.navigation = "fly"
-            tooltip(f"drag to look around, W A S D Q E to move{ui.key('Fly')}")
-            same_line_for("Orbit")
-            if imgui.radio_button("Orbit", p.navigation == "orbit"):
-                p.navigation = "orbit"
-            tooltip(f"drag to turn around the point that was clicked{ui.key('Orbit')}")
+            for name, tip in _MODES.items():
+                if name != "Fly":
+                    same_line_for(name)
+                if imgui.radio_button(name, p.navigation == name.lower()):
+                    p.navigation = name.lower()
+                tooltip(f"{tip}{ui.key(name)}")
             setting_row(ui, ALL["speed"])
 
 

@@ -81,7 +81,8 @@ def _controls(ui: Ui) -> None:
             if state.mode is CompareMode.BLINK:
                 row("Rate", "How often per second both are shown.")
                 changed, rate = imgui.slider_float("##rate", state.rate, *RATES, "%.2f Hz")
-                state.rate = min(max(rate, RATES[0]), RATES[1]) if changed else state.rate
+                if changed:
+                    comparing.change(rate=min(max(rate, RATES[0]), RATES[1]))
             if state.mode is CompareMode.DIFFERENCE and state.on:
                 _limit(ui)
                 _rings(ui)
@@ -122,11 +123,11 @@ def _limit(ui: Ui) -> None:
     imgui.set_next_item_width(-em(4.2))
     changed, limit = imgui.drag_float("##limit", limit, max(limit / 100.0, 1e-6), 1e-6, 1e9, "\u00b1 %.4g")
     if changed and limit > 0.0:
-        state.limit = limit
+        comparing.change(limit=limit)
     imgui.same_line(0.0, em(0.3))
     imgui.begin_disabled(state.limit is None)
     if imgui.button("Fit##limit", (-1.0, 0.0)):
-        state.limit = None
+        comparing.change(limit=None)
     imgui.end_disabled()
 
 
@@ -139,8 +140,8 @@ def _rings(ui: Ui) -> None:
 
 def _kept(ui: Ui) -> None:
     """What is kept, and whether it follows the view."""
-    state = ui.controller.comparing.state
-    kept = state.kept
+    comparing = ui.controller.comparing
+    kept = comparing.kept
     if kept is None:
         paragraph("Nothing is kept yet. Keep a picture, change anything, and compare.", QUIET)
         return
@@ -150,7 +151,7 @@ def _kept(ui: Ui) -> None:
         QUIET,
     )
     tip = "Show A in the view of B, where the frame of A has what that needs, not in the view in which it was kept."
-    checkbox("A in the view of B", state.same_view, lambda on: setattr(state, "same_view", on), tip)
+    checkbox("A in the view of B", comparing.state.same_view, lambda on: comparing.change(same_view=on), tip)
 
 
 def _columns(ui: Ui) -> None:

@@ -151,7 +151,7 @@ def _histogram(ui: Ui) -> None:
     _figures(found, values.names)
     if difference is not None:
         if imgui.small_button("Use as the range of colours"):
-            c.comparing.state.limit = max(-found.least[0], found.largest[0])
+            c.comparing.change(limit=max(-found.least[0], found.largest[0]))
         tooltip("the colours go as far to both sides of 0 as the difference does here")
     elif view.has_range and not (view.needs_work and c.session.draw.shares):
         if imgui.small_button("Use as the range of colours"):

@@ -29,7 +29,7 @@ def area_of_b(ui: Ui, room: tuple[int, int]) -> tuple[int, int]:
     if not state.on or state.mode is not CompareMode.SIDE or min(room) < 1:
         return room
     if state.source is Source.KEPT:
-        kept = state.kept
+        kept = comparing.kept
         return room if kept is None else (kept.frame.width, kept.frame.height)
     gap = round(em(GAP) * imgui.get_io().display_framebuffer_scale.x)
     return (max(1, (room[0] - gap) // 2), room[1]) if comparing.b is not None else room
