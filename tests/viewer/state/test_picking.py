@@ -1,4 +1,4 @@
-"""What was clicked is found again in other pictures."""
+"""What is clicked tells what is there, and is found again in other pictures."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import make_frame, make_scene
+from tests.viewer.drawn import classes_in
+from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
+from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
-from viewer.state.picking import NEARBY, Pick, pick, pixel_of
+from viewer.state.picking import NEARBY, Pick, extent_at, pick, pixel_at, pixel_of, point_at, refreshed, shadow_mode_of
+from viewer.state.views import View
 
 SIZE = Settings(64, 32)
 
@@ -53,3 +56,61 @@ def test_what_is_smaller_than_a_pixel_is_found_by_its_distance(frame: Frame, kep
     assert math.isclose(math.dist(frame.camera.position, kept.point), kept.depth)
     assert pixel_of(kept, elsewhere) == (kept.x, kept.y)
     assert pixel_of(replace(kept, dynamic=True), elsewhere) is None, "what moves may have gone"
+
+
+def test_wide_words_reach_light_30():
+    frame = make_frame()
+    words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
+    frame = replace(frame, modes=words)
+    rows = {r.name: r.units for r in classes_in(frame, View.SHADOW, 30)}
+    assert rows["NON_SHADOW"] + rows["NON_SHADOW, untrusted"] == 5
+    assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
+    assert shadow_mode_of(frame, 0, 31) is None
+
+
+def test_a_pick_tells_what_the_pixel_shows():
+    frame, scene = make_frame(), make_scene()
+    at = ((2 * 3 + 0.5) / 16, 0.5)  # the fourth primitive
+    found = pick(frame, scene, *at)
+    assert (found.primitive, found.kind, found.object_name, found.dynamic) == (3, "triangle", "static", False)
+    assert found.material is not None and found.material.name == "brick"
+    assert found.occlusion is OcclusionMode.FULLY_RENDERED
+    assert found.shadows == (ShadowMode.NON_SHADOW, ShadowMode.PARTIAL_SHADOW, ShadowMode.FULL_SHADOW)
+    assert (found.pixels, found.highest) == (16, 32)
+    assert math.dist(found.point, frame.camera.position) == pytest.approx(2.0)
+    assert pick(frame, scene, (2 * 4 + 0.5) / 16, 0.5).object_name == "train"
+    assert pick(frame, scene, (2 * 6 + 0.5) / 16, 0.5).kind == "sphere"
+    assert pick(frame, scene, 0.99, 0.5).primitive == -1
+
+
+def test_a_kept_pick_goes_by_cells_where_those_carry_the_modes():
+    frame, cells = make_frame(), in_cells(make_frame())
+    at = ((2 * 3 + 1.5) / 16, 0.5)  # the fourth primitive's second column
+    found = pick(cells, make_scene(), *at)
+    assert (found.primitive, found.unit, found.in_cells, found.pixels) == (3, 7, True, 8)
+    assert found.shadows != pick(frame, make_scene(), *at).shadows
+    assert refreshed(found, frame) == replace(pick(frame, make_scene(), *at), in_cells=False)
+    assert refreshed(pick(frame, make_scene(), *at), cells) == found
+    elsewhere = in_cells(make_frame(time=1.0))
+    assert refreshed(pick(frame, make_scene(), *at), elsewhere).unit == 3, "which cell it is cannot be known"
+    certified = with_certificates(frame)
+    assert pick(certified, make_scene(), *at).unit == 3, "certificates are no modes"
+
+
+def test_a_pick_counts_the_pixels_wrong_answers_as_long_as_it_shows_the_same():
+    verified = make_frame(Settings(width=16, height=8, verify=True))
+    found = pick(verified, make_scene(), 5.5 / 16, 6.5 / 8)
+    assert found.wrong == 2
+    assert pick(verified, make_scene(), 0.5 / 16, 6.5 / 8).wrong == 0
+    unverified = refreshed(found, make_frame())
+    assert unverified.wrong is None
+    assert refreshed(unverified, verified).wrong == 2
+    assert refreshed(found, make_frame(Settings(width=32, height=8, verify=True))).wrong is None
+    assert refreshed(found, make_frame(verified.settings, time=1.0)).wrong is None
+
+
+def test_points_outside_the_picture_are_clamped_and_misses_have_none():
+    frame = make_frame()
+    assert pixel_at(frame, -1.0, 7.0) == (0, 7)
+    assert point_at(frame, 0.99, 0.5) is None and extent_at(frame, 0.99, 0.5) is None
+    assert extent_at(frame, 0.1, 0.5) > 0.0

@@ -1,23 +1,19 @@
-"""Colours can be told apart, tones do what they say; picks and the history tell what is there."""
+"""Colours can be told apart, tones do what they say, and the history tells what was there."""
 
 from __future__ import annotations
 
 import itertools
-import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tests.viewer.colors import luminance
 from tests.viewer.drawn import classes_in
-from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
+from tests.viewer.fakes import make_frame, with_certificates
 from tracer.culling.fate import Fate
-from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Settings
 from viewer.state import palette
 from viewer.state.history import History, counters
-from viewer.state.picking import extent_at, pick, pixel_at, point_at, refreshed, shadow_mode_of
 from viewer.state.tone import MOST_EXPOSURE, Curve, Tone, brighter, clipped, toned
 from viewer.state.views import View
 from viewer.views.difference import Mark, wrong_marks
@@ -36,16 +32,6 @@ def test_the_certificate_legend_counts_the_cells_that_are_seen():
     assert (rows["DYNAMIC"].pixels, rows["DYNAMIC"].units) == (dynamic.sum(), 0)
     assert sum(r.units for r in rows.values()) == frame.cells.max() + 1
     assert classes_in(make_frame(), View.CERTIFICATE, 1) == classes_in(frame, View.CERTIFICATE, 15) == []
-
-
-def test_wide_words_reach_light_30():
-    frame = make_frame()
-    words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
-    frame = replace(frame, modes=words)
-    rows = {r.name: r.units for r in classes_in(frame, View.SHADOW, 30)}
-    assert rows["NON_SHADOW"] + rows["NON_SHADOW, untrusted"] == 5
-    assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
-    assert shadow_mode_of(frame, 0, 31) is None
 
 
 def dichromat(color: palette.Color) -> np.ndarray:
@@ -117,54 +103,6 @@ def test_one_fate_stands_out_and_words_can_be_read_on_each():
 def test_the_colour_map_grows_lighter_all_the_way():
     grey = palette.color_map() @ np.array([0.2126, 0.7152, 0.0722])
     assert (np.diff(grey) > -1e-3).all() and grey[-1] - grey[0] > 0.6
-
-
-def test_a_pick_tells_what_the_pixel_shows():
-    frame, scene = make_frame(), make_scene()
-    at = ((2 * 3 + 0.5) / 16, 0.5)  # the fourth primitive
-    found = pick(frame, scene, *at)
-    assert (found.primitive, found.kind, found.object_name, found.dynamic) == (3, "triangle", "static", False)
-    assert found.material is not None and found.material.name == "brick"
-    assert found.occlusion is OcclusionMode.FULLY_RENDERED
-    assert found.shadows == (ShadowMode.NON_SHADOW, ShadowMode.PARTIAL_SHADOW, ShadowMode.FULL_SHADOW)
-    assert (found.pixels, found.highest) == (16, 32)
-    assert math.dist(found.point, frame.camera.position) == pytest.approx(2.0)
-    assert pick(frame, scene, (2 * 4 + 0.5) / 16, 0.5).object_name == "train"
-    assert pick(frame, scene, (2 * 6 + 0.5) / 16, 0.5).kind == "sphere"
-    assert pick(frame, scene, 0.99, 0.5).primitive == -1
-
-
-def test_a_kept_pick_goes_by_cells_where_those_carry_the_modes():
-    frame, cells = make_frame(), in_cells(make_frame())
-    at = ((2 * 3 + 1.5) / 16, 0.5)  # the fourth primitive's second column
-    found = pick(cells, make_scene(), *at)
-    assert (found.primitive, found.unit, found.in_cells, found.pixels) == (3, 7, True, 8)
-    assert found.shadows != pick(frame, make_scene(), *at).shadows
-    assert refreshed(found, frame) == replace(pick(frame, make_scene(), *at), in_cells=False)
-    assert refreshed(pick(frame, make_scene(), *at), cells) == found
-    elsewhere = in_cells(make_frame(time=1.0))
-    assert refreshed(pick(frame, make_scene(), *at), elsewhere).unit == 3, "which cell it is cannot be known"
-    certified = with_certificates(frame)
-    assert pick(certified, make_scene(), *at).unit == 3, "certificates are no modes"
-
-
-def test_a_pick_counts_the_pixels_wrong_answers_as_long_as_it_shows_the_same():
-    verified = make_frame(Settings(width=16, height=8, verify=True))
-    found = pick(verified, make_scene(), 5.5 / 16, 6.5 / 8)
-    assert found.wrong == 2
-    assert pick(verified, make_scene(), 0.5 / 16, 6.5 / 8).wrong == 0
-    unverified = refreshed(found, make_frame())
-    assert unverified.wrong is None
-    assert refreshed(unverified, verified).wrong == 2
-    assert refreshed(found, make_frame(Settings(width=32, height=8, verify=True))).wrong is None
-    assert refreshed(found, make_frame(verified.settings, time=1.0)).wrong is None
-
-
-def test_points_outside_the_picture_are_clamped_and_misses_have_none():
-    frame = make_frame()
-    assert pixel_at(frame, -1.0, 7.0) == (0, 7)
-    assert point_at(frame, 0.99, 0.5) is None and extent_at(frame, 0.99, 0.5) is None
-    assert extent_at(frame, 0.1, 0.5) > 0.0
 
 
 def test_history_keeps_the_newest_in_order_and_contiguous():
