@@ -10,6 +10,7 @@ from tracer.experiments import experiment
 from tracer.experiments.experiment import Results, Row
 from viewer.output.reports import LINES, WRONG, caveats, lines
 from viewer.services.runs import Experiment
+from viewer.window.panels.runs import results_table
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, in_window_style, paragraph, right, tooltip
 
@@ -65,52 +66,27 @@ def _figures(run: Experiment) -> list[Figure]:
 
 def _method_columns(rows: list[Row], figures: list[Figure], widths: list[float]) -> None:
     """A line for each figure."""
-    flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y
-    if not imgui.begin_table("table 1", 1 + len(rows), int(flags)):
-        return
-    imgui.table_setup_scroll_freeze(0, 1)
-    imgui.table_setup_column("", int(imgui.TableColumnFlags_.width_stretch))
-    for line, width in zip(rows, widths, strict=True):
-        imgui.table_setup_column(line.method, int(imgui.TableColumnFlags_.width_fixed), width)
-    imgui.table_next_column()
-    for line in rows:
-        imgui.table_next_column()
-        clipped(line.method, QUIET)
-    for figure in figures:
-        imgui.table_next_column()
-        _figure_name(figure)
-        for line in rows:
+    columns = [("", 0.0, ""), *((line.method, width, "") for line, width in zip(rows, widths, strict=True))]
+    with results_table("table 1", columns) as shown:
+        for figure in figures if shown else ():
             imgui.table_next_column()
-            clipped(*_figure_cell(figure, line))
-    imgui.end_table()
+            clipped(figure[1], QUIET)
+            tooltip(figure[0].strip())
+            for line in rows:
+                imgui.table_next_column()
+                clipped(*_figure_cell(figure, line))
 
 
 def _method_lines(rows: list[Row], figures: list[Figure]) -> None:
     """A line for each method: all of them are seen at once, by the first figures."""
-    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_x | imgui.TableFlags_.scroll_y
-    if not imgui.begin_table("table 1, lines", 1 + len(figures), int(flags | imgui.TableFlags_.sizing_fixed_fit)):
-        return
-    imgui.table_setup_scroll_freeze(1, 1)
-    imgui.table_setup_column("method", 0, _name_width(rows))
-    for figure in figures:
-        imgui.table_setup_column(figure[0], 0, _figure_width(figure, rows))
-    imgui.table_next_column()
-    for figure in figures:
-        imgui.table_next_column()
-        _figure_name(figure)
-    for line in rows:
-        imgui.table_next_column()
-        clipped(line.method, QUIET)
-        for figure in figures:
+    columns = [(figure[1], _figure_width(figure, rows), figure[0].strip()) for figure in figures]
+    with results_table("table 1, lines", [("", _name_width(rows), ""), *columns]) as shown:
+        for line in rows if shown else ():
             imgui.table_next_column()
-            right(*_figure_cell(figure, line))
-    imgui.end_table()
-
-
-def _figure_name(figure: Figure) -> None:
-    heading, short, _ = figure
-    clipped(short, QUIET)
-    tooltip(heading.strip())
+            clipped(line.method, QUIET)
+            for figure in figures:
+                imgui.table_next_column()
+                right(*_figure_cell(figure, line))
 
 
 def _figure_cell(figure: Figure, line: Row) -> tuple[str, ImVec4 | None]:

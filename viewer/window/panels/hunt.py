@@ -10,7 +10,7 @@ from tracer.experiments.counterexample import Counterexample
 from tracer.scene.model import Scene
 from viewer.services.hunts import Hunts
 from viewer.window.panels.method_choice import method_list
-from viewer.window.panels.runs import export_buttons, frames_row, side_by_side, start_or_progress
+from viewer.window.panels.runs import choice, export_buttons, frames_row, results_table, side_by_side, start_or_progress
 from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -20,20 +20,19 @@ from viewer.window.widgets import (
     in_window_style,
     paragraph,
     properties,
+    right,
     row,
-    tooltip,
     tooltip_above,
 )
 
-_COLUMNS = (  # the heading, whether it is at the right, and what it means
-    ("#", True, "The worst first."),
-    ("off by", True, "Difference of the colour from the right one, of 1."),
-    ("pixel", True, "Column and row, from the upper left."),
-    ("frame", True, "Frame of the path, or the one that it is near."),
-    ("light", True, "Light whose answer is wrong, and how many others are wrong in the same way."),
-    ("primitive", False, "Primitive at which the light is wrong: number and object."),
-)
-_HEADINGS = tuple(heading for heading, _, _ in _COLUMNS)
+_COLUMNS = {  # and what they mean
+    "#": "The worst first.",
+    "off by": "Difference of the colour from the right one, of 1.",
+    "pixel": "Column and row, from the upper left.",
+    "frame": "Frame of the path, or the one that it is near.",
+    "light": "Light whose answer is wrong, and how many others are wrong in the same way.",
+    "primitive": "Primitive at which the light is wrong: number and object.",
+}
 
 
 def show(ui: Ui) -> None:
@@ -88,34 +87,20 @@ def _finds(ui: Ui, hunts: Hunts, size: ImVec2) -> None:
 def _table(ui: Ui, hunts: Hunts, found: hunt.Results, scene: Scene) -> None:
     """As wide as its columns need, and scrolled where that is wider than the room."""
     rows = [_cells(number, find, scene) for number, find in enumerate(found.finds)]
-    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_x | imgui.TableFlags_.scroll_y
-    flags |= imgui.TableFlags_.sizing_fixed_fit
-    if not imgui.begin_table("finds", len(_COLUMNS), int(flags)):
-        return
-    imgui.table_setup_scroll_freeze(1, 1)
-    widths = [max(imgui.calc_text_size(text).x for text in column) for column in zip(_HEADINGS, *rows, strict=True)]
-    for (heading, _, _), width in zip(_COLUMNS, widths, strict=True):
-        imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_fixed), width)
-    imgui.table_next_row(int(imgui.TableRowFlags_.headers))
-    for (heading, right, tip), width in zip(_COLUMNS, widths, strict=True):
-        imgui.table_next_column()
-        _cell(heading, width, right)
-        tooltip(tip)
-    for number, (find, row_) in enumerate(zip(found.finds, rows, strict=True)):
-        imgui.table_next_row()
-        imgui.table_next_column()
-        spans = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap
-        start = imgui.get_cursor_pos()
-        if imgui.selectable(f"##find {number + 1}", hunts.chosen == number, int(spans))[0]:
-            hunts.go(number)
-            ui.show_panel("Inspector")
-        tooltip_above(f"Fly there. {counterexample.in_its_frame(find)}")
-        imgui.set_cursor_pos(start)
-        for place, (text, (_, right, _), width) in enumerate(zip(row_, _COLUMNS, widths, strict=True)):
-            if place:
+    widths = [max(imgui.calc_text_size(text).x for text in column) for column in zip(_COLUMNS, *rows, strict=True)]
+    columns = [(name, width + 1.0, tip) for (name, tip), width in zip(_COLUMNS.items(), widths, strict=True)]
+    with results_table("finds", columns) as shown:
+        for number, find in enumerate(found.finds if shown else ()):
+            rank, *numbers, primitive = rows[number]
+            if choice(f"{rank}##find {rank}", hunts.chosen == number):
+                hunts.go(number)
+                ui.show_panel("Inspector")
+            tooltip_above(f"Fly there. {counterexample.in_its_frame(find)}")
+            for text in numbers:
                 imgui.table_next_column()
-            _cell(text, width, right)
-    imgui.end_table()
+                right(text)
+            imgui.table_next_column()
+            clipped(primitive)
 
 
 def _cells(number: int, find: Counterexample, scene: Scene) -> tuple[str, ...]:
@@ -128,13 +113,6 @@ def _cells(number: int, find: Counterexample, scene: Scene) -> tuple[str, ...]:
         f"{find.light}{more}",
         counterexample.primitive_of(find, scene),
     )
-
-
-def _cell(text: str, width: float, right: bool) -> None:
-    """A text in a column of some width, at its right if it is a number."""
-    if right:
-        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(width - imgui.calc_text_size(text).x, 0.0))
-    imgui.text_unformatted(text)
 
 
 def _chosen(ui: Ui, hunts: Hunts) -> tuple[int, Counterexample, Scene] | None:

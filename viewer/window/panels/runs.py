@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
@@ -13,7 +14,7 @@ from tracer.experiments.zoom import ZoomTest
 from viewer.services.runs import described, duration
 from viewer.state.plans import FilmPlan, HuntPlan
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, clipped, em, row, same_line_for, tooltip_above, wide_button
+from viewer.window.widgets import QUIET, WARNING, clipped, em, row, same_line_for, tooltip, tooltip_above, wide_button
 
 _SAVED_AS = {".json": ("JSON", "Save every figure"), ".csv": ("CSV", "Save the table"),
              ".png": ("Plot", "Save the plot as a picture")}  # fmt: skip
@@ -35,6 +36,39 @@ def either(no: str, yes: str, now: bool) -> bool:
     same_line_for(yes.partition("##")[0])
     second = imgui.radio_button(yes, now)
     return second or (now and not first)
+
+
+@contextmanager
+def results_table(name: str, columns: Sequence[tuple[str, float, str]]) -> Iterator[bool]:
+    """A table whose headings stay; yields whether it is visible.
+
+    Columns are headings, pixels, and what they mean; one of no pixels takes what the others leave.  Where there is none
+    of these, the first column stays as the others are scrolled."""
+    wide = all(width for _, width, _ in columns)
+    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y
+    flags |= imgui.TableFlags_.scroll_x if wide else imgui.TableFlags_.none
+    shown = imgui.begin_table(name, len(columns), int(flags))
+    if shown:
+        imgui.table_setup_scroll_freeze(int(wide), 1)
+        for heading, width, _ in columns:
+            kind = imgui.TableColumnFlags_.width_fixed if width else imgui.TableColumnFlags_.width_stretch
+            imgui.table_setup_column(heading, int(kind), width)
+        for heading, _, tip in columns:
+            imgui.table_next_column()
+            clipped(heading, QUIET)
+            if tip:
+                tooltip(tip)
+    yield shown
+    if shown:
+        imgui.end_table()
+
+
+def choice(label: str, chosen: bool = False) -> bool:
+    """Begin a row of such a table that can be clicked anywhere, by its first cell; returns whether it is."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    flags = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap
+    return imgui.selectable(label, chosen, int(flags))[0]
 
 
 def side_by_side(

@@ -8,12 +8,20 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.experiments.zoom import Approach, Results, Step
+from tracer.experiments.zoom import Approach, Results
 from viewer.output.reports import changes_in_words, happenings, modes_in_words
 from viewer.services.runs import RecordedZoomTest
 from viewer.window.panels import filmstrip
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
-from viewer.window.panels.runs import either, export_buttons, side_by_side, start_or_progress, whose
+from viewer.window.panels.runs import (
+    choice,
+    either,
+    export_buttons,
+    results_table,
+    side_by_side,
+    start_or_progress,
+    whose,
+)
 from viewer.window.setting_rows import plan_rows
 from viewer.window.style import MARK
 from viewer.window.ui import Ui
@@ -34,6 +42,7 @@ from viewer.window.widgets import (
 )
 
 _TABLE = 20.0  # ems of the table
+_COLUMNS = {"factor": 2.9, "step": 2.0, "pixels": 3.0, "wrong": 2.6, "modes": 0.0}  # ems
 _NARROWEST = 15.0  # ems of a plot that stands beside another
 _LOW = 9.0  # ems of height below which a plot has no legend
 _FILM, _LEAST_FILM, _MOST_FILM = 0.4, 3.6, 9.0  # the pictures' part of the height, and its limits in ems
@@ -196,34 +205,19 @@ def _table(ui: Ui, test: RecordedZoomTest | None, results: Results | None) -> No
         return
     tip = "else only those where modes or wrong pixels change"
     checkbox("all steps", state.all_steps, lambda on: setattr(state, "all_steps", on), tip)
-    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y | imgui.TableFlags_.sizing_stretch_prop
-    if not imgui.begin_table("steps", 5, int(flags)):
-        return
-    imgui.table_setup_scroll_freeze(0, 1)
-    for heading, width in (("factor", 2.9), ("step", 2.0), ("pixels", 3.0), ("wrong", 2.6)):
-        imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_fixed), em(width))
-    imgui.table_setup_column("modes", int(imgui.TableColumnFlags_.width_stretch))
-    imgui.table_headers_row()
-    for number, approach in enumerate(results.approaches):
-        imgui.push_id(number)
-        for step in approach.steps if state.all_steps else happenings(approach):
-            _row(ui, test, approach, step)
-        imgui.pop_id()
-    imgui.end_table()
-
-
-def _row(ui: Ui, test: RecordedZoomTest, approach: Approach, step: Step) -> None:
-    imgui.table_next_row()
-    imgui.table_next_column()
-    flags = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap
-    if imgui.selectable(f"{approach.factor:g}##{step.number}", False, int(flags))[0]:
-        filmstrip.show_step(ui, test, approach.factor, step.number)
-    tooltip("\n".join(["show its picture", *changes_in_words(step.changes)]))
-    for text, color in (
-        (str(step.number), None),
-        (count(step.pixels), None),
-        (count(step.wrong_of_primitive), ERROR if step.wrong_of_primitive else None),
-        (modes_in_words(step.changes), None),
-    ):
-        imgui.table_next_column()
-        clipped(text, color)
+    columns = [(heading, em(width), "") for heading, width in _COLUMNS.items()]
+    with results_table("steps", columns) as shown:
+        for approach in results.approaches if shown else ():
+            for step in approach.steps if state.all_steps else happenings(approach):
+                if choice(f"{approach.factor:g}##{step.number}"):
+                    filmstrip.show_step(ui, test, approach.factor, step.number)
+                tooltip("\n".join(["show its picture", *changes_in_words(step.changes)]))
+                wrong = ERROR if step.wrong_of_primitive else None
+                for text, color in (
+                    (str(step.number), None),
+                    (count(step.pixels), None),
+                    (count(step.wrong_of_primitive), wrong),
+                    (modes_in_words(step.changes), None),
+                ):
+                    imgui.table_next_column()
+                    clipped(text, color)
