@@ -9,6 +9,7 @@ its option on the command line, its place in saved files, the words of undo, and
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from enum import Enum
@@ -133,7 +134,7 @@ class Setting:
             return f"one of {', '.join(str(choice) for choice in self.choices)}{also}"
         if self.kind not in (int, float):
             return self.kind.__name__ + also
-        number = "a whole number" if self.kind is int else "a number" if self._endless else "a finite number"
+        number = "a whole number" if self.kind is int else "a number"
         if math.isinf(self.high):
             return f"{number} from {scale * self.low:g} up{also}" if math.isfinite(self.low) else number + also
         return f"{number} from {scale * self.low:g} to {scale * self.high:g}{also}"
@@ -205,7 +206,7 @@ class Setting:
         if self.kind in (int, float):
             sign = "+" if -math.inf < self.low < 0 and value else ""
             return f"{value:{sign}.6g}{self.unit}"
-        if isinstance(value, tuple) and not hasattr(value, "in_words"):
+        if type(value) is tuple:
             return "changed"
         return value.in_words() if hasattr(value, "in_words") else str(getattr(value, "label", value))
 
@@ -287,3 +288,14 @@ def _put(holder: Any, names: tuple[str, ...], value: Any) -> Any:
     name, *others = names
     inner = _put(getattr(holder, name), tuple(others), value) if others else value
     return replace(holder, **{name: inner})
+
+
+_KINDS = {
+    "int": "a whole number", "float": "a number", "str": "text", "bool": "true or false", "array": "a list",
+    "object": "a table",
+}  # fmt: skip
+
+
+def kinds_in_words(kinds: re.Match[str]) -> str:
+    """Return the types that msgspec names, such as "int | null", in plain words."""
+    return " or ".join(_KINDS.get(kind, kind) for kind in kinds[1].split(" | ") if kind != "null")

@@ -86,7 +86,8 @@ class Watch:
             warming, loading = c.loader.warm_up_job is not None, c.loader.load_job is not None
             state = "compiling" if warming else "opening" if loading else "first picture" if c.session.scene else state
         elif state == "tracing" and now - self.since > self.seconds:
-            state, c.session.pace.keep_tracing = "moving", False
+            state = "moving"
+            c.session.set_pace(keep_tracing=False)
         elif state == "moving" and now - self.since > self.seconds:
             state = "at rest"
         elif state == "at rest":
@@ -94,7 +95,8 @@ class Watch:
             if now - self.since > self.seconds:
                 state, self.app.params.app_shall_exit = "closing", True
         elif state not in ("tracing", "moving", "closing"):
-            state, c.session.pace.keep_tracing = "tracing", True
+            state = "tracing"
+            c.session.set_pace(keep_tracing=True)
             c.scheduler.trace_again()
         if state != self.state:
             mark = self._now()

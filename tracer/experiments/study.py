@@ -27,7 +27,7 @@ from tracer.method import Method
 from tracer.scene.files import read_regular
 from tracer.scene.framing import bounds
 from tracer.scene.model import Camera, Scene
-from tracer.setting import settings_of
+from tracer.setting import kinds_in_words, settings_of
 from tracer.settings import RECORDS, Settings
 from tracer.similar import did_you_mean, did_you_mean_file
 
@@ -339,7 +339,7 @@ class _Reader:
         if missing is not None:
             return StudyError(f"{self._path}: no {missing[1]}; give a list")
         *table, name = keys
-        return self._wrong(name, ".".join(table), re.sub(r"`(.*?)`", _kinds_in_words, what[:1].lower() + what[1:]))
+        return self._wrong(name, ".".join(table), re.sub(r"`(.*?)`", kinds_in_words, what[:1].lower() + what[1:]))
 
     def _wrong(self, name: str, table: str, message: str) -> StudyError:
         line = self._line(name, table)
@@ -356,13 +356,3 @@ class _Reader:
             if is_key or (header and not table and inside == name):
                 return number
         return 0
-
-
-_WORDS = {
-    "int": "a whole number", "float": "a number", "str": "text", "bool": "true or false", "array": "a list",
-    "object": "a table",
-}  # fmt: skip
-
-
-def _kinds_in_words(kinds: re.Match[str]) -> str:
-    return " or ".join(_WORDS.get(kind, kind) for kind in kinds[1].split(" | ") if kind != "null")

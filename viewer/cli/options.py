@@ -26,6 +26,7 @@ from tracer.similar import did_you_mean
 from viewer.cli.arguments import UPS, Parser, before, count, number, several, size, whole
 from viewer.cli.console import Work
 from viewer.services import stills
+from viewer.state.draw_options import Slice
 from viewer.util import resources
 from viewer.views.legend import lights_in_words
 
@@ -285,7 +286,7 @@ def _asking(one: Setting) -> Callable[[str], Any]:
     return parse
 
 
-_METAVARS: dict[type, str] = {int: "N", float: "X"}
+_METAVARS: dict[type, str] = {int: "N", float: "X", Slice: "AXIS:PART"}
 
 
 def add_tracing(parser: Parser, accelerator: str = BVH8, many_lamps: bool = False, zoom_factor: bool = True) -> None:

@@ -167,7 +167,7 @@ def state_of(path: Path) -> ViewState:
     else:
         try:
             data = json.loads(read_regular(path, _LARGEST_STATE))
-            state = codec.picture_from_json(data) if "state" in data else codec.state_from_json(data)
+            state = codec.picture_from_json(data) if "state" in data else codec.state_from_file(data)
         except FileNotFoundError:
             raise capture.CaptureError(f"{path}: no such file") from None
         except (OSError, ValueError, TypeError, RecursionError) as error:

@@ -116,6 +116,6 @@ def find_scene(stored: str, picture: Path) -> Path | None:
     path = Path(stored)
     candidates = [path, picture.parent / path.name]
     embedded = resources.embedded_scenes().get(path.stem)
-    if embedded is not None and path.parent.name == embedded.parent.name:
+    if embedded is not None and (stored == path.stem or path.parent.name == embedded.parent.name):
         candidates.append(embedded)
     return next((c for c in candidates if c.is_file()), None)

@@ -8,14 +8,15 @@ versions' files can be read.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any, TypeVar, get_args, get_origin
 
 import msgspec
 import numpy as np
 
-from tracer.setting import NEVER, PICTURES, settings_of
+from tracer.setting import NEVER, PICTURES, kinds_in_words, settings_of
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 
@@ -36,7 +37,10 @@ def from_json(data: Any, kind: type[T], what: str = "it") -> T:
     except (msgspec.ValidationError, OverflowError, RecursionError) as error:
         said, _, place = str(error).partition(" - at ")
         where = place.strip("`").removeprefix("$").lstrip(".")
-        raise ValueError(f"{what} is damaged: {f'{where}: ' if where else ''}{said[:1].lower()}{said[1:]}") from None
+        said = re.sub(r"`(.*?)`", kinds_in_words, said[:1].lower() + said[1:]).replace(
+            "invalid enum value", "there is no"
+        )
+        raise ValueError(f"{what} is damaged: {f'{where}: ' if where else ''}{said}") from None
 
 
 def text(value: Any, indent: int | None = None) -> str:
@@ -112,6 +116,30 @@ def state_from_json(data: Any, onto: ViewState | None = None) -> ViewState:
     return patched(onto or ViewState(), _without(stored, (NEVER,)), "its saved state").validated()
 
 
+def state_from_file(data: Any) -> ViewState:
+    """Return the state of a file that holds nothing else; raises ValueError, in one line.
+
+    People write such files by hand as well, so that a name that means nothing is a mistake."""
+    if not isinstance(data, Mapping) or "format" not in data:
+        raise ValueError("a state has a format, a scene, and what of settings and draw is not as usual")
+    if data["format"] != FORMAT:
+        raise ValueError(f"its format is {data['format']}, and this version knows {FORMAT}")
+    if not data.get("scene"):
+        raise ValueError("it names no scene")
+    for name in _unknown({"format": FORMAT, **to_json(ViewState())}, data):
+        raise ValueError(f"{name} means nothing in a state")
+    return state_from_json(data)
+
+
+def _unknown(known: Mapping[str, Any], data: Mapping[str, Any], within: str = "") -> Iterator[str]:
+    """The names in stored data that are none of what is known."""
+    for name, value in data.items():
+        if name not in known:
+            yield within + name
+        elif isinstance(value, Mapping) and isinstance(known[name], Mapping):
+            yield from _unknown(known[name], value, f"{within}{name}.")
+
+
 def picture_from_json(data: Mapping[str, Any]) -> ViewState:
     """Return the state that a saved picture carries, of any version; raises ValueError, in one line."""
     state, size = data.get("state"), data.get("size")
@@ -119,6 +147,8 @@ def picture_from_json(data: Mapping[str, Any]) -> ViewState:
     if isinstance(state, Mapping) and isinstance(picture, Mapping) and "draw" not in state:
         state = _of_today(state, picture)
     found = state_from_json(state)
+    if not found.scene:
+        raise ValueError("its saved state lacks a scene")
     if not isinstance(size, list):
         return found
     width, height = from_json(size, tuple[int, int], "its size")

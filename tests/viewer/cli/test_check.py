@@ -117,7 +117,7 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
         "window.png": "panels",
         "unknown.png": "learnt elsewhere",
         "gone.png": "its scene is gone",
-        "damaged.png": "warmup.of_path: expected `int`, got `str`",
+        "damaged.png": "warmup.of_path: expected a whole number, got text",
         "drawn.png": "drawn on it",
         "figure.png": "its figure is damaged",
         "plain.png": "not one captured",

@@ -86,11 +86,24 @@ def test_a_state_as_json_is_rendered_like_a_picture_that_carries_it(
     assert run(capfd, "render", "state.json", "-o", "depth.png", "--view", "depth", "--depth", 1)[0] == 0
     other = capture.read(Path("depth.png"))
     assert (other.draw.view, other.settings.depth, other.camera) == ("depth", 1, state.camera)
-    damaged = {"nothing": "[]", "no": "{", "wrong": json.dumps({"scene": 3})}
-    for name, text in damaged.items():
-        Path(f"{name}.json").write_text(text)
-        code, _, errors = run(capfd, "render", f"{name}.json")
-        assert code == 1 and f"{name}.json: holds no state" in errors and errors.count("\n") == 1, errors
+    by_hand = {"format": codec.FORMAT, "scene": "default", "settings": {"depth": 1, "width": 8, "height": 8}}
+    Path("hand.json").write_text(json.dumps(by_hand))
+    assert run(capfd, "render", "hand.json", "-o", "hand.png")[0] == 0
+    damaged = (
+        ("[]", "a state has a format"),
+        ("{", "line 1 column 2"),
+        ('{"scene": "default", "frames": []}', "a state has a format"),  # as results of runs are
+        (json.dumps(by_hand | {"format": 99}), "its format is 99"),
+        (json.dumps(by_hand | {"scene": ""}), "it names no scene"),
+        (json.dumps(by_hand | {"settings": {"dept": 1}}), "settings.dept means nothing"),
+        (json.dumps(by_hand | {"settings": {"depth": "1"}}), "settings.depth: expected a whole number, got text"),
+        (json.dumps(by_hand | {"draw": {"view": "nope"}}), "draw.view: there is no 'nope'"),
+    )
+    for text, said in damaged:
+        Path("damaged.json").write_text(text)
+        code, _, errors = run(capfd, "render", "damaged.json")
+        assert code == 1 and "damaged.json: holds no state" in errors and said in errors, errors
+        assert errors.count("\n") == 1
 
 
 def test_mistakes_are_one_line(saved: Path, room: Path, capfd: pytest.CaptureFixture[str]) -> None:
