@@ -79,9 +79,9 @@ class Watch:
         app.params.callbacks.pre_new_frame = self.before
         app.params.callbacks.after_swap = self.after
 
-        def noted(ui: Any, table: Any, listing: Any, columns: Any, number: int, selected: bool) -> None:
+        def noted(table: Any, listing: Any, columns: Any, number: int, selected: bool) -> None:
             self.rows.add(number)
-            row(ui, table, listing, columns, number, selected)
+            row(table, listing, columns, number, selected)
 
         find._row = noted
 
