@@ -30,7 +30,7 @@ from viewer.output import capture, movie, png
 from viewer.output.commands import cannot_come_back, needs_history
 from viewer.output.movie import VIDEO, Video, frame_name, video
 from viewer.services import stills
-from viewer.services.bookmarks import Bookmarks
+from viewer.services.named_states import Bookmarks
 from viewer.services.pictures import Pictures
 from viewer.services.runs import FileRun, Runs, check_size
 from viewer.state import codec, flight

@@ -9,7 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state import navigation
 from viewer.window.camera_commands import focus
-from viewer.window.panels import bookmarks
+from viewer.window.panels import named_states
 from viewer.window.setting_rows import ALL, setting_row, setting_switch
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -36,7 +36,7 @@ def show(ui: Ui) -> None:
         paragraph("No scene is open.", QUIET)
         return
     _place(ui)
-    bookmarks.show(ui)
+    named_states.show_bookmarks(ui)
     _moving(ui)
     _path(ui)
 
