@@ -97,10 +97,11 @@ def _drags(d: Driver) -> None:
     assert math.dist(after.position, before.position) > 0.1, "the left button orbits"
     d.drag(d.picture_centre(), (40.0, 0.0), 2)
     assert np.allclose(d.c.session.camera.direction, after.direction) and d.c.session.camera != after, "pans"
-    near = math.dist(d.c.session.camera.position, d.ui.picture.pivot)
+    before = d.c.session.camera
     d.context.mouse_wheel_y(2.0)
-    d.frames(3)
-    assert math.dist(d.c.session.camera.position, d.ui.picture.pivot) < near
+    d.wait(lambda: d.c.session.camera != before, "the wheel")
+    after, pivot = d.c.session.camera, d.ui.picture.pivot  # that under the pointer, in the frame that was there then
+    assert math.dist(after.position, pivot) < math.dist(before.position, pivot), "the wheel goes nearer"
     d.c.preferences.navigation = "fly"
     d.settle()
 
