@@ -1,4 +1,4 @@
-"""Ways to get about: bookmarks, cameras of other programs, views from the sides, drags, keys of one's own."""
+"""Ways to get about: bookmarks, a camera copied and pasted, drags, keys of one's own."""
 
 from __future__ import annotations
 
@@ -22,7 +22,6 @@ def navigating(d: Driver) -> None:
     d.settle()
     _bookmarks(d)
     _texts(d)
-    _sides(d)
     _drags(d)
     _keys(d)
 
@@ -65,9 +64,6 @@ def _texts(d: Driver) -> None:
     camera = d.c.session.camera
     d.press(CTRL | SHIFT | int(KEY.c))
     assert json.loads(clipboard[-1]) == camera.to_json()
-    d.context.menu_click("//##MainMenuBar/Camera/Copy and paste/Copy camera for pbrt")
-    d.frames(2)
-    assert clipboard[-1].startswith("Scale -1 1 1")
     d.press(KEY.r)
     d.press(CTRL | SHIFT | int(KEY.v))
     d.wait(lambda: not d.c.motion.under_way, "the flight to what was pasted", 30.0)
@@ -77,14 +73,6 @@ def _texts(d: Driver) -> None:
     clipboard.append("no camera")
     d.press(CTRL | SHIFT | int(KEY.v))
     assert d.c.notices.message.error and d.c.session.camera == now
-    d.settle()
-
-
-def _sides(d: Driver) -> None:
-    d.press(KEY.keypad7)
-    d.wait(lambda: not d.c.motion.under_way, "the view from the top", 30.0)
-    assert np.allclose(d.c.session.camera.basis()[2], (0.0, -1.0, 0.0), atol=1e-9)
-    d.press(KEY.r)
     d.settle()
 
 
