@@ -19,7 +19,7 @@ from tracer.statistics import FrameStatistics
 from viewer.cli import options
 from viewer.cli.console import Work, print_table, titled, working
 from viewer.cli.render import write_picture
-from viewer.output import figure1_svg
+from viewer.output import figure1_drawing
 from viewer.output.figure1 import TITLE, Stage, figure_of
 from viewer.services import stills
 from viewer.state.methods import BY_MODES, NO_CULLING
@@ -52,7 +52,7 @@ def show(path: Path, given: Namespace) -> None:
         frame, all_traced = _trace(scene, state, work)
         work.progress("writing", 1.0)
         write_picture(PICTURE, scene, frame, state)
-        figure1_svg.write(FIGURE, frame, scene)
+        figure1_drawing.write_svg(FIGURE, frame, scene)
     frames = len(stills.times_before(scene, time, state.warmup.of_path)) + 1
     print_table(_table(path, state, frames, frame, all_traced))
     for file in (PICTURE, FIGURE):
