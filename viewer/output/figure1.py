@@ -103,12 +103,11 @@ def _timed(s: FrameStatistics, stage: Stage, *phases: str, counted: bool = True)
 
 
 def _until_shading(s: FrameStatistics, method: Method, by_modes: bool, changes: ModeChanges | None) -> Iterator[Stage]:
-    moving = OcclusionMode.DYNAMIC
+    moving, flows = OcclusionMode.DYNAMIC, tuple[Flow, ...]()
     rule = "Objects and lights move to where they are now. What is known of a light that moved is forgotten."
-    flows = () if changes is None else (
-        Flow(f"dynamic {_units(method)}", changes.units["dynamic"], OCCLUSION_COLORS[moving], OCCLUSION_MEANING[moving],
-             View.OCCLUSION),
-    )  # fmt: skip
+    if changes is not None:
+        number, tip = changes.units["dynamic"], OCCLUSION_MEANING[moving]
+        flows = (Flow(f"dynamic {_units(method)}", number, OCCLUSION_COLORS[moving], tip, View.OCCLUSION),)
     yield _timed(s, Stage("Place dynamic objects", rule, flows), "place")
 
     rule = "A ray through each pixel finds the nearest primitive: generation, traversal, intersection."

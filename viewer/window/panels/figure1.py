@@ -69,7 +69,8 @@ def _draw(part: Box | Words | Arrow, at: ImVec2, scale: float) -> None:
         for start, end in pairwise(part.points):
             draw.add_line(placed(*start), placed(*end), _color(QUIET), em(0.09))
         if part.head:
-            draw.add_triangle_filled(*(placed(*corner) for corner in part.corners), _color(QUIET))
+            tip, left, right = (placed(*corner) for corner in part.corners)
+            draw.add_triangle_filled(tip, left, right, _color(QUIET))
     elif part.ink:
         corners = placed(part.x, part.y), placed(part.x + part.width, part.y + part.height)
         color = _color(part.ink) if isinstance(part.ink, str) else packed(part.ink)
