@@ -30,11 +30,11 @@ from viewer.output import capture, movie, png
 from viewer.output.commands import cannot_come_back, needs_history
 from viewer.output.movie import VIDEO, Video, frame_name, video
 from viewer.services import stills
-from viewer.services.bookmarks import Bookmarks
+from viewer.services.named_states import Bookmarks
 from viewer.services.pictures import Pictures
 from viewer.services.runs import FileRun, Runs, check_size
-from viewer.state import codec, flight
-from viewer.state.flight import Stop, Take
+from viewer.state import codec, navigation
+from viewer.state.navigation import Stop, Take
 from viewer.state.plans import FilmPlan, frames_within
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -267,7 +267,7 @@ class Films:
         plan, (first, last) = self.plan, self.frames
         if plan.through_bookmarks:
             legs = len(self._bookmarks.all) - 1
-            return max(2, round((plan.seconds or flight.LEG * legs) * plan.fps)) if legs > 0 else 0
+            return max(2, round((plan.seconds or navigation.LEG * legs) * plan.fps)) if legs > 0 else 0
         return max(2, round(plan.seconds * plan.fps)) if plan.seconds else last - first + 1
 
     def start(self) -> None:
@@ -304,7 +304,7 @@ class Films:
             stops = [Stop(state.time, state.camera or scene.camera_at(state.time)) for state in states]
             if len(stops) < 2:
                 raise ValueError("a flight needs two bookmarks at least; the menu Camera adds one")
-            return flight.through(stops, self.count)
+            return navigation.through(stops, self.count)
         first, last = self.frames
         camera = self._session.camera if plan.from_here else None
-        return flight.along_path(scene, first, last, self.count if plan.seconds else None, camera)
+        return navigation.along_path(scene, first, last, self.count if plan.seconds else None, camera)
