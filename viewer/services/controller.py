@@ -38,7 +38,6 @@ from viewer.services.render_thread import RenderThread
 from viewer.services.runs import Runs
 from viewer.services.scene_loader import Arrival, SceneLoader
 from viewer.services.scene_table import SceneTable
-from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import Undo
@@ -99,7 +98,6 @@ class Controller:
         )
         self.films = Films(session, preferences, runs, pictures, bookmarks)
         self.hunts = Hunts(session, preferences, runs, navigator, notices)
-        self.watcher = SceneWatcher(preferences, lambda: loader.files, self._may_reload, loader.reload_changed, wake)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}
@@ -260,10 +258,6 @@ class Controller:
         session.playing = playing and session.animated
         self.reloaded = True
 
-    def _may_reload(self) -> bool:
-        """Whether a scene that has changed may be read now: not while a run goes on, or another is being read."""
-        return self.runs.current is None and self.loader.load_job is None
-
     # --- going elsewhere -------------------------------------------------------------------------
 
     def reset_modes(self) -> None:
@@ -341,9 +335,8 @@ class Controller:
     def close(self, timeout: float = 30.0) -> bool:
         """Stop everything, finish writing files and save the preferences; false if something would not stop."""
         deadline = time.monotonic() + timeout
-        jobs = [*self.loader.cancel_all(), *self.captures.saving]
+        jobs = [*self.loader.close(), *self.captures.saving]
         self.runs.stop()
-        self.watcher.close()
         stopped = self.renderer.close(timeout)
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
