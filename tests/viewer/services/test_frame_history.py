@@ -73,10 +73,9 @@ def test_the_modes_of_a_frame_that_depends_on_them_are_learnt_anew(desk: Desk) -
     """Nothing that later frames have taught is in its picture."""
     seen, c = flown(desk, "paper"), desk.c
     number = list(seen)[1]
-    c.navigator.go(number, point=(0.5, 0.6))
+    c.navigator.go(number)
     assert desk.said.endswith("modes are learnt anew")
     desk.rest()
-    assert c.selection.picked is not None and (c.selection.picked.x, c.selection.picked.y) == (32, 28)
     learnt = {n for row in next(iter(c.history._origins.values()))._table[:, 1:].tolist() for n in row if n != NEVER}
     assert learnt and min(learnt) > max(seen)
     c.navigator.go(99_999)
@@ -160,7 +159,8 @@ def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
     hidden, other = c.frame.color.copy(), c.history.frames - 1
     assert not np.array_equal(whole, hidden)
     for to, picture, edits in ((number, whole, NO_EDITS), (other, hidden, without_ball)):
-        c.navigator.go(to, point=(0.5, 0.45))
+        record = c.history.records.get(to)
+        c.navigator.go_to(JumpTarget(record.state, "a picture", record.size, (0.5, 0.45)))
         desk.until(lambda: not c.editing.under_way)
         desk.rest()
         assert np.array_equal(c.frame.color, picture) and c.session.edits == edits

@@ -289,14 +289,18 @@ def test_rays_follow_the_camera_and_an_edit_of_the_scene(desk: PixelDesk):
     c = desk.c
 
     def tree(before: RayTree | None = None) -> RayTree:
-        desk.until(lambda: c.inspector.tree not in (None, before) and not c.active)
+        def newest() -> bool:
+            found = c.inspector.tree
+            return found not in (None, before) and found.frame.primitive is c.frame.primitive and not c.active
+
+        desk.until(newest)
         return c.inspector.tree
 
     c.selection.select(desk.shadow)
     first = tree()
     c.motion.move(navigation.look(c.session.camera, 0.02, 0.0, c.motion.world_up))
     moved = tree(first)
-    assert moved.frame.primitive is c.frame.primitive and (moved.x, moved.y) == c.selection.pixel != (first.x, first.y)
+    assert (moved.x, moved.y) == c.selection.pixel != (first.x, first.y)
     drawn = len(ray_lines(moved.frame, moved, Filter()))
     c.editing.switch(0, False)
     edited = tree(moved)
