@@ -10,7 +10,7 @@ from tracer.frame import Frame
 from tracer.scene.model import Scene
 from viewer.output.figure1 import Figure, figure_of
 from viewer.output.figure1_layout import Arrow, Box, Drawing, Tone, Words, lay_out
-from viewer.output.legend_picture import font
+from viewer.output.overlays import font
 from viewer.state.palette import Color
 from viewer.state.session import Session
 from viewer.util.files import write_whole

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from viewer.output import capture
-from viewer.output.legend_picture import with_legend
+from viewer.output.overlays import with_legend
 from viewer.output.savings_picture import with_savings
 from viewer.services import stills
 from viewer.services.jobs import Job

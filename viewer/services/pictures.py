@@ -19,7 +19,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from viewer.output import clipboard, commands, exr, png, tev
 from viewer.output.commands import BUILT, cannot_come_back, needs_history
-from viewer.output.legend_picture import with_legend
+from viewer.output.overlays import with_legend
 from viewer.services import stills
 from viewer.services.capture_service import CaptureService
 from viewer.services.frame_history import FrameHistory

@@ -21,9 +21,9 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version
 from viewer.output import capture, kept_modes
-from viewer.output.caption import with_caption
+from viewer.output.overlays import with_caption
 from viewer.output.commands import by_one_thread
-from viewer.output.legend_picture import with_legend
+from viewer.output.overlays import with_legend
 from viewer.output.savings_picture import with_savings
 from viewer.state.draw_options import DrawOptions
 from viewer.state.readings import can_record_lights, records_lights

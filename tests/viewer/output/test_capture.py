@@ -16,7 +16,7 @@ from tests.viewer.fakes import make_frame
 from tracer.scene.model import Camera
 from tracer.settings import Settings
 from viewer.output import capture, clipboard
-from viewer.output.caption import with_caption
+from viewer.output.overlays import with_caption
 from viewer.output.thumbnail import SIDE, as_text, from_text, thumbnail
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
