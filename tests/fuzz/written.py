@@ -15,9 +15,16 @@ from PIL import Image
 from tests.fuzz.kills import Written
 from tests.viewer.fakes import make_frame
 from tracer.frame import Frame, Settings
+<<<<<<< HEAD
 from viewer.output import capture, exports, exr, figures
 from viewer.services.film import video
 from viewer.state.preferences import SETTINGS_FILE, Bookmark, Preferences, save_preferences
+=======
+from viewer.output import capture, exports, exr, figures, png
+from viewer.output.movie import video
+from viewer.services.pictures import JPEG, write_picture
+from viewer.state.preferences import SETTINGS_FILE, NamedState, Preferences, save_preferences
+>>>>>>> main
 from viewer.util.files import write_new, write_text, write_whole
 from viewer.window import layout_file
 from viewer.window.layout_file import LayoutFile
@@ -42,7 +49,7 @@ def _visible(folder: Path, pattern: str) -> list[Path]:
 
 
 def _settings(folder: Path, number: int) -> None:
-    marks = [Bookmark(f"{number}", {}, "x" * 20_000)]
+    marks = [NamedState(f"{number}", {"long": "x" * 20_000})]
     problem = save_preferences(Preferences(bookmarks={"/scene": marks}, recent=[str(number)]), folder)
     assert problem is None, problem
 

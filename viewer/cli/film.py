@@ -23,9 +23,9 @@ from viewer.output.commands import needs_history
 from viewer.services import film as films
 from viewer.services import stills
 from viewer.services.film import Script
-from viewer.state import codec, flight
-from viewer.state.flight import Stop, Take
+from viewer.state import codec, navigation
 from viewer.state.methods import CERTIFIED
+from viewer.state.navigation import Stop, Take
 from viewer.state.preferences import load_preferences
 from viewer.state.view_state import ViewState
 from viewer.util.files import check_writable
@@ -167,9 +167,9 @@ def _takes(scene: Scene, stops: Sequence[Stop], given: Namespace) -> list[Take]:
         for stop in stops:
             if not start <= stop.time <= end:
                 raise ValueError(f"--through: a picture's time, {stop.time:g}, is none of the scene's")
-        return flight.through(stops, count or round(flight.LEG * given.fps) * (len(stops) - 1) + 1)
+        return navigation.through(stops, count or round(navigation.LEG * given.fps) * (len(stops) - 1) + 1)
     first, last = given.frames or (0, scene.frames - 1)
-    return flight.along_path(scene, first, last, count, given.camera)
+    return navigation.along_path(scene, first, last, count, given.camera)
 
 
 def _stops(scene: Scene, given: Namespace) -> list[Stop]:

@@ -26,13 +26,13 @@ from tracer.settings import Settings
 from viewer.output import capture
 from viewer.output.commands import cannot_come_back, needs_history
 from viewer.services import stills
-from viewer.services.bookmarks import Bookmarks
+from viewer.services.named_states import Bookmarks
 from viewer.services.pictures import Pictures
 from viewer.services.runs import FileRun, Runs, check_size
-from viewer.state import codec, flight
-from viewer.state.flight import Stop, Take
+from viewer.state import codec, navigation
+from viewer.state.navigation import Stop, Take
 from viewer.state.plans import FilmPlan, frames_within
-from viewer.state.preferences import Bookmark, Preferences
+from viewer.state.preferences import NamedState, Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
 from viewer.util.files import check_writable, whole_file
@@ -105,7 +105,7 @@ def frame_count(frames: tuple[int, int], stops: int | None, seconds: float, fps:
     from one stop to another."""
     if stops is None:
         return max(2, round(seconds * fps)) if seconds else frames[1] - frames[0] + 1
-    return max(2, round((seconds or flight.LEG * (stops - 1)) * fps)) if stops > 1 else 0
+    return max(2, round((seconds or navigation.LEG * (stops - 1)) * fps)) if stops > 1 else 0
 
 
 def takes(
@@ -119,15 +119,15 @@ def takes(
     """The takes of a film, as `frame_count` counts them; raises ValueError, in one line, where there can be none."""
     count = frame_count(frames, None if stops is None else len(stops), seconds, fps)
     if stops is None:
-        return flight.along_path(scene, *frames, count if seconds else None, camera)
+        return navigation.along_path(scene, *frames, count if seconds else None, camera)
     start, end = scene.time_range
     for stop in stops:
         if not start <= stop.time <= end:
             raise ValueError(f"a stop's time, {stop.time:g} s, is not within the scene's, {start:g} to {end:g} s")
-    return flight.through(stops, count)
+    return navigation.through(stops, count)
 
 
-def stops_of(bookmarks: Sequence[Bookmark], scene: Scene) -> list[Stop]:
+def stops_of(bookmarks: Sequence[NamedState], scene: Scene) -> list[Stop]:
     """Where bookmarks are; raises ValueError, in one line, for one that is damaged."""
     states = [codec.state_from_json(bookmark.state) for bookmark in bookmarks]
     return [Stop(state.time, state.camera or scene.camera_at(state.time)) for state in states]

@@ -12,7 +12,7 @@ from PIL import Image
 from tests.commands import ROOM, complaint, run
 from viewer.cli.console import Work
 from viewer.output import capture, movie
-from viewer.state.preferences import Bookmark, Preferences, save_preferences
+from viewer.state.preferences import NamedState, Preferences, save_preferences
 
 SIZE = ("--size", "47x33", "--threads", 1)
 
@@ -63,7 +63,7 @@ def test_a_flight_goes_through_saved_pictures_or_bookmarks(
     for name, original in (("0000", "at0"), ("0004", "at9")):
         assert np.array_equal(pixels(f"flight/{name}.png"), pixels(f"{original}.png"))
     path = str(Path("room.aff").absolute())
-    state = [Bookmark(name, capture.read_data(Path(name))["state"]) for name in seen]
+    state = [NamedState(name, capture.read_data(Path(name))["state"]) for name in seen]
     save_preferences(Preferences(bookmarks={path: state}))
     assert run(capfd, "film", "room.aff", "-o", "marks", "--bookmarks", *flight)[0] == 0
     for picture in Path("flight").iterdir():

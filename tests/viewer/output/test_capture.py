@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import io
 import stat
 from datetime import datetime
 from pathlib import Path
@@ -17,7 +15,6 @@ from tracer.scene.model import Camera
 from tracer.settings import Settings
 from viewer.output import capture, clipboard
 from viewer.output.overlays import with_caption
-from viewer.output.thumbnail import SIDE, as_text, from_text, thumbnail
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
@@ -176,23 +173,3 @@ def test_the_clipboard_is_that_of_the_desktop(tmp_path: Path, monkeypatch: pytes
     (tmp_path / "wl-copy").write_text("#!/bin/sh\nexit 3\n")
     with pytest.raises(OSError, match="wl-copy failed with code 3"):
         clipboard.copy(b"png")
-
-
-@pytest.mark.parametrize("size", [(480, 960), (1000, 500), (7, 3), (1, 1)])
-def test_a_picture_comes_back_small_and_of_its_shape_and_colours(size: tuple[int, int]):
-    color = np.zeros((*size, 3), np.float32)
-    color[: max(1, size[0] // 2), :, 0] = 1.0
-    text = as_text(thumbnail(color))
-    back = from_text(text)
-    assert back is not None and max(back.width, back.height) == min(SIDE, max(size)) and len(text) < 20_000
-    assert back.width / back.height == pytest.approx(size[1] / size[0], rel=0.02)
-    assert back.pixels().shape == (back.height, back.width, 3)
-    assert back.thumbnail(9)[0, 0, 0] > 200 and (size[0] < 2 or back.pixels()[-1, 0, 0] < 60)
-
-
-def test_anything_else_is_no_picture():
-    file = io.BytesIO()
-    Image.new("RGB", (4 * SIDE + 1, 4)).save(file, "JPEG")
-    large = base64.b64encode(file.getvalue()).decode()
-    for text in (None, "", 3, "no base64!", base64.b64encode(b"no picture").decode(), large, "A" * 300_000):
-        assert from_text(text) is None
