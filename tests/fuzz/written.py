@@ -15,16 +15,9 @@ from PIL import Image
 from tests.fuzz.kills import Written
 from tests.viewer.fakes import make_frame
 from tracer.frame import Frame, Settings
-<<<<<<< HEAD
 from viewer.output import capture, exports, exr, figures
 from viewer.services.film import video
-from viewer.state.preferences import SETTINGS_FILE, Bookmark, Preferences, save_preferences
-=======
-from viewer.output import capture, exports, exr, figures, png
-from viewer.output.movie import video
-from viewer.services.pictures import JPEG, write_picture
 from viewer.state.preferences import SETTINGS_FILE, NamedState, Preferences, save_preferences
->>>>>>> main
 from viewer.util.files import write_new, write_text, write_whole
 from viewer.window import layout_file
 from viewer.window.layout_file import LayoutFile
@@ -72,7 +65,7 @@ def _check_layout(folder: Path) -> None:
 
 
 def _capture(folder: Path, number: int) -> None:
-    capture.save(_pixels(number), folder, "room.png", json.dumps({"number": number}))
+    capture.save(_pixels(number), json.dumps({"number": number}), folder, "room.png")
 
 
 def _check_images(folder: Path) -> None:

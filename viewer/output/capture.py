@@ -118,7 +118,7 @@ def write(path: Path, pixels: NDArray[np.uint8], text: str = "") -> None:
     write_bytes(path, encoded(pixels, text, KINDS[path.suffix.lower()]))
 
 
-def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
+def save(pixels: NDArray[np.uint8], text: str, folder: Path, name: str) -> Path:
     """Write a picture as a new PNG; returns its path.
 
     A name that is taken gets a number.  Raises CaptureError; then no half-written file is left."""

@@ -270,8 +270,8 @@ def video(path: Path, size: tuple[int, int], fps: float) -> Iterator[Video]:
     Raises OSError in one line."""
     import av
 
-    with whole_file(path) as (part, _):
-        with av.open(str(part), "w", format="mp4", options={"movflags": "+faststart"}) as file:
-            made = Video(file, size, fps)
-            yield made
-            made.put(None)
+    options = {"movflags": "+faststart"}
+    with whole_file(path) as (part, _), av.open(str(part), "w", format="mp4", options=options) as file:
+        made = Video(file, size, fps)
+        yield made
+        made.put(None)

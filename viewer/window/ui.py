@@ -43,7 +43,7 @@ class CaptureKind(Enum):
 class Dialog(Enum):
     """What can come up over the window, by its title."""
 
-    OPEN_FILE = "Open a scene or a captured picture"
+    OPEN_FILE = "Open a scene or a saved picture"
     SAVE_AS = "Save picture as"
     PRESETS = "Presets"
     KEYS = "Keyboard and mouse"

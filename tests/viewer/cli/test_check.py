@@ -120,7 +120,7 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
         "damaged.png": "warmup.of_path: expected a whole number, got text",
         "drawn.png": "drawn on it",
         "figure.png": "its figure is damaged",
-        "plain.png": "not one captured",
+        "plain.png": "not one saved",
         "other.pdf": "not a figure",
     }
     code, lines = verdict(capfd, *said)

@@ -258,7 +258,9 @@ def test_without_its_modes_a_picture_is_held_against_that_with_every_ray_traced(
         assert code == 0 and "nothing of its culling shows" in said, said
     with Image.open(path) as image:
         darker = np.asarray(image.convert("RGB")) // 2
-    capture.write(path.with_name("dark.png"), darker, json.dumps(capture.read_data(changed(path, "again.png", modes=""))))
+    capture.write(
+        path.with_name("dark.png"), darker, json.dumps(capture.read_data(changed(path, "again.png", modes="")))
+    )
     code, said = check(capfd, path.with_name("dark.png"))
     assert code == 1 and "unknown: but for" in said
 
