@@ -97,12 +97,7 @@ def run(given: Namespace) -> int:
 def _stops(scene: Scene, given: Namespace) -> Sequence[Stop] | None:
     """Where a flight goes through, None for the scene's own path; raises ValueError in one line."""
     if given.through is not None:
-        found, option = [Stop(*capture.read_camera(picture)) for picture in given.through], "--through"
-    elif given.bookmarks:
-        kept = load_preferences()[0].bookmarks.get(str(given.path.absolute()), [])
-        found, option = films.stops_of(kept, scene), "--bookmarks"
-    else:
+        return [Stop(*capture.read_camera(picture)) for picture in given.through]
+    if not given.bookmarks:
         return None
-    if len(found) < 2:
-        raise ValueError(f"{option}: {given.path.name} has {len(found)}; a flight needs two at least")
-    return found
+    return films.stops_of(load_preferences()[0].bookmarks.get(str(given.path.absolute()), []), scene)

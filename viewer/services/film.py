@@ -120,6 +120,8 @@ def takes(
     count = frame_count(frames, None if stops is None else len(stops), seconds, fps)
     if stops is None:
         return navigation.along_path(scene, *frames, count if seconds else None, camera)
+    if not count:
+        raise ValueError(f"a flight needs two bookmarks, or saved pictures, at least; there are {len(stops)}")
     start, end = scene.time_range
     for stop in stops:
         if not start <= stop.time <= end:
