@@ -20,7 +20,6 @@ from viewer.services.tour import Tour
 from viewer.state.keymap import Keymap
 from viewer.state.pixels import Pixels
 from viewer.state.preferences import default_screenshot_folder
-from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.views import View
 from viewer.window.command import Command
 from viewer.window.display import Compared, Display
@@ -93,8 +92,8 @@ class Desktop:
 
 @dataclass
 class Graphics:
-    """What lives as long as the window's GL context, and is None without one.  `not_previewed` could not be drawn in
-    this window; `capture_view` is the view that a picture is wanted of."""
+    """What lives as long as the window's GL context, and is None without one.  `capture_view` is the view that a
+    picture is wanted of."""
 
     renderer_name: str = ""
     display: Display | None = None
@@ -102,7 +101,6 @@ class Graphics:
     compared: Compared | None = None
     magnifier: Magnifier | None = None
     preview: PreviewDisplay | None = None
-    not_previewed: PreviewGeometry | None = None
     capture_view: View | None = None
 
 
