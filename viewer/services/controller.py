@@ -16,7 +16,6 @@ from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
 from viewer.services.baseline import Baseline
-from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
 from viewer.services.edit_effects import BeforeEdits
@@ -28,8 +27,8 @@ from viewer.services.hunts import Hunts
 from viewer.services.inspector import Inspector
 from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
+from viewer.services.named_states import Bookmarks, Presets
 from viewer.services.pictures import Pictures
-from viewer.services.presets import Presets
 from viewer.services.preview import Preview
 from viewer.services.questions import Questions
 from viewer.services.render_request import Traced
@@ -72,12 +71,12 @@ class Controller:
         self.settings = settings = SettingsController(session, preferences, notices, runs.refuses)
         self.motion = motion = Motion(session, preferences, notices, runs.refuses)
         self.comparing = Comparing(session, scheduler, notices)
-        self.bookmarks = bookmarks = Bookmarks(session, preferences, settings, notices)
+        self.bookmarks = bookmarks = Bookmarks(session, preferences, notices, settings.save)
         self.undo = undo = Undo(
             session, motion, notices, runs.refuses,
             lambda meshes: self.loader.read_as(meshes), lambda: self.loader.load_job is not None,
         )  # fmt: skip
-        self.presets = Presets(session, preferences, notices, runs.refuses, settings.save, undo.begin_step)
+        self.presets = Presets(session, preferences, notices, settings.save, runs.refuses, undo.begin_step)
         self.inspector = Inspector(selection, renderer.query)
         self.navigator = navigator = FrameNavigator(
             session, preferences, self.history, scheduler, runs, undo, selection, notices, self.restore,
@@ -213,11 +212,9 @@ class Controller:
         )
 
     def keep_frame(self) -> None:
-        """Keep the newest frame where somebody waits for such a one: bookmarks, and the comparison with an edit."""
+        """Keep the newest frame to compare with what edits make of it."""
         traced, scheduler = self.own_traced, self.scheduler
         fine = traced is not None and traced.whole and traced.request.divisor == 1
-        if traced is not None and fine:
-            self.bookmarks.take_pictures(traced.frame)
         if self.runs.current is None:
             of_edits = fine and not self.motion.is_animating and scheduler.shows_edits
             more_comes = scheduler.awaits or scheduler.adds_samples or self.renderer.busy
@@ -317,7 +314,6 @@ class Controller:
         if state is not None:
             self.undo.begin_step(f"going to {self.bookmarks.all[index].name}")
             self.restore(state)
-            self.bookmarks.arrived(index)
             if state.camera is not None:
                 self.motion.fly_to(state.camera, start)
 

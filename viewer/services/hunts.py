@@ -18,7 +18,7 @@ from viewer.output import exports
 from viewer.services import comparison, counterexamples
 from viewer.services.frame_history import FrameNavigator, JumpTarget
 from viewer.services.runs import FileRun, Runs, check_size
-from viewer.state import flight
+from viewer.state import navigation
 from viewer.state.edits import as_options
 from viewer.state.notices import Notices
 from viewer.state.pixels import around
@@ -99,7 +99,7 @@ class Hunts:
     def _search(self, scene: Scene) -> Search:
         plan, (first, last) = self.plan, self.frames
         check_size(plan.size)
-        times = [take.time for take in flight.along_path(scene, first, last)][:: plan.step]
+        times = [take.time for take in navigation.along_path(scene, first, last)][:: plan.step]
         settings = replace(
             self._session.settings, method=plan.method, width=plan.size[0], height=plan.size[1], samples=1,
             certificate_seconds=float("inf"), verify=True,

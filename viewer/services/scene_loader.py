@@ -168,7 +168,7 @@ class SceneLoader:
         self._start(f"Opening {scene.path.name}", lambda progress: scene, meshes)
 
     def open(self, path: Path) -> None:
-        """Open a scene, or restore what a captured picture shows; anything else is one line."""
+        """Open a scene, or restore what a saved picture shows; anything else is one line."""
         self._from_shell = False
         self._open(path)
 
@@ -242,7 +242,7 @@ class SceneLoader:
         return jobs
 
     def _restore_capture(self, path: Path) -> None:
-        """Bring back scene, camera, time, settings and view of a captured picture."""
+        """Bring back scene, camera, time, settings and view of a saved picture."""
         try:
             state = self._as_here(capture.read(path))
         except capture.CaptureError as error:

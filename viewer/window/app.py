@@ -12,6 +12,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +34,7 @@ from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout, show_strip
 from viewer.window.layout_file import LayoutFile
-from viewer.window.panels import dialogs, loading, log, picture, presets, status, tour
+from viewer.window.panels import dialogs, loading, log, named_states, picture, status, tour
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -310,7 +311,11 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(self.ui, {menus.PANELS_MENU: self.layout.menu}, {"Edit/Presets": lambda: presets.menu(self.ui)})
+        menus.show(
+            self.ui,
+            {menus.PANELS_MENU: self.layout.menu},
+            {"Edit/Presets": partial(named_states.presets_menu, self.ui)},
+        )
 
     def _ready(self) -> None:
         """The window and its GL context exist."""

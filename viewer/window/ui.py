@@ -21,7 +21,6 @@ from viewer.services.tour import Tour
 from viewer.state.keymap import Keymap
 from viewer.state.pixels import Pixels
 from viewer.state.preferences import default_screenshot_folder
-from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.views import View
 from viewer.window.command import Command
 from viewer.window.display import Compared, Display
@@ -44,7 +43,7 @@ class CaptureKind(Enum):
 class Dialog(Enum):
     """What can come up over the window, by its title."""
 
-    OPEN_FILE = "Open a scene or a captured picture"
+    OPEN_FILE = "Open a scene or a saved picture"
     SAVE_AS = "Save picture as"
     PRESETS = "Presets"
     KEYS = "Keyboard and mouse"
@@ -94,8 +93,8 @@ class Desktop:
 
 @dataclass
 class Graphics:
-    """What lives as long as the window's GL context, and is None without one.  `not_previewed` could not be drawn in
-    this window; `capture_view` is the view that a picture is wanted of."""
+    """What lives as long as the window's GL context, and is None without one.  `capture_view` is the view that a
+    picture is wanted of."""
 
     renderer_name: str = ""
     display: Display | None = None
@@ -103,7 +102,6 @@ class Graphics:
     compared: Compared | None = None
     magnifier: Magnifier | None = None
     preview: PreviewDisplay | None = None
-    not_previewed: PreviewGeometry | None = None
     capture_view: View | None = None
 
 

@@ -75,7 +75,7 @@ def looks(d: Driver) -> None:
     """Theme and size of the interface change at once and are kept; settings are reset when the user agrees."""
     d.settle()
     p, small = d.c.preferences, imgui.get_font_size()
-    d.c.bookmarks.add("here")
+    d.c.bookmarks.save("here")
     d.c.presets.save("mine")
 
     def brightness() -> float:
@@ -102,7 +102,7 @@ def looks(d: Driver) -> None:
         d.frames(4)
         assert p.theme == after
     assert p.ui_scale == 1.0 and d.c.session.draw.view is View.COLOR and brightness() < 60.0
-    assert p.recent and d.c.bookmarks.all[0].name == "here" and d.c.presets.own
+    assert p.recent and d.c.bookmarks.all[0].name == "here" and d.c.presets.all
     d.c.questions.before_resetting(d.c.settings.reset)
     d.frames(3)
     d.context.item_click("//Reset all settings?###question/Forget bookmarks as well")

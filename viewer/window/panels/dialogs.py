@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, imgui
 
-from viewer.window.panels import command_palette, keys, open_file, presets, saving
+from viewer.window.panels import command_palette, keys, named_states, open_file, saving
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import QUIET, centred, em, paragraph
 
@@ -16,7 +16,7 @@ def show(ui: Ui) -> None:
     ui.guard.overlay("The question", lambda: _question(ui), ui.controller.questions.drop)
     ui.guard.overlay("The command palette", lambda: command_palette.show(ui), command_palette.close)
     ui.guard.overlay("The list of keys", lambda: keys.show(ui), lambda: ui.close(Dialog.KEYS))
-    ui.guard.overlay("The presets", lambda: presets.show(ui), lambda: ui.close(Dialog.PRESETS))
+    ui.guard.overlay("The presets", lambda: named_states.show_presets(ui), lambda: ui.close(Dialog.PRESETS))
     ui.guard.overlay("The dialog about the program", lambda: _about(ui), lambda: ui.close(Dialog.ABOUT))
 
 
