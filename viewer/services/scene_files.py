@@ -44,14 +44,14 @@ def is_capture(path: Path) -> bool:
 def refusal(path: Path) -> str | None:
     """Why a path cannot be opened, in one line; None if it is worth trying."""
     if path.is_dir():
-        return f"{path}: a folder; open a scene ({' '.join(SCENE_SUFFIXES)}) or a captured picture (.png)"
+        return f"{path}: a folder; open a scene ({' '.join(SCENE_SUFFIXES)}) or a saved picture (.png)"
     if not (is_scene(path) or is_capture(path)):
-        return f"{path.name}: not a scene ({' '.join(SCENE_SUFFIXES)}) nor a captured picture (.png)"
+        return f"{path.name}: not a scene ({' '.join(SCENE_SUFFIXES)}) nor a saved picture (.png)"
     return None if path.exists() else f"{path}: no such file"
 
 
 def find_scene(stored: str, picture: Path) -> Path | None:
-    """Where a captured picture's scene is now: at its old path, beside the picture, or among our own scenes."""
+    """Where a saved picture's scene is now: at its old path, beside the picture, or among our own scenes."""
     path = Path(stored)
     candidates = [path, picture.parent / path.name]
     embedded = resources.embedded_scenes().get(path.stem)

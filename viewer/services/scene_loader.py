@@ -151,7 +151,7 @@ class SceneLoader:
         self._start(f"Opening {scene.path.name}", lambda progress: scene, meshes)
 
     def open(self, path: Path) -> None:
-        """Open a scene, or restore what a captured picture shows; anything else is one line."""
+        """Open a scene, or restore what a saved picture shows; anything else is one line."""
         refused = scene_files.refusal(path)
         if refused:
             self._notices.say(refused, error=True)
@@ -204,7 +204,7 @@ class SceneLoader:
             self._ask_first(f"{path.name} again", go_on)
 
     def _restore_capture(self, path: Path) -> None:
-        """Bring back scene, camera, time, settings and view of a captured picture."""
+        """Bring back scene, camera, time, settings and view of a saved picture."""
         session = self._session
         try:
             state = self._as_here(capture.read(path))

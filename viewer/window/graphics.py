@@ -124,10 +124,8 @@ def capture(ui: Ui) -> None:
         if state is not None and c.frame is not None and state.draw.savings is not None:
             said = comparison_in_words(c.frame, savings.standing(c))
             state = state.with_draw(savings=said)
-        if wanted is CaptureKind.CLIPBOARD:
-            c.pictures.copy(pixels, c.frame, described, state)
-        else:
-            c.captures.capture(c.frame, pixels, described, state)
+        take = c.captures.copy if wanted is CaptureKind.CLIPBOARD else c.captures.capture
+        take(c.frame, pixels, described, state)
 
 
 def _why_none(c: Controller) -> str:
