@@ -186,7 +186,7 @@ class Controller:
 
     def list_scene(self) -> None:
         """Fill the table of what is in the scene, while it is seen."""
-        self.table.update(self.own_traced, self.motion.is_animating)
+        self.table.update(self.own_traced)
 
     def record_light(self) -> None:
         """Have the chosen light recorded where the view needs it, unless a run has the render thread."""
