@@ -17,7 +17,7 @@ from viewer.window.ui import Ui
 from viewer.window.view_commands import FindState
 from viewer.window.widgets import ERROR, QUIET, count, em, paragraph, swatch, tooltip
 
-_FIELD, _LIGHT, _NUMBER = 12.0, 10.0, 5.6  # ems of width: of the filter at least, of a light's name, and of a number
+_FIELD, _LIGHT, _NUMBER = 12.0, 10.0, 4.2  # ems of width: of the filter at least, of a light's name, and of a number
 _COLORS = {
     "occlusion": {int(mode): color for mode, color in OCCLUSION_COLORS.items() if isinstance(mode, OcclusionMode)},
     "shadow": {int(mode): color for mode, color in SHADOW_COLORS.items() if isinstance(mode, ShadowMode)},
