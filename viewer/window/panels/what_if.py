@@ -14,7 +14,7 @@ from tracer.scene.things import Thing
 from tracer.why_in_words import primitive_in_words
 from viewer.services.edit_effects import Effects, Lack, Transitions
 from viewer.state import terms
-from viewer.state.edits import one_by_one
+from viewer.state.changes import one_by_one
 from viewer.window.edit_commands import WhatIfState
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
