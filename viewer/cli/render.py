@@ -25,7 +25,7 @@ from tracer.statistics import FrameStatistics
 from viewer.cli import options, pictures
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import Work, print_table, titled, working
-from viewer.output import commands, exr, figure1_svg, png, tev
+from viewer.output import commands, exr, figure1_drawing, png, tev
 from viewer.output.exr import buffers
 from viewer.services import stills
 from viewer.services.refinement import has_lamps
@@ -138,7 +138,7 @@ def run(given: Namespace) -> int:
             arrays: dict[str, Any] = buffers(frame)
             write_whole(given.buffers, lambda file: np.savez(file, **arrays))
         if given.figure1 is not None:
-            figure1_svg.write(given.figure1, frame, scene)
+            figure1_drawing.write_svg(given.figure1, frame, scene)
         if given.to_tev is not None:
             tev.send(given.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
     title = f"{given.path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
