@@ -73,7 +73,7 @@ def test_rays_follow_an_edit_of_the_scene(desk: Desk) -> None:
     rays.select(rays.seen[1][1])
     first, drawn = rays.tree, lines(rays)
     assert drawn
-    c.editing.switch(0, False)
+    c.editing.change(c.editing.now.with_light(0, False))
     desk.until(lambda: rays.tree is not None and rays.tree is not first)
     desk.rest()
     assert len(lines(rays)) < len(drawn), "a light less shines on it"

@@ -8,7 +8,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.output.exr import ENDING as EXR
 from viewer.services.pictures import JPEG
 from viewer.state.plans import MOST_MULTIPLE
-from viewer.window.commands import copy_command
+from viewer.window.picture_commands import copy_command
 from viewer.window.setting_rows import in_panel, setting_switch
 from viewer.window.ui import CaptureKind, Dialog, Ui
 from viewer.window.widgets import QUIET, centred, checkbox, em, paragraph, properties, row, tooltip, wide_button
