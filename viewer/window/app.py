@@ -61,7 +61,7 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     this name, so that a mistake in one ends no other."""
     # What threads have finished.
     step("Showing a scene that was read", c.take_scene)
-    step("Reloading what has changed", c.watcher.reload_changed)
+    step("Reloading what has changed", lambda: c.loader.reload_changed(c.runs.current is None))
     step("Saving files", c.captures.report_saved)
     step("Quitting once all is saved", c.questions.leave_when_saved)
     step("Taking the newest frame", c.take_frame)
