@@ -20,7 +20,6 @@ from viewer.util.numbers import whole_percent
 from viewer.window import comparing
 from viewer.window.panels import (
     closeup,
-    edited_picture,
     filmstrip,
     legend,
     loading,
@@ -32,6 +31,7 @@ from viewer.window.panels import (
     status,
     timeline,
     tour,
+    what_if,
 )
 from viewer.window.panels.area import Area, size_of, write_lines
 from viewer.window.panels.legend import LegendState
@@ -108,16 +108,15 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     if seen is not None:
         sides.draw_a(ui, area, seen)
     with _inside(area):
-        edited_picture.show_changed(ui, area.whole, area.whole_end)
         overlays.show(ui, area)
     _pointer(ui, area)
     closeup.show(ui, area)
     if seen is not None:
         overlays.show_worst_pixels(ui, area, seen[1].frame)
     sides.show(ui, area)
-    lower = _title(ui, area)
     with _inside(area):
-        edited_picture.show_lights(ui, area.whole, area.whole_end)
+        what_if.show_lights(ui, area.whole, area.whole_end)
+    lower = _title(ui, area)
     if seen is not None:
         sides.show_names(ui, area, seen, lower)
     legend.show(ui, area.corner, area.end)
@@ -210,7 +209,7 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
         c.selection.hovered = (u, v)
         if not closeup.wheel(ui, area):
             _wheel(ui, io.mouse_wheel)
-    if takes_edits and edited_picture.handle(ui, area.whole, area.whole_size):
+    if takes_edits and what_if.handle(ui, area.whole, area.whole_size):
         return
     if sides.handle(ui, area) or closeup.drag(ui, area):
         return
