@@ -135,11 +135,15 @@ class Motion:
         self._glide = None
 
     def follow_path(self, follow: bool) -> None:
-        """Put the camera on the scene's own path, now, or take it off where it is."""
+        """Put the camera on the scene's own path, or take it off where it is."""
         if self._locked():
             return
         self.halt()
         self._session.change(camera=None if follow else self._session.camera)
+
+    def reset_camera(self) -> None:
+        """Go back to the scene's own camera, now."""
+        self.follow_path(True)
 
     # --- time -------------------------------------------------------------------------------------
 

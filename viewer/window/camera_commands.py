@@ -30,7 +30,7 @@ def camera(ui: Ui) -> list[Command]:
         Command("Fly", "Camera", mode("fly"), "G", checked=lambda: p.navigation == "fly"),
         Command("Orbit", "Camera", mode("orbit"), "O", checked=lambda: p.navigation == "orbit"),
         Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True),
-        Command("Reset camera", "Camera", lambda: c.motion.follow_path(True), "R", enabled=here),
+        Command("Reset camera", "Camera", c.motion.reset_camera, "R", enabled=here),
         Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.on_path), "P",
                 checked=lambda: c.session.on_path, enabled=here),
         Command("Copy camera", text, lambda: _copy(ui), "Ctrl+Shift+C", enabled=here, separated=True,

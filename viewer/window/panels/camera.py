@@ -56,7 +56,7 @@ def _place(ui: Ui) -> None:
         focus(ui)
     imgui.same_line()
     if wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Reset", f"back to the scene's own camera{ui.key('Reset camera')}"):
-        c.motion.follow_path(True)
+        c.motion.reset_camera()
 
 
 def _moving(ui: Ui) -> None:
