@@ -25,7 +25,7 @@ from tracer.settings import Settings
 from viewer.cli.arguments import UPS, Parser, before, count, number, several, size
 from viewer.cli.console import Work
 from viewer.services import stills
-from viewer.state import edits as scene_edits
+from viewer.state.changes import as_options
 from viewer.state.draw_options import Slice
 from viewer.util import resources
 from viewer.views.legend import lights_in_words
@@ -150,8 +150,8 @@ def edits_of(options: Namespace) -> Edits:
 
 def check_edits(edits: Edits, scene: Scene) -> None:
     """Raise ValueError, in one line, for what the scene does not have."""
-    known = scene_edits.as_options(edits.within(scene))
-    for word in scene_edits.as_options(edits):
+    known = as_options(edits.within(scene))
+    for word in as_options(edits):
         if word in known:
             continue
         option, _, target = word.partition("=")

@@ -25,7 +25,7 @@ from tracer.scene.model import Scene
 from tracer.setting import settings_of
 from tracer.settings import Settings
 from viewer.state import codec
-from viewer.state import edits as scene_edits
+from viewer.state.changes import as_options
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
@@ -102,7 +102,7 @@ def options(state: ViewState, scene: Scene | None = None) -> list[str]:
         found += [f"--caption={draw.caption.replace('{', '{{').replace('}', '}}')}"]
     if warmup.frames:
         found += ["--before", codec.text(warmup.frames)]
-    found += scene_edits.as_options(state.edits)
+    found += as_options(state.edits)
     return found + ([] if Path(state.scene).suffix.lower() in AFF_EXTENSIONS else mesh_options(state.meshes))
 
 

@@ -20,12 +20,12 @@ from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.runs import FileRun, Runs
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
+from viewer.state.pixels import FIT
 from viewer.state.plans import MOST_MULTIPLE, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
-from viewer.state.zooming import FIT
 from viewer.util.files import write_new
 
 MOST_PIXELS = 1 << 26

@@ -14,6 +14,7 @@ from typing import Any, TypeVar, cast
 from tracer.culling.fate import Fate
 from tracer.scene.lights import named_light
 from viewer.output.capture import FIELDS
+from viewer.output.ray_rows import Filter, Key, Row
 from viewer.services.controller import Controller
 from viewer.services.runs import FramePreview
 from viewer.services.tour import Tour
@@ -106,9 +107,20 @@ class Graphics:
 
 @dataclass
 class RaysState:
-    """For how many frames the tree of rays is to unfold."""
+    """The tree of a pixel's rays: which shadow rays are `shown`, the keys of the rows that are folded otherwise than at
+    first and of the `selected` one, the row that the pointer is on, for how many frames it is to `unfold`, and the
+    window's frame in which it was `drawn` last."""
 
+    shown: Filter = field(default_factory=Filter)
+    toggled: frozenset[Key] = frozenset()
+    selected: Key | None = None
+    pointed: Row | None = None
     unfold: int = 0
+    drawn: int = -2
+
+    def is_open(self, row: Row) -> bool:
+        """Whether what is below a row is seen: at first, what is below rays on their way."""
+        return (len(row.places) == 0) != (row.key in self.toggled)
 
 
 State = TypeVar("State")

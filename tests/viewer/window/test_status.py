@@ -7,8 +7,8 @@ from types import SimpleNamespace
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.settings import Settings
 from viewer.state import terms
+from viewer.window.panels.inspector import unanswered
 from viewer.window.panels.status import doing, first_picture
-from viewer.window.panels.why import unanswered
 
 
 def test_a_start_says_one_thing_until_it_is_over() -> None:
@@ -70,11 +70,11 @@ def test_without_a_picture_it_is_said_what_goes_on() -> None:
 def test_what_was_asked_says_what_it_waits_for() -> None:
     """Nothing moves while samples are added, and an answer comes all the same only after one."""
     for changes, said in (
-        ({}, "tracing its shadow rays ..."),
-        ({"adds_samples": True}, "answered after this sample"),
-        ({"refines_lamps": True}, "answered after the samples of lamps"),
-        ({"renderer": SimpleNamespace(busy=True)}, "answered after this picture"),
-        ({"motion": SimpleNamespace(is_animating=True)}, "answered when nothing moves"),
+        ({}, "Tracing its shadow rays ..."),
+        ({"adds_samples": True}, "Answered after this sample."),
+        ({"refines_lamps": True}, "Answered after the samples of lamps."),
+        ({"renderer": SimpleNamespace(busy=True)}, "Answered after this picture."),
+        ({"motion": SimpleNamespace(is_animating=True)}, "Answered when nothing moves."),
     ):
         assert unanswered(SimpleNamespace(controller=_idle(**changes))) == said
 

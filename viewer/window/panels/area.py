@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state.zooming import Zoom
+from viewer.state.pixels import Zoom
 from viewer.window.widgets import em
 
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
