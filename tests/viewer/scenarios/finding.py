@@ -102,7 +102,10 @@ def finding(d: Driver) -> None:
     d.context.item_click("//Find/Objects")
     listing = _known(d)
     part = int(listing.rows[0])
-    d.context.item_click(f"//Find/**/{_id(part)}/##row")
+    row = d.context.item_info(f"//Find/**/{_id(part)}/##row").rect_full
+    d.context.mouse_move_to_pos((row.min.x + 60.0, 0.5 * (row.min.y + row.max.y)))  # on its name, at no column's edge
+    d.context.mouse_click(0)
+    d.frames(3)
     assert c.selection.part == part
     shown = d.shown()
     d.press(KEY.escape)
