@@ -61,7 +61,7 @@ def write_film(film: Filmstrip, results: zoom.Results, path: Path) -> None:
     """Write the filmstrip of a zoom test, as a picture; raises as `write`."""
 
     def draw() -> Figure:
-        from viewer.output.run_figures import film_figure
+        from viewer.output.figures import film_figure
 
         return film_figure(film, results)
 
@@ -69,12 +69,12 @@ def write_film(film: Filmstrip, results: zoom.Results, path: Path) -> None:
 
 
 def _figure(results: Results) -> Figure:
-    from viewer.output import run_figures  # loads matplotlib
+    from viewer.output import figures  # loads matplotlib
 
     if isinstance(results, zoom.Results):
-        return run_figures.zoom_figure(results)
+        return figures.zoom_figure(results)
     if isinstance(results, experiment.Results):
-        return run_figures.savings_figure(results, bool(results.settings.get("verify")))
+        return figures.savings_figure(results, bool(results.settings.get("verify")))
     raise ValueError("there is no plot of several kinds of lamps")
 
 
