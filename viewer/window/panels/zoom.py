@@ -19,8 +19,9 @@ from viewer.window.style import GREY, MARK
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, checkbox, clipped, em, paragraph, properties, row, tooltip, tooltip_at
 
-_PLOT, _TABLE = 15.0, 16.0  # ems of width
-_FILM, _LEAST_FILM, _MOST_FILM = 0.45, 3.6, 9.0  # the filmstrips' part of the height, and ems of one
+_PLOT, _TABLE = 14.0, 15.0  # ems of width
+_LOW = 7.0  # ems of height below which a plot has no legend
+_FILM, _LEAST_FILM, _MOST_FILM = 0.45, 3.2, 9.0  # the filmstrips' part of the height, and ems of one
 
 
 @dataclass
@@ -87,7 +88,7 @@ def _plot_and_films(ui: Ui, test: RecordedZoomTest, results: Results) -> None:
 def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach], size: ImVec2) -> None:
     """The primitive's pixels on a logarithmic scale, and for each factor the count past which it is examined again,
     marks where modes change, and wrong pixels as bars."""
-    if not approaches or not implot.begin_plot("##steps", size, FLAGS):
+    if not approaches or not implot.begin_plot("##steps", size, FLAGS | _no_legend(size)):
         return
     last = test.frames / len(test.factors) - 0.3
     steps = max((approach.steps for approach in approaches), key=len)
@@ -113,6 +114,10 @@ def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach], size: ImVe
     implot.end_plot()
 
 
+def _no_legend(size: ImVec2) -> int:
+    return int(implot.Flags_.no_legend) if size.y < em(_LOW) else 0
+
+
 def _plot_factor(approach: Approach, place: int, of: int) -> None:
     color, steps, name = COLORS[place % len(COLORS)], approach.steps, f"factor {approach.factor:g}"
     numbers = np.arange(len(steps), dtype=np.float64)
@@ -120,9 +125,9 @@ def _plot_factor(approach: Approach, place: int, of: int) -> None:
     wrong = np.array([step.wrong_of_primitive for step in steps], np.float64)
     implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y2)
     shifted = numbers + 0.8 * ((place + 0.5) / of - 0.5)
-    implot.plot_bars(f"wrong, {name}", shifted, wrong, 0.8 / of, implot.Spec(fill_color=color, fill_alpha=0.6))
+    implot.plot_bars(name, shifted, wrong, 0.8 / of, implot.Spec(fill_color=color, fill_alpha=0.6))
     implot.set_axes(implot.ImAxis_.x1, implot.ImAxis_.y1)
-    implot.plot_stairs(f"limit, {name}", numbers, limits, implot.Spec(line_color=color, line_weight=1.4))
+    implot.plot_stairs(name, numbers, limits, implot.Spec(line_color=color, line_weight=1.4))
     changed = np.array([step.number for step in steps if step.changes], np.float64)
     counts = _counts(step.pixels for step in steps if step.changes)
     mark = implot.Spec(marker=int(implot.Marker_.diamond), marker_size=em(0.24), marker_fill_color=color,
