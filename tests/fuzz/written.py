@@ -15,9 +15,8 @@ from PIL import Image
 from tests.fuzz.kills import Written
 from tests.viewer.fakes import make_frame
 from tracer.frame import Frame, Settings
-from viewer.output import capture, exports, exr, figures, png
-from viewer.output.movie import video
-from viewer.services.pictures import JPEG, write_picture
+from viewer.output import capture, exports, exr, figures
+from viewer.services.film import video
 from viewer.state.preferences import SETTINGS_FILE, NamedState, Preferences, save_preferences
 from viewer.util.files import write_new, write_text, write_whole
 from viewer.window import layout_file
@@ -66,7 +65,7 @@ def _check_layout(folder: Path) -> None:
 
 
 def _capture(folder: Path, number: int) -> None:
-    capture.save(_pixels(number), folder, "room.png", json.dumps({"number": number}))
+    capture.save(_pixels(number), json.dumps({"number": number}), folder, "room.png")
 
 
 def _check_images(folder: Path) -> None:
@@ -77,11 +76,11 @@ def _check_images(folder: Path) -> None:
 
 
 def _numbered(folder: Path, number: int) -> None:
-    png.write(folder / f"{number % 4:04}.png", _pixels(number), "{}")
+    capture.write(folder / f"{number % 4:04}.png", _pixels(number), "{}")
 
 
 def _jpeg(folder: Path, number: int) -> None:
-    write_new(folder, "room", JPEG, lambda path: write_picture(path, _pixels(number), "{}"))
+    write_new(folder, "room", ".jpg", lambda path: capture.write(path, _pixels(number), "{}"))
 
 
 def _table(folder: Path, number: int) -> None:

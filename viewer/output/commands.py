@@ -2,23 +2,30 @@
 
 Modes come from the frames before, and certificates and caches as well.  A picture that shows them can be made again
 where those frames are known (`ViewState.warmup`).  Where they are not, `warmup.unknown` says why, in words; a saved
-picture may then carry the modes themselves.
+picture then carries the modes themselves, where they are all that it depends on besides its state.
 """
 
 from __future__ import annotations
 
+import base64
 import json
 import math
+import zlib
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
 from tracer.method import Method
 from tracer.scene.load import AFF_EXTENSIONS
+from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
-from tracer.setting import Setting, settings_of
+from tracer.setting import settings_of
 from tracer.settings import Settings
 from viewer.state import codec
-from viewer.state import edits as scene_edits
+from viewer.state.changes import as_options
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
@@ -65,14 +72,23 @@ def by_one_thread(state: ViewState) -> bool:
 def words(state: ViewState, scene: Scene | None, output: str, folders: Sequence[Path] = ()) -> list[str]:
     """Return the words after `shadowcull` that make the picture of a state again, to the bit; `scene` names frames by
     their numbers, `folders` are those that it may read files from besides its own."""
-    settings, draw, warmup, path = state.settings, state.draw, state.warmup, Path(state.scene)
-    found = ["render", scene_word(path), "-o", f"./{output}" if output.startswith("-") else output]
-    found += ["--size", f"{settings.width}x{settings.height}", *_moment(state.time, scene)]
+    found = ["render", scene_word(Path(state.scene)), "-o", f"./{output}" if output.startswith("-") else output]
+    found += options(state, scene)
+    for folder in folders:
+        found += ["--folder", str(folder.absolute())]
+    return found
+
+
+def options(state: ViewState, scene: Scene | None = None) -> list[str]:
+    """Return what a state says beside its scene as options of `render`."""
+    settings, draw, warmup = state.settings, state.draw, state.warmup
+    found = ["--size", f"{settings.width}x{settings.height}", *_moment(state.time, scene)]
     found += ["--method", settings.method, *_view(state)]
     if state.camera is not None:
         found += ["--camera", json.dumps(state.camera.to_json())]
     for one in settings_of(ViewState):
-        if one.path not in _SPECIAL and _counts(one, state):
+        counts = by_one_thread(state) if one.path == "settings.threads" else state.applies(one)
+        if one.path not in _SPECIAL and counts:
             found += one.words(one.get(state))
     for option, count in (("--warmup", warmup.of_path), ("--repeat", warmup.repeats)):
         found += [option, str(count)] if count else []
@@ -86,20 +102,12 @@ def words(state: ViewState, scene: Scene | None, output: str, folders: Sequence[
         found += [f"--caption={draw.caption.replace('{', '{{').replace('}', '}}')}"]
     if warmup.frames:
         found += ["--before", codec.text(warmup.frames)]
-    found += scene_edits.as_options(state.edits)
-    for folder in folders:
-        found += ["--folder", str(folder.absolute())]
-    return found + ([] if path.suffix.lower() in AFF_EXTENSIONS else _meshes(state))
+    found += as_options(state.edits)
+    return found + ([] if Path(state.scene).suffix.lower() in AFF_EXTENSIONS else mesh_options(state.meshes))
 
 
-_SPECIAL = {"settings.method", "draw.view", "draw.spans", "draw.savings", "draw.caption", "draw.shares"}
+_SPECIAL = {"settings.method", "draw.view", "draw.spans", "draw.savings", "draw.caption"}
 """Settings whose options are no plain values."""
-
-
-def _counts(one: Setting, state: ViewState) -> bool:
-    if one.path == "settings.threads":
-        return by_one_thread(state)
-    return one.path != "draw.slice" or state.draw.view.has_slice
 
 
 def _view(state: ViewState) -> list[str]:
@@ -117,9 +125,8 @@ def _line(wipe: float, width: int) -> str:
     return "1" if column >= width else f"{(column + 0.5) / width:.9f}"
 
 
-def _meshes(state: ViewState) -> list[str]:
-    """How a mesh is read."""
-    meshes = state.meshes
+def mesh_options(meshes: MeshOptions) -> list[str]:
+    """Return the options that ask for how a mesh is read."""
     up = [f"--up={meshes.up}"] if meshes.up is not None else []
     crease = [f"--crease={meshes.crease!r}"] if meshes.crease is not None else []
     return [*up, *crease, *([] if meshes.studio else ["--no-studio"])]
@@ -147,3 +154,38 @@ def _moment(time: float, scene: Scene | None) -> list[str]:
         if scene.frame_time(number) == time:
             return ["--frame", str(number)]
     return [f"--time={time!r}"]
+
+
+# --- modes that a picture carries ------------------------------------------------------------------
+
+LARGEST_MODES = 1 << 20
+"""Bytes of their text, at most: pictures of more modes do without them."""
+
+
+def suffice(state: ViewState) -> bool:
+    """Whether modes are all that its history means to the picture: other methods learn more, and views of modes show
+    what the frame itself has taught, which depends on more."""
+    method = Method.parse(state.settings.method)
+    return method.uses_modes and len(method.kinds) == 1 and not state.draw.view.of_modes and needs_history(state)
+
+
+def packed(frame: Frame, state: ViewState) -> str:
+    """What `unpacked` makes the modes of again; empty where they are not needed, or do not suffice."""
+    if not state.warmup.unknown or not suffice(state):
+        return ""
+    words = np.ascontiguousarray(frame.modes_before)
+    text = base64.b64encode(zlib.compress(words.astype(words.dtype.newbyteorder("<")).tobytes(), 6)).decode()
+    return text if len(text) <= LARGEST_MODES else ""
+
+
+def unpacked(text: str, units: int, word: np.dtype) -> NDArray[np.unsignedinteger]:
+    """(units,) words; raises ValueError, in one line, where the text is no such modes."""
+    size = units * word.itemsize
+    try:
+        inflating = zlib.decompressobj()
+        data = inflating.decompress(base64.b64decode(text, validate=True), size + 1)
+    except (ValueError, zlib.error):
+        raise ValueError("its modes are damaged") from None
+    if len(data) != size or not inflating.eof:
+        raise ValueError(f"its modes are not those of {units:,} primitives, as the scene has them now")
+    return np.frombuffer(data, word.newbyteorder("<")).astype(word)

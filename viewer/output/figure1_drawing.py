@@ -16,7 +16,7 @@ from xml.sax.saxutils import escape
 from tracer.frame import Frame
 from tracer.scene.model import Scene
 from viewer.output.figure1 import Figure, Stage, figure_of
-from viewer.output.legend_picture import font
+from viewer.output.overlays import font
 from viewer.state.palette import Color
 from viewer.state.session import Session
 from viewer.state.views import View

@@ -24,10 +24,11 @@ from viewer.output.comparison import Comparison, Crop
 from viewer.services import comparison
 from viewer.services.frame_history import FrameNavigator, JumpTarget
 from viewer.services.runs import FileRun, Runs, check_size
-from viewer.state import navigation, zooming
-from viewer.state.edits import as_options
+from viewer.state import navigation
+from viewer.state.changes import as_options
 from viewer.state.methods import NO_CULLING
 from viewer.state.notices import Notices
+from viewer.state.pixels import around
 from viewer.state.plans import HuntPlan, frames_within
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -213,7 +214,7 @@ class Hunts:
         ).with_draw(light=find.light)  # fmt: skip
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
         warmup = tuple((one.time, one.camera or scene.camera_at(one.time)) for one in find.before)
-        zoom = zooming.around(*point, size[0] / crop_of(find, size).width)
+        zoom = around(*point, size[0] / crop_of(find, size).width)
         self._navigator.go_to(JumpTarget(state, f"counterexample {number + 1}", size, point, zoom, warmup))
 
     def save_figure(self, number: int) -> None:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 
 from tracer.scene.model import Camera
 from viewer.state import navigation
-from viewer.state.picking import extent_at, point_at
-from viewer.state.selection_lookup import looking_at, part_points, place_of, primitive_points
+from viewer.state.picking import extent_at, part_points, point_at, primitive_points
 from viewer.window.command import Command, Condition, scene_open, switch
 from viewer.window.setting_rows import setting_command
 from viewer.window.ui import Ui
@@ -90,14 +90,14 @@ def fly_to_selected(ui: Ui) -> None:
         return
     time = c.session.time
     points = primitive_points(now.scene, picked.primitive, time) if part is None else part_points(now, part, time)
-    place = place_of(points)
-    if place is None:
+    if not len(points):
         c.notices.say("the selection is not in the scene at this time")
         return
-    x, y, z = place.middle.tolist()
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, y, z = (0.5 * (low + high)).tolist()
     ui.picture.pivot = x, y, z
-    seen = c.selection.pixel is not None
-    c.motion.fly_to(looking_at(c.session.camera, place, c.motion.world_up, seen))
+    radius = 0.5 * math.dist(low, high)
+    c.motion.fly_to(navigation.focus(c.session.camera, ui.picture.pivot, radius, c.motion.world_up))
 
 
 def _copy(ui: Ui) -> None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from viewer.state.comparison import CompareMode
-from viewer.state.pixels import Point
+from viewer.state.pixels import FIT, MOST, STEP, Point, zoomed
 from viewer.state.tone import NEUTRAL, brighter
-from viewer.state.zooming import FIT, MOST, STEP, zoomed
 from viewer.window.command import Command, Condition, switch
 from viewer.window.setting_rows import setting_command
 from viewer.window.ui import Ui
@@ -20,6 +19,13 @@ _NAMES = {
     CompareMode.DIFFERENCE: "Signed difference B - A",
     CompareMode.BLINK: "Blink A and B",
 }
+
+
+def copy_command(ui: Ui) -> None:
+    """Put the command that makes the picture on the clipboard."""
+    words = ui.controller.pictures.command()
+    if words is not None:
+        ui.desktop.copy(words)
 
 
 def comparing(ui: Ui) -> list[Command]:

@@ -110,13 +110,13 @@ def test_mistakes_are_one_line(saved: Path, room: Path, capfd: pytest.CaptureFix
     Image.new("RGB", (4, 4)).save("plain.png")
     Path("broken.png").write_bytes(b"no picture")
     cases = [
-        (("render", "plain.png"), "not one captured by Shadowcull"),
+        (("render", "plain.png"), "not one saved by Shadowcull"),
         (("render", "broken.png"), "cannot be read as a picture"),
         (("render", "gone.png"), "no such file"),
         (("render", room, "-o", "x.png", "--camera", "plain.png"), "--camera: plain.png"),
         (("zoom", room, "--primitive", "0", "--camera", "gone.png"), "--camera: gone.png: no such file"),
         (("bench", saved), "saved.png"),
-        (("info", "plain.png"), "not one captured by Shadowcull"),
+        (("info", "plain.png"), "not one saved by Shadowcull"),
     ]
     for arguments, said in cases:
         code, _, errors = run(capfd, *arguments)
@@ -152,7 +152,7 @@ def test_its_tone_and_its_range_come_back_where_the_view_has_any(room: Path, cap
     assert run(capfd, "film", room, "-o", "frames", *film)[0] == 0
     assert np.array_equal(np.asarray(Image.open("frames/0000.png")), pixels["toned"])
     code, _, said = run(capfd, "film", room, "-o", "none", *film, "--view", "normal")
-    assert code == 1 and "--view normal shows none" in said
+    assert code == 1 and "--exposure does nothing in the view normal" in said
     assert (
         kept["distances"].draw.span == (2.0, 9.0)
         and kept["distances"].draw.tone.neutral

@@ -12,8 +12,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.state.comparison import Side
 from viewer.state.keymap import HELD
-from viewer.state.pixels import Point, region_between
-from viewer.state.zooming import GRID_FROM, STEP, panned, pixels_shown
+from viewer.state.pixels import GRID_FROM, STEP, Point, panned, pixels_shown, region_between
 from viewer.window import comparing, picture_commands
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui

@@ -19,7 +19,7 @@ from viewer.window.widgets import ERROR, QUIET, centred, clipped, em, fitted, pa
 
 TITLE = Dialog.OPEN_FILE.value
 _PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # which portable_file_dialogs asks, outside macOS and Windows
-_FILTERS = ["Scenes and captured pictures", " ".join(f"*{suffix}" for suffix in (*SCENE_SUFFIXES, *CAPTURE_SUFFIXES))]
+_FILTERS = ["Scenes and saved pictures", " ".join(f"*{suffix}" for suffix in (*SCENE_SUFFIXES, *CAPTURE_SUFFIXES))]
 _LINE = int(imgui.InputTextFlags_.enter_returns_true) | int(imgui.InputTextFlags_.callback_completion)
 
 
