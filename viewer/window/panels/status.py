@@ -7,7 +7,6 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
 from viewer.state import terms, verified
-from viewer.state.history import rate_in_words
 from viewer.state.notices import Level
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, tooltip
@@ -115,8 +114,8 @@ def _summary(ui: Ui) -> str:
         parts += filter(None, (verified.in_short(frame.statistics),))
         parts += [f"{frame.width} x {frame.height}", f"{1e3 * frame.statistics.seconds:.0f} ms"]
     rate = c.history.frames_per_second
-    if rate is not None and c.active:
-        parts.append(rate_in_words(rate))
+    if rate is not None and rate >= 0.05 and c.active:
+        parts.append(f"{rate:.0f} frames/s" if rate >= 9.5 else f"{rate:.1f} frames/s")
     return "   ".join(filter(None, parts))
 
 
