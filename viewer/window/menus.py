@@ -108,8 +108,6 @@ def close_newest(ui: Ui) -> bool:
         ui.dialogs.pop()
     elif ui.fold.drawer:
         ui.fold.drawer = ""
-    elif ui.frame_preview is not None:
-        ui.frame_preview = None
     elif ui.controller.notices.newest_fault is not None:
         ui.controller.notices.dismiss_faults()
     else:

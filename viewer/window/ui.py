@@ -16,7 +16,6 @@ from tracer.scene.lights import named_light
 from viewer.output.capture import FIELDS
 from viewer.output.ray_rows import Filter, Key, Row
 from viewer.services.controller import Controller
-from viewer.services.runs import FramePreview
 from viewer.services.tour import Tour
 from viewer.state.keymap import Keymap
 from viewer.state.pixels import Pixels
@@ -129,7 +128,7 @@ State = TypeVar("State")
 @dataclass(slots=True)
 class Ui:
     """See the module.  `dialogs` are those that are open, the newest last, `fate_shown` is the fate of shadow rays
-    whose pixels are to stand out, and `frame_preview` the recorded picture that is shown in the picture's place."""
+    whose pixels are to stand out."""
 
     controller: Controller
     commands: list[Command] = field(default_factory=list)
@@ -146,7 +145,6 @@ class Ui:
     guard: Guard = field(init=False)
     keymap: Keymap = field(init=False)
     tour: Tour = field(init=False)
-    frame_preview: FramePreview | None = None
     pixels: Pixels = field(default_factory=Pixels)
     picture: Picture = field(default_factory=Picture)
     _states: dict[type, Any] = field(default_factory=dict)

@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, imgui, implot
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.experiments.zoom import Approach, Results
-from viewer.output.reports import changes_in_words, happenings, modes_in_words
+from viewer.output.reports import happenings, modes_in_words
 from viewer.services.runs import RecordedZoomTest
 from viewer.window.panels import filmstrip
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
@@ -38,7 +38,6 @@ from viewer.window.widgets import (
     row,
     tooltip,
     tooltip_above,
-    tooltip_at,
 )
 
 _TABLE = 20.0  # ems of the table
@@ -192,9 +191,9 @@ def _plot(
     implot.plot_scatter("modes", changed, pixels[changed.astype(int)], mark)
     if implot.is_plot_hovered():
         step = steps[min(max(round(implot.get_plot_mouse_pos().x), 0), len(steps) - 1)]
-        tooltip_at("\n".join(filmstrip.in_words(step)))
+        filmstrip.show_step(ui, test, approach.factor, step)
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
-            filmstrip.show_step(ui, test, approach.factor, step.number)
+            ui.controller.go_to_step(step)
     implot.end_plot()
 
 
@@ -210,8 +209,9 @@ def _table(ui: Ui, test: RecordedZoomTest | None, results: Results | None) -> No
         for approach in results.approaches if shown else ():
             for step in approach.steps if state.all_steps else happenings(approach):
                 if choice(f"{approach.factor:g}##{step.number}"):
-                    filmstrip.show_step(ui, test, approach.factor, step.number)
-                tooltip("\n".join(["show its picture", *changes_in_words(step.changes)]))
+                    ui.controller.go_to_step(step)
+                if imgui.is_item_hovered():
+                    filmstrip.show_step(ui, test, approach.factor, step)
                 wrong = ERROR if step.wrong_of_primitive else None
                 for text, color in (
                     (str(step.number), None),
