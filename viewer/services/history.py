@@ -355,7 +355,7 @@ class FrameNavigator:
         if warmup is not None:
             if size != self._scheduler.full_size:
                 self._session.set_pace(fixed_size=True, width=size[0], height=size[1])
-            self._scheduler.freeze(warmup)
+            self._scheduler.freeze(self._session.state, warmup)
         self._wanted = (self._session.time, self._session.camera, point) if point is not None else None
 
     def select_when_shown(self, traced: Traced | None) -> None:

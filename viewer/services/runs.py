@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from datetime import date
 from functools import partial
 from pathlib import Path
-from typing import Protocol, cast
+from typing import Protocol
 
 from tracer.experiments import experiment, zoom
 from tracer.experiments.experiment import Experiment
@@ -28,7 +28,7 @@ from tracer.settings import Settings
 from viewer.output import exports
 from viewer.output.filmstrip import Filmstrip
 from viewer.services.capture_service import CaptureService
-from viewer.services.render_request import RenderRequest, Task, Traced, Traces
+from viewer.services.render_request import RenderRequest, Task, Traced
 from viewer.services.selection import Selection
 from viewer.state.methods import BY_MODES, CERTIFIED
 from viewer.state.notices import Notices
@@ -123,8 +123,8 @@ class _Task:
     run: Run
     wake: Callable[[], None]
 
-    def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
-        world = getattr(cast(Renderer, renderer), "world", None)
+    def work(self, renderer: Renderer, cancelled: Callable[[], bool]) -> None:
+        world = getattr(renderer, "world", None)
         with suppress(Exception):
             for _ in self.run.each(world, cancelled, self.wake):
                 pass

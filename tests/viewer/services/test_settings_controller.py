@@ -27,10 +27,6 @@ class Parts:
         self.settings = SettingsController(self.session, self.preferences, self.notices, lambda: self.locked)
         self.bookmarks = Bookmarks(self.session, self.preferences, self.notices, self.settings.save)
 
-    def change(self, **changes: object) -> None:
-        self.settings.change(**changes)
-        self.settings.note_method()  # as in each frame of the window
-
     def follow_settings(self) -> None:
         self.settings.save_when_rested()
         if self.settings._writing is not None:
@@ -56,10 +52,9 @@ def test_a_setting_is_changed_and_remembered_unless_it_is_no_good_or_locked():
 )
 def test_culling_is_turned_off_and_on_as_it_was_with_what_was_added_meanwhile(chosen: str, toggled: list[str]):
     parts = Parts()
-    parts.change(method=chosen)
+    parts.settings.change(method=chosen)
     for method in toggled:
         parts.settings.toggle_culling()
-        parts.settings.note_method()
         assert parts.session.settings.method == method
 
 

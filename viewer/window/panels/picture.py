@@ -54,7 +54,8 @@ def show(ui: Ui) -> None:
     if above > 0.0:
         start = imgui.get_cursor_pos()
         ui.guard.panel("What culling saves", lambda: savings.show(ui, room.x))
-        imgui.set_cursor_pos(ImVec2(start.x, start.y + above))
+        imgui.set_cursor_pos(start)
+        imgui.dummy(ImVec2(room.x, above - imgui.get_style().item_spacing.y))  # where nothing follows, ImGui complains
         room.y -= above
     strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
     room.y -= strip
@@ -202,7 +203,7 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
     c, io = ui.controller, imgui.get_io()
     if ui.picture.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.picture.pivot, ui.picture.pivot_scene = None, c.session.scene
-    u, v = area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
+    u, v = area.to_picture(io.mouse_pos.x + 0.5, io.mouse_pos.y + 0.5)  # the middle of the screen's pixel
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.selection.hovered = (u, v)
         if not closeup.wheel(ui, area):
