@@ -35,9 +35,8 @@ def filmstrip(d: Driver) -> None:
             _point_and_click(d, test, approach)
     d.scroll_down("Zoom test")
     d.context.item_click(f"//Zoom test/**/{icons.ICON_FA_FLOPPY_DISK} Film")
-    d.wait(lambda: not d.c.captures.busy, "the film to be written")
-    d.frames(2)
-    (path,) = (d.folder / "pictures").glob("*-film-*.png")
+    d.wait(lambda: any((d.folder / "pictures").glob("*-film*.png")), "the film to be written")
+    (path,) = (d.folder / "pictures").glob("*-film*.png")
     with Image.open(path) as image:
         assert image.width == 1920 and image.height > 700
 
