@@ -60,18 +60,18 @@ def write_json(path: Path, figures: Mapping[str, Any]) -> None:
 
 def write_film(film: Filmstrip, results: zoom.Results, path: Path) -> None:
     """Write the filmstrip of a zoom test, as a picture; raises as `write`."""
-    from viewer.output import run_figures
+    from viewer.output import figures
 
-    _plot(lambda: run_figures.film_figure(film, results), path)
+    _plot(lambda: figures.film_figure(film, results), path)
 
 
 def _figure(results: Results) -> Figure:
-    from viewer.output import run_figures  # loads matplotlib
+    from viewer.output import figures  # loads matplotlib
 
     if isinstance(results, zoom.Results):
-        return run_figures.zoom_figure(results)
+        return figures.zoom_figure(results)
     if isinstance(results, experiment.Results):
-        return run_figures.savings_figure(results, bool(results.settings.get("verify")))
+        return figures.savings_figure(results, bool(results.settings.get("verify")))
     raise ValueError("there is no plot of several kinds of lamps")
 
 

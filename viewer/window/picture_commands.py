@@ -63,7 +63,7 @@ def looking(ui: Ui) -> list[Command]:
     def expose(stops: float) -> Callable[[], None]:
         def change() -> None:
             session.set_draw(tone=brighter(session.draw.tone, stops))
-            ui.controller.notices.say(f"exposure {session.draw.tone.exposure:+.3g} stops")
+            ui.controller.notices.say(f"exposure {session.draw.tone.exposure:+.3g} EV")
 
         return change
 

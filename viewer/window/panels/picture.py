@@ -22,7 +22,6 @@ from viewer.window.panels import (
     closeup,
     filmstrip,
     legend,
-    loading,
     missing,
     overlays,
     savings,
@@ -37,7 +36,7 @@ from viewer.window.panels.area import Area, size_of, write_lines
 from viewer.window.panels.legend import LegendState
 from viewer.window.style import ON_PICTURE_ERROR
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, em, paragraph
+from viewer.window.widgets import QUIET, clipped, em
 
 CLICK_SLACK = 4.0
 BUTTONS = LEFT, RIGHT, MIDDLE = tuple(
@@ -80,7 +79,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
             left, top, size = _fitted(ui.picture.shape, room)
             imgui.set_cursor_pos(ImVec2(left, top))
             imgui.image(imgui.ImTextureRef(texture), size)
-        elif loading.show_preview(ui, room):
+        elif _preview(ui, room):
             _turn(ui, room.y, 0.0)
         else:
             _placeholder(ui, room)
@@ -156,17 +155,32 @@ def _inside(area: Area) -> Iterator[None]:
 
 
 def _placeholder(ui: Ui, room: ImVec2) -> None:
-    """What stands there before the first picture."""
+    """What stands there before the first picture: what goes on, and how far it is."""
     c = ui.controller
-    if c.loader.load_job is not None or c.loader.warm_up_job is not None:
-        return  # the progress window speaks
-    text = status.first_picture(c)
-    if c.session.scene is None:
+    job, text = c.loader.warm_up_job or c.loader.load_job, status.first_picture(c)
+    if c.session.scene is None and job is None:
         text = f"Open a scene{ui.key('Open...')}, or drop one on this window"
-    at = imgui.get_cursor_pos()
-    left = at.x + max(0.0, (room.x - imgui.calc_text_size(text).x) / 2.0)
+    at, width = imgui.get_cursor_pos(), min(room.x, max(imgui.calc_text_size(text).x, em(16.0)))
+    left = at.x + (room.x - width) / 2.0
     imgui.set_cursor_pos(ImVec2(left, at.y + room.y / 2.0))
-    paragraph(text, QUIET)
+    clipped(text, QUIET)
+    if job is not None:
+        imgui.set_cursor_pos_x(left)
+        imgui.progress_bar(job.fraction, ImVec2(width, 0.0))
+
+
+def _preview(ui: Ui, room: ImVec2) -> bool:
+    """The preview, if there is any, as an item that takes the pointer, and what it is."""
+    texture = ui.graphics.preview.texture_id if ui.graphics.preview is not None else None
+    if texture is None:
+        return False
+    corner = imgui.get_cursor_screen_pos()
+    imgui.set_next_item_allow_overlap()
+    imgui.invisible_button("preview", room, int(imgui.ButtonFlags_.mouse_button_mask_))
+    end = ImVec2(corner.x + room.x, corner.y + room.y)
+    imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
+    write_lines(["Preview: no shadows, no reflections, no textures", status.first_picture(ui.controller)], corner)
+    return True
 
 
 def _title(ui: Ui, area: Area) -> float:
