@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.state.comparison import Side
-from viewer.state.keymap import HELD
 from viewer.state.pixels import Point, region_between
 from viewer.state.zooming import GRID_FROM, STEP, panned, pixels_shown
 from viewer.window import comparing, picture_commands
