@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -15,13 +14,10 @@ from PIL import Image
 from tests.fuzz.kills import Written
 from tests.viewer.fakes import make_frame
 from tracer.frame import Frame, Settings
-from viewer.output import capture, exports, exr, figures, png
-from viewer.output.movie import video
-from viewer.services.pictures import JPEG, write_picture
-from viewer.state.preferences import SETTINGS_FILE, Bookmark, Preferences, save_preferences
+from viewer.output import capture, exports, exr, figures
+from viewer.services.film import video
+from viewer.state.preferences import SETTINGS_FILE, NamedState, Preferences, save_preferences
 from viewer.util.files import write_new, write_text, write_whole
-from viewer.window import layout_file
-from viewer.window.layout_file import LayoutFile
 
 SIZE = (96, 128)
 
@@ -43,7 +39,7 @@ def _visible(folder: Path, pattern: str) -> list[Path]:
 
 
 def _settings(folder: Path, number: int) -> None:
-    marks = [Bookmark(f"{number}", {}, "x" * 20_000)]
+    marks = [NamedState(f"{number}", {"long": "x" * 20_000})]
     problem = save_preferences(Preferences(bookmarks={"/scene": marks}, recent=[str(number)]), folder)
     assert problem is None, problem
 
@@ -53,20 +49,8 @@ def _check_settings(folder: Path) -> None:
     assert data["bookmarks"]["/scene"][-1]["name"].isdigit() and data["recent"]
 
 
-def _layout(folder: Path, number: int) -> None:
-    layout = LayoutFile(folder)
-    with suppress(OSError):  # as ImGui, which says nothing
-        layout.working_copy.write_text(f"[Layout]\nnumber={number}\n" * 500 + f"{layout_file.END}\n{{}}\n")
-    layout.keep()
-
-
-def _check_layout(folder: Path) -> None:
-    text = (folder / "layout.ini").read_text()
-    assert text.count("[Layout]") == text.count("number=") == 500
-
-
 def _capture(folder: Path, number: int) -> None:
-    capture.save(_pixels(number), folder, "room.png", json.dumps({"number": number}))
+    capture.save(_pixels(number), json.dumps({"number": number}), folder, "room.png")
 
 
 def _check_images(folder: Path) -> None:
@@ -77,11 +61,11 @@ def _check_images(folder: Path) -> None:
 
 
 def _numbered(folder: Path, number: int) -> None:
-    png.write(folder / f"{number % 4:04}.png", _pixels(number), "{}")
+    capture.write(folder / f"{number % 4:04}.png", _pixels(number), "{}")
 
 
 def _jpeg(folder: Path, number: int) -> None:
-    write_new(folder, "room", JPEG, lambda path: write_picture(path, _pixels(number), "{}"))
+    write_new(folder, "room", ".jpg", lambda path: capture.write(path, _pixels(number), "{}"))
 
 
 def _table(folder: Path, number: int) -> None:
@@ -161,7 +145,6 @@ def _check_video(folder: Path) -> None:
 
 WRITTEN = (
     Written("settings, bookmarks, presets", _settings, _check_settings),
-    Written("layout of the panels", _layout, _check_layout, tells=False),
     Written("captures", _capture, _check_images),
     Written("pictures of a film", _numbered, _check_images),
     Written("pictures as JPEG", _jpeg, _check_images),

@@ -21,7 +21,7 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, print_table, titled, working
 from viewer.services import comparison, counterexamples
-from viewer.state import flight
+from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
 from viewer.util.messages import printable
 
@@ -94,7 +94,7 @@ def run(given: Namespace) -> int:
 
 def _search(scene: Scene, settings: Settings, given: Namespace) -> Search:
     first, last = given.frames or (0, scene.frames - 1)
-    takes = flight.along_path(scene, first, last)[:: given.step]
+    takes = navigation.along_path(scene, first, last)[:: given.step]
     times = [take.time for take in takes]
     return Search(settings, times, given.camera, given.around, given.radius, given.seed, given.keep)
 

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image
 from rich.table import Table
 
 from tracer.frame import Frame, Settings
@@ -25,7 +24,7 @@ from tracer.statistics import FrameStatistics
 from viewer.cli import options, pictures
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import Work, print_table, titled, working
-from viewer.output import commands, exr, figure1_svg, png, tev
+from viewer.output import capture, commands, exr, figure1_drawing, other_programs
 from viewer.output.exr import buffers
 from viewer.services import stills
 from viewer.services.refinement import has_lamps
@@ -35,16 +34,7 @@ from viewer.state.view_state import ViewState
 from viewer.util.files import check_writable, write_whole
 from viewer.util.messages import printable, say
 
-PICTURES = {
-    ".png": "PNG",
-    ".jpg": "JPEG",
-    ".jpeg": "JPEG",
-    ".tif": "TIFF",
-    ".tiff": "TIFF",
-    ".bmp": "BMP",
-    ".ppm": "PPM",
-    exr.ENDING: "EXR",
-}
+PICTURES = (*capture.KINDS, exr.ENDING)
 BYTES_OF_A_LIGHT = 7  # of a pixel: samples asked and reached in 2 each, lit, due and shadow_mode in 1 each
 
 EPILOG = """\
@@ -93,7 +83,7 @@ def parser() -> Parser:
     add("--repeat", type=count(0, 1000), default=0, metavar="N", help="then trace the frame itself N times")
     add("--print-command", action="store_true", help="print the whole command for this picture, and trace nothing")
     help_ = "show the frame and its buffers in tev or HDRView, which is open there"
-    add("--to-tev", type=tev.address, metavar="HOST:PORT", help=help_)
+    add("--to-tev", type=other_programs.address, metavar="HOST:PORT", help=help_)
     add("--half", action="store_true", help="colours and normals of an .exr with 16 bits, not 32")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")
     help_ = "the paper's Figure 1 with the numbers of this frame, for slides"
@@ -138,9 +128,9 @@ def run(given: Namespace) -> int:
             arrays: dict[str, Any] = buffers(frame)
             write_whole(given.buffers, lambda file: np.savez(file, **arrays))
         if given.figure1 is not None:
-            figure1_svg.write(given.figure1, frame, scene)
+            figure1_drawing.write_svg(given.figure1, frame, scene)
         if given.to_tev is not None:
-            tev.send(given.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
+            other_programs.send(given.to_tev, f"{scene.path.stem} {wanted.time:g} s {settings.method}", frame)
     title = f"{given.path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
     by_beams = terms.asks_by_beams(frame, has_lamps(scene.lights, frame.settings))
     remarks = " ".join(filter(None, (terms.BY_BEAMS if by_beams else "", _first(wanted))))
@@ -202,11 +192,7 @@ def write_picture(path: Path, scene: Scene, frame: Frame, wanted: ViewState) -> 
     pixels, missing = stills.draw(frame, scene, wanted)
     if missing:
         say(missing)
-    kind = PICTURES[path.suffix.lower()]
-    extras: dict[str, dict[str, Any]] = {"JPEG": {"quality": 95}}
-    if kind == "PNG":
-        extras[kind] = {"pnginfo": png.notes(stills.text(pixels, frame, scene, wanted))}
-    png.write_image(path, Image.fromarray(pixels), kind, **extras.get(kind, {}))
+    capture.write(path, pixels, stills.text(pixels, frame, scene, wanted))
 
 
 def _statistics_table(statistics: FrameStatistics, title: str, settings: Settings, remarks: str) -> Table:

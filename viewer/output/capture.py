@@ -1,8 +1,7 @@
-"""Pictures that remember how they were made.
+"""Pictures as files, and what a PNG remembers of how it was made.
 
-A capture is a PNG whose text chunk `shadowcull` holds, as JSON, the scene's path, the camera, the
-time, the settings, the view and the frame's statistics; opening it brings all that back.  It is
-named from a template, never overwrites, and every failure is one line.
+The text chunk `shadowcull` of a saved picture holds, as JSON, its state, the camera and the frame's statistics; opening
+it brings all that back.  Files are whole or absent, and every failure is one line.
 """
 
 from __future__ import annotations
@@ -25,7 +24,8 @@ from tracer.scene.model import SceneError
 from tracer.scene.textures import open_image
 from viewer.state import codec
 from viewer.state.view_state import ViewState
-from viewer.util.files import write_new, write_whole
+from viewer.util.files import write_bytes, write_new
+from viewer.util.messages import in_one_line
 
 CHUNK = "shadowcull"
 FIELDS = {
@@ -40,6 +40,11 @@ FIELDS = {
     "date": "today, e.g. 2024-05-31",
     "time": "now, e.g. 14-05-09",
 }
+KINDS = {
+    ".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".tif": "TIFF", ".tiff": "TIFF", ".bmp": "BMP", ".ppm": "PPM",
+}  # fmt: skip
+"""The kinds of pictures that `write` writes, by their endings."""
+_END = b"IEND\xaeB`\x82"  # of every whole PNG
 _FORBIDDEN = '<>:"/\\|?*\0'
 _LONGEST_NAME = 200
 
@@ -95,20 +100,30 @@ def metadata(
     return codec.text(data)
 
 
-def save(pixels: NDArray[np.uint8], folder: Path, name: str, text: str) -> Path:
-    """Write (height, width, 3) uint8 pixels, row 0 at the top, as a new PNG; returns its path.
+def encoded(pixels: NDArray[np.uint8], text: str = "", kind: str = "PNG") -> bytes:
+    """Return the file of (height, width, 3) pixels, row 0 at the top; a PNG carries the text."""
+    file, options = BytesIO(), dict[str, Any](quality=95) if kind == "JPEG" else {}
+    if kind == "PNG" and text:
+        options["pnginfo"] = info = PngImagePlugin.PngInfo()
+        info.add_itxt(CHUNK, text)
+        info.add_text("Software", "Shadowcull")
+    Image.fromarray(np.ascontiguousarray(pixels)).save(file, kind, **options)
+    return file.getvalue()
+
+
+def write(path: Path, pixels: NDArray[np.uint8], text: str = "") -> None:
+    """Write a picture as its ending says, one of KINDS; raises OSError in one line.
+
+    Through memory, as Pillow, where it may write into a file itself, says nothing of a disk without room for all."""
+    write_bytes(path, encoded(pixels, text, KINDS[path.suffix.lower()]))
+
+
+def save(pixels: NDArray[np.uint8], text: str, folder: Path, name: str) -> Path:
+    """Write a picture as a new PNG; returns its path.
 
     A name that is taken gets a number.  Raises CaptureError; then no half-written file is left."""
-    info = PngImagePlugin.PngInfo()
-    info.add_itxt(CHUNK, text)
-    info.add_text("Software", "Shadowcull")
-    image = Image.fromarray(np.ascontiguousarray(pixels))
-
-    def write(path: Path) -> None:
-        write_whole(path, lambda file: image.save(file, "PNG", pnginfo=info, compress_level=4))
-
     try:
-        return write_new(folder, name.removesuffix(".png"), ".png", write)
+        return write_new(folder, name.removesuffix(".png"), ".png", lambda path: write(path, pixels, text))
     except (OSError, ValueError) as error:
         raise CaptureError(f"no picture saved: {error}") from None
 
@@ -137,9 +152,12 @@ def state_of(data: Mapping[str, Any], path: Path) -> ViewState:
 
 
 def read_data(path: Path) -> dict[str, Any]:
-    """All that a capture carries, as JSON has it; raises CaptureError."""
+    """Return all that a picture carries, as JSON has it; raises CaptureError."""
     try:
-        with open_image(BytesIO(read_regular(path)), ("PNG",)) as image:
+        file = read_regular(path)
+        with open_image(BytesIO(file), ("PNG",)) as image:
+            if _END not in file:
+                raise ValueError("it is cut off")
             text = image.info.get(CHUNK)
             if text is None:  # another program may have put it after the pixels, which else need not be decoded
                 image.load()
@@ -147,9 +165,9 @@ def read_data(path: Path) -> dict[str, Any]:
     except FileNotFoundError:
         raise CaptureError(f"{path}: no such file") from None
     except (SceneError, OSError, ValueError, SyntaxError) as error:
-        raise CaptureError(f"{path}: cannot be read as a picture: {' '.join(str(error).split())}") from None
+        raise CaptureError(f"{path}: cannot be read as a picture: {in_one_line(error)}") from None
     if text is None:
-        raise CaptureError(f"{path}: a picture, but not one captured by Shadowcull")
+        raise CaptureError(f"{path}: a picture, but not one saved by Shadowcull")
     try:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:

@@ -2,16 +2,22 @@
 
 Modes come from the frames before, and certificates and caches as well.  A picture that shows them can be made again
 where those frames are known (`ViewState.warmup`).  Where they are not, `warmup.unknown` says why, in words; a saved
-picture may then carry the modes themselves.
+picture then carries the modes themselves, where they are all that it depends on besides its state.
 """
 
 from __future__ import annotations
 
+import base64
 import json
 import math
+import zlib
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame
 from tracer.method import Method
 from tracer.scene.load import AFF_EXTENSIONS
 from tracer.scene.model import Scene
@@ -147,3 +153,38 @@ def _moment(time: float, scene: Scene | None) -> list[str]:
         if scene.frame_time(number) == time:
             return ["--frame", str(number)]
     return [f"--time={time!r}"]
+
+
+# --- modes that a picture carries ------------------------------------------------------------------
+
+LARGEST_MODES = 1 << 20
+"""Bytes of their text, at most: pictures of more modes do without them."""
+
+
+def suffice(state: ViewState) -> bool:
+    """Whether modes are all that its history means to the picture: other methods learn more, and views of modes show
+    what the frame itself has taught, which depends on more."""
+    method = Method.parse(state.settings.method)
+    return method.uses_modes and len(method.kinds) == 1 and not state.draw.view.of_modes and needs_history(state)
+
+
+def packed(frame: Frame, state: ViewState) -> str:
+    """What `unpacked` makes the modes of again; empty where they are not needed, or do not suffice."""
+    if not state.warmup.unknown or not suffice(state):
+        return ""
+    words = np.ascontiguousarray(frame.modes_before)
+    text = base64.b64encode(zlib.compress(words.astype(words.dtype.newbyteorder("<")).tobytes(), 6)).decode()
+    return text if len(text) <= LARGEST_MODES else ""
+
+
+def unpacked(text: str, units: int, word: np.dtype) -> NDArray[np.unsignedinteger]:
+    """(units,) words; raises ValueError, in one line, where the text is no such modes."""
+    size = units * word.itemsize
+    try:
+        inflating = zlib.decompressobj()
+        data = inflating.decompress(base64.b64decode(text, validate=True), size + 1)
+    except (ValueError, zlib.error):
+        raise ValueError("its modes are damaged") from None
+    if len(data) != size or not inflating.eof:
+        raise ValueError(f"its modes are not those of {units:,} primitives, as the scene has them now")
+    return np.frombuffer(data, word.newbyteorder("<")).astype(word)

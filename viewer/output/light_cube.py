@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tracer.culling.lightbuffer.cubes import Cube
 from tracer.culling.lightbuffer.tell import full_depths, list_lengths
 from tracer.culling.modes import ShadowMode
-from viewer.output.legend_picture import with_legend
+from viewer.output.overlays import with_legend
 from viewer.state.palette import BACKGROUND, GREY, SHADOW_COLORS, Color, color_map
 from viewer.util.numbers import count, percent
 from viewer.views.legend import Entry, Legend, Scale

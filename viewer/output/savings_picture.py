@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from tracer.frame import Frame
-from viewer.output.caption import LINES, SMALLEST
-from viewer.output.legend_picture import font, in_bytes
+from viewer.output.overlays import CAPTION_LINES, CAPTION_SMALLEST, font, in_bytes
 from viewer.state.palette import FATE_COLORS, Color, label_color
 from viewer.state.savings import PALE, Bar, bar_of, counters_in_words
 from viewer.views.legend import BACKDROP, TEXT, wrapped
@@ -21,7 +20,7 @@ def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None
     if comparison is None:
         return pixels
     height, width = pixels.shape[:2]
-    size = max(SMALLEST, round(min(width, height) / LINES))
+    size = max(CAPTION_SMALLEST, round(min(width, height) / CAPTION_LINES))
     letters, margin, step = font(size), round(0.6 * size), round(1.35 * size)
     words = ", ".join(filter(None, (counters_in_words(frame), comparison)))
     lines = wrapped(words, letters.getlength, width - 2 * margin)

@@ -1,6 +1,6 @@
-"""Files that the window writes: pictures, and the results of runs.
+"""Files that the window writes, pictures among them, and pictures that it copies.
 
-Each is written on a thread of its own, so that the window does not wait for a disk.
+Each is done on a thread of its own, so that the window does not wait for a disk.
 """
 
 from __future__ import annotations
@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from viewer.output import capture
-from viewer.output.legend_picture import with_legend
-from viewer.output.savings_picture import with_savings
+from viewer.output import capture, other_programs
+from viewer.output.overlays import with_legend
 from viewer.services import stills
 from viewer.services.jobs import Job
 from viewer.state.notices import Notices
@@ -25,6 +24,7 @@ from viewer.state.view_state import ViewState
 from viewer.views.legend import Legend
 
 T = TypeVar("T")
+Pixels = NDArray[np.uint8]
 
 
 class CaptureService:
@@ -51,7 +51,6 @@ class CaptureService:
 
     def write(self, save: Callable[[], Path]) -> Job[Path]:
         """Let `save` write a file, whose path it returns, on a thread of its own."""
-
         return self.begin("Saving", save)
 
     def begin(self, title: str, work: Callable[[], T]) -> Job[T]:
@@ -63,49 +62,63 @@ class CaptureService:
     def capture(
         self,
         frame: Frame | None,
-        pixels: NDArray[np.uint8] | None,
+        pixels: Pixels | None,
         legend: Legend | None = None,
         state: ViewState | None = None,
     ) -> None:
-        """Save a picture, (h, w, 3) uint8, of a frame, with its legend, named by the user's template.
+        """Save a picture, (h, w, 3) uint8, of a frame, named by the user's template.
 
-        With the state that makes it again; without one it shows more than a picture, as the window, or two."""
+        With the state that makes it again, which says what else is drawn; without one it shows more than a picture, as
+        the window, or two, and gets the legend alone."""
         session, preferences, scene = self._session, self._preferences, self._session.scene
         if frame is None or pixels is None or scene is None:
             self._notices.say("there is no picture to save yet", error=True)
             return
         # What the picture shows: another moment than the session's where a run goes on, or a finer frame is to come.
-        number = session.frame_at(frame.time)
-        height, width = pixels.shape[:2]
-        values = {
-            "scene": scene.path.stem,
-            "view": session.draw.view.value,
-            "frame": number,
-            "seconds": frame.time,
-            "method": frame.settings.method,
-            "light": session.draw.light,
-            "width": width,
-            "height": height,
-        }
         here = session.state_of(frame).with_settings(verify=session.settings.verify)  # a view may verify by itself
-        size = (frame.width, frame.height)
-        text = capture.metadata(here, frame.camera, number, size, frame.statistics.to_dict(), {"window": state is None})
-        folder = preferences.picture_folder
+        values = stills.fields_of(here, scene) | {"width": pixels.shape[1], "height": pixels.shape[0]}
+        size, more = (frame.width, frame.height), {"window": True}
+        text = capture.metadata(here, frame.camera, values["frame"], size, frame.statistics.to_dict(), more)
         try:
             name = capture.file_name(preferences.screenshot_template, values)
         except capture.CaptureError as error:
             self._notices.say(str(error), error=True)
             return
-        place = session.draw.legend_at
+        folder, finish = preferences.picture_folder, self._finishing(frame, pixels, legend, state, text)
+        self.write(lambda: capture.save(*finish(), folder, name))
 
-        def save() -> Path:
-            described = with_legend(pixels, legend, place) if legend is not None else None
-            saved = pixels if described is None else described
+    def copy(
+        self, frame: Frame | None, pixels: Pixels | None, legend: Legend | None = None, state: ViewState | None = None
+    ) -> None:
+        """Put a picture on the clipboard; as `capture`, but without a state it says nothing of itself."""
+        if frame is None or pixels is None or self._session.scene is None:
+            self._notices.say("there is no picture to copy yet", error=True)
+            return
+        if other_programs.clipboard_command() is None:
+            self._notices.say(other_programs.NO_CLIPBOARD, error=True)
+            return
+        finish = self._finishing(frame, pixels, legend, state, "")
+
+        def work() -> str:
+            drawn, text = finish()
+            other_programs.copy(capture.encoded(drawn, text))
+            return f"the picture, {drawn.shape[1]} x {drawn.shape[0]}, is on the clipboard"
+
+        self.begin("Copying", work)
+
+    def _finishing(
+        self, frame: Frame, pixels: Pixels, legend: Legend | None, state: ViewState | None, text: str
+    ) -> Callable[[], tuple[Pixels, str]]:
+        """Return what draws the rest of a picture and gives what it carries, which may take a while; `text` is that of
+        one without a state."""
+        scene, place = self._session.scene, self._session.draw.legend_at
+        assert scene is not None
+
+        def finish() -> tuple[Pixels, str]:
             if state is not None:
-                saved = with_savings(saved, frame, state.draw.savings)
-            if state is None:
-                return capture.save(saved, folder, name, text)
-            kept = state if described is not None else state.with_draw(legend=False)
-            return capture.save(saved, folder, name, stills.text(saved, frame, scene, kept, by_gpu=True))
+                drawn, _ = stills.dressed(pixels, frame, scene, state)
+                return drawn, stills.text(drawn, frame, scene, state, by_gpu=True)
+            described = with_legend(pixels, legend, place) if legend is not None else None
+            return pixels if described is None else described, text
 
-        self.write(save)
+        return finish

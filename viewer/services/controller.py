@@ -16,7 +16,6 @@ from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
 from viewer.services.baseline import Baseline
-from viewer.services.bookmarks import Bookmarks
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
 from viewer.services.edit_effects import BeforeEdits
@@ -25,21 +24,18 @@ from viewer.services.film import Films
 from viewer.services.frame_history import FrameHistory, FrameNavigator
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.hunts import Hunts
+from viewer.services.inspector import Inspector
 from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
-from viewer.services.origin_pixels import OriginFinder
+from viewer.services.named_states import Bookmarks, Presets
 from viewer.services.pictures import Pictures
-from viewer.services.pixel_inspector import PixelInspector
-from viewer.services.presets import Presets
 from viewer.services.preview import Preview
 from viewer.services.questions import Questions
-from viewer.services.ray_inspector import RayInspector
 from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import Runs
 from viewer.services.scene_loader import Arrival, SceneLoader
 from viewer.services.scene_table import SceneTable
-from viewer.services.scene_watcher import SceneWatcher
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import Undo
@@ -74,15 +70,13 @@ class Controller:
         self.settings = settings = SettingsController(session, preferences, notices, runs.refuses)
         self.motion = motion = Motion(session, preferences, notices, runs.refuses)
         self.comparing = Comparing(session, scheduler, notices)
-        self.bookmarks = bookmarks = Bookmarks(session, preferences, settings, notices)
+        self.bookmarks = bookmarks = Bookmarks(session, preferences, notices, settings.save)
         self.undo = undo = Undo(
             session, motion, notices, runs.refuses,
             lambda meshes: self.loader.read_as(meshes), lambda: self.loader.load_job is not None,
         )  # fmt: skip
-        self.presets = Presets(session, preferences, notices, runs.refuses, settings.save, undo.begin_step)
-        self.inspector = PixelInspector(selection, renderer.query)
-        self.rays = RayInspector(session, selection, self.inspector)
-        self.origins = OriginFinder(selection, self.history, renderer.query)
+        self.presets = Presets(session, preferences, notices, settings.save, runs.refuses, undo.begin_step)
+        self.inspector = Inspector(selection, renderer.query)
         self.navigator = navigator = FrameNavigator(
             session, preferences, self.history, scheduler, runs, undo, selection, notices, self.restore,
             self.reset_modes,
@@ -100,7 +94,6 @@ class Controller:
         )
         self.films = Films(session, preferences, runs, pictures, bookmarks)
         self.hunts = Hunts(session, preferences, runs, navigator, notices)
-        self.watcher = SceneWatcher(preferences, lambda: loader.files, self._may_reload, loader.reload_changed, wake)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}
@@ -184,12 +177,10 @@ class Controller:
 
     def inspect_pixel(self) -> None:
         """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
-        traced, moving = self.own_traced, self.motion.is_animating
+        traced = self.own_traced
         frame = traced.frame if traced is not None else None
         cuts = traced is not None and traced.whole and self.scheduler.drawn_view is View.CUTS
-        self.inspector.update(frame, not moving, cuts)
-        self.rays.update(frame)
-        self.origins.update(self.session.scene, None if moving else traced)
+        self.inspector.update(frame, not self.motion.is_animating, cuts)
 
     def list_scene(self) -> None:
         """Fill the table of what is in the scene, while it is seen."""
@@ -219,11 +210,9 @@ class Controller:
         )
 
     def keep_frame(self) -> None:
-        """Keep the newest frame where somebody waits for such a one: bookmarks, and the comparison with an edit."""
+        """Keep the newest frame to compare with what edits make of it."""
         traced, scheduler = self.own_traced, self.scheduler
         fine = traced is not None and traced.whole and traced.request.divisor == 1
-        if traced is not None and fine:
-            self.bookmarks.take_pictures(traced.frame)
         if self.runs.current is None:
             of_edits = fine and not self.motion.is_animating and scheduler.shows_edits
             more_comes = scheduler.awaits or scheduler.adds_samples or self.renderer.busy
@@ -262,10 +251,6 @@ class Controller:
         session.restore(here)
         session.playing = playing and session.animated
         self.reloaded = True
-
-    def _may_reload(self) -> bool:
-        """Whether a scene that has changed may be read now: not while a run goes on, or another is being read."""
-        return self.runs.current is None and self.loader.load_job is None
 
     # --- going elsewhere -------------------------------------------------------------------------
 
@@ -323,7 +308,6 @@ class Controller:
         if state is not None:
             self.undo.begin_step(f"going to {self.bookmarks.all[index].name}")
             self.restore(state)
-            self.bookmarks.arrived(index)
             if state.camera is not None:
                 self.motion.fly_to(state.camera, start)
 
@@ -345,9 +329,8 @@ class Controller:
     def close(self, timeout: float = 30.0) -> bool:
         """Stop everything, finish writing files and save the preferences; false if something would not stop."""
         deadline = time.monotonic() + timeout
-        jobs = [*self.loader.cancel_all(), *self.captures.saving]
+        jobs = [*self.loader.close(), *self.captures.saving]
         self.runs.stop()
-        self.watcher.close()
         stopped = self.renderer.close(timeout)
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))

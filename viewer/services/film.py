@@ -1,54 +1,46 @@
 """Films: each frame traced whole, at any size, as a numbered picture that says how it was made, and a video of them.
 
-In turn, modes are learnt from frame to frame, as the camera flies.  Where no earlier frame shows in a picture, several
-processes may share the film; pictures that are there already then stay, so that a film that was stopped goes on.
+Modes are learnt from frame to frame, as the camera flies.  The command `film` and the window's panel make a `Script`,
+and let a `FilmRun` do it.
 """
 
 from __future__ import annotations
 
-import json
 import math
 import re
-from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from datetime import datetime
+from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from PIL import Image
+from numpy.typing import NDArray
 
-from tracer import fingerprint
-from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
-from tracer.scene.model import Scene
+from tracer.scene.model import Camera, Cancelled, Scene
 from tracer.settings import Settings
-from tracer.version import program_version
-from viewer.output import capture, movie, png
+from viewer.output import capture
 from viewer.output.commands import cannot_come_back, needs_history
-from viewer.output.movie import VIDEO, Video, frame_name, video
 from viewer.services import stills
-from viewer.services.bookmarks import Bookmarks
+from viewer.services.named_states import Bookmarks
 from viewer.services.pictures import Pictures
 from viewer.services.runs import FileRun, Runs, check_size
-from viewer.state import codec, flight
-from viewer.state.flight import Stop, Take
+from viewer.state import codec, navigation
+from viewer.state.navigation import Stop, Take
 from viewer.state.plans import FilmPlan, frames_within
-from viewer.state.preferences import Preferences
+from viewer.state.preferences import NamedState, Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
-from viewer.util.files import write_bytes
+from viewer.util.files import check_writable, whole_file
 
-if TYPE_CHECKING:
-    from tracer.experiments.cluster import Cluster
-
+VIDEO = ".mp4"
+QUALITY = "16"  # of x264: what the eye can hardly tell from the pictures
 FILMED = "its modes were learnt from the frames of its film before it"
-FRAMES = "-frames"
-"""What the folder of the pictures of a video is called after it."""
-Drawn = Iterator[tuple[int, bytes, str]]
-"""The number of a take, its picture's file, and a remark or nothing."""
+NEEDS_PYAV = "a video needs PyAV; install shadowcull[video] (pip install av), or give a folder for the pictures alone"
 
 
 @dataclass(frozen=True)
@@ -67,7 +59,8 @@ class Script:
         """The picture of each take: by the number of its frame, or else they are counted from 0."""
         of_path = [take.number for take in self.takes if take.number is not None]
         numbers = of_path if len(of_path) == len(self.takes) else list(range(len(self.takes)))
-        return [self.folder / frame_name(number, max(numbers)) for number in numbers]
+        digits = max(4, len(str(max(numbers))))
+        return [self.folder / f"{number:0{digits}d}.png" for number in numbers]
 
     def state_of(self, take: Take, scene: Scene) -> ViewState:
         """How to make a take again, alone: after as many frames of the scene's path, where these were before it."""
@@ -77,175 +70,105 @@ class Script:
             state = state.with_warmup(unknown=FILMED) if unknown else state.with_warmup(of_path=take.warmup or 0)
         return stills.with_caption_filled(state, scene)
 
-    def states_alone(self, scene: Scene) -> list[ViewState]:
-        """How each picture is made by a process of one thread that may work in another folder."""
-        state = self.state.with_settings(threads=1)
-        return [replace(self, state=state).state_of(take, scene) for take in self.takes]
-
 
 def places(output: Path) -> tuple[Path, Path | None]:
     """The folder of the pictures and the video that a name asks for: a folder, or an mp4."""
     if output.suffix.lower() == VIDEO:
-        return output.with_name(output.stem + FRAMES), output
+        return output.with_name(f"{output.stem}-frames"), output
     return output, None
 
 
-def _pictures_in(folder: Path) -> list[Path]:
-    """The numbered pictures in a folder, which is made; raises OSError, in one line, where that cannot be."""
+def prepare(folder: Path, video: Path | None) -> None:
+    """Make the folder of the pictures, in one that is there.
+
+    Raises ValueError or OSError, in one line, where that or the video cannot be, or where another film is in it."""
+    if video is not None:
+        check_video()
+        check_writable(video)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        found = [path for path in folder.iterdir() if re.fullmatch(r"\d{4,}\.png", path.name)]
+        folder.mkdir(exist_ok=True)
+        taken = sorted((path for path in folder.iterdir() if re.fullmatch(r"\d{4,}\.png", path.name)),
+                       key=lambda path: int(path.stem))  # fmt: skip
+    except FileNotFoundError:
+        raise OSError(f"{folder}: there is no folder {folder.parent}") from None
     except OSError as error:
         raise OSError(f"{folder}: no folder for the pictures: {error.strerror or error}") from None
-    return sorted(found, key=lambda path: int(path.stem))
-
-
-def check_folder(folder: Path) -> None:
-    """Make the folder; raise OSError, in one line, where that cannot be, or where it holds another film's pictures."""
-    taken = _pictures_in(folder)
     if taken:
         which = taken[0].name if len(taken) == 1 else f"{taken[0].name} to {taken[-1].name}"
         raise OSError(f"{folder}: there are numbered pictures in it already, {which}; give another folder")
 
 
-def kept_pictures(script: Script, scene: Scene) -> set[int]:
-    """Which pictures of the film are in its folder already.
+def frame_count(frames: tuple[int, int], stops: int | None, seconds: float, fps: float) -> int:
+    """How many frames a film has: of the path from the first to the last, or of a flight through so many stops.
 
-    Raises OSError, in one line, where a numbered picture in it is none of this film."""
-    there, paths, states = _pictures_in(script.folder), script.paths, script.states_alone(scene)
-    found = {number for number, path in enumerate(paths) if path in there}
-    for number in sorted(found):
-        other = _difference(paths[number], states[number], scene)
-        if other:
-            raise OSError(f"{paths[number]}: a picture of another film ({other}); give another folder")
-    for path in there:
-        if path not in paths:
-            raise OSError(f"{path}: a picture of another film; give another folder")
-    return found
+    With 0 seconds each frame of the path comes once, and a flight takes 2 seconds from stop to stop.  0 without a way
+    from one stop to another."""
+    if stops is None:
+        return max(2, round(seconds * fps)) if seconds else frames[1] - frames[0] + 1
+    return max(2, round((seconds or navigation.LEG * (stops - 1)) * fps)) if stops > 1 else 0
 
 
-def _difference(path: Path, state: ViewState, scene: Scene) -> str:
-    """In what a picture differs from what the state makes, in words; empty where it is the same."""
-    try:
-        data = capture.read_data(path)
-    except capture.CaptureError as error:
-        return str(error)
-    made = data.get("made", {})
-    expected: dict[str, tuple[Any, Any]] = {
-        "version": (made.get("version"), program_version()),
-        "scene": (made.get("scene"), fingerprint.of_scene(scene)),
-        "size": (data.get("size"), list(state.size)),
-        "settings": (data.get("state"), _as_json(codec.state_to_json(stills.as_kept(state), of_picture=True))),
-    }
-    return ", ".join(f"another {name}" for name, (old, new) in expected.items() if old != new)
-
-
-def _as_json(data: Any) -> Any:
-    return json.loads(json.dumps(data, default=str))
-
-
-# --- tracing ------------------------------------------------------------------------------------------
-
-
-def drawn(
-    renderer: Renderer,
-    state: ViewState,
-    cancelled: Callable[[], bool],
-    on_frame: Callable[[Frame], None] = lambda frame: None,
-) -> tuple[bytes, str]:
-    """A picture's file, and why it has no legend where one was wanted; `on_frame` gets its frame."""
-    frame = stills.trace(renderer, state.with_warmup(of_path=0), cancelled=cancelled)
-    pixels, missing = stills.draw(frame, renderer.scene, state)
-    on_frame(frame)
-    return png.encoded(pixels, stills.text(pixels, frame, renderer.scene, state)), missing
-
-
-def in_turn(
-    renderer: Renderer,
-    script: Script,
-    cancelled: Callable[[], bool],
-    on_frame: Callable[[Frame], None] = lambda frame: None,
-) -> Drawn:
-    """The pictures one after another; raises Cancelled."""
-    for number, take in enumerate(script.takes):
-        yield number, *drawn(renderer, script.state_of(take, renderer.scene), cancelled, on_frame)
-
-
-def by_processes(
-    cluster: Cluster,
+def takes(
     scene: Scene,
-    script: Script,
-    kept: Collection[int],
-    cancelled: Callable[[], bool],
-    on_wait: Callable[[], None],
-) -> Drawn:
-    """The pictures but those `kept`, as they come; raises Cancelled, and RuntimeError in one line."""
-    from tracer.experiments import distributed_film  # needs Dask
-
-    missing = [number for number in range(len(script.takes)) if number not in kept]
-    states = script.states_alone(scene)
-    wanted = [(states[number].settings, states[number]) for number in missing]
-    for place, data, remark in distributed_film.pictures(cluster, scene, drawn, wanted, cancelled, on_wait):
-        yield missing[place], data, remark
-
-
-def write(
-    script: Script,
-    pictures: Drawn,
-    kept: Collection[int] = (),
-    note: Callable[[str], object] = lambda line: None,
-) -> Iterator[int]:
-    """Write each picture as it comes, and add it to the video once those before it are there; yields how many are.
-
-    `note` is told a remark once.  What `pictures` raises leaves what is done, with the video as long as its beginning;
-    raises OSError, in one line, as where the disk is full."""
-    paths, there, told = script.paths, set(kept), set[str]()
-    with ExitStack() as stack:
-        reel: Video | None = None
-        added = 0
-        for number, data, remark in pictures:
-            if remark and remark not in told:
-                told.add(remark)
-                note(remark)
-            write_bytes(paths[number], data)
-            there.add(number)
-            while script.video is not None and added in there:
-                with Image.open(paths[added], formats=("PNG",)) as image:
-                    pixels = np.asarray(image.convert("RGB"))
-                if reel is None:
-                    reel = stack.enter_context(video(script.video, (pixels.shape[1], pixels.shape[0]), script.fps))
-                reel.add(pixels)
-                added += 1
-            yield len(there)
+    frames: tuple[int, int],
+    stops: Sequence[Stop] | None,
+    seconds: float,
+    fps: float,
+    camera: Camera | None,
+) -> list[Take]:
+    """The takes of a film, as `frame_count` counts them; raises ValueError, in one line, where there can be none."""
+    count = frame_count(frames, None if stops is None else len(stops), seconds, fps)
+    if stops is None:
+        return navigation.along_path(scene, *frames, count if seconds else None, camera)
+    if not count:
+        raise ValueError(f"a flight needs two bookmarks, or saved pictures, at least; there are {len(stops)}")
+    start, end = scene.time_range
+    for stop in stops:
+        if not start <= stop.time <= end:
+            raise ValueError(f"a stop's time, {stop.time:g} s, is not within the scene's, {start:g} to {end:g} s")
+    return navigation.through(stops, count)
 
 
-# --- in the window ------------------------------------------------------------------------------------
+def stops_of(bookmarks: Sequence[NamedState], scene: Scene) -> list[Stop]:
+    """Where bookmarks are; raises ValueError, in one line, for one that is damaged."""
+    states = [codec.state_from_json(bookmark.state) for bookmark in bookmarks]
+    return [Stop(state.time, state.camera or scene.camera_at(state.time)) for state in states]
 
 
 class FilmRun(FileRun):
-    """A film being traced and written, in the view in which it is drawn."""
+    """A film being traced and written, in the view in which it is drawn; `remark` says why there is no legend where one
+    was wanted."""
 
     name = "film"
 
     def __init__(self, scene: Scene, script: Script) -> None:
-        self.script, self.view = script, script.state.draw.view
+        self.script, self.view, self.remark = script, script.state.draw.view, ""
         self.verifies = script.state.settings.verify or self.view.needs_verify
         super().__init__(scene, len(script.takes))
         self.output = script.video or script.folder
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
-        check_folder(self.script.folder)
-        renderer = Renderer(scene, self.script.state.settings, world=world)
-
-        def on_frame(frame: Frame) -> None:
-            self.progressed(f"frame {self.traced + 1} of {self.frames}", frame)
-
-        for _ in write(self.script, in_turn(renderer, self.script, cancel, on_frame)):
-            yield self.script.folder
+        script, reel = self.script, None
+        renderer = Renderer(scene, script.state.settings, world=world)
+        with ExitStack() as stack:
+            for take, path in zip(script.takes, script.paths):
+                state = script.state_of(take, scene)
+                try:
+                    frame = stills.trace(renderer, state.with_warmup(of_path=0), cancelled=cancel)
+                except Cancelled:
+                    return  # the video ends with the last whole picture
+                pixels, self.remark = stills.draw(frame, scene, state)
+                capture.write(path, pixels, stills.text(pixels, frame, scene, state))
+                if script.video is not None:
+                    size = pixels.shape[1], pixels.shape[0]
+                    reel = reel or stack.enter_context(video(script.video, size, script.fps))
+                    reel.add(pixels)
+                self.progressed(f"frame {self.traced + 1} of {self.frames}", frame)
+                yield script.folder
 
 
 class Films:
-    """`plan` is what to film next, `film` the last one: under way, done or stopped."""
+    """`plan` is what the window films next, `film` the last one: under way, done or stopped."""
 
     def __init__(
         self, session: Session, preferences: Preferences, runs: Runs, pictures: Pictures, bookmarks: Bookmarks
@@ -264,11 +187,9 @@ class Films:
     @property
     def count(self) -> int:
         """How many frames the film has; 0 where it cannot be made."""
-        plan, (first, last) = self.plan, self.frames
-        if plan.through_bookmarks:
-            legs = len(self._bookmarks.all) - 1
-            return max(2, round((plan.seconds or flight.LEG * legs) * plan.fps)) if legs > 0 else 0
-        return max(2, round(plan.seconds * plan.fps)) if plan.seconds else last - first + 1
+        plan = self.plan
+        stops = len(self._bookmarks.all) if plan.through_bookmarks else None
+        return frame_count(self.frames, stops, plan.seconds, plan.fps)
 
     def start(self) -> None:
         """Begin to film what is planned, with the view, the method and the settings that are chosen now."""
@@ -280,31 +201,79 @@ class Films:
         self._runs.start(make)
 
     def _script(self, scene: Scene) -> Script:
-        plan, p, state = self.plan, self._preferences, self._pictures.now()
+        plan, state = self.plan, self._pictures.now()
         if state is None:
             raise ValueError("there is nothing to film yet")
         check_size(plan.size)
-        if plan.video:
-            movie.check_video()
-        takes = self._takes(scene)
+        stops = stops_of(self._bookmarks.all, scene) if plan.through_bookmarks else None
+        camera = self._session.camera if plan.from_here else None
+        filmed = takes(scene, self.frames, stops, plan.seconds, plan.fps, camera)
         settings: Settings = replace(
             state.settings, width=plan.size[0], height=plan.size[1], samples=plan.samples,
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()  # fmt: skip
         state = replace(state, settings=settings, warmup=Warmup(unknown=cannot_come_back(settings, state.draw)))
         state = state.with_draw(magnified=1, caption=plan.caption, legend=plan.legend)
-        name = f"{scene.path.stem}-film-{datetime.now():%Y-%m-%d-%H-%M-%S}"
-        mp4 = p.picture_folder / (name + VIDEO) if plan.video else None
-        return Script(takes, state, p.picture_folder / name, mp4, plan.fps)
+        folder = self._preferences.picture_folder
+        folder.mkdir(parents=True, exist_ok=True)
+        folder = folder / f"{scene.path.stem}-film-{datetime.now():%Y-%m-%d-%H-%M-%S}"
+        mp4 = folder.with_name(folder.name + VIDEO) if plan.video else None
+        prepare(folder, mp4)
+        return Script(filmed, state, folder, mp4, plan.fps)
 
-    def _takes(self, scene: Scene) -> list[Take]:
-        plan = self.plan
-        if plan.through_bookmarks:
-            states = [codec.state_from_json(bookmark.state) for bookmark in self._bookmarks.all]
-            stops = [Stop(state.time, state.camera or scene.camera_at(state.time)) for state in states]
-            if len(stops) < 2:
-                raise ValueError("a flight needs two bookmarks at least; the menu Camera adds one")
-            return flight.through(stops, self.count)
-        first, last = self.frames
-        camera = self._session.camera if plan.from_here else None
-        return flight.along_path(scene, first, last, self.count if plan.seconds else None, camera)
+
+# --- videos ------------------------------------------------------------------------------------------
+
+
+def check_video() -> None:
+    """Raise ValueError, in one line, where no video can be written."""
+    try:
+        import av
+    except ImportError as error:
+        raise ValueError(f"{NEEDS_PYAV} ({error})") from None
+    if "libx264" not in av.codecs_available:
+        raise ValueError("PyAV was built without x264; give a folder for the pictures alone")
+
+
+class Video:
+    """A video that pictures are added to, as `video` opens it."""
+
+    def __init__(self, file: Any, size: tuple[int, int], fps: float) -> None:
+        """`file` is PyAV's; `size` is that of the pictures.  x264 takes even sides only."""
+        self._file, self._size = file, (size[0] + size[0] % 2, size[1] + size[1] % 2)
+        rate = Fraction(fps).limit_denominator(1001)
+        self._stream: Any = file.add_stream("libx264", rate=rate, options={"crf": QUALITY, "preset": "medium"})
+        self._stream.width, self._stream.height = self._size
+        self._stream.pix_fmt = "yuv420p"
+        context = self._stream.codec_context
+        context.colorspace = context.color_primaries = context.color_trc = 1  # BT.709, as players take it to be
+        context.color_range = 1  # of studios
+
+    def add(self, pixels: NDArray[np.uint8]) -> None:
+        """Add the next picture, (h, w, 3) uint8; an odd side is made even by its last row or column once more."""
+        import av
+
+        height, width = pixels.shape[:2]
+        room = ((0, self._size[1] - height), (0, self._size[0] - width), (0, 0))
+        frame: Any = av.VideoFrame.from_ndarray(np.ascontiguousarray(np.pad(pixels, room, "edge")), format="rgb24")
+        self.put(frame.reformat(format="yuv420p", dst_colorspace="itu709", dst_color_range="MPEG",
+                                src_color_range="JPEG"))  # fmt: skip
+
+    def put(self, frame: Any) -> None:
+        """Write a frame as PyAV has it, or None at the end."""
+        for packet in self._stream.encode(frame):
+            self._file.mux(packet)
+
+
+@contextmanager
+def video(path: Path, size: tuple[int, int], fps: float) -> Iterator[Video]:
+    """An mp4 of pictures of this size, which takes its name at the end of the block; after an error, none is left.
+
+    Raises OSError in one line."""
+    import av
+
+    options = {"movflags": "+faststart"}
+    with whole_file(path) as (part, _), av.open(str(part), "w", format="mp4", options=options) as file:
+        made = Video(file, size, fps)
+        yield made
+        made.put(None)

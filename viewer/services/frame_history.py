@@ -22,17 +22,17 @@ from viewer.output.commands import BUILT
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.runs import Experiment, Runs
-from viewer.services.selection import Point, Selection
+from viewer.services.selection import Selection
 from viewer.services.undo import Undo
 from viewer.state.history import FrameRate, FrameRecord, FrameRecords, History
 from viewer.state.notices import Notices
 from viewer.state.picking import Pick
+from viewer.state.pixels import Point, Zoom
 from viewer.state.preferences import Preferences
 from viewer.state.readings import has_modes_of_cells
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
-from viewer.state.zooming import Zoom
 
 MOST_ORIGINS = 4
 """Mode histories, of resolutions and lamps, whose origins are known."""
@@ -188,7 +188,7 @@ class FrameNavigator:
         self._restore, self._reset_modes = restore, reset_modes
         self._wanted: tuple[float, Camera, Point] | None = None
 
-    def go(self, number: int, point: Point | None = None) -> None:
+    def go(self, number: int) -> None:
         """Go back to a frame by its number in the plots."""
         record = self._history.records.get(number)
         if self._session.scene is None or self._runs.refuses():
@@ -196,7 +196,7 @@ class FrameNavigator:
         if record is None:
             self._notices.say(f"picture {number} is no longer kept: only the last 10,000 are")
             return
-        self.go_to(JumpTarget(record.state, f"picture {number}", record.size, point))
+        self.go_to(JumpTarget(record.state, f"picture {number}", record.size))
         self._notices.say(f"{self.name_of(number)}, again{self._may_differ(record)}")
 
     def go_to_experiment(self, run: Experiment, number: int) -> None:

@@ -18,9 +18,10 @@ from viewer.output import exports
 from viewer.services import comparison, counterexamples
 from viewer.services.frame_history import FrameNavigator, JumpTarget
 from viewer.services.runs import FileRun, Runs, check_size
-from viewer.state import flight, zooming
+from viewer.state import navigation
 from viewer.state.edits import as_options
 from viewer.state.notices import Notices
+from viewer.state.pixels import around
 from viewer.state.plans import HuntPlan, frames_within
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -98,7 +99,7 @@ class Hunts:
     def _search(self, scene: Scene) -> Search:
         plan, (first, last) = self.plan, self.frames
         check_size(plan.size)
-        times = [take.time for take in flight.along_path(scene, first, last)][:: plan.step]
+        times = [take.time for take in navigation.along_path(scene, first, last)][:: plan.step]
         settings = replace(
             self._session.settings, method=plan.method, width=plan.size[0], height=plan.size[1], samples=1,
             certificate_seconds=float("inf"), verify=True,
@@ -129,7 +130,7 @@ class Hunts:
         ).with_draw(light=find.light)
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
         warmup = tuple((one.time, one.camera or scene.camera_at(one.time)) for one in find.before)
-        zoom = zooming.around(*point, size[0] / counterexamples.crop_of(find, size).width)
+        zoom = around(*point, size[0] / counterexamples.crop_of(find, size).width)
         self._navigator.go_to(JumpTarget(state, f"counterexample {number + 1}", size, point, zoom, warmup))
 
     def save_figure(self, number: int) -> None:

@@ -73,10 +73,6 @@ class Job(Generic[Result]):
         """Ask the work to stop; it does at its next report of progress."""
         self._stop.set()
 
-    @property
-    def stopping(self) -> bool:
-        return self._stop.is_set()
-
     def join(self, timeout: float) -> bool:
         """Wait for the end; false if it did not come in time."""
         self._thread.join(timeout)

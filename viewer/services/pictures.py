@@ -1,25 +1,18 @@
-"""What makes the window's pictures again, and how they leave it: as a command, larger, with a caption, as EXR, to the
-clipboard, or to tev."""
+"""What makes the window's pictures again, and how they leave it: as a command, as files, or to tev."""
 
 from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from io import BytesIO
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
-from PIL import Image
 
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
-from viewer.output import clipboard, commands, exr, png, tev
+from viewer.output import capture, commands, exr, other_programs
 from viewer.output.commands import BUILT, cannot_come_back, needs_history
-from viewer.output.legend_picture import with_legend
 from viewer.services import stills
 from viewer.services.capture_service import CaptureService
 from viewer.services.frame_history import FrameHistory
@@ -27,27 +20,16 @@ from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.runs import FileRun, Runs
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
+from viewer.state.pixels import FIT
 from viewer.state.plans import MOST_MULTIPLE, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
-from viewer.state.zooming import FIT
 from viewer.util.files import write_new
-from viewer.views.legend import Legend
 
 MOST_PIXELS = 1 << 26
 UNKNOWN = "its modes were learnt from other frames as well"
-JPEG = ".jpg"
-
-
-def write_picture(path: Path, pixels: NDArray[np.uint8], text: str) -> None:
-    """Write (h, w, 3) pixels as the ending says, whole or not at all; a PNG carries the text.  Raises OSError in one
-    line."""
-    if path.suffix == JPEG:
-        png.write_image(path, Image.fromarray(pixels), "JPEG", quality=95)
-    else:
-        png.write(path, pixels, text)
 
 
 class PictureRun(FileRun):
@@ -74,7 +56,7 @@ class PictureRun(FileRun):
             if as_exr:
                 exr.write(path, frame, text)
             else:
-                write_picture(path, pixels, text)
+                capture.write(path, pixels, text)
 
         stem = f"{Path(scene.path).stem}-{self.state.draw.view.value}-{width}x{height}"
         self.output = write_new(self.folder, stem, self.ending, write)
@@ -195,40 +177,6 @@ class Pictures:
 
     # --- what is shown, elsewhere ------------------------------------------------------------------
 
-    def copy(
-        self,
-        pixels: NDArray[np.uint8] | None,
-        frame: Frame | None,
-        legend: Legend | None = None,
-        state: ViewState | None = None,
-    ) -> None:
-        """Put what is shown, (h, w, 3), on the clipboard, with its legend.
-
-        With the state that makes it again; without one, as for two pictures, it says nothing."""
-        scene, place = self._session.scene, self._session.draw.legend_at
-        if pixels is None or frame is None or scene is None:
-            self._notices.say("there is no picture to copy yet", error=True)
-            return
-        if clipboard.program() is None:
-            self._notices.say(clipboard.NONE, error=True)
-            return
-
-        def work() -> str:
-            file = BytesIO()
-            if state is not None:
-                drawn, _ = stills.dressed(pixels, frame, scene, state)
-                Image.fromarray(drawn).save(
-                    file, "PNG", pnginfo=png.notes(stills.text(drawn, frame, scene, state, by_gpu=True))
-                )
-            else:
-                described = with_legend(pixels, legend, place) if legend is not None else None
-                drawn = pixels if described is None else described
-                Image.fromarray(drawn).save(file, "PNG")
-            clipboard.copy(file.getvalue())
-            return f"the picture, {drawn.shape[1]} x {drawn.shape[0]}, is on the clipboard"
-
-        self._files.begin("Copying", work)
-
     def to_tev(self, frame: Frame | None) -> None:
         """Send the frame and its buffers to where the preferences say."""
         scene = self._session.scene
@@ -236,14 +184,14 @@ class Pictures:
             self._notices.say("there is no picture to send yet", error=True)
             return
         try:
-            to = tev.address(self._preferences.tev)
+            to = other_programs.address(self._preferences.tev)
         except ValueError as error:
             self._notices.say(str(error), error=True)
             return
         name = f"{scene.path.stem} frame {self._session.frame_at(frame.time)} {frame.settings.method}"
 
         def work() -> str:
-            tev.send(to, name, frame)
+            other_programs.send(to, name, frame)
             return f"sent to {to[0]}:{to[1]} as {name!r}"
 
         self._files.begin("Sending", work)

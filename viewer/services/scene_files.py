@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -45,12 +44,20 @@ def is_capture(path: Path) -> bool:
 def refusal(path: Path) -> str | None:
     """Why a path cannot be opened, in one line; None if it is worth trying."""
     if path.is_dir():
-        return f"{path}: a folder; open a scene ({' '.join(SCENE_SUFFIXES)}) or a captured picture (.png)"
+        return f"{path}: a folder; open a scene ({' '.join(SCENE_SUFFIXES)}) or a saved picture (.png)"
     if not (is_scene(path) or is_capture(path)):
-        return f"{path.name}: not a scene ({' '.join(SCENE_SUFFIXES)}) nor a captured picture (.png)"
-    if not path.exists():
-        return f"{path}: no such file"
-    return None
+        return f"{path.name}: not a scene ({' '.join(SCENE_SUFFIXES)}) nor a saved picture (.png)"
+    return None if path.exists() else f"{path}: no such file"
+
+
+def find_scene(stored: str, picture: Path) -> Path | None:
+    """Where a saved picture's scene is now: at its old path, beside the picture, or among our own scenes."""
+    path = Path(stored)
+    candidates = [path, picture.parent / path.name]
+    embedded = resources.embedded_scenes().get(path.stem)
+    if embedded is not None and (stored == path.stem or path.parent.name == embedded.parent.name):
+        candidates.append(embedded)
+    return next((c for c in candidates if c.is_file()), None)
 
 
 def read_scene(
@@ -60,6 +67,17 @@ def read_scene(
     Cancelled."""
     with noting(files), _no_collecting():
         return load_visible_scene(path, progress, folders, meshes)
+
+
+@contextmanager
+def _no_collecting() -> Iterator[None]:
+    """Without Python's search for circles of objects: a scene of a million pieces has none, and the search stops the
+    window for up to a second each time."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
 
 
 def open_scene(
@@ -82,40 +100,7 @@ def open_scene(
         time.sleep(0.02)
     if not can_draw(lights, accelerator):  # many lights need wider words, and kernels for them
         warm_up(progress, lights, accelerator)
-    renderer = Renderer(scene, settings, progress)
-    info = scene_info(scene)
-    model = model_bounds(scene)
+    renderer, info, model = Renderer(scene, settings, progress), scene_info(scene), model_bounds(scene)
     if model is not None:  # what the camera goes around is the model, not the floor
         info["bounds"] = model.tolist()
     return Opened(scene, renderer, info, time.perf_counter() - started)
-
-
-@contextmanager
-def _no_collecting() -> Iterator[None]:
-    """Without Python's search for circles of objects: a scene of a million pieces has none, and the search stops the
-    window for up to a second each time."""
-    global _uncollected
-    with _lock:
-        _uncollected += 1
-        gc.disable()
-    try:
-        yield
-    finally:
-        with _lock:
-            _uncollected -= 1
-            if not _uncollected:
-                gc.enable()
-
-
-_lock = threading.Lock()
-_uncollected = 0  # scenes that are being read
-
-
-def find_scene(stored: str, picture: Path) -> Path | None:
-    """Where a captured picture's scene is now: at its old path, beside the picture, or among our own scenes."""
-    path = Path(stored)
-    candidates = [path, picture.parent / path.name]
-    embedded = resources.embedded_scenes().get(path.stem)
-    if embedded is not None and (stored == path.stem or path.parent.name == embedded.parent.name):
-        candidates.append(embedded)
-    return next((c for c in candidates if c.is_file()), None)

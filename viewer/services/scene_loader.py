@@ -1,4 +1,4 @@
-"""Opens scenes and saved pictures beside the window, and prepares the kernels.
+"""Opens scenes and saved pictures beside the window, reads a scene again when its files change, and prepares kernels.
 
 While a scene is read the one that is open stays usable, and it stays open if the reading fails or
 is cancelled.  A second request to open takes the place of the first.
@@ -6,7 +6,7 @@ is cancelled.  A second request to open takes the place of the first.
 
 from __future__ import annotations
 
-import time
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from tracer.compilation import can_draw, compiled_before, make_ready, ready_for, warm_up
-from tracer.scene.files import Stamp
+from tracer.scene.files import Stamp, stamp
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Camera, Progress, Scene
 from tracer.scene.studio import up_in_studio
@@ -26,11 +26,10 @@ from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.util.messages import ERROR, say
 from viewer.views import paint
 
-PATIENCE = 0.5
-"""Seconds that a load which was cancelled may take to end."""
+LOOK_SECONDS = 0.35
+"""From one look at a scene's files to the next."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +55,6 @@ class _Load:
     changed: str = ""
     files: dict[Path, Stamp] = field(default_factory=dict)
     seen: list[Scene] = field(default_factory=list)
-    cancelled_at: float = 0.0
 
 
 class SceneLoader:
@@ -78,12 +76,11 @@ class SceneLoader:
         self.compiles = False  # whether this is a first start, whose kernels are to be compiled
         self.folders: tuple[Path, ...] = ()  # besides a scene's own, that it may read files from
         self.meshes = IN_STUDIO  # how the next mesh is read
-        self.files: dict[Path, Stamp] = {}  # that the newest scene was read from, or that were missed
+        self.watch = FileWatch(wake)  # of what the newest scene was read from, or what was missed
         self._load: _Load | None = None
-        self._abandoned: list[Job] = []
+        self._cancelled: list[Job] = []  # some end late, as within a library that reads a mesh
         self._restored: Arrival | None = None
-        self._from_shell = False  # whether what is being opened was named on the command line
-        self._given: dict[str, Any] = {}  # settings from there, for what is opened first
+        self._given: dict[str, Any] = {}  # settings from the command line, for what is opened first
 
     @property
     def load_job(self) -> Job[scene_files.Opened] | None:
@@ -100,15 +97,15 @@ class SceneLoader:
         be seen at, where these are not its own."""
         if self._load is None or not self._load.seen:
             return None
-        place = self._load.place
-        if place is None:
-            return self._load.seen[0], None, None
-        return self._load.seen[0], place.time, place.camera
+        scene, place = self._load.seen[0], self._load.place
+        return (scene, None, None) if place is None else (scene, place.time, place.camera)
 
     @property
     def ready(self) -> bool:
         """Whether all kernels are; those that make certificates come last, and pictures without them look the same."""
         return self.warm_up_job is None
+
+    # --- kernels ----------------------------------------------------------------------------------
 
     def start(
         self,
@@ -128,37 +125,23 @@ class SceneLoader:
         title = "Compiling the tracer (first start only)" if self.compiles else "Loading the tracer"
         self.warm_up_job = Job(title, _warm_up, self._wake)
         if path is not None:
-            self._from_shell = True
-            self._open(path)
+            self.open(path)
 
     def prepare(self, method: str, lights: int, accelerator: str) -> None:
         """Compile in the background what a method has of its own, the first time that it is chosen."""
         if self.method_job is not None and self.method_job.done:
             job, self.method_job = self.method_job, None
-            if job.failure is not None:
-                self._notices.report(replace(job.failure, text=f"{job.title} failed: {job.failure.text}"))
+            self._report(job, f"{job.title} failed: ")
         if self.method_job is None and can_draw(lights, accelerator) and not ready_for(method, lights, accelerator):
             compile_it = partial(make_ready, method, lights, accelerator)
             self.method_job = Job(f"compiling the kernels of {method}", compile_it, self._wake)
 
-    def take_finished(self) -> Arrival | None:
-        """Take up what the jobs have finished; returns what has been opened, once."""
-        if self.warm_up_job is not None and self.warm_up_job.done:
-            job, self.warm_up_job = self.warm_up_job, None
-            if job.failure is not None:
-                self._notices.report(replace(job.failure, text=f"the tracer could not be compiled: {job.failure.text}"))
-        load, arrival = self._load, self._restored
-        self._restored = None
-        if load is not None and load.job.done:
-            self._load = None
-            arrival = self._loaded(load)
-        elif load is not None and load.job.stopping and time.monotonic() - load.cancelled_at > PATIENCE:
-            # It cannot stop at once, as within a library that reads a mesh: it ends by itself, and nothing comes of it.
-            self._abandoned.append(load.job)
-            self._load = None
-            self._say_cancelled()
-        self._abandoned = [job for job in self._abandoned if not job.done]
-        return arrival
+    def _report(self, job: Job[Any], before: str = "", after: str = "") -> None:
+        """Say why a job has failed, if it has."""
+        if job.failure is not None:
+            self._notices.report(replace(job.failure, text=f"{before}{job.failure.text}{after}"))
+
+    # --- what is opened ---------------------------------------------------------------------------
 
     def take(self, scene: Scene) -> None:
         """Show a scene that a script has loaded, or made."""
@@ -168,18 +151,14 @@ class SceneLoader:
         self._start(f"Opening {scene.path.name}", lambda progress: scene, meshes)
 
     def open(self, path: Path) -> None:
-        """Open a scene, or restore what a captured picture shows; anything else is one line."""
-        self._from_shell = False
-        self._open(path)
-
-    def _open(self, path: Path) -> None:
+        """Open a scene, or restore what a saved picture shows; anything else is one line."""
         refused = scene_files.refusal(path)
         if refused:
-            self._refuse(refused)
+            self._notices.say(refused, error=True)
         elif scene_files.is_capture(path):
             self._ask_first(path.name, lambda: self._restore_capture(path))
         else:
-            self._ask_first(path.name, lambda: self._begin(path, None))
+            self._ask_first(path.name, lambda: self._begin(path))
 
     def go_on(self) -> bool:
         """Open what was open when the window was last closed, as it was seen; where it has gone, only say so."""
@@ -188,28 +167,28 @@ class SceneLoader:
             return False
         try:
             state = codec.state_from_json(last, self._session.state)
+            found = scene_files.find_scene(state.scene, Path(state.scene))
+            if found is None:
+                raise ValueError(f"the scene is gone: {state.scene}")
         except ValueError as error:
             self._notices.say(f"cannot start where you left off: {error}", error=True)
-            return False
-        found = scene_files.find_scene(state.scene, Path(state.scene))
-        if found is None:
-            self._notices.say(f"cannot start where you left off: the scene is gone: {state.scene}", error=True)
             return False
         self._begin(found, state)
         return True
 
     def reload(self) -> None:
         """Read the scene's file again and keep the place."""
-        session = self._session
-        if session.scene is not None:
-            path = Path(session.scene.path)
-            self._ask_first(f"{path.name} again", lambda: self._begin(path, None, again=True))
-
-    def reload_changed(self, changed: str) -> None:
-        """The same for a scene that has changed on the disk, where nothing is to be asked first."""
         if self._session.scene is not None:
-            self._from_shell = False
-            self._begin(Path(self._session.scene.path), None, again=True, changed=changed)
+            path = Path(self._session.scene.path)
+            self._ask_first(f"{path.name} again", lambda: self._begin(path, again=True))
+
+    def reload_changed(self, allowed: bool) -> None:
+        """Read the scene again where a file that it was read from has changed; once in each frame of the window."""
+        self.watch.on = self._preferences.watch_scene
+        if allowed and self.watch.on and self._load is None and self._session.scene is not None:
+            changed = self.watch.take()
+            if changed:
+                self._begin(Path(self._session.scene.path), again=True, changed=changed)
 
     def read_as(self, meshes: MeshOptions) -> None:
         """Read the mesh that is open in another way, and look at it from its first camera.
@@ -220,48 +199,26 @@ class SceneLoader:
 
             def go_on() -> None:
                 self.meshes = replace(self.meshes, studio=meshes.studio)
-                self._begin(path, None, meshes=meshes)
+                self._begin(path, meshes=meshes)
 
             self._ask_first(f"{path.name} again", go_on)
 
-    def cancel(self) -> None:
-        """Give up the load that is under way; the scene that is open stays."""
-        if self._load is not None and not self._load.job.stopping:
-            self._load.job.cancel()
-            self._load.cancelled_at = time.monotonic()
-
-    def _say_cancelled(self) -> None:
-        stays = ": the scene that was open stays" if self._session.scene is not None else ""
-        self._notices.say(f"loading cancelled{stays}")
-
-    def cancel_all(self) -> list[Job]:
-        """Ask every job to stop; returns them, to be waited for."""
-        jobs = [job for job in (self.warm_up_job, self.method_job, self.load_job, *self._abandoned) if job is not None]
-        for job in jobs:
-            job.cancel()
-        return jobs
-
     def _restore_capture(self, path: Path) -> None:
-        """Bring back scene, camera, time, settings and view of a captured picture."""
+        """Bring back scene, camera, time, settings and view of a saved picture."""
+        session = self._session
         try:
             state = self._as_here(capture.read(path))
         except capture.CaptureError as error:
-            self._refuse(str(error))
+            self._notices.say(str(error), error=True)
             return
-        found = scene_files.find_scene(state.scene, path)
-        scene = self._session.scene
+        found, scene = scene_files.find_scene(state.scene, path), session.scene
         if found is None:
-            self._refuse(f"{path.name}: its scene was not found: {state.scene}")
-        elif (
-            scene is not None
-            and self._load is None
-            and _same_file(found, scene)
-            and state.meshes == self._session.meshes
-        ):
+            self._notices.say(f"{path.name}: its scene was not found: {state.scene}", error=True)
+        elif scene is None or self._load is not None or state.meshes != session.meshes or not _is_at(scene, found):
+            self._begin(found, state)
+        else:
             self._restored = Arrival(None, state, f"restored {path.name}")
             self._wake()
-        else:
-            self._begin(found, state)
 
     def _as_here(self, state: ViewState) -> ViewState:
         """A state from a picture, with what the window shows around pictures, and not in them, as it is here."""
@@ -272,34 +229,20 @@ class SceneLoader:
             savings=draw.savings, caption=draw.caption, magnified=draw.magnified,
         )  # fmt: skip
 
-    def _refuse(self, why: str) -> None:
-        self._tell_shell(why)
-        self._notices.say(why, error=True)
-
-    def _tell_shell(self, why: str) -> None:
-        """What was named on the command line is missed there too: the window stays open, and empty."""
-        if self._from_shell:
-            say(why, ERROR)
-
     def _begin(
         self,
         path: Path,
-        place: ViewState | None,
+        place: ViewState | None = None,
         again: bool = False,
         meshes: MeshOptions | None = None,
         changed: str = "",
     ) -> None:
         """Read a scene in the place of what is being read now."""
-        if self._load is not None:
-            self._load.job.cancel()
-            self._abandoned.append(self._load.job)
         if place is not None:
             place = place.with_settings(**self._given)
         self._given = {}
-        if meshes is None and place is not None:
-            meshes = place.meshes
-        elif meshes is None and again:
-            meshes = self._session.meshes
+        if meshes is None and (place is not None or again):
+            meshes = (place or self._session).meshes
         elif meshes is None:
             meshes, self.meshes = self.meshes, replace(self.meshes, up=None)
         meshes, files = meshes.of_file(path), dict[Path, Stamp]()
@@ -311,6 +254,7 @@ class SceneLoader:
 
     def _start(self, title: str, read: Callable[[Progress], Scene], meshes: MeshOptions, **more: Any) -> None:
         """Read a scene on a thread, and open it; `more` are fields of the load."""
+        self._give_up()
         settings, seen = self._session.settings, list[Scene]()
 
         def work(progress: Progress) -> scene_files.Opened:
@@ -322,32 +266,58 @@ class SceneLoader:
         job = self.warm_up_job
         return job is None or job.done or can_draw()
 
-    def _loaded(self, load: _Load) -> Arrival | None:
-        job, again = load.job, load.again
-        if again and job.result is None and not job.cancelled:
-            self.files = self.files | load.files  # what was not come to may be mended too
-        elif job.result is not None:
-            self.files = load.files
-        if job.cancelled:
-            self._say_cancelled()
-        elif job.failure is not None:
-            self._tell_shell(job.failure.text)
-            stays = " (the scene as it was stays)" if again else ""
-            self._notices.report(replace(job.failure, text=f"{job.failure.text}{stays}"))
-        elif job.result is not None:
-            opened = job.result
-            self._session.change(meshes=load.meshes)
-            up = up_in_studio(opened.scene)
-            standing = f", with {up} up" if up else ""
-            count = len(opened.scene.warnings)
-            warned = f", {count} warning{'s' * (count > 1)}" if count else ""
-            name, done = opened.scene.path.name, "reloaded" if again else "opened"
-            said = f"{name} {done} in {opened.seconds:.1f} s{standing}{warned}"
-            return Arrival(opened, load.place, f"{said}: {load.changed} changed" if load.changed else said, again)
-        return None
+    def cancel(self) -> None:
+        """Give up the load that is under way; the scene that is open stays."""
+        if self._load is not None:
+            self._give_up()
+            stays = ": the scene that was open stays" if self._session.scene is not None else ""
+            self._notices.say(f"loading cancelled{stays}")
+
+    def _give_up(self) -> None:
+        if self._load is not None:
+            self._load.job.cancel()
+            self._cancelled.append(self._load.job)
+            self._load = None
+
+    def close(self) -> list[Job]:
+        """Ask everything to stop; returns the jobs, to be waited for."""
+        self.watch.close()
+        jobs = [job for job in (self.warm_up_job, self.method_job, self.load_job, *self._cancelled) if job is not None]
+        for job in jobs:
+            job.cancel()
+        return jobs
+
+    # --- what has come ----------------------------------------------------------------------------
+
+    def take_finished(self) -> Arrival | None:
+        """Take up what the jobs have finished; returns what has been opened, once."""
+        self._cancelled = [job for job in self._cancelled if not job.done]
+        if self.warm_up_job is not None and self.warm_up_job.done:
+            job, self.warm_up_job = self.warm_up_job, None
+            self._report(job, "the tracer could not be compiled: ")
+        arrival, self._restored = self._restored, None
+        load = self._load
+        if load is None or not load.job.done:
+            return arrival
+        self._load = None
+        if load.job.result is not None:
+            self.watch.files = load.files
+            return self._arrived(load, load.job.result)
+        if load.again:
+            self.watch.files = self.watch.files | load.files  # what was not come to may be mended too
+        self._report(load.job, after=" (the scene as it was stays)" if load.again else "")
+        return arrival
+
+    def _arrived(self, load: _Load, opened: scene_files.Opened) -> Arrival:
+        self._session.change(meshes=load.meshes)
+        up, count = up_in_studio(opened.scene), len(opened.scene.warnings)
+        text = f"{opened.scene.path.name} {'reloaded' if load.again else 'opened'} in {opened.seconds:.1f} s"
+        text += f", with {up} up" if up else ""
+        text += f", {count} warning{'s' * (count > 1)}" if count else ""
+        return Arrival(opened, load.place, f"{text}: {load.changed} changed" if load.changed else text, load.again)
 
 
-def _same_file(path: Path, scene: Scene) -> bool:
+def _is_at(scene: Scene, path: Path) -> bool:
     try:
         return path.samefile(scene.path)
     except OSError:
@@ -359,3 +329,64 @@ def _warm_up(progress: Progress) -> None:
     progress("what draws pictures", 0.0)
     paint.make_ready()
     warm_up(progress)
+
+
+class FileWatch:
+    """Looks at files now and then on a thread, by the time of their last change and their size, while it is `on`.
+
+    What has changed is told once it has stayed the same from one look to the next, so that nothing is read that is
+    half-written."""
+
+    def __init__(self, wake: Callable[[], None] = lambda: None) -> None:
+        self._wake, self.on = wake, False
+        self._lock, self._stop = threading.Lock(), threading.Event()
+        self._known: dict[Path, Stamp] = {}
+        self._seen: dict[Path, Stamp] = {}
+        self._changed: list[Path] = []
+        self._thread: threading.Thread | None = None
+
+    @property
+    def files(self) -> dict[Path, Stamp]:
+        """The files, as they were read."""
+        return self._known
+
+    @files.setter
+    def files(self, files: dict[Path, Stamp]) -> None:
+        with self._lock:
+            self._known = self._seen = files
+            self._changed = []
+        if files and self._thread is None:
+            self._thread = threading.Thread(target=self._run, name="shadowcull watching the scene", daemon=True)
+            self._thread.start()
+
+    def take(self) -> str:
+        """Return what has changed since it was read, or taken last; "" for nothing."""
+        with self._lock:
+            changed, self._changed = self._changed, []
+            if changed:
+                self._known = self._seen
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        return f"{changed[0].name}{more}" if changed else ""
+
+    def look(self) -> None:
+        """Look at all files once."""
+        known, before = self._known, self._seen
+        now = {path: stamp(path) for path in known}
+        # What has gone may be about to be replaced, as many programs write files.
+        rests = now == before and not any(now[path] is None and known[path] is not None for path in now)
+        with self._lock:
+            if known is not self._known:
+                return
+            self._seen = now
+            self._changed = [path for path in now if rests and now[path] != known[path]]
+        if self._changed:
+            self._wake()
+
+    def close(self) -> None:
+        """End the thread; what it is looking at takes no longer than a look."""
+        self._stop.set()
+
+    def _run(self) -> None:
+        while not self._stop.wait(LOOK_SECONDS):
+            if self.on:
+                self.look()

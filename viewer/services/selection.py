@@ -7,12 +7,9 @@ from dataclasses import replace
 
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
-from viewer.state.picking import Pick, pick, pixel_of, refreshed
-from viewer.state.selection_lookup import pick_part, pick_primitive
+from viewer.state.picking import Pick, pick, pick_part, pick_primitive, pixel_of, refreshed
+from viewer.state.pixels import Point
 from viewer.state.session import Session
-
-Point = tuple[float, float]
-"""Of the picture, 0 to 1 from left and top."""
 
 
 class Selection:
@@ -54,7 +51,7 @@ class Selection:
         return pick(frame, scene, *point) if point is not None and frame is not None and scene is not None else None
 
     def select(self, point: Point) -> None:
-        """Keep what is under a point of the picture in the inspector; nothing there: clear the selection."""
+        """Select what is under a point of the picture; nothing there: clear the selection."""
         found = self.at(point)
         self.picked = found if found is not None and found.primitive >= 0 else None
 
@@ -63,15 +60,14 @@ class Selection:
         frame, now = self.frame, self._session.edited
         if frame is None or now is None or not 0 <= primitive < len(now.numbers):
             return False
-        found = pick_primitive(frame, now.scene, int(now.numbers[primitive]))
-        if found is not None:
-            self.picked = found
-        return found is not None
+        return self._take(pick_primitive(frame, now.scene, int(now.numbers[primitive])), None)
 
     def select_part(self, part: int) -> bool:
         """Select a part of the scene, in the middle of what is seen of it; whether that could be done."""
         frame, now = self.frame, self._session.edited
-        found = pick_part(frame, now, part) if frame is not None and now is not None else None
+        return frame is not None and now is not None and self._take(pick_part(frame, now, part), part)
+
+    def _take(self, found: Pick | None, part: int | None) -> bool:
         if found is not None:
             self.picked, self.part = found, part
         return found is not None
@@ -84,15 +80,12 @@ class Selection:
         kept = self.picked
         if kept is not None and before is not None:
             number = int(now.numbers[before.primitives[kept.primitive]])
-            lights = len(now.lights)
-            shadows = kept.shadows if len(kept.shadows) == lights else (None,) * lights
-            here = replace(kept, primitive=number, unit=number, in_cells=False, shadows=shadows, seen=None)
-            if number >= 0:
-                self._picked = here  # nothing else was selected
+            if number >= 0:  # nothing else was selected
+                self._picked = replace(kept, primitive=number, unit=number, in_cells=False, seen=None)
             else:
                 self.picked = None
 
     def refresh(self, frame: Frame) -> None:
-        """Take over modes and counts from a newer frame."""
+        """Take over from a newer frame what carries the modes."""
         if self._picked is not None:
             self._picked = refreshed(self._picked, frame)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,10 +21,9 @@ from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version
-from viewer.output import capture, kept_modes
-from viewer.output.caption import with_caption
+from viewer.output import capture, commands
 from viewer.output.commands import by_one_thread
-from viewer.output.legend_picture import with_legend
+from viewer.output.overlays import with_caption, with_legend
 from viewer.output.savings_picture import with_savings
 from viewer.state.draw_options import DrawOptions
 from viewer.state.readings import can_record_lights, records_lights
@@ -80,7 +80,7 @@ def trace(
         renderer.render(one.time, one.camera, cancelled)
     if state.warmup.modes:
         word = np.dtype(word_type(len(scene.lights)))
-        renderer.begin_with(kept_modes.unpacked(state.warmup.modes, renderer.units, word))
+        renderer.begin_with(commands.unpacked(state.warmup.modes, renderer.units, word))
     on_frame(len(before), len(before) + 1)
     lights = everything or records_lights(view, settings.width * settings.height, len(scene.lights))
     renderer.settings = replace(
@@ -126,7 +126,13 @@ def with_caption_filled(state: ViewState, scene: Scene) -> ViewState:
     """The state with the fields of its caption (`capture.FIELDS`) filled in; raises CaptureError."""
     if not state.draw.caption:
         return state
-    values = {
+    caption = capture.filled(state.draw.caption, fields_of(state, scene), what="caption")
+    return state.with_draw(caption=caption)
+
+
+def fields_of(state: ViewState, scene: Scene) -> dict[str, Any]:
+    """Return the values of `capture.FIELDS` but for date and time."""
+    return {
         "scene": scene.path.stem,
         "view": state.draw.view.value,
         "frame": Session(scene).frame_at(state.time),
@@ -136,8 +142,6 @@ def with_caption_filled(state: ViewState, scene: Scene) -> ViewState:
         "width": state.settings.width,
         "height": state.settings.height,
     }
-    caption = capture.filled(state.draw.caption, values, what="caption")
-    return state.with_draw(caption=caption)
 
 
 def as_kept(state: ViewState) -> ViewState:
@@ -148,7 +152,7 @@ def as_kept(state: ViewState) -> ViewState:
 def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, state: ViewState, by_gpu: bool = False) -> str:
     """Return what a picture carries: its state, its statistics, and what they were made of; and its modes, where these
     cannot be learnt again.  Where it was drawn `by_gpu`, which may round otherwise, that too."""
-    kept = as_kept(state).with_warmup(modes=kept_modes.packed(frame, state))
+    kept = as_kept(state).with_warmup(modes=commands.packed(frame, state))
     more = {
         "picture": {"by_gpu": by_gpu and not _as_traced(state.draw)},
         "made": {

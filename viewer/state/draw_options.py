@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 from tracer.setting import setting, settings_of
 from viewer.state.palette import BENEATH
+from viewer.state.pixels import FIT, Zoom
 from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.views import View
-from viewer.state.zooming import FIT, Zoom
 
 AXES = ("x", "y", "z")
 SHADING = 0.35

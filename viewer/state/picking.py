@@ -1,4 +1,4 @@
-"""What a pixel shows: read from the frame's buffers, no ray needed."""
+"""What was clicked, in the picture or by its number, and where primitives are in the world: no ray needed."""
 
 from __future__ import annotations
 
@@ -6,28 +6,34 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer.culling import modes
-from tracer.culling.modes import OcclusionMode, ShadowMode
-from tracer.renderer import Frame
-from tracer.scene.model import Camera, Material, Scene
+from tracer.culling.modes import ShadowMode
+from tracer.frame import Frame
+from tracer.scene.deformation import deformed
+from tracer.scene.edits import Edited
+from tracer.scene.model import CONE, Camera, Scene
 from tracer.why_in_words import kind_of
 from viewer.state.navigation import Vector, ray
+from viewer.state.parts import parts_of
+from viewer.state.pixels import pixel_at
 from viewer.state.projection import HIDDEN, place
 from viewer.state.readings import has_modes_of_cells
 
 NEARBY = 2
 """Pixels from a point's place on the picture at which its surface still stands for it."""
+_BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
+_EDGES = [(a, b) for a in range(8) for b in range(a) if np.abs(_BOX[a] - _BOX[b]).sum() == 2.0]
 
 
 @dataclass(frozen=True)
 class Pick:
-    """One pixel of a frame.  `primitive` is -1 where the ray left the scene; then only x and y mean anything.
+    """What is selected: a primitive, and the point of it that a pixel of a frame shows.
 
-    `unit` carries the modes and counts; `in_cells` says whether units are virtual cells, else they are primitives.
-
-    `wrong` is the number of the pixel's wrong shadow answers, None where that is not known; `seen` is the frame's
-    time, camera, width and height."""
+    `primitive` is -1 where the ray left the scene; then only x and y mean anything.  `unit` carries its modes and
+    counts, -1 where that is not known; `in_cells` says whether units are virtual cells, else they are primitives.
+    `seen` is the frame's time, camera, width and height, None where x and y are no pixel of a frame."""
 
     x: int
     y: int
@@ -37,55 +43,70 @@ class Pick:
     kind: str = ""
     object_name: str = ""
     dynamic: bool = False
-    material: Material | None = None
-    occlusion: OcclusionMode | None = None
-    shadows: tuple[ShadowMode | None, ...] = ()
-    pixels: int = 0
-    highest: int = 0
-    depth: float = math.inf
     point: tuple[float, float, float] | None = None
-    normal: tuple[float, float, float] | None = None
-    wrong: int | None = None
     seen: tuple[float, Camera, int, int] | None = None
 
 
-def pixel_at(frame: Frame, u: float, v: float) -> tuple[int, int]:
-    """The pixel under a point of the picture (0 to 1 from the left and the top)."""
-    return min(max(int(u * frame.width), 0), frame.width - 1), min(max(int(v * frame.height), 0), frame.height - 1)
-
-
 def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
-    """Everything known about the pixel under a point of the picture."""
+    """What lies under a point of the picture."""
     x, y = pixel_at(frame, u, v)
     primitive = int(frame.primitive[y, x])
     if not 0 <= primitive < scene.primitive_count:
         return Pick(x, y, -1)
-    index, unit = scene.object_of(primitive), int(frame.unit[y, x])
+    point = point_at(frame, u, v)
+    found = _named(scene, primitive, x, y, None if point is None else point.tolist())
+    return replace(found, unit=int(frame.unit[y, x]), in_cells=has_modes_of_cells(frame), seen=_seen(frame))
+
+
+def pick_primitive(frame: Frame, scene: Scene, primitive: int) -> Pick | None:
+    """A primitive as if it had been clicked: at the pixel in the middle of what is seen of it, or, where nothing of it
+    is seen, at its own middle.  None for a number that is no primitive's, or of what is beyond all numbers."""
+    if not 0 <= primitive < scene.primitive_count:
+        return None
+    shown = frame.primitive == primitive
+    if shown.any():
+        return _middle_pick(frame, scene, shown)
+    points = primitive_points(scene, primitive, frame.time)
+    if not len(points):
+        return None
+    found, in_cells = _named(scene, primitive, -1, -1, points.mean(axis=0).tolist()), has_modes_of_cells(frame)
+    return replace(found, unit=primitive if not in_cells and primitive < len(frame.modes) else -1, in_cells=in_cells)
+
+
+def pick_part(frame: Frame, now: Edited, part: int) -> Pick | None:
+    """A part as if it had been clicked in its middle; None where it has no primitives, is hidden, or is nowhere."""
+    found = _primitives_of(now, part)
+    if not len(found):
+        return None
+    in_part = np.zeros(len(now.primitives) + 1, np.bool_)  # -1, a miss, finds the last of them
+    in_part[found] = True
+    shown = in_part[frame.primitive]
+    return _middle_pick(frame, now.scene, shown) if shown.any() else pick_primitive(frame, now.scene, int(found[0]))
+
+
+def refreshed(old: Pick, frame: Frame) -> Pick:
+    """The same with what carries its modes in a newer frame: the primitive or, where that is cells, what the pixel
+    shows."""
+    in_cells, unit = has_modes_of_cells(frame), old.unit
+    if not in_cells:
+        unit = old.primitive
+    elif not old.in_cells or unit < 0:
+        unit = int(frame.unit[old.y, old.x]) if old.seen == _seen(frame) else -1
+    return replace(old, unit=unit, in_cells=in_cells) if (unit, in_cells) != (old.unit, old.in_cells) else old
+
+
+def _named(scene: Scene, primitive: int, x: int, y: int, point: list[float] | None) -> Pick:
     return Pick(
-        x,
-        y,
-        primitive,
-        unit=unit,
-        in_cells=has_modes_of_cells(frame),
-        kind=kind_of(scene, primitive),
-        object_name=scene.name_of(primitive),
-        dynamic=index > 0,
-        material=scene.material_of(primitive),
-        occlusion=OcclusionMode(int(frame.modes[unit]) & 3),
-        shadows=tuple(shadow_mode_of(frame, unit, light) for light in range(len(scene.lights))),
-        pixels=int(frame.pixel_count[unit]),
-        highest=int(frame.highest_count[unit]),
-        depth=float(frame.depth[y, x]),
-        point=_triple(point_at(frame, u, v)),
-        normal=_triple(frame.normal[y, x]),
-        wrong=_wrong_at(frame, x, y),
-        seen=_seen(frame),
-    )
+        x, y, primitive, kind=kind_of(scene, primitive), object_name=scene.name_of(primitive),
+        dynamic=scene.object_of(primitive) > 0, point=None if point is None else (point[0], point[1], point[2]),
+    )  # fmt: skip
 
 
-def _wrong_at(frame: Frame, x: int, y: int) -> int | None:
-    known = frame.wrong is not None and (frame.shaded is None or frame.shaded[y, x])
-    return int(frame.wrong[y, x]) if known and frame.wrong is not None else None
+def _middle_pick(frame: Frame, scene: Scene, shown: NDArray[np.bool_]) -> Pick:
+    """The one of these pixels that is nearest to their mean."""
+    rows, columns = np.nonzero(shown)
+    nearest = int(np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2))
+    return pick(frame, scene, (columns[nearest] + 0.5) / frame.width, (rows[nearest] + 0.5) / frame.height)
 
 
 def _seen(frame: Frame) -> tuple[float, Camera, int, int]:
@@ -95,24 +116,6 @@ def _seen(frame: Frame) -> tuple[float, Camera, int, int]:
 def same_place(one: Frame, other: Frame) -> bool:
     """Whether two frames are of the same moment from the same place, in the same size."""
     return _seen(one) == _seen(other)
-
-
-def shadow_mode_of(frame: Frame, unit: int, light: int) -> ShadowMode | None:
-    """A unit's shadow mode for a light; None where culling does not cover the light."""
-    if not modes.has_shadow_mode(frame.modes, light):
-        return None
-    return ShadowMode(int(modes.shadow_mode(frame.modes[unit], light)))
-
-
-def point_at(frame: Frame, u: float, v: float) -> Vector | None:
-    """The world point under a point of the picture, or None where the ray left the scene."""
-    x, y = pixel_at(frame, u, v)
-    depth = float(frame.depth[y, x])
-    if not math.isfinite(depth):
-        return None
-    # Through the pixel's centre, as the ray was that found this depth.
-    origin, direction = ray(frame.camera, (x + 0.5) / frame.width, (y + 0.5) / frame.height, frame.width / frame.height)
-    return origin + depth * direction
 
 
 def pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
@@ -140,6 +143,33 @@ def pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
     return int(columns[nearest]) + left, int(rows[nearest]) + top
 
 
+# --- what a frame knows of a pixel --------------------------------------------------------------------
+
+
+def shadow_mode_of(frame: Frame, unit: int, light: int) -> ShadowMode | None:
+    """A unit's shadow mode for a light; None where culling does not cover the light."""
+    if not modes.has_shadow_mode(frame.modes, light):
+        return None
+    return ShadowMode(int(modes.shadow_mode(frame.modes[unit], light)))
+
+
+def wrong_at(frame: Frame, x: int, y: int) -> int | None:
+    """How many shadow answers of a pixel are wrong, None where that is not known."""
+    known = frame.wrong is not None and (frame.shaded is None or frame.shaded[y, x])
+    return int(frame.wrong[y, x]) if known and frame.wrong is not None else None
+
+
+def point_at(frame: Frame, u: float, v: float) -> Vector | None:
+    """The world point under a point of the picture, or None where the ray left the scene."""
+    x, y = pixel_at(frame, u, v)
+    depth = float(frame.depth[y, x])
+    if not math.isfinite(depth):
+        return None
+    # Through the pixel's centre, as the ray was that found this depth.
+    origin, direction = ray(frame.camera, (x + 0.5) / frame.width, (y + 0.5) / frame.height, frame.width / frame.height)
+    return origin + depth * direction
+
+
 def extent_at(frame: Frame, u: float, v: float) -> float | None:
     """A radius, in world units, of what the primitive under a point of the picture shows of itself."""
     x, y = pixel_at(frame, u, v)
@@ -157,28 +187,71 @@ def typical_depth(frame: Frame) -> float:
     return float(np.median(depth)) if len(depth) else math.inf
 
 
-def _triple(v: Vector | None) -> tuple[float, float, float] | None:
-    return None if v is None else (float(v[0]), float(v[1]), float(v[2]))
+# --- where primitives are, whether or not a picture shows them ------------------------------------------
 
 
-def refreshed(old: Pick, frame: Frame) -> Pick:
-    """The same unit's modes and counts as a newer frame knows them; where it was clicked stays.
+def primitive_points(scene: Scene, primitive: int, time: float) -> NDArray[np.float64]:
+    """World space corners of a primitive: (3, 3) of a triangle, (8, 3) of a box around a sphere or a cone; (0, 3) where
+    it is beyond all numbers."""
+    corners = _corners(scene, scene.object_of(primitive), np.array([primitive]), time)[0]
+    return corners if np.isfinite(corners).all() else np.empty((0, 3))
 
-    Where units are others now, cells or no cells any more, it is the primitive, or else what the pixel shows.  Wrong
-    answers are those of the pixel, and known only while it shows the same."""
-    same, in_cells = old.seen == _seen(frame), has_modes_of_cells(frame)
-    unit = old.unit if in_cells == old.in_cells else old.primitive
-    if in_cells != old.in_cells and in_cells:
-        unit = int(frame.unit[old.y, old.x]) if same else -1
-    if old.primitive < 0 or not 0 <= unit < len(frame.modes):
-        return old
-    return replace(
-        old,
-        unit=unit,
-        in_cells=in_cells,
-        occlusion=OcclusionMode(int(frame.modes[unit]) & 3),
-        shadows=tuple(shadow_mode_of(frame, unit, light) for light in range(len(old.shadows))),
-        pixels=int(frame.pixel_count[unit]),
-        highest=int(frame.highest_count[unit]),
-        wrong=_wrong_at(frame, old.x, old.y) if same else None,
-    )
+
+def part_points(now: Edited, part: int, time: float) -> NDArray[np.float64]:
+    """(k, 3) corners of all primitives of a part that are somewhere."""
+    scene, found = now.scene, _primitives_of(now, part)
+    if not len(found):
+        return np.empty((0, 3))
+    index = scene.object_of(int(found[0]))
+    quadrics = found >= scene.triangle_count
+    corners = [_corners(scene, index, found[which], time).reshape(-1, 3) for which in (~quadrics, quadrics)]
+    points = np.concatenate(corners)
+    return points[np.isfinite(points).all(axis=1)]
+
+
+def outline_of(points: NDArray) -> list[NDArray[np.float64]]:
+    """Lines (n, 3) around points: a triangle's sides, or else the edges of a box."""
+    if len(points) == 3:
+        return [points[[0, 1, 2, 0]]]
+    if not len(points):
+        return []
+    low, high = points.min(axis=0), points.max(axis=0)
+    corners = 0.5 * (low + high) + 0.5 * (high - low) * _BOX
+    return [corners[list(edge)] for edge in _EDGES]
+
+
+def _primitives_of(now: Edited, part: int) -> NDArray:
+    """The numbers of a part's primitives in the edited scene: of those that are in it."""
+    found = now.numbers[parts_of(now.original).primitives_of(part)]
+    return found[found >= 0]
+
+
+def _corners(scene: Scene, index: int, primitives: NDArray, time: float) -> NDArray[np.float64]:
+    """(k, corners, 3) of triangles, or of quadrics, of one object."""
+    held = scene.objects[index]
+    if not len(primitives):
+        return np.empty((0, 3, 3))
+    if primitives[0] < scene.triangle_count:
+        which = primitives - int(scene.triangle_offsets[index])
+        if held.deformation is None:
+            local = held.triangles.corners[which].astype(np.float64)
+        else:
+            d = held.deformation
+            keyed = replace(d, times=d.times[which], corners=d.corners[which], normals=d.normals[which])
+            local = deformed(keyed, time)[0].astype(np.float64)
+    else:
+        local = _boxes(scene, index, primitives - int(scene.quadric_offsets[index]))
+    matrix = scene.animation.matrix(held.chain, time)
+    with np.errstate(all="ignore"):
+        return np.asarray(local @ matrix[:3, :3].T + matrix[:3, 3], np.float64)
+
+
+def _boxes(scene: Scene, index: int, which: NDArray) -> NDArray[np.float64]:
+    """(k, 8, 3) corners of boxes around quadrics, in the space of their object."""
+    quadrics = scene.objects[index].quadrics
+    boxes = np.repeat(_BOX[None], len(which), axis=0)
+    cones = quadrics.kind[which] == CONE
+    boxes[cones, :, :2] *= np.abs(quadrics.radii[which][cones]).max(axis=1)[:, None, None]
+    boxes[cones, :, 2] = 0.5 * boxes[cones, :, 2] + 0.5
+    maps = quadrics.to_object[which]
+    return np.asarray(np.einsum("kij,kcj->kci", maps[:, :, :3], boxes) + maps[:, None, :, 3], np.float64)

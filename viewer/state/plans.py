@@ -75,8 +75,8 @@ class FilmPlan:
     size: tuple[int, int] = setting((640, 480), "Size", "Size of the pictures.", high=LONGEST_SIDE)
     samples: int = 1
     caption: str = setting("", "Caption", "A line below each picture.", unset="none")
-    legend: bool = False
-    video: bool = False
+    legend: bool = setting(False, "Legend", "Draw what the colours mean, in views that have any.")
+    video: bool = setting(False, "Video", "Write an mp4 as well, beside the numbered pictures.")
 
 
 @dataclass
@@ -107,11 +107,19 @@ class PicturePlan:
     """A picture to be traced and saved: so many times as wide and high as the window's, as a file of an `ending`; the
     fields of the `caption` are those of names."""
 
-    multiple: int = 2
+    multiple: int = setting(2, "Size", "Times the width and the height of the picture as it is now.", low=1,
+                            high=MOST_MULTIPLE, unit=" x")  # fmt: skip
     samples: int = 16
-    legend: bool = False
-    caption: str = ""
-    ending: str = ".png"
+    ending: str = setting(
+        ".png", "Format", "The kind of file.",
+        choices={
+            ".png": "remembers how it was made, and can be checked",
+            ".exr": "linear colours with all buffers, and how it was made; without legend and caption",
+            ".jpg": "small; forgets how it was made",
+        },
+    )  # fmt: skip
+    legend: bool = setting(False, "Legend", "Draw what the colours mean, in views that have any.")
+    caption: str = setting("", "Caption", "A line below the picture.", unset="none")
 
 
 def parse_factors(text: str) -> list[float]:

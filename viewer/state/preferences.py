@@ -36,20 +36,11 @@ DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
 
 
 @dataclass
-class Preset:
-    """A part of a state under a name: what it says nothing of stays when it is applied."""
+class NamedState:
+    """A state under a name, or a part of one: a bookmark, or a preset."""
 
     name: str
     state: dict[str, Any]
-
-
-@dataclass
-class Bookmark:
-    """A place to come back to: a state, and a small picture of it as text once there is one."""
-
-    name: str
-    state: dict[str, Any]
-    picture: str = ""
 
 
 @dataclass
@@ -58,9 +49,9 @@ class Preferences:
 
     `state` is what the window starts with (`codec.remembered`), `last` the state to start from where that is asked for;
     `method` is the one to cull by while culling is on.  `speed` is relative to the scene's own pace.  `savings` says
-    that what culling saves is shown above the picture.  `tour` says that the tour has not been shown yet; `habits`
-    names the program that the viewer is steered like, `keys` are those that the user has chosen, by the names of
-    commands, and `used` what the command palette ran last, newest first."""
+    that what culling saves is shown above the picture.  `tour` says that the tour has not been shown yet, `keys` are
+    those that the user has chosen, by the names of commands, and `used` is what the command palette ran last, newest
+    first.  `bookmarks` are by the path of their scene."""
 
     format: int = FORMAT
     state: dict[str, Any] = field(default_factory=dict)
@@ -90,15 +81,11 @@ class Preferences:
     start_where_left: bool = False
     last: dict[str, Any] = field(default_factory=dict)
     watch_scene: bool = True
-    pads: bool = True
-    pad_dead_zone: float = setting(0.15, "Dead zone of sticks", "How far a stick moves before it counts.", low=0.0,
-                                   high=0.9, percent=True)  # fmt: skip
-    habits: str = "Shadowcull"
     keys: dict[str, list[str]] = field(default_factory=dict)
     used: list[str] = field(default_factory=list)
-    presets: list[Preset] = field(default_factory=list)
+    presets: list[NamedState] = field(default_factory=list)
     recent: list[str] = field(default_factory=list)
-    bookmarks: dict[str, list[Bookmark]] = field(default_factory=dict)
+    bookmarks: dict[str, list[NamedState]] = field(default_factory=dict)
 
     @property
     def picture_folder(self) -> Path:
@@ -140,17 +127,16 @@ def save_preferences(
     """Write the preferences in one step; returns None, or one line saying why they could not be written.
 
     With a `base`, what they were made from, as a dictionary, changes that another window has stored meanwhile stay."""
-    folder = folder or config_folder()
-    path, mine = folder / SETTINGS_FILE, codec.to_json(preferences)
+    path, mine = (folder or config_folder()) / SETTINGS_FILE, codec.to_json(preferences)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
         with file_lock(path, PATIENCE):
             if base is not None:
                 stored, _ = _read(path)
                 mine = merged(base, mine, {**base, **(stored or {})})
             write_text(path, json.dumps(mine, indent=2))
     except OSError as error:
-        return f"settings not saved: {path}: {error.strerror}" if error.strerror else f"settings not saved: {error}"
+        return f"settings not saved: {f'{path}: {error.strerror}' if error.strerror else error}"
     return None
 
 
@@ -250,37 +236,22 @@ def _nested(data: Mapping[str, Any], places: Mapping[str, str]) -> dict[str, dic
 _ABSENT = object()
 
 
-def merged(base: Mapping[str, Any], mine: Mapping[str, Any], theirs: Mapping[str, Any]) -> dict[str, Any]:
-    """What is stored after `mine` was changed from `base`, while others made `theirs` of it; all as JSON has them.
+def merged(base: Any, mine: Any, theirs: Any) -> Any:
+    """Return what is stored after `mine` was changed from `base`, while others made `theirs` of it; all as JSON.
 
-    What only one side has changed is as that side has it.  Where both have, mappings are merged in turn, what either
-    has added to a list is in it, and else mine wins.  What `mine` knows nothing of, as a newer version's fields, stays.
-    """
-    found = {}
-    for name in {**mine, **theirs}:
-        values = [side.get(name, _ABSENT) for side in (base, mine, theirs)]
-        value = values[2] if name not in mine and name not in base else _merged(*values)
-        if value is not _ABSENT:
-            found[name] = value
-    return found
-
-
-def _merged(base: Any, mine: Any, theirs: Any) -> Any:
-    if mine == base:
-        return theirs
-    if theirs in (base, mine):
-        return mine
+    What only one side has changed is as that side has it; so what `mine` knows nothing of, as a newer version's fields,
+    stays.  Where both have, dictionaries are merged in turn, what either has added to a list is in it, what either has
+    taken out is not, and else mine wins."""
+    if base in (mine, theirs):
+        return theirs if mine == base else mine
     if isinstance(mine, Mapping) and isinstance(theirs, Mapping):
-        return merged(base if isinstance(base, Mapping) else {}, mine, theirs)
+        sides = base if isinstance(base, Mapping) else {}, mine, theirs
+        found = {name: merged(*(side.get(name, _ABSENT) for side in sides)) for name in {**mine, **theirs}}
+        return {name: value for name, value in found.items() if value is not _ABSENT}
     if isinstance(mine, list) and isinstance(theirs, list):
         before = base if isinstance(base, list) else []
-        names = {_name(item) for item in mine} - {None}
-        gone = [item for item in before if item not in theirs]  # taken out by others
-        kept = [item for item in mine if item not in gone]
-        return kept + [item for item in theirs if item not in before and item not in kept and _name(item) not in names]
+        kept = [item for item in mine if item in theirs or item not in before]
+        names = [item["name"] for item in kept if isinstance(item, Mapping)]  # of presets or bookmarks
+        added = [item for item in theirs if item not in before and item not in kept]
+        return kept + [item for item in added if not isinstance(item, Mapping) or item.get("name") not in names]
     return mine
-
-
-def _name(item: Any) -> Any:
-    """What tells a preset or a bookmark from others."""
-    return item.get("name") if isinstance(item, Mapping) else None

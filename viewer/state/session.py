@@ -13,8 +13,8 @@ from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.state.draw_options import DrawOptions
+from viewer.state.pixels import FIT
 from viewer.state.view_state import Pace, ViewState
-from viewer.state.zooming import FIT
 
 
 @dataclass

@@ -71,7 +71,7 @@ class Warmup:
     """The frames from which a picture's modes, certificates and caches were learnt, in the order they were traced.
 
     First those in `frames`, then `of_path` frames of the scene's path that lead up to it, then the picture's own frame
-    `repeats` times.  `modes` stand for all of them where they are known themselves (`viewer.output.kept_modes`);
+    `repeats` times.  `modes` stand for all of them where they are known themselves (`viewer.output.commands`);
     `unknown` says, in words, why no frames bring them back."""
 
     frames: tuple[WarmupFrame, ...] = ()

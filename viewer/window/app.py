@@ -26,12 +26,12 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.messages import failure
 from viewer.util.resources import default_scene
-from viewer.window import command, commands, comparing, graphics, layout, style
+from viewer.window import commands, comparing, graphics, layout, menus, style
 from viewer.window.gl_window import NO_OPENGL, closing_by_signals
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
-from viewer.window.panels import dialogs, loading, picture, presets, status, tour
+from viewer.window.panels import dialogs, loading, named_states, picture, status, tour
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -57,7 +57,7 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     this name, so that a mistake in one ends no other."""
     # What threads have finished.
     step("Showing a scene that was read", c.take_scene)
-    step("Reloading what has changed", c.watcher.reload_changed)
+    step("Reloading what has changed", lambda: c.loader.reload_changed(c.runs.current is None))
     step("Saving files", c.captures.report_saved)
     step("Quitting once all is saved", c.questions.leave_when_saved)
     step("Taking the newest frame", c.take_frame)
@@ -164,7 +164,7 @@ class App:
         ui, step, overlay = self.ui, self.ui.guard.step, self.ui.guard.overlay
         style.fill_windows(True)
         step("The layout", self.layout.update)
-        step("Reading the keys", lambda: command.handle_keys(ui))
+        step("Reading the keys", lambda: menus.handle_keys(ui))
         step("Flying", lambda: picture.fly(ui))
         step("Comparing", lambda: comparing.read_key(ui))
         overlay("The progress of loading", lambda: loading.show(ui))
@@ -266,7 +266,7 @@ class App:
         return params
 
     def _menus(self) -> None:
-        command.show_menus(self.ui, {"Panels": self.layout.menu}, {"Edit/Presets": lambda: presets.menu(self.ui)})
+        menus.show(self.ui, {"Panels": self.layout.menu}, {"Edit/Presets": lambda: named_states.presets_menu(self.ui)})
 
     def _ready(self) -> None:
         """The window and its GL context exist."""

@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from tracer.frame import Frame
 from viewer.state.comparison import CompareMode, Side, Spot, with_rings
 from viewer.state.draw_options import DrawOptions
-from viewer.state.picking import pixel_at
+from viewer.state.pixels import pixel_at
 from viewer.views import words_at
 from viewer.views.base import Highlight, Pixels, Words
 from viewer.views.compare import Difference, composed, difference_legend

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import moderngl
@@ -11,7 +10,6 @@ from viewer.services.controller import Controller
 from viewer.services.runs import missing_in
 from viewer.state.missing import missing
 from viewer.state.parts import parts_of
-from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.savings import comparison_in_words
 from viewer.state.views import View
 from viewer.views.base import Highlight
@@ -22,9 +20,6 @@ from viewer.window.panels import legend, savings
 from viewer.window.preview import PreviewDisplay
 from viewer.window.texture_cache import TextureCache
 from viewer.window.ui import CaptureKind, Ui
-
-PREVIEW_UPLOAD_SECONDS = 0.01
-"""That bringing the preview to the GPU takes of each of the window's frames, at most, unless one piece takes longer."""
 
 
 def make(ui: Ui) -> None:
@@ -62,50 +57,42 @@ def draw(ui: Ui) -> None:
     comparing.magnify(ui, options, window.smooth)
 
 
+def draw_recorded(ui: Ui) -> None:
+    """Bring recorded pictures that are to be seen to the GPU."""
+    if ui.graphics.textures is not None:
+        ui.graphics.textures.update()
+
+
 def draw_preview(ui: Ui) -> None:
     """Draw what is seen while kernels compile from where the camera is; free what it took once there is none any more.
-    The window's framebuffer stays bound.
-
-    A geometry that failed to be drawn is not tried again in this window."""
-    geometry = ui.controller.preview.geometry
-    if ui.graphics.display is None or geometry is None:
+    The window's framebuffer stays bound.  A preview that failed to be drawn is not tried again."""
+    c, gl = ui.controller, ui.graphics
+    geometry = c.preview.geometry
+    if gl.display is None or geometry is None:
         release_preview(ui)
-    elif ui.graphics.not_previewed is not geometry:
-        try:
-            _draw_preview(ui, ui.graphics.display, geometry)
-        except Exception:
-            release_preview(ui)
-            ui.graphics.not_previewed = geometry
-            raise
+        return
+    if gl.preview is None or gl.preview.geometry is not geometry:
+        release_preview(ui)
+        gl.preview = PreviewDisplay(gl.display.context, geometry)
+    if min(ui.picture.area) < 1:
+        return
+    window = gl.display.context.detect_framebuffer()
+    try:
+        gl.preview.draw(c.session.camera, ui.picture.area)
+    except Exception:
+        c.preview.geometry = None
+        release_preview(ui)
+        raise
+    finally:
+        window.use()
+        gl.display.context.disable(moderngl.DEPTH_TEST)
 
 
 def release_preview(ui: Ui) -> None:
-    """Free what the preview took; whatever comes next is tried."""
+    """Free what the preview took."""
     if ui.graphics.preview is not None:
         ui.graphics.preview.release()
-    ui.graphics.preview = ui.graphics.not_previewed = None
-
-
-def _draw_preview(ui: Ui, display: Display, geometry: PreviewGeometry) -> None:
-    c = ui.controller
-    if ui.graphics.preview is None or ui.graphics.preview.geometry is not geometry:
-        release_preview(ui)
-        ui.graphics.preview = PreviewDisplay(display.context, geometry)
-    width, height = ui.picture.area
-    if min(width, height) < 1:
-        return
-    window = display.context.detect_framebuffer()
-    try:
-        until = time.perf_counter() + PREVIEW_UPLOAD_SECONDS
-        while ui.graphics.preview.bring() and time.perf_counter() < until:
-            pass
-        if ui.graphics.preview.whole:
-            ui.graphics.preview.draw(c.session.camera, (width, height), hurried=c.motion.under_way)
-        else:
-            c.wake()
-    finally:
-        window.use()
-        display.context.disable(moderngl.DEPTH_TEST)
+    ui.graphics.preview = None
 
 
 def in_window(ui: Ui) -> InWindow:
@@ -143,10 +130,8 @@ def capture(ui: Ui) -> None:
         if state is not None and c.frame is not None and state.draw.savings is not None:
             said = comparison_in_words(c.frame, savings.standing(c))
             state = state.with_draw(savings=said)
-        if wanted is CaptureKind.CLIPBOARD:
-            c.pictures.copy(pixels, c.frame, described, state)
-        else:
-            c.captures.capture(c.frame, pixels, described, state)
+        take = c.captures.copy if wanted is CaptureKind.CLIPBOARD else c.captures.capture
+        take(c.frame, pixels, described, state)
 
 
 def _why_none(c: Controller) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 import moderngl
 
-from viewer.state.zooming import Zoom
+from viewer.state.pixels import Zoom
 from viewer.util.resources import shader_source
 
 

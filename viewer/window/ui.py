@@ -14,12 +14,12 @@ from typing import Any, TypeVar, cast
 from tracer.culling.fate import Fate
 from tracer.scene.lights import named_light
 from viewer.output.capture import FIELDS
+from viewer.output.ray_rows import Filter, Key, Row
 from viewer.services.controller import Controller
 from viewer.services.runs import FramePreview
 from viewer.services.tour import Tour
 from viewer.state.pixels import Pixels
 from viewer.state.preferences import default_screenshot_folder
-from viewer.state.preview_geometry import PreviewGeometry
 from viewer.state.views import View
 from viewer.window.command import Command
 from viewer.window.display import Compared, Display
@@ -42,7 +42,7 @@ class CaptureKind(Enum):
 class Dialog(Enum):
     """What can come up over the window, by its title."""
 
-    OPEN_FILE = "Open a scene or a captured picture"
+    OPEN_FILE = "Open a scene or a saved picture"
     SAVE_AS = "Save picture as"
     PRESETS = "Presets"
     KEYS = "Keyboard and mouse"
@@ -77,8 +77,8 @@ class Desktop:
 
 @dataclass
 class Graphics:
-    """What lives as long as the window's GL context, and is None without one.  `not_previewed` could not be drawn in
-    this window; `capture_view` is the view that a picture is wanted of."""
+    """What lives as long as the window's GL context, and is None without one.  `capture_view` is the view that a
+    picture is wanted of."""
 
     renderer_name: str = ""
     display: Display | None = None
@@ -86,15 +86,25 @@ class Graphics:
     compared: Compared | None = None
     magnifier: Magnifier | None = None
     preview: PreviewDisplay | None = None
-    not_previewed: PreviewGeometry | None = None
     capture_view: View | None = None
 
 
 @dataclass
 class RaysState:
-    """For how many frames the tree of rays is to unfold."""
+    """The tree of a pixel's rays: which shadow rays are `shown`, the keys of the rows that are folded otherwise than at
+    first and of the `selected` one, the row that the pointer is on, for how many frames it is to `unfold`, and the
+    window's frame in which it was `drawn` last."""
 
+    shown: Filter = field(default_factory=Filter)
+    toggled: frozenset[Key] = frozenset()
+    selected: Key | None = None
+    pointed: Row | None = None
     unfold: int = 0
+    drawn: int = -2
+
+    def is_open(self, row: Row) -> bool:
+        """Whether what is below a row is seen: at first, what is below rays on their way."""
+        return (len(row.places) == 0) != (row.key in self.toggled)
 
 
 State = TypeVar("State")

@@ -12,7 +12,7 @@ from PIL import Image
 from tests.commands import ROOM, complaint, run
 from tracer.culling.fate import Fate
 from viewer.cli.console import Work
-from viewer.output import capture, png
+from viewer.output import capture
 from viewer.state.palette import FATE_COLORS
 
 SIZE = ("--size", "64x48", "--threads", 1)
@@ -56,7 +56,7 @@ def test_pictures_stay_true_until_something_changes(capfd: pytest.CaptureFixture
     assert code == 0 and [line.split(": ")[:2] for line in lines] == [["modes.png", "true"], ["plain.png", "true"]]
     assert all("bit for bit" in line for line in lines)
 
-    png.write(Path("edited.png"), pixels("plain.png") ^ 1, json.dumps(capture.read_data(Path("plain.png"))))
+    capture.write(Path("edited.png"), pixels("plain.png") ^ 1, json.dumps(capture.read_data(Path("plain.png"))))
     code, (line,) = verdict(capfd, "edited.png")
     assert code == 1 and "FALSE: 3,072 of 3,072 pixels differ, by 1 of 255" in line and "the file's own pixels" in line
 
@@ -68,10 +68,10 @@ def test_pictures_stay_true_until_something_changes(capfd: pytest.CaptureFixture
     Path("room.aff").write_text(ROOM)
     data = capture.read_data(Path("plain.png"))
     data["made"]["version"] = "0.0.1"
-    png.write(Path("old.png"), pixels("plain.png"), json.dumps(data))
+    capture.write(Path("old.png"), pixels("plain.png"), json.dumps(data))
     assert verdict(capfd, "old.png")[0] == 0, "another version that makes the same picture"
     data["state"]["settings"]["depth"] = 0
-    png.write(Path("old.png"), pixels("plain.png"), json.dumps(data))
+    capture.write(Path("old.png"), pixels("plain.png"), json.dumps(data))
     code, (line,) = verdict(capfd, "old.png")
     assert code == 1 and "the version, 0.0.1 then" in line and "shadow rays due" in line
 
@@ -110,7 +110,7 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
         ("figure", {"figure": {}}),
         ("drawn", {"picture": {"style": {"annotations": [{"kind": "box"}]}}}),
     ):
-        png.write(Path(f"{name}.png"), pixels("a.png"), json.dumps(data | change))
+        capture.write(Path(f"{name}.png"), pixels("a.png"), json.dumps(data | change))
     Image.new("RGB", (4, 4)).save("plain.png")
     Path("other.pdf").write_bytes(b"%PDF-1.4")
     said = {
@@ -120,7 +120,7 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
         "damaged.png": "warmup.of_path: expected a whole number, got text",
         "drawn.png": "drawn on it",
         "figure.png": "its figure is damaged",
-        "plain.png": "not one captured",
+        "plain.png": "not one saved",
         "other.pdf": "not a figure",
     }
     code, lines = verdict(capfd, *said)

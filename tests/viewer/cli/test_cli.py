@@ -544,13 +544,12 @@ def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stderr.splitlines()[0] == "shadowcull: no display; rendering to files instead"
-    for said in ("Shadow testing §2.4", "culled", "dynamic only", "traversal steps", "Occlusion-mode setting §2.6"):
+    for said in ("out/first-light.png", "out/figure-1.svg", "traversal steps saved, average", "speed-up over none"):
         assert said in done.stdout
-    picture, figure = done.stdout.splitlines()[-2:]
-    with Image.open(picture) as image:
+    with Image.open(tmp_path / "out/first-light.png") as image:
         assert image.size == (640, 480)
     due = re.search(r"shadow rays due\D*([\d,]+)", done.stdout)
-    assert due is not None and due[1] in Path(figure).read_text()
+    assert due is not None and due[1] in (tmp_path / "out/figure-1.svg").read_text()
 
 
 @pytest.mark.slow
@@ -559,7 +558,7 @@ def test_ctrl_c_ends_what_is_done_instead_of_the_window(monkeypatch: pytest.Monk
         monkeypatch.delenv(name)
     terminal = Terminal("--or-picture")
     terminal.interrupt_once(r"frame \d+ of 20")  # which of them are shown depends on the speed
-    assert (terminal.end(), terminal.said.splitlines()[-1]) == (130, "shadowcull: cancelled")
+    assert terminal.end() == 130 and "cancelled after" in terminal.said
 
 
 def test_figure_1_of_a_frame(room: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -63,10 +63,7 @@ def test_who_taught_a_shadow_mode_is_named(capfd: pytest.CaptureFixture[str]) ->
     seen = ("default", "--frame", 40, "--warmup", 2, "--method", "paper", "--pixel", "19,50", "--size", "96x64")
     code, out, _ = run(capfd, "explain", *seen)
     assert code == 0
-    found = re.search(
-        r"PARTIAL_SHADOW since frame 1 of the 2 frames before this: pixel \((\d+), (\d+)\) (saw|was)", out
-    )
-    assert found is not None, out
+    assert re.search(r"PARTIAL_SHADOW since frame 1 of the 2 frames before this, in which some of it (saw|was)", out)
 
 
 def test_culling_has_seen_a_frame_before_unless_none_is_asked_for(

@@ -11,8 +11,9 @@ from PIL import Image
 
 from tests.commands import ROOM, complaint, run
 from viewer.cli.console import Work
-from viewer.output import capture, movie
-from viewer.state.preferences import Bookmark, Preferences, save_preferences
+from viewer.output import capture
+from viewer.services import film as films
+from viewer.state.preferences import NamedState, Preferences, save_preferences
 
 SIZE = ("--size", "47x33", "--threads", 1)
 
@@ -63,7 +64,7 @@ def test_a_flight_goes_through_saved_pictures_or_bookmarks(
     for name, original in (("0000", "at0"), ("0004", "at9")):
         assert np.array_equal(pixels(f"flight/{name}.png"), pixels(f"{original}.png"))
     path = str(Path("room.aff").absolute())
-    state = [Bookmark(name, capture.read_data(Path(name))["state"]) for name in seen]
+    state = [NamedState(name, capture.read_data(Path(name))["state"]) for name in seen]
     save_preferences(Preferences(bookmarks={path: state}))
     assert run(capfd, "film", "room.aff", "-o", "marks", "--bookmarks", *flight)[0] == 0
     for picture in Path("flight").iterdir():
@@ -103,11 +104,12 @@ def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: p
         ((), "nothing to write"),
         (("-o", "d", "--frames", "4-20"), "frame numbers are 0 to 9"),
         (("-o", "d", "--frames", "9-3"), "argument --frames: '9-3': the last frame, 3, is before the first"),
-        (("-o", "d", "--through", "one.png"), "needs two at least"),
-        (("-o", "d", "--bookmarks"), "needs two at least"),
-        (("-o", "d", "--bookmarks", "--frames", "0-3"), "give one of"),
+        (("-o", "d", "--through", "one.png"), "needs two bookmarks, or saved pictures, at least; there are 1"),
+        (("-o", "d", "--bookmarks"), "at least; there are 0"),
+        (("-o", "d", "--bookmarks", "--frames", "0-3"), "not allowed with"),
         (("-o", "taken"), "numbered pictures in it already, 0002.png to 10000.png; give another folder"),
         (("-o", "file"), "no folder for the pictures"),
+        (("-o", "gone/d"), "gone/d: there is no folder gone"),
         (("-o", "d", "--caption", "{sceen}"), "the caption has no field {sceen}"),
         (("-o", "d", "--view", "shadow:7"), "the scene's lights are 0 to 1"),
         (("-o", "d", "--view", "certificate:0", "--method", "paper"), "give --method certified"),
@@ -117,6 +119,6 @@ def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: p
     ]
     for options, said in cases:
         assert said in complaint(run(capfd, "film", "room.aff", *options, *SIZE))
-    monkeypatch.setattr(movie, "check_video", lambda: (_ for _ in ()).throw(ValueError(movie.NEEDS_PYAV)))
+    monkeypatch.setattr(films, "check_video", lambda: (_ for _ in ()).throw(ValueError(films.NEEDS_PYAV)))
     assert "shadowcull[video]" in complaint(run(capfd, "film", "room.aff", "-o", "d.mp4", *SIZE))
     assert not Path("d").exists() and not Path("d.mp4").exists()

@@ -110,13 +110,13 @@ def test_mistakes_are_one_line(saved: Path, room: Path, capfd: pytest.CaptureFix
     Image.new("RGB", (4, 4)).save("plain.png")
     Path("broken.png").write_bytes(b"no picture")
     cases = [
-        (("render", "plain.png"), "not one captured by Shadowcull"),
+        (("render", "plain.png"), "not one saved by Shadowcull"),
         (("render", "broken.png"), "cannot be read as a picture"),
         (("render", "gone.png"), "no such file"),
         (("render", room, "-o", "x.png", "--camera", "plain.png"), "--camera: plain.png"),
         (("zoom", room, "--primitive", "0", "--camera", "gone.png"), "--camera: gone.png: no such file"),
         (("bench", saved), "saved.png"),
-        (("info", "plain.png"), "not one captured by Shadowcull"),
+        (("info", "plain.png"), "not one saved by Shadowcull"),
     ]
     for arguments, said in cases:
         code, _, errors = run(capfd, *arguments)

@@ -1,4 +1,4 @@
-"""Studies and films by two processes: the figures are those of one, to the bit, whoever dies meanwhile."""
+"""Studies by two processes: the figures are those of one, to the bit, whoever dies meanwhile."""
 
 from __future__ import annotations
 
@@ -13,11 +13,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import psutil
 import pyarrow.parquet as pq
 import pytest
-from PIL import Image
 
 from tests.commands import ROOM, complaint, run
 from tests.viewer.marbles import write_marbles
@@ -180,27 +178,6 @@ def test_seeds_shake_the_camera_and_a_warmup_cuts_paths(shared: Cluster, capfd: 
     assert all(alone[name] == found[1, "paper", 4][name] for name in sweeping.SAME)
 
 
-def test_a_film_by_two_processes_is_that_of_one(shared: Cluster, capfd: pytest.CaptureFixture[str]) -> None:
-    learning = ("room.aff", "--frames", "1-4", "--size", "40x30", "--caption", "{frame}")
-    wanted = (*learning, "--method", "certified")
-    assert run(capfd, "film", *wanted, "-o", "one", "--threads", 1)[0] == 0
-    assert run(capfd, "film", *wanted, "-o", "two", "--workers", 2)[0] == 0
-    Path("two/0003.png").unlink()
-    code, _, err = run(capfd, "film", *wanted, "-o", "two", "--workers", 2)
-    assert code == 0 and "3 of 4 pictures are there already" in err, err
-    for path in sorted(Path("one").iterdir()):
-        with Image.open(path) as one, Image.open(Path("two") / path.name) as two:
-            assert np.array_equal(np.asarray(one), np.asarray(two))
-    assert run(capfd, "check", "two/0003.png")[0] == 0
-    line = complaint(run(capfd, "film", *wanted, "-o", "two", "--workers", 2, "--depth", 1))
-    assert "0001.png: a picture of another film (another settings)" in line
-    code, _, err = run(capfd, "film", *learning, "-o", "three", "--workers", 2)
-    assert code == 0 and "one process traces them all" in err and "give --method certified" in err
-    legend = ("--view", "depth", "--legend", "--workers", 2)
-    code, _, err = run(capfd, "film", *wanted, "-o", "four", *legend)
-    assert code == 0 and err.count("no legend: the picture is too small for it") == 1, err
-
-
 def test_another_version_does_not_take_part(
     shared: Cluster, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -212,8 +189,7 @@ def test_another_version_does_not_take_part(
 
 def test_without_dask_one_line_says_so(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    for command in (("sweep", "study.toml"), ("film", "room.aff", "-o", "film", "--workers", 2)):
-        assert "install shadowcull[sweep]" in complaint(run(capfd, *command))
+    assert "install shadowcull[sweep]" in complaint(run(capfd, "sweep", "study.toml"))
 
 
 def test_a_scheduler_that_is_not_there_is_one_line(

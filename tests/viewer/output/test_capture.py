@@ -1,9 +1,7 @@
-"""A captured picture carries what it needs, never overwrites, and fails in one line; captions and small pictures."""
+"""A saved picture carries what it needs, never overwrites, and fails in one line; captions and small pictures."""
 
 from __future__ import annotations
 
-import base64
-import io
 import stat
 from datetime import datetime
 from pathlib import Path
@@ -15,9 +13,8 @@ from PIL import Image, PngImagePlugin
 from tests.viewer.fakes import make_frame
 from tracer.scene.model import Camera
 from tracer.settings import Settings
-from viewer.output import capture, clipboard
-from viewer.output.caption import with_caption
-from viewer.output.thumbnail import SIDE, as_text, from_text, thumbnail
+from viewer.output import capture, other_programs
+from viewer.output.overlays import with_caption
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
@@ -40,7 +37,7 @@ def text() -> str:
 
 
 def test_a_picture_brings_back_its_state_and_its_pixels(tmp_path: Path):
-    path = capture.save(PIXELS, tmp_path / "new" / "folder", "a.png", text())
+    path = capture.save(PIXELS, text(), tmp_path / "new" / "folder", "a.png")
     assert capture.read(path) == STATE
     with Image.open(path) as image:
         assert np.array_equal(np.asarray(image), PIXELS)
@@ -49,13 +46,13 @@ def test_a_picture_brings_back_its_state_and_its_pixels(tmp_path: Path):
 
 def test_a_state_is_read_without_decoding_the_pixels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """The window waits for it, and a picture may be large."""
-    path = capture.save(PIXELS, tmp_path, "a.png", text())
+    path = capture.save(PIXELS, text(), tmp_path, "a.png")
     monkeypatch.setattr(PngImagePlugin.PngImageFile, "load", lambda self: pytest.fail("its pixels are decoded"))
     assert capture.read_data(path)["frame"] == 7
 
 
 def test_nothing_is_overwritten(tmp_path: Path):
-    first, second, third = (capture.save(PIXELS + i, tmp_path, "a.png", text()) for i in range(3))
+    first, second, third = (capture.save(PIXELS + i, text(), tmp_path, "a.png") for i in range(3))
     assert [p.name for p in (first, second, third)] == ["a.png", "a-2.png", "a-3.png"]
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a-2.png", "a-3.png", "a.png"]
 
@@ -99,7 +96,7 @@ def test_wrong_templates_are_one_line(template: str):
 def test_a_folder_that_cannot_be_written_to_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     (tmp_path / "file").write_text("not a folder")
     with pytest.raises(capture.CaptureError, match="cannot write to") as caught:
-        capture.save(PIXELS, tmp_path / "file" / "below", "a.png", text())
+        capture.save(PIXELS, text(), tmp_path / "file" / "below", "a.png")
     assert "\n" not in str(caught.value)
 
     def denied(*_args, **_kwargs):  # a folder's mode would not keep root out
@@ -107,7 +104,7 @@ def test_a_folder_that_cannot_be_written_to_is_one_line(tmp_path: Path, monkeypa
 
     monkeypatch.setattr(Path, "open", denied)
     with pytest.raises(capture.CaptureError, match=r"not written: Permission denied"):
-        capture.save(PIXELS, tmp_path, "a.png", text())
+        capture.save(PIXELS, text(), tmp_path, "a.png")
 
 
 def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -116,7 +113,7 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
 
     monkeypatch.setattr(Image.Image, "save", full)
     with pytest.raises(capture.CaptureError, match="No space left"):
-        capture.save(PIXELS, tmp_path, "a.png", text())
+        capture.save(PIXELS, text(), tmp_path, "a.png")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -131,7 +128,7 @@ def test_other_files_are_refused_in_one_line(tmp_path: Path):
     info.add_itxt("shadowcull", '{"state": [1, 2]}')
     wrong = tmp_path / "wrong.png"
     Image.fromarray(PIXELS).save(wrong, pnginfo=info)
-    for path, told in [(plain, "not one captured"), (damaged, "cannot be read"), (noise, "cannot be read"),
+    for path, told in [(plain, "not one saved"), (damaged, "cannot be read"), (noise, "cannot be read"),
                        (wrong, "cannot be restored"), (tmp_path / "none.png", "no such file")]:  # fmt: skip
         with pytest.raises(capture.CaptureError, match=told) as caught:
             capture.read(path)
@@ -161,38 +158,18 @@ def test_the_clipboard_is_that_of_the_desktop(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setenv("DISPLAY", ":9")
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    assert clipboard.program() is None
+    assert other_programs.clipboard_command() is None
     with pytest.raises(OSError, match="install xclip"):
-        clipboard.copy(b"png")
+        other_programs.copy(b"png")
     for name in ("xclip", "wl-copy"):
         program = tmp_path / name
         program.write_text(f'#!/bin/sh\nwhile read -r line; do echo "{name} $* $line" > {tmp_path}/got; done\n')
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
-    clipboard.copy(b"png\n")
+    other_programs.copy(b"png\n")
     assert (tmp_path / "got").read_text() == "xclip -selection clipboard -target image/png -in png\n"
     monkeypatch.setenv("WAYLAND_DISPLAY", "wayland-0")
-    clipboard.copy(b"png\n")
+    other_programs.copy(b"png\n")
     assert (tmp_path / "got").read_text() == "wl-copy --type image/png png\n"
     (tmp_path / "wl-copy").write_text("#!/bin/sh\nexit 3\n")
     with pytest.raises(OSError, match="wl-copy failed with code 3"):
-        clipboard.copy(b"png")
-
-
-@pytest.mark.parametrize("size", [(480, 960), (1000, 500), (7, 3), (1, 1)])
-def test_a_picture_comes_back_small_and_of_its_shape_and_colours(size: tuple[int, int]):
-    color = np.zeros((*size, 3), np.float32)
-    color[: max(1, size[0] // 2), :, 0] = 1.0
-    text = as_text(thumbnail(color))
-    back = from_text(text)
-    assert back is not None and max(back.width, back.height) == min(SIDE, max(size)) and len(text) < 20_000
-    assert back.width / back.height == pytest.approx(size[1] / size[0], rel=0.02)
-    assert back.pixels().shape == (back.height, back.width, 3)
-    assert back.thumbnail(9)[0, 0, 0] > 200 and (size[0] < 2 or back.pixels()[-1, 0, 0] < 60)
-
-
-def test_anything_else_is_no_picture():
-    file = io.BytesIO()
-    Image.new("RGB", (4 * SIDE + 1, 4)).save(file, "JPEG")
-    large = base64.b64encode(file.getvalue()).decode()
-    for text in (None, "", 3, "no base64!", base64.b64encode(b"no picture").decode(), large, "A" * 300_000):
-        assert from_text(text) is None
+        other_programs.copy(b"png")

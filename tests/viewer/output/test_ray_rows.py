@@ -15,7 +15,7 @@ from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
 from tracer.told_rays import AWAY, TRACED, RayTree
 from viewer.output.ray_rows import MOST_LIGHTS, Filter, RayRows, Row, Shown, totals, unfolded
-from viewer.window.panels.ray_overlay import MOST_DRAWN, Part, ray_lines
+from viewer.window.panels.rays import MOST_DRAWN, Part, ray_lines
 
 PIXEL = 24, 26  # on the square that mirrors the sphere
 

@@ -14,7 +14,7 @@ import pytest
 
 from tests.commands import ROOM, run
 from tests.viewer.fakes import make_frame
-from viewer.output import tev
+from viewer.output import other_programs as tev
 
 
 class Server:

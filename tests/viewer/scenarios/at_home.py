@@ -12,7 +12,7 @@ from tests.viewer.driver import Driver
 from viewer.state.views import View
 from viewer.window.finder import Finder
 from viewer.window.menus import ANY_POPUP
-from viewer.window.panels.names import NameField
+from viewer.window.panels.named_states import NameFields
 
 KEY = imgui.Key
 SMALL = (1000, 640)  # still with docked panels, and soon drawn
@@ -102,9 +102,9 @@ def _presets(d: Driver) -> None:
     d.context.item_click("//Presets/##new preset")
     d.context.key_chars("mine")
     d.press(KEY.enter)
-    assert [preset.name for preset in d.c.presets.own] == ["mine"]
+    assert [preset.name for preset in d.c.presets.all] == ["mine"]
     kept = d.c.session.settings
-    d.context.item_click("//Presets/As in the paper/As in the paper")
+    d.context.item_click("//Presets/As in the paper")
     d.settle()
     assert d.c.session.settings.method == "paper" and (d.c.frame.width, d.c.frame.height) == (512, 512)
     d.c.history.clear()
@@ -114,11 +114,11 @@ def _presets(d: Driver) -> None:
     d.settle()
     assert (d.c.history.values("pixels") == 512 * 512).all(), "each is traced in full, and learns from the one before"
     assert (d.c.history.values("culled") + d.c.history.values("dynamic_only") > 0)[1:].all()
-    d.context.item_click("//Presets/$$0/" + _PEN)
+    d.context.item_click("//Presets/**/" + _PEN)
     d.frames(2)
     d.context.key_chars("ours")
     d.press(KEY.enter)
-    assert d.c.presets.own[0].name == "ours" and d.ui.state(NameField).place is None
+    assert d.c.presets.all[0].name == "ours" and d.ui.state(NameFields).place is None
     d.press(KEY.escape)
     assert not d.ui.dialogs
     d.context.menu_click("//##MainMenuBar/Edit/Presets/ours##preset 5")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
-from viewer.output.figure1_layout import Drawing
+from viewer.output.figure1_drawing import Box, Drawing, Words
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 
@@ -27,7 +27,7 @@ def figure1(d: Driver) -> None:
         d.frames(5)
         shadow, changes = d.c.frame.statistics.shadow, d.c.frame.statistics.mode_changes
         assert shadow.saved > 0
-        told = " ".join(area.tip for area in _drawing(d).areas)
+        told = " ".join(part.tip for part in _drawing(d).parts if isinstance(part, Box))
         for name, number in (
             ("shadow rays due", shadow.due),
             ("culled", shadow.culled),
@@ -54,11 +54,11 @@ def figure1(d: Driver) -> None:
     # Without culling it says what modes would do; with certificates these stand in the place of modes.
     d.c.settings.change(method="none")
     d.settle()
-    said = {words.text for words in _drawing(d).words}
+    said = {words.text for words in _words(d)}
     assert "would be culled" in said
     d.c.settings.change(method="certified")
     d.settle()
-    said = {words.text for words in _drawing(d).words}
+    said = {words.text for words in _words(d)}
     assert "Certificates" in said and not any("mode setting" in text for text in said)
     _click(d, "Certificates")
     assert d.c.session.draw.view is View.CERTIFICATE
@@ -73,14 +73,18 @@ def _drawing(d: Driver) -> Drawing:
     return drawing
 
 
+def _words(d: Driver) -> list[Words]:
+    return [part for part in _drawing(d).parts if isinstance(part, Words)]
+
+
 def _click(d: Driver, name: str) -> None:
     """On the part of the figure that has this name, where the panel shows it."""
-    words = next(words for words in _drawing(d).words if words.text.startswith(name))
+    scale, words = _drawing(d).scale, next(words for words in _words(d) if words.text.startswith(name))
     window = imgui.internal.find_window_by_name("Figure 1")
-    imgui.internal.set_scroll_y(window, max(words.y - 0.5 * window.inner_rect.get_height(), 0.0))
+    imgui.internal.set_scroll_y(window, max(scale * words.y - 0.5 * window.inner_rect.get_height(), 0.0))
     d.frames(3)
     place = d.context.item_info("//Figure 1/figure 1").rect_full.min
-    d.context.mouse_move_to_pos((place.x + words.x + 4.0, place.y + words.y + 4.0))
+    d.context.mouse_move_to_pos((place.x + scale * words.x + 4.0, place.y + scale * words.y + 4.0))
     d.frames(2)
     d.context.mouse_click(0)
     d.frames(3)

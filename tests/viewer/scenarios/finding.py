@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.services.scene_table import Listing
 from viewer.state.scene_rows import Level
-from viewer.window.view_commands import FindState
+from viewer.window.commands import FindState
 
 KEY = imgui.Key
 ROWS_SEEN = 60  # at most, in a window of these sizes

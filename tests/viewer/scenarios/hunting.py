@@ -8,6 +8,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
 from tests.viewer.marbles import LAST, STEP, write_marbles
+from viewer.state.picking import wrong_at
 from viewer.window.panels.plots import PlotsState
 
 KEY = imgui.Key
@@ -73,7 +74,6 @@ def _from_the_inspector(d: Driver) -> None:
     assert picked is not None
     taught = c.history.origins_of(picked)
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
-    d.wait(lambda: c.origins.of(lesson.lit, light, True) is not None, "the pixel that taught", 30.0)
     moment = c.history.records.get(lesson.lit)
     d.scroll_down("Inspector")
     d.context.item_click(f"//Inspector/**/{light} lit/picture {lesson.lit}##0")
@@ -98,7 +98,7 @@ def _to_a_find(d: Driver) -> None:
     d.wait(lambda: c.runs.current is None and c.selection.picked is not None, "the find", 60.0)
     d.settle()
     picked = c.selection.picked
-    assert (picked.x, picked.y) == (find.x, find.y) and picked.wrong > 0
+    assert (picked.x, picked.y) == (find.x, find.y) and wrong_at(c.frame, find.x, find.y) > 0
     assert tuple(c.frame.color[find.y, find.x].tolist()) == find.color
     assert c.frame.settings.samples == 1 and c.session.settings.samples == 4, "refined, it is not as it was found"
     left, top, right, bottom = c.session.draw.zoom.shown()
@@ -110,8 +110,8 @@ def _to_a_find(d: Driver) -> None:
         one, truth = reasons[find.light], answer.lights[find.light]
         assert one.wrong == 1 and (one.lit > 0) == find.lit and (truth.reached > 0) != find.lit
     d.context.item_click(f"//Hunt/**/{icons.ICON_FA_CODE_BRANCH}  Rays")
-    d.wait(lambda: c.rays.tree is not None, "its rays", 20.0)
-    assert any(ray.shadows is not None and ray.shadows.wrong.any() for ray in c.rays.tree.rays)
+    d.wait(lambda: c.inspector.tree is not None, "its rays", 20.0)
+    assert any(ray.shadows is not None and ray.shadows.wrong.any() for ray in c.inspector.tree.rays)
     d.ui.show_panel("Hunt")
     d.frames(3)
     d.press(KEY.right_arrow)

@@ -9,7 +9,7 @@ import numpy as np
 from imgui_bundle import glfw_utils, imgui
 
 from tests.viewer.driver import Driver
-from viewer.window.panels.bookmarks import BookmarksState
+from viewer.window.panels.named_states import NameFields
 
 KEY = imgui.Key
 
@@ -48,10 +48,10 @@ def flying(d: Driver) -> None:
 
     d.ui.show_panel("Camera")
     d.frames(3)
-    d.context.item_click("//Camera/##bookmark")
+    d.context.item_click("//Camera/##new bookmark")
     d.context.key_chars("wasd")
     d.frames(3)
-    assert d.ui.state(BookmarksState).new == "wasd"
+    assert d.ui.state(NameFields).new["bookmark"] == "wasd"
     assert d.c.session.camera == before, "typing moved the camera"
     d.context.key_press(KEY.enter)
     d.frames(2)

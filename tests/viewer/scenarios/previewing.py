@@ -10,7 +10,6 @@ from unittest import mock
 
 import numpy as np
 from imgui_bundle import imgui
-from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
 from tests.viewer.previews import colors_of
@@ -18,7 +17,7 @@ from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Progress
 from viewer.services import scene_files, scene_loader
 from viewer.window import graphics
-from viewer.window.panels.preview import words
+from viewer.window.panels.loading import words
 
 KEY = imgui.Key
 _compiled = threading.Event()
@@ -50,7 +49,7 @@ def first_start() -> Iterator[None]:
 
 def previewing(d: Driver) -> None:
     """The scene is there, and can be flown through; then the traced picture takes its place, from there."""
-    d.wait(lambda: d.ui.graphics.preview is not None and d.ui.graphics.preview.whole, "the preview", 30.0)
+    d.wait(lambda: d.ui.graphics.preview is not None, "the preview", 30.0)
     assert d.c.frame is None and d.c.session.scene is None and d.c.loader.warm_up_job is not None
     d.frames(3)
     first = _read(d)
@@ -64,23 +63,16 @@ def previewing(d: Driver) -> None:
     d.wait(lambda: not d.c.motion.under_way, "rest", 10.0)
     d.frames(2)
     assert np.abs(_read(d).astype(int) - first).max() > 50, "another picture"
-    assert "no shadows" in words(d.ui)[0] and "Compiling" in words(d.ui)[1]
-    _leaves_the_preview(d)
+    said = words(d.c.loader.warm_up_job)
+    assert "no shadows" in said[0] and "Compiling" in said[1]
+    box = imgui.internal.find_window_by_name("##progress")
+    assert box is None or not box.active, "nothing lies over the preview"
     _tour_fits(d)
     _compiled.set()
     d.settle()
     assert d.ui.graphics.preview is None and d.c.preview.geometry is None and d.c.session.previewed is None
     assert d.c.frame is not None and d.c.frame.camera == flown == d.c.session.camera
     assert d.context.item_exists("//Picture/picture") and not d.context.item_exists("//Picture/preview")
-
-
-def _leaves_the_preview(d: Driver) -> None:
-    """How far compiling is stands in one line along the lower edge of the picture."""
-    bar, picture = (imgui.internal.find_window_by_name(name) for name in ("##progress of the preview", "Picture"))
-    box = imgui.internal.find_window_by_name("##progress")
-    assert bar is not None and bar.active and (box is None or not box.active)
-    assert bar.size.y < 2.5 * imgui.get_font_size() and bar.pos.y > picture.pos.y + 0.85 * picture.size.y
-    assert d.context.item_exists(f"//##progress of the preview/{icons.ICON_FA_XMARK}  Cancel##load")
 
 
 def _tour_fits(d: Driver) -> None:

@@ -7,6 +7,8 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from viewer.output.ray_rows import Shown
+from viewer.window.panels import rays as panel
+from viewer.window.ui import RaysState
 
 KEY = imgui.Key
 
@@ -14,8 +16,8 @@ KEY = imgui.Key
 def rays(d: Driver) -> None:
     """A click on a pixel lists its rays."""
     d.settle()
-    c = d.c
-    assert not c.rays.visible, "they are folded at first"
+    c, state = d.c, d.ui.state(RaysState)
+    assert panel.listed(d.ui) is None, "they are folded at first"
     c.settings.change(method="paper")
     d.settle()
     for _ in range(2):
@@ -23,47 +25,47 @@ def rays(d: Driver) -> None:
         d.settle()
     d.press(KEY.x)
     d.frames(4)
-    assert c.rays.tree is None, "nothing is clicked"
+    assert c.inspector.tree is None, "nothing is clicked"
     traced = c.history.frames
     left, top, right, bottom = d.picture_edges()
     x, y = _shaded(d)
     d.context.mouse_move_to_pos((left + x * (right - left), top + y * (bottom - top)))
     d.context.mouse_click(0)
-    d.wait(lambda: c.rays.tree is not None, "the rays of the clicked pixel", 20.0)
+    d.wait(lambda: c.inspector.tree is not None, "the rays of the clicked pixel", 20.0)
     assert c.history.frames == traced, "asking has traced a frame"
-    tree = c.rays.tree
+    tree = c.inspector.tree
     assert (tree.x, tree.y) == c.selection.pixel and tree.due > 0
-    d.frames(30)  # until it is known which pixels set the modes, which is listed above the rays
+    d.frames(3)
     drawn = _lines_drawn(d)
 
     # Filters hide rows and lines.
-    everything = len(c.rays.seen)
+    everything = len(panel.rows(d.ui))
     d.context.item_click("//Inspector/wrong")
     d.frames(3)
-    assert c.rays.shown.shown is Shown.WRONG and len(c.rays.seen) < everything and _lines_drawn(d) < drawn
+    assert state.shown.shown is Shown.WRONG and len(panel.rows(d.ui)) < everything and _lines_drawn(d) < drawn
     d.context.item_click("//Inspector/all")
     d.frames(3)
-    assert len(c.rays.seen) == everything
+    assert len(panel.rows(d.ui)) == everything
 
     # A row that the pointer is on is picked out; a click selects it.
-    row = next(row for _, row in c.rays.seen if len(row.places) == 1 and "traced" in row.text)
+    row = next(row for _, row in panel.rows(d.ui) if len(row.places) == 1 and "traced" in row.text)
     d.context.mouse_move(f"//Inspector/**/{row.key}/##row")
     d.frames(3)
-    assert c.rays.pointed is not None and c.rays.pointed.key == row.key
+    assert state.pointed is not None and state.pointed.key == row.key
     d.context.item_click(f"//Inspector/**/{row.key}/##row")
     d.frames(3)
-    assert c.rays.selected.key == row.key
+    assert state.selected == row.key
 
     # The path ray folds; the tree goes with the selection.
-    top_row = c.rays.seen[0][1]
-    c.rays.toggle(top_row)
+    top_row = panel.rows(d.ui)[0][1]
+    state.toggled ^= {top_row.key}
     d.frames(2)
-    assert len(c.rays.seen) == 1 and c.rays.selected is None
-    c.rays.toggle(top_row)
+    assert len(panel.rows(d.ui)) == 1
+    state.toggled ^= {top_row.key}
     d.press(KEY.escape)
     d.frames(3)
-    assert c.rays.tree is None
-    assert not c.rays.visible
+    assert c.inspector.tree is None
+    assert panel.listed(d.ui) is None
 
 
 def _shaded(d: Driver) -> tuple[float, float]:

@@ -89,7 +89,7 @@ def _save_as(d: Driver) -> None:
     d.frames(3)
     plan = d.c.pictures.plan
     plan.multiple, plan.samples, plan.legend = 3, 2, True
-    d.context.item_click(f"//{saving.TITLE}/**/Usual")
+    plan.caption = "{scene}, frame {frame}, {method}, {width} × {height}"
     d.frames(2)
     assert d.c.pictures.size == (288, 192)
     d.context.item_click(f"//{saving.TITLE}/Save")

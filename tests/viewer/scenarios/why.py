@@ -14,6 +14,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.reasons import Reason, Rule, Why
 from tracer.why_in_words import Words, plain
 from viewer.state import navigation
+from viewer.window.panels import rays
 
 KEY = imgui.Key
 FULLY, PARTLY = OcclusionMode.FULLY_RENDERED, OcclusionMode.PARTIALLY_OCCLUDED
@@ -95,13 +96,12 @@ def _taught(d: Driver) -> None:
     """Who taught a shadow mode is named, and the link leads back to that picture."""
     one = _click(d, _of(d, FULLY, ShadowMode.PARTIAL_SHADOW), lambda one: one.rule is Rule.PARTIAL_SHADOW)
     d.c.settings.set_light(one.light)
-    d.wait(lambda: d.c.origins.answered > 0, "the pixels that taught", 30.0)
     d.frames(3)
     taught = d.c.history.origins_of(d.c.selection.picked)
     number = max(taught.lights[one.light])
     assert d.context.item_exists(f"//Inspector/reason/picture {number}##0")
     d.press(KEY.x)
-    d.wait(lambda: d.c.rays.rows is not None, "the rays", 20.0)
+    d.wait(lambda: rays.rows(d.ui), "the rays", 20.0)
     d.frames(3)
     left = d.c.session.camera
     d.c.motion.move(navigation.look(left, 0.02, 0.0, d.c.motion.world_up))
@@ -109,8 +109,8 @@ def _taught(d: Driver) -> None:
     assert d.c.session.camera != left
     d.context.item_click(f"//Inspector/reason/picture {number}##0")
     d.settle()
-    assert d.c.session.camera == left, "it goes back to that picture, and selects its pixel there"
-    assert d.c.selection.picked is not None
+    assert d.c.session.camera == left, "it goes back to that picture, and what is selected stays so"
+    assert d.c.selection.pixel is not None
 
 
 def _in_motion(d: Driver) -> None:

@@ -19,7 +19,7 @@ from tests.viewer.marbles import write_marbles
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
-from viewer.output import capture, png
+from viewer.output import capture
 from viewer.output.commands import BUILT, by_one_thread, cannot_come_back, needs_history
 from viewer.services import stills
 from viewer.state.draw_options import DrawOptions
@@ -214,7 +214,7 @@ def changed(path: Path, name: str, **warmup: object) -> Path:
     data = capture.read_data(path)
     data["state"]["warmup"] |= warmup
     with Image.open(path) as image:
-        png.write(path.with_name(name), np.asarray(image.convert("RGB")), json.dumps(data))
+        capture.write(path.with_name(name), np.asarray(image.convert("RGB")), json.dumps(data))
     return path.with_name(name)
 
 
@@ -258,7 +258,9 @@ def test_without_its_modes_a_picture_is_held_against_that_with_every_ray_traced(
         assert code == 0 and "nothing of its culling shows" in said, said
     with Image.open(path) as image:
         darker = np.asarray(image.convert("RGB")) // 2
-    png.write(path.with_name("dark.png"), darker, json.dumps(capture.read_data(changed(path, "again.png", modes=""))))
+    capture.write(
+        path.with_name("dark.png"), darker, json.dumps(capture.read_data(changed(path, "again.png", modes="")))
+    )
     code, said = check(capfd, path.with_name("dark.png"))
     assert code == 1 and "unknown: but for" in said
 

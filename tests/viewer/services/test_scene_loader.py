@@ -1,8 +1,10 @@
-"""Opening scenes and saved pictures beside the window: what arrives, and what is said of what does not."""
+"""Opening scenes and saved pictures beside the window: what arrives, what is said of what does not, and what is read
+again when its files change."""
 
 from __future__ import annotations
 
 import gc
+import os
 import threading
 import time
 import weakref
@@ -11,11 +13,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
+from tests.viewer.desk import Desk
 from tests.viewer.fakes import make_frame, make_scene
+from tracer.scene.files import Stamp, noting, stamp
+from tracer.scene.load import load_scene
 from tracer.scene.model import SceneError
 from viewer.services.capture_service import CaptureService
-from viewer.services.scene_loader import Arrival, SceneLoader
+from viewer.services.scene_loader import Arrival, FileWatch, SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -132,53 +138,129 @@ def test_settings_from_the_command_line_win_over_the_first_picture_alone(
     assert door.arrival().place.settings.lamp_radius is None
 
 
-def test_a_load_that_cannot_stop_is_left_to_itself_when_it_is_cancelled(
-    door: Door, tiny_scene_file: Path, monkeypatch: pytest.MonkeyPatch
-):
-    deaf, opened = threading.Event(), door_opened(door, tiny_scene_file)
-    monkeypatch.setattr("viewer.services.scene_files.open_scene", lambda *arguments: deaf.wait(60.0))
-    monkeypatch.setattr("viewer.services.scene_loader.PATIENCE", 0.05)
-    door.session.open(opened)
-    door.loader.open(tiny_scene_file)
-    door.loader.cancel()
-    assert door.loader.load_job is not None and door.arrival() is None
-    assert door.loader.load_job is None and door.said == "loading cancelled: the scene that was open stays"
-    monkeypatch.undo()
-    assert door_opened(door, tiny_scene_file).path == tiny_scene_file, "another is opened meanwhile"
-    deaf.set()
-    (job,) = door.loader._abandoned or [None]
-    assert job is None or job.join(20.0)
-    assert door.loader.take_finished() is None
-
-
-@pytest.mark.parametrize("end", ["cancelled", "abandoned", "failed"])
-def test_a_scene_that_waited_in_vain_is_let_go(door: Door, tiny_scene_file: Path, monkeypatch, end: str):
-    go_on, read = threading.Event(), []
+def test_a_cancelled_load_is_gone_at_once_though_it_cannot_stop(door: Door, tiny_scene_file: Path, monkeypatch):
+    """As within a library that reads a mesh; and the scene that has waited in vain is let go."""
+    deaf, read, opened = threading.Event(), [], door_opened(door, tiny_scene_file)
 
     def waits(_read, settings, ready, progress, seen):
         scene = make_scene()
         read.append(weakref.ref(scene))
         seen(scene)
-        while not go_on.is_set():
-            if end == "cancelled":
-                progress("waiting", 0.5)
-            go_on.wait(0.01)
+        deaf.wait(60.0)
         raise SceneError("no more")
 
     monkeypatch.setattr("viewer.services.scene_files.open_scene", waits)
-    monkeypatch.setattr("viewer.services.scene_loader.PATIENCE", 60.0 if end == "cancelled" else 0.05)
+    door.session.open(opened)
     door.loader.open(tiny_scene_file)
-    until = time.monotonic() + 20.0
+    end = time.monotonic() + 20.0
     while door.loader.waiting is None:
-        assert time.monotonic() < until, "in vain"
+        assert time.monotonic() < end, "in vain"
         time.sleep(0.002)
-    if end == "failed":
-        go_on.set()
-    else:
-        door.loader.cancel()
-    assert door.arrival() is None and door.loader.waiting is None
-    go_on.set()
-    assert all([job.join(20.0) for job in door.loader._abandoned])
-    door.loader.take_finished()
+    job = door.loader.load_job
+    door.loader.cancel()
+    assert not door.loader.busy and door.loader.waiting is None
+    assert door.said == "loading cancelled: the scene that was open stays"
+    monkeypatch.undo()
+    assert door_opened(door, tiny_scene_file).path == tiny_scene_file, "another is opened meanwhile"
+    deaf.set()
+    assert job.join(20.0) and door.loader.take_finished() is None
+    del job
     gc.collect()
     assert read[0]() is None
+
+
+# --- files that change -----------------------------------------------------------------------------
+
+
+def write(path: Path, text: str) -> None:
+    """So that its time differs, however coarse the clock of the disk is."""
+    before = path.stat().st_mtime_ns if path.exists() else 0
+    path.write_text(text)
+    os.utime(path, ns=(before + 10**9, before + 10**9))
+
+
+@pytest.fixture
+def looks(tmp_path: Path) -> Callable[[], str]:
+    """A look at files taken by hand: what it tells."""
+    for name in ("a.aff", "b.png"):
+        (tmp_path / name).write_text(name)
+    watch = FileWatch()
+    watch.files = {path: stamp(path) for path in (tmp_path / "a.aff", tmp_path / "b.png", tmp_path / "later.png")}
+    watch.close()
+
+    def look() -> str:
+        watch.look()
+        return watch.take()
+
+    return look
+
+
+def test_what_has_changed_is_told_once_and_when_it_rests(looks: Callable[[], str], tmp_path: Path):
+    assert [looks(), looks()] == ["", ""]
+    for text in ("x", "xy", "xyz"):
+        write(tmp_path / "a.aff", text)
+        assert looks() == "", "it is being written"
+    assert [looks(), looks()] == ["a.aff", ""]
+    (tmp_path / "b.png").unlink()
+    assert [looks(), looks(), looks()] == ["", "", ""], "it is about to be replaced"
+    write(tmp_path / "b.png", "new")
+    write(tmp_path / "later.png", "what was missed")
+    assert [looks(), looks(), looks()] == ["", "b.png and 1 more", ""]
+
+
+def test_all_that_a_scene_names_is_noted(tmp_path: Path, tiny_scene_file: Path):
+    Image.new("RGB", (2, 2)).save(tmp_path / "there.png")
+    part = tmp_path / "part.aff"
+    part.write_text("tt there.png\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\ntt gone.png\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n")
+    tiny_scene_file.write_text(tiny_scene_file.read_text() + "\ni 0 part.aff\n")
+    files: dict[Path, Stamp] = {}
+    with noting(files):
+        load_scene(tiny_scene_file)
+    assert files == {p: stamp(p) for p in (tiny_scene_file, part, tmp_path / "there.png", tmp_path / "gone.png")}
+    assert files[tmp_path / "gone.png"] is None
+
+    mesh, materials = tmp_path / "mesh.obj", tmp_path / "mesh.mtl"
+    materials.write_text("newmtl red\nKd 1 0 0\n")
+    mesh.write_text("mtllib mesh.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n")
+    files = {}
+    with noting(files):
+        load_scene(mesh)
+    assert {mesh, materials} <= files.keys()
+    part.write_text("p nonsense\n")
+    files = {}
+    with noting(files), pytest.raises(SceneError):
+        load_scene(tiny_scene_file)
+    assert part in files, "also where it is broken"
+
+
+def test_a_scene_is_read_again_in_its_place_and_a_broken_one_is_not(desk: Desk, tiny_scene_file: Path):
+    c = desk.c
+    c.loader.open(tiny_scene_file)
+    desk.until(lambda: c.loader.load_job is None)
+    desk.rest()
+    c.settings.change(method="paper", depth=3)
+    c.motion.move(c.session.camera)
+    c.session.change(time=0.5)
+    desk.rest()
+    here, good, undoes = c.session.state, tiny_scene_file.read_text(), c.undo.undoes
+
+    write(tiny_scene_file, good + "\nl 0 9 0  0.1 0.1 0.1\n")
+    desk.until(lambda: len(c.session.scene.lights) == 3)
+    desk.rest()
+    assert "tiny.aff reloaded" in desk.said and desk.said.endswith(": tiny.aff changed")
+    assert c.session.state == here and c.undo.undoes == undoes, "place and steps are kept"
+    scene = c.session.scene
+
+    write(tiny_scene_file, good + "\nl 0 nine\n")
+    desk.until(lambda: c.notices.message.error)
+    line = len(good.splitlines()) + 2
+    assert f"tiny.aff:{line}" in desk.said and "\n" not in desk.said and c.session.scene is scene
+    write(tiny_scene_file, good)
+    desk.until(lambda: c.session.scene is not scene)
+    assert len(c.session.scene.lights) == 2 and c.session.state == here
+    c.preferences.watch_scene = False
+    now = c.session.scene
+    write(tiny_scene_file, good + "\n")
+    end = time.monotonic() + 1.0
+    desk.until(lambda: time.monotonic() > end)
+    assert c.session.scene is now

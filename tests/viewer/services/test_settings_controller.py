@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.viewer.fakes import make_scene
-from tracer.scene.model import Camera
-from viewer.services.bookmarks import Bookmarks
+from viewer.services.named_states import Bookmarks
 from viewer.services.settings_controller import REST_SECONDS, SettingsController
 from viewer.state import codec
 from viewer.state.notices import Notices
@@ -26,7 +25,7 @@ class Parts:
         self.session.open(make_scene(lights=3))
         self.locked = False
         self.settings = SettingsController(self.session, self.preferences, self.notices, lambda: self.locked)
-        self.bookmarks = Bookmarks(self.session, self.preferences, self.settings, self.notices)
+        self.bookmarks = Bookmarks(self.session, self.preferences, self.notices, self.settings.save)
 
     def change(self, **changes: object) -> None:
         self.settings.change(**changes)
@@ -73,7 +72,7 @@ def test_lights_are_counted_around():
 
 def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
     parts = Parts()
-    parts.bookmarks.add("here")
+    parts.bookmarks.save("here")
     parts.session.set_draw(view=View.DEPTH)
     parts.settings.change(depth=3)
     parts.settings.reset(["bookmarks"])
@@ -81,22 +80,6 @@ def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):
     assert parts.session.draw.view is View.COLOR and parts.session.settings.depth == 10
     stored = json.loads((own_settings / "settings.json").read_text())
     assert stored["state"]["draw"]["view"] == "color" and len(stored["bookmarks"]) == 1
-
-
-def test_bookmarks_are_found_again_without_settings_and_a_damaged_one_is_one_line():
-    parts, place = Parts(), Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
-    parts.session.change(camera=place)
-    parts.bookmarks.add()
-    parts.bookmarks.add("  named ")
-    assert [mark.name for mark in parts.bookmarks.all] == ["frame 0", "named"]
-    found = parts.bookmarks.find(0)
-    assert found.camera == place and found.settings == parts.session.settings
-    parts.bookmarks.all[1].state = {"time": "noon"}
-    assert parts.bookmarks.find(1) is None and parts.notices.current.text.startswith("this bookmark is damaged")
-    parts.bookmarks.forget(0)
-    assert [mark.name for mark in parts.bookmarks.all] == ["named"]
-    parts.session.open(make_scene(path="other.aff"))
-    assert parts.bookmarks.all == []
 
 
 def test_the_radius_of_lamps_is_that_of_the_scene_and_their_samples_are_kept():

@@ -16,11 +16,11 @@ from viewer.services.undo import MOST_STEPS, Undo
 from viewer.state import codec
 from viewer.state.comparison import CompareMode
 from viewer.state.notices import Notices
+from viewer.state.pixels import Zoom
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.tone import Tone
 from viewer.state.views import View
-from viewer.state.zooming import Zoom
 
 AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 

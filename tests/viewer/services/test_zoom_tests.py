@@ -13,6 +13,7 @@ from tests.viewer.desk import ELSEWHERE, Desk, is_the_same_picture
 from tests.viewer.marbles import LAST, STEP, write_marbles
 from tracer.experiments import zoom
 from viewer.output import capture
+from viewer.state.picking import wrong_at
 from viewer.util.resources import embedded_scenes
 
 
@@ -132,7 +133,7 @@ def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
         assert (frame.width, frame.height) == (96, 96) and (frame.time, frame.camera) == (find.time, find.camera)
         assert tuple(frame.color[find.y, find.x].tolist()) == find.color
         assert tuple(frame.reference[find.y, find.x].tolist()) == find.reference
-        assert picked is not None and (picked.x, picked.y) == (find.x, find.y) and picked.wrong > 0
+        assert picked is not None and (picked.x, picked.y) == (find.x, find.y) and wrong_at(frame, find.x, find.y) > 0
         assert c.session.on_path == find.own_camera and c.session.draw.light == find.light
         assert c.session.settings.method == "paper" and c.session.settings.verify
         if find.bounces == 0:

@@ -10,10 +10,11 @@ import pytest
 
 from tests.viewer.drawn import classes_in
 from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
-from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
-from viewer.state.picking import NEARBY, Pick, extent_at, pick, pixel_at, pixel_of, point_at, refreshed, shadow_mode_of
+from viewer.state.picking import NEARBY, Pick, extent_at, pick, pixel_of, point_at, refreshed, shadow_mode_of, wrong_at
+from viewer.state.pixels import pixel_at
 from viewer.state.views import View
 
 SIZE = Settings(64, 32)
@@ -53,7 +54,7 @@ def test_a_pixel_or_two_off_is_near_enough(frame: Frame, kept: Pick, across: int
 
 def test_what_is_smaller_than_a_pixel_is_found_by_its_distance(frame: Frame, kept: Pick):
     elsewhere = showing_only(frame, kept, kept.x + 30, kept.y, beyond=1.0)
-    assert math.isclose(math.dist(frame.camera.position, kept.point), kept.depth)
+    assert math.isclose(math.dist(frame.camera.position, kept.point), frame.depth[kept.y, kept.x])
     assert pixel_of(kept, elsewhere) == (kept.x, kept.y)
     assert pixel_of(replace(kept, dynamic=True), elsewhere) is None, "what moves may have gone"
 
@@ -68,15 +69,12 @@ def test_wide_words_reach_light_30():
     assert shadow_mode_of(frame, 0, 31) is None
 
 
-def test_a_pick_tells_what_the_pixel_shows():
+def test_a_pick_says_what_the_pixel_shows():
     frame, scene = make_frame(), make_scene()
     at = ((2 * 3 + 0.5) / 16, 0.5)  # the fourth primitive
     found = pick(frame, scene, *at)
-    assert (found.primitive, found.kind, found.object_name, found.dynamic) == (3, "triangle", "static", False)
-    assert found.material is not None and found.material.name == "brick"
-    assert found.occlusion is OcclusionMode.FULLY_RENDERED
-    assert found.shadows == (ShadowMode.NON_SHADOW, ShadowMode.PARTIAL_SHADOW, ShadowMode.FULL_SHADOW)
-    assert (found.pixels, found.highest) == (16, 32)
+    assert (found.primitive, found.unit, found.kind, found.object_name) == (3, 3, "triangle", "static")
+    assert not found.dynamic and found.point is not None
     assert math.dist(found.point, frame.camera.position) == pytest.approx(2.0)
     assert pick(frame, scene, (2 * 4 + 0.5) / 16, 0.5).object_name == "train"
     assert pick(frame, scene, (2 * 6 + 0.5) / 16, 0.5).kind == "sphere"
@@ -87,26 +85,19 @@ def test_a_kept_pick_goes_by_cells_where_those_carry_the_modes():
     frame, cells = make_frame(), in_cells(make_frame())
     at = ((2 * 3 + 1.5) / 16, 0.5)  # the fourth primitive's second column
     found = pick(cells, make_scene(), *at)
-    assert (found.primitive, found.unit, found.in_cells, found.pixels) == (3, 7, True, 8)
-    assert found.shadows != pick(frame, make_scene(), *at).shadows
-    assert refreshed(found, frame) == replace(pick(frame, make_scene(), *at), in_cells=False)
+    assert (found.primitive, found.unit, found.in_cells) == (3, 7, True)
+    assert refreshed(found, frame) == pick(frame, make_scene(), *at)
     assert refreshed(pick(frame, make_scene(), *at), cells) == found
     elsewhere = in_cells(make_frame(time=1.0))
-    assert refreshed(pick(frame, make_scene(), *at), elsewhere).unit == 3, "which cell it is cannot be known"
+    assert refreshed(pick(frame, make_scene(), *at), elsewhere).unit == -1, "which cell it is cannot be known"
     certified = with_certificates(frame)
     assert pick(certified, make_scene(), *at).unit == 3, "certificates are no modes"
 
 
-def test_a_pick_counts_the_pixels_wrong_answers_as_long_as_it_shows_the_same():
+def test_wrong_answers_are_known_of_shaded_pixels_of_verified_frames():
     verified = make_frame(Settings(width=16, height=8, verify=True))
-    found = pick(verified, make_scene(), 5.5 / 16, 6.5 / 8)
-    assert found.wrong == 2
-    assert pick(verified, make_scene(), 0.5 / 16, 6.5 / 8).wrong == 0
-    unverified = refreshed(found, make_frame())
-    assert unverified.wrong is None
-    assert refreshed(unverified, verified).wrong == 2
-    assert refreshed(found, make_frame(Settings(width=32, height=8, verify=True))).wrong is None
-    assert refreshed(found, make_frame(verified.settings, time=1.0)).wrong is None
+    assert wrong_at(verified, 5, 6) == 2 and wrong_at(verified, 0, 6) == 0 and wrong_at(make_frame(), 5, 6) is None
+    assert wrong_at(replace(verified, shaded=np.zeros((8, 16), bool)), 5, 6) is None
 
 
 def test_points_outside_the_picture_are_clamped_and_misses_have_none():

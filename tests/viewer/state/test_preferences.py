@@ -10,7 +10,7 @@ import pytest
 
 from viewer.state import codec
 from viewer.state import preferences as prefs
-from viewer.state.preferences import Bookmark, Preferences, Preset, load_preferences, save_preferences
+from viewer.state.preferences import NamedState, Preferences, load_preferences, merged, save_preferences
 from viewer.state.tone import Tone
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
@@ -20,8 +20,8 @@ def test_what_was_saved_is_read(tmp_path: Path):
     mine = Preferences(
         state={"pace": {"target_fps": 30.0}, "draw": {"view": "depth"}}, recent=["/a.aff"], theme="light"
     )
-    mine.bookmarks["/a.aff"] = [Bookmark("here", {"time": 1.0})]
-    mine.presets = [Preset("mine", {"settings": {"depth": 3}})]
+    mine.bookmarks["/a.aff"] = [NamedState("here", {"time": 1.0})]
+    mine.presets = [NamedState("mine", {"settings": {"depth": 3}})]
     assert save_preferences(mine, tmp_path) is None
     assert load_preferences(tmp_path) == (mine, None)
     assert load_preferences(tmp_path / "nowhere") == (Preferences(), None)
@@ -77,13 +77,13 @@ def test_formats_1_and_2_are_read(tmp_path: Path):
     assert (state.pace.fixed_size, state.pace.width, state.pace.keep_tracing) == (True, 300, True)
     (preset,) = read.presets
     draw = {"view": "normal", "light": 1, "wipe": 0.5}
-    assert preset == Preset("mine", {"settings": {"depth": 2}, "draw": draw, "pace": {"every_frame": True}})
-    assert read.bookmarks == {"/a.aff": [Bookmark("here", {"time": 1.0})]}
+    assert preset == NamedState("mine", {"settings": {"depth": 2}, "draw": draw, "pace": {"every_frame": True}})
+    assert read.bookmarks == {"/a.aff": [NamedState("here", {"time": 1.0})]}
 
 
 def test_odd_values_keep_their_defaults_and_the_rest_is_read(tmp_path: Path):
     odd = {"loop": "yes", "theme": "pink", "unknown": 1, "recent": [1, "/b"], "presets": [{"name": 3}, 5],
-           "bookmarks": [], "speed": 2, "ui_scale": 1e9, "method": "telepathy", "format": 3}  # fmt: skip
+           "bookmarks": [], "speed": 2, "ui_scale": 1e9, "method": "telepathy", "format": 3, "pads": 7}  # fmt: skip
     (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(odd))
     read, problem = load_preferences(tmp_path)
     assert problem is None
@@ -126,3 +126,24 @@ def test_recent_scenes_are_few_and_newest_first():
         mine.remember_scene(Path(f"/{i}.aff"))
     mine.remember_scene(Path("/15.aff"))
     assert mine.recent[:2] == ["/15.aff", "/19.aff"] and len(mine.recent) == 10
+
+
+A, B, C, D = ({"name": name, "state": {}} for name in "ABCD")
+A2 = {**A, "name": "A2"}
+
+
+@pytest.mark.parametrize(
+    ("base", "mine", "theirs", "found"),
+    [
+        ({"depth": 1, "theme": "dark"}, {"depth": 2, "theme": "dark"}, {"depth": 1, "theme": "light"},
+         {"depth": 2, "theme": "light"}),
+        ({"depth": 1}, {"depth": 2}, {"depth": 3}, {"depth": 2}),
+        ({"marks": [A, B]}, {"marks": [A, B, C]}, {"marks": [B, D]}, {"marks": [B, C, D]}),
+        ({"marks": [A]}, {"marks": [A2]}, {"marks": [A, B]}, {"marks": [A2, B]}),
+        ({"marks": {}}, {"marks": {"room": [A]}}, {"marks": {"hall": [B]}, "of a newer version": 7},
+         {"marks": {"room": [A], "hall": [B]}, "of a newer version": 7}),
+        ({"last": {"a": 1}}, {"last": {}}, {"last": {"a": 1}}, {"last": {}}),
+    ],
+)  # fmt: skip
+def test_what_two_windows_have_changed_is_put_together(base: dict, mine: dict, theirs: dict, found: dict):
+    assert merged(base, mine, theirs) == found

@@ -29,7 +29,7 @@ from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.lights import Light, light_in_words
 from tracer.statistics import CutErrors, SaidByModes
-from viewer.output.legend_picture import with_legend
+from viewer.output.overlays import with_legend
 from viewer.state.draw_options import Slice
 from viewer.state.palette import FATE_COLORS, FATE_NAMES, GREY, OCCLUSION_COLORS, WRONG
 from viewer.state.readings import can_draw

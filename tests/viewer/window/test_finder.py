@@ -37,7 +37,7 @@ def test_every_item_has_a_name_of_its_own(ui):
     [
         ("undo", "Undo"), ("nl", "Next light"), ("occl", "Occlusion mode"), ("bounces", "setting Bounces"),
         ("paper as", "preset As in the paper"), ("figure4", None), ("reload", "Reload"),
-        ("embree", "Copy camera for Embree"), ("occulsion", "Occlusion mode"),
+        ("occulsion", "Occlusion mode"),
         ("why traced", "Fate of shadow rays"), ("culled view", "Fate of shadow rays"),
         ("dynamic darkened", "Moving shadows"),
         ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"),

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from types import SimpleNamespace
 
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.settings import Settings
 from viewer.state import terms
-from viewer.window.panels import loading
+from viewer.window.panels.inspector import unanswered
 from viewer.window.panels.status import doing, first_picture
-from viewer.window.panels.why import unanswered
 
 
 def test_a_start_says_one_thing_until_it_is_over() -> None:
@@ -27,21 +25,6 @@ def test_a_start_says_one_thing_until_it_is_over() -> None:
     assert not any("shading" in text or "loading" in text for text in said.values())
     loader.compiles = False
     assert doing(c) == "loading what makes certificates: 50 %"
-
-
-def test_the_line_below_the_preview_tells_of_the_job_that_it_shows() -> None:
-    now = time.monotonic()
-    kernels = SimpleNamespace(title="Compiling", label="shading", fraction=0.25, started=now, stopping=False)
-    load = SimpleNamespace(title="Opening a.aff", label="", fraction=0.5, started=now, stopping=False)
-    assert loading.in_one_line(kernels, load) == "Compiling: 25 %, 0 s so far"
-    assert loading.in_one_line(load, load) == "Opening a.aff: 50 %, 0 s so far"
-    assert "Compiling kernels" in loading.doing(kernels, kernels, True)
-    assert loading.doing(load, None, True) == loading.doing(load, kernels, True) == "starting"
-    load.label = "building the tree"
-    assert loading.doing(load, None, True) == "building the tree"
-    load.stopping = True
-    assert loading.in_one_line(load, load) == loading.in_one_line(kernels, load) == "cancelling ..."
-    assert loading.in_one_line(kernels, None).startswith("Compiling")
 
 
 def test_beams_are_named_where_they_ask() -> None:
@@ -87,11 +70,11 @@ def test_without_a_picture_it_is_said_what_goes_on() -> None:
 def test_what_was_asked_says_what_it_waits_for() -> None:
     """Nothing moves while samples are added, and an answer comes all the same only after one."""
     for changes, said in (
-        ({}, "tracing its shadow rays ..."),
-        ({"adds_samples": True}, "answered after this sample"),
-        ({"refines_lamps": True}, "answered after the samples of lamps"),
-        ({"renderer": SimpleNamespace(busy=True)}, "answered after this picture"),
-        ({"motion": SimpleNamespace(is_animating=True)}, "answered when nothing moves"),
+        ({}, "Tracing its shadow rays ..."),
+        ({"adds_samples": True}, "Answered after this sample."),
+        ({"refines_lamps": True}, "Answered after the samples of lamps."),
+        ({"renderer": SimpleNamespace(busy=True)}, "Answered after this picture."),
+        ({"motion": SimpleNamespace(is_animating=True)}, "Answered when nothing moves."),
     ):
         assert unanswered(SimpleNamespace(controller=_idle(**changes))) == said
 

@@ -1,4 +1,4 @@
-"""Where the picture is shown: a rectangle of the screen, with the zoom in it; and words beside a point of it."""
+"""Where the picture is shown: a rectangle of the screen, with the zoom in it; and words on it."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state.zooming import Zoom
+from viewer.state.pixels import Zoom
 from viewer.window.widgets import em
 
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
 _GAPS = 1.2, 0.6  # ems from the point: to the right of it or below it, and on its other sides
+_PAD = 0.4  # ems around words
 
 Pair = tuple[float, float]
 Rect = tuple[float, float, float, float]
@@ -42,8 +43,7 @@ class Area:
 
     @property
     def whole_end(self) -> ImVec2:
-        corner, size = self.whole, self.whole_size
-        return ImVec2(corner.x + size.x, corner.y + size.y)
+        return self.to_screen(1.0, 1.0)
 
     def to_picture(self, x: float, y: float) -> tuple[float, float]:
         """The point of the picture, 0 to 1 from left and top, at a point of the screen."""
@@ -55,16 +55,25 @@ class Area:
         return ImVec2(corner.x + u * size.x, corner.y + v * size.y)
 
 
-def write_beside(lines: Sequence[str], at: ImVec2, room: Rect, taken: Rect | None) -> None:
-    """Write a few lines, inside the room and not over what is taken, if that can be."""
-    pad, line = em(0.4), imgui.get_text_line_height()
-    width, height = max(imgui.calc_text_size(text).x for text in lines) + 2.0 * pad, line * len(lines) + 2.0 * pad
-    left, top = beside((at.x, at.y), (width, height), (em(_GAPS[0]), em(_GAPS[1])), room, taken)
-    draw = imgui.get_window_draw_list()
-    back, front = imgui.get_color_u32(_BACK), imgui.get_color_u32(_FRONT)
-    draw.add_rect_filled(ImVec2(left, top), ImVec2(left + width, top + height), back, em(0.3))
+def size_of(lines: Sequence[str]) -> Pair:
+    """The size of a few lines with the ground that they are written on."""
+    width = max(imgui.calc_text_size(text).x for text in lines)
+    return width + 2.0 * em(_PAD), imgui.get_text_line_height() * len(lines) + 2.0 * em(_PAD)
+
+
+def write_lines(lines: Sequence[str], at: ImVec2, color: ImVec4 = _FRONT) -> None:
+    """Write a few lines on a dark ground, from a corner on."""
+    (width, height), pad, draw = size_of(lines), em(_PAD), imgui.get_window_draw_list()
+    draw.add_rect_filled(at, ImVec2(at.x + width, at.y + height), imgui.get_color_u32(_BACK), em(0.3))
     for number, text in enumerate(lines):
-        draw.add_text(ImVec2(left + pad, top + pad + number * line), front, text)
+        below = number * imgui.get_text_line_height()
+        draw.add_text(ImVec2(at.x + pad, at.y + pad + below), imgui.get_color_u32(color), text)
+
+
+def write_beside(lines: Sequence[str], at: ImVec2, room: Rect, taken: Rect | None) -> None:
+    """Write a few lines beside a point, inside the room and not over what is taken, if that can be."""
+    corner = beside((at.x, at.y), size_of(lines), (em(_GAPS[0]), em(_GAPS[1])), room, taken)
+    write_lines(lines, ImVec2(*corner))
 
 
 def beside(at: Pair, size: Pair, gaps: Pair, room: Rect, taken: Rect | None = None) -> Pair:
@@ -74,18 +83,13 @@ def beside(at: Pair, size: Pair, gaps: Pair, room: Rect, taken: Rect | None = No
     fits into the room and covers nothing that is taken; where all of that would, it covers it all the same."""
     (x, y), (width, height), (after, before) = at, size, gaps
     lefts, tops = (x + after, x - before - width), (y + after, y - before - height)
-    places = [(left, top) for top in tops for left in lefts if _inside((left, top), size, room)]
+    left, upper, right, lower = room
+    places = [(a, b) for b in tops for a in lefts if left <= a <= right - width and upper <= b <= lower - height]
     if not places:
-        return max(lefts[1], room[0]), max(tops[1], room[1])
-    free = [place for place in places if taken is None or not _meets(place, size, taken)]
-    return (free or places)[0]
-
-
-def _inside(place: Pair, size: Pair, room: Rect) -> bool:
-    left, top, right, lower = room
-    return place[0] >= left and place[1] >= top and place[0] + size[0] <= right and place[1] + size[1] <= lower
+        return max(lefts[1], left), max(tops[1], upper)
+    return next((place for place in places if taken is None or not _meets(place, size, taken)), places[0])
 
 
 def _meets(place: Pair, size: Pair, taken: Rect) -> bool:
-    left, top, right, lower = taken
-    return place[0] < right and place[0] + size[0] > left and place[1] < lower and place[1] + size[1] > top
+    left, upper, right, lower = taken
+    return place[0] < right and place[0] + size[0] > left and place[1] < lower and place[1] + size[1] > upper

@@ -7,22 +7,11 @@ from dataclasses import replace
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.state import navigation
 from viewer.window.camera_commands import focus
-from viewer.window.panels import bookmarks
-from viewer.window.setting_rows import ALL, setting_row, setting_switch
+from viewer.window.panels import named_states
+from viewer.window.setting_rows import ALL, setting_row
 from viewer.window.ui import Ui
-from viewer.window.widgets import (
-    QUIET,
-    checkbox,
-    heading,
-    paragraph,
-    properties,
-    row,
-    same_line_for,
-    tooltip,
-    wide_button,
-)
+from viewer.window.widgets import QUIET, heading, paragraph, properties, row, same_line_for, tooltip, wide_button
 
 _MODES = {
     "Fly": "drag to look around, W A S D Q E to move",
@@ -36,9 +25,8 @@ def show(ui: Ui) -> None:
         paragraph("No scene is open.", QUIET)
         return
     _place(ui)
-    bookmarks.show(ui)
+    named_states.show_bookmarks(ui)
     _moving(ui)
-    _path(ui)
 
 
 def _place(ui: Ui) -> None:
@@ -47,20 +35,21 @@ def _place(ui: Ui) -> None:
     with properties("camera", 5.0) as shown:
         if shown:
             row("Position")
-            changed, position = imgui.drag_float3(
+            changed, (x, y, z) = imgui.drag_float3(
                 "##position", list(camera.position), 0.02 * c.motion.pace, format="%.4g"
             )
             if changed:
-                c.motion.move(replace(camera, position=(position[0], position[1], position[2])))
+                c.motion.move(replace(camera, position=(x, y, z)))
             row("Direction")
-            view = [float(x) for x in camera.basis()[2]]
-            changed, direction = imgui.drag_float3("##direction", view, 0.01, -1.0, 1.0, "%.3f")
-            if changed and sum(x * x for x in direction) > 1e-6:
-                c.motion.move(replace(camera, direction=(direction[0], direction[1], direction[2])))
+            view = [float(part) for part in camera.basis()[2]]
+            changed, (x, y, z) = imgui.drag_float3("##direction", view, 0.01, -1.0, 1.0, "%.3f")
+            if changed and x * x + y * y + z * z > 1e-6:
+                c.motion.move(replace(camera, direction=(x, y, z)))
             row("Angle", "of the vertical field of view")
-            changed, angle = imgui.slider_float("##angle", camera.angle, 5.0, 120.0, "%.1f degrees")
+            clamped = int(imgui.SliderFlags_.always_clamp)
+            changed, angle = imgui.slider_float("##angle", camera.angle, 1.0, 170.0, "%.1f degrees", clamped)
             if changed:
-                c.motion.move(navigation.zoom(camera, angle))
+                c.motion.move(replace(camera, angle=angle))
     if wide_button(
         f"{icons.ICON_FA_CROSSHAIRS}  Focus", f"on what is selected, or under the pointer{ui.key('Focus')}", 2
     ):
@@ -83,26 +72,5 @@ def _moving(ui: Ui) -> None:
                     p.navigation = name.lower()
                 tooltip(f"{tip}{ui.key(name)}")
             setting_row(ui, ALL["speed"])
-
-
-def _path(ui: Ui) -> None:
-    c = ui.controller
-    p = c.preferences
-    heading("Path and time")
-    if not c.session.animated:
-        paragraph("Nothing moves in this scene.", QUIET)
-        return
-    checkbox(
-        "Follow the scene's path",
-        c.session.on_path,
-        c.motion.follow_path,
-        "until the camera is moved by hand" + ui.key("Follow the scene's path"),
-    )
-    checkbox("Loop", p.loop, lambda on: setattr(p, "loop", on))
-    every_frame = ALL["pace.every_frame"]
-    same_line_for(every_frame.label)
-    setting_switch(ui, every_frame)
-    if not c.session.pace.every_frame:
-        with properties("rate", 5.0) as shown:
-            if shown:
+            if ui.controller.session.animated:
                 setting_row(ui, ALL["playback_rate"])

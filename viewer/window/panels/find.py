@@ -12,9 +12,9 @@ from viewer.services.scene_table import Listing, SceneTable
 from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.state.row_filter import HELP, HINTS
 from viewer.state.scene_rows import COLUMNS, Column, Level
+from viewer.window.commands import FindState
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
-from viewer.window.view_commands import FindState
 from viewer.window.widgets import (
     ERROR,
     QUIET,

@@ -9,7 +9,7 @@ from tracer.experiments import counterexample, hunt
 from tracer.experiments.counterexample import Counterexample
 from tracer.scene.model import Scene
 from viewer.services.hunts import Hunts
-from viewer.window.panels.method_choice import method_list
+from viewer.window.panels.culling import method_list
 from viewer.window.panels.runs import choice, export_buttons, frames_row, results_table, side_by_side, start_or_progress
 from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui

@@ -2,35 +2,55 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode
+from tracer.explanation import Explanation
+from tracer.frame import Frame
 from tracer.mode_origins import Origin
-from tracer.scene.model import Material
-from tracer.why_in_words import Link, Words
-from viewer.state.palette import OCCLUSION_COLORS, OCCLUSION_MEANING, SHADOW_COLORS, SHADOW_MEANING
-from viewer.state.picking import Pick
+from tracer.reasons import Reason, Rule, Why
+from tracer.scene.model import Material, Scene
+from tracer.why_in_words import Link, Words, plain
+from viewer.services.inspector import MOST_LIGHTS, nearest_first, with_origins
+from viewer.state.palette import (
+    FATE_COLORS,
+    FATE_NAMES,
+    OCCLUSION_COLORS,
+    OCCLUSION_MEANING,
+    SHADOW_COLORS,
+    SHADOW_MEANING,
+    Color,
+)
+from viewer.state.picking import Pick, shadow_mode_of, wrong_at
 from viewer.state.readings import can_draw
 from viewer.state.views import View
+from viewer.util.numbers import several
 from viewer.views import cell_lights
-from viewer.window.panels import rays, why
-from viewer.window.panels.links import sentence
+from viewer.window.panels import lights, rays
+from viewer.window.panels.links import Pointed, sentence
+from viewer.window.panels.status import traced_before_an_answer
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
     QUIET,
     clipped,
     count,
+    em,
+    fitted,
     heading,
     paragraph,
     properties,
     swatch,
     tooltip,
+    tooltip_at,
     value,
 )
+
+Pixel = tuple[int, int]
 
 
 def show(ui: Ui) -> None:
@@ -39,7 +59,7 @@ def show(ui: Ui) -> None:
     picked, at = selection.picked, selection.pixel
     if picked is not None:
         named = f"{picked.object_name} ({picked.kind})"
-        clipped(f"pixel {at[0]}, {at[1]}: {named}" if at is not None else f"{named}, not visible from here", QUIET)
+        clipped(f"pixel {at[0]}, {at[1]}: {named}" if at is not None else named, QUIET)
         imgui.same_line()
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
             selection.clear()
@@ -49,9 +69,7 @@ def show(ui: Ui) -> None:
         return
     found = selection.at(selection.hovered)
     if found is None:
-        paragraph(
-            "Point at the picture to inspect a pixel, or click to select one: why are its shadow rays culled?", QUIET
-        )
+        paragraph("Point at a pixel, or click one: why are its shadow rays culled, or traced?", QUIET)
     elif found.primitive < 0:
         paragraph(f"Pixel {found.x}, {found.y}: background.", QUIET)
     else:
@@ -59,73 +77,204 @@ def show(ui: Ui) -> None:
         _details(ui, found, (found.x, found.y))
 
 
-def _details(ui: Ui, pick: Pick, at: tuple[int, int] | None) -> None:
-    frame = ui.controller.frame
-    by_modes = frame is None or frame.settings.keeps_modes
-    if pick.wrong and frame is not None:
-        paragraph(_wrong(pick.wrong, frame.settings.samples), ERROR)
-    why.show(ui)  # first, as it is what a click asks
-    if by_modes:
-        heading("Modes of its cell" if pick.in_cells else "Modes")
-        _modes(ui, pick)
-    rays.section(ui)
+def _details(ui: Ui, pick: Pick, at: Pixel | None) -> None:
+    """All that is known; of what is not visible from here, what it is."""
+    frame, scene = ui.controller.frame, ui.controller.session.scene
+    if frame is None or scene is None:
+        return
+    if at is None:
+        paragraph("Not visible from here. Its shadow rays are explained when it is in view again.", QUIET)
+    else:
+        wrong = wrong_at(frame, *at)
+        if wrong:
+            of = f"in its {frame.settings.samples} samples, at all bounces" if frame.settings.samples > 1 else ""
+            paragraph(f"{several(wrong, 'wrong shadow answer')} at this pixel, {of or 'at all bounces'}.", ERROR)
+        _why(ui, scene)  # first, as it is what a click asks
+        if frame.settings.keeps_modes:
+            heading("Modes of its cell" if pick.in_cells else "Modes")
+            _modes(ui, pick, frame, scene)
+        rays.section(ui)
     heading("Surface")
     with properties("primitive", 5.8) as shown:
-        if not shown:
-            return
-        value("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""), wraps=True)
-        value("Primitive", f"{pick.primitive}  ({pick.kind})")
-        if pick.in_cells:
-            value("Cell", f"{pick.unit}", "the part of the primitive that has modes and pixel counts of its own")
-        if pick.material is not None:
-            value("Material", pick.material.name, _describe(pick.material), wraps=True)
-        if frame is not None and at is not None and can_draw(frame, View.CELL_LIGHTS):
-            asked = int(cell_lights.VIEW.found(frame)[at[1], at[0]])
-            if asked >= 0:
-                lights = f"looks at {count(asked)} of {count(frame.lights)} lights"
-                value("Its cell", lights, "of the octree of this method: all but those known to be hidden from it")
-        if not by_modes:  # else it is said above
-            value("Pixels", f"{count(pick.pixels)} now")
-        if math.isfinite(pick.depth):  # else nothing of it is seen
-            value("Depth", f"{pick.depth:.5g}")
-        if pick.point is not None:
-            value("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
-        if pick.normal is not None:
-            value("Normal", ", ".join(f"{along:z.2f}" for along in pick.normal))
+        if shown:
+            _surface(pick, at, frame, scene)
 
 
-def _wrong(answers: int, samples: int) -> str:
-    """How many answers are wrong at a pixel, and of which of its rays; the sentences are of its first ray alone."""
-    of = f"in its {samples} samples, at all bounces" if samples > 1 else "at all bounces"
-    return f"{count(answers)} wrong shadow {'answer' if answers == 1 else 'answers'} at this pixel, {of}."
+def _surface(pick: Pick, at: Pixel | None, frame: Frame, scene: Scene) -> None:
+    value("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""), wraps=True)
+    value("Primitive", f"{pick.primitive}  ({pick.kind})")
+    if pick.in_cells:
+        value("Cell", f"{pick.unit}", "the part of the primitive that has modes and pixel counts of its own")
+    if pick.primitive < scene.primitive_count:  # an edit may be on its way
+        material = scene.material_of(pick.primitive)
+        value("Material", material.name, _describe(material), wraps=True)
+    if pick.point is not None:
+        value("Point", "{:.4g}, {:.4g}, {:.4g}".format(*pick.point))
+    if at is None:
+        return
+    x, y = at
+    asked = int(cell_lights.VIEW.found(frame)[y, x]) if can_draw(frame, View.CELL_LIGHTS) else -1
+    if asked >= 0:
+        of = "of the octree of this method: all but those known to be hidden from it"
+        value("Its cell", f"looks at {count(asked)} of {count(frame.lights)} lights", of)
+    if not frame.settings.keeps_modes and 0 <= pick.unit < len(frame.pixel_count):  # else it is said above
+        value("Pixels", f"{count(frame.pixel_count[pick.unit])} now")
+    value("Depth", f"{frame.depth[y, x]:.5g}")
+    value("Normal", ", ".join(f"{along:z.2f}" for along in frame.normal[y, x]))
 
 
-def _modes(ui: Ui, pick: Pick) -> None:
+def _describe(m: Material) -> str:
+    text = "diffuse ({:.3g}, {:.3g}, {:.3g}), specular ({:.3g}, {:.3g}, {:.3g})".format(*m.diffuse, *m.specular)
+    text += f", exponent {m.exponent:.4g}"
+    return text + (f", transmission {m.transmission:.3g}, index {m.ior:.3g}" if m.transmission else "")
+
+
+# --- why: a sentence for the chosen light, a line for each other one -----------------------------------
+
+
+def _why(ui: Ui, scene: Scene) -> None:
+    """The sentences, the chosen light's first; nothing but what the answer waits for while they are not known."""
+    answer, found = ui.controller.inspector.answer, ui.controller.inspector.why
+    if found is None:
+        paragraph(unanswered(ui), QUIET)
+        return
+    found = _with_origins(ui, found)
+    words = Words(scene, found)
+    if not found.reasons:
+        paragraph("The scene has no lights.", QUIET)
+    number = min(ui.controller.session.draw.light, len(found.reasons) - 1)
+    chosen = found.reasons[number] if found.reasons else None
+    if chosen is not None:
+        _name(ui, chosen, chosen=True)
+        sentence(ui, words.reason(chosen), "reason")
+        if said := words.answer(chosen):
+            sentence(ui, said, "answer", ERROR if chosen.wrong else QUIET)
+    many = len(found.reasons) > lights.FEW
+    for one in () if many else found.reasons:
+        if one is not chosen:
+            _line(ui, words, one)
+    if found.coverage is not None:
+        imgui.dummy(ImVec2(0.0, em(0.1)))
+        told = chosen.occluded if chosen is not None and _says_what_hides(chosen) else None
+        sentence(ui, words.coverage(found.coverage, told), "coverage")
+    if answer is not None and answer.wrong_beyond:
+        answers = several(answer.wrong_beyond, "shadow answer")
+        paragraph(f"Also wrong: {answers} at what is reflected here or seen through it; Rays lists them.", ERROR)
+    if many and answer is not None:
+        _many(ui, words, found, answer.lights, number)
+
+
+def unanswered(ui: Ui) -> str:
+    """What the answer waits for."""
+    c = ui.controller
+    if c.runs.current is not None:
+        return f"Answered when the {c.runs.current.name} has ended."
+    if c.inspector.problem:
+        return f"No answer: {c.inspector.problem}."
+    if c.motion.is_animating:
+        return "Answered when nothing moves."
+    before = traced_before_an_answer(c)
+    return f"Answered after {before}." if before else "Tracing its shadow rays ..."
+
+
+def summary(known: Sequence[Explanation]) -> str:
+    """How many lights get here, in full or in part."""
+    due = [one for one in known if one.due]
+    lit = sum(one.reached == one.samples for one in due)
+    dark = sum(one.reached == 0 for one in due)
+    parts = {"lit": lit, "in part": len(due) - lit - dark, "in shadow": dark, "facing away": len(known) - len(due)}
+    return ", ".join(f"{count(number)} {name}" for name, number in parts.items() if number)
+
+
+def _with_origins(ui: Ui, found: Why) -> Why:
+    """The same with the pictures that set the modes of what was clicked."""
+    picked = ui.controller.selection.picked
+    origins = None if picked is None else ui.controller.history.origins_of(picked)
+    if origins is None:
+        return found
+    named = ui.cached("why", found, origins, lambda: with_origins(found, origins, lambda number: f"picture {number}"))
+    return named  # type: ignore[no-any-return]
+
+
+def _says_what_hides(one: Reason) -> bool:
+    """Whether a light's sentence says what hides the primitive."""
+    return (one.instead or one).rule in (Rule.PARTLY_OCCLUDED, Rule.NOT_SEEN_WHOLE, Rule.EXAMINED_ANEW)
+
+
+def _name(ui: Ui, one: Reason, chosen: bool) -> ImVec2:
+    """A light's colour and name, and where that ends; resting on it picks it out over the picture, a click chooses
+    it."""
+    imgui.push_id(one.light)
+    swatch(FATE_COLORS[one.fate])
+    name, start = ui.light_name(one.light), imgui.get_cursor_screen_pos()
+    clicked, _ = imgui.selectable(f"{name}##light", chosen, int(imgui.SelectableFlags_.allow_overlap))
+    if clicked:
+        ui.controller.settings.set_light(one.light)
+    if imgui.is_item_hovered():
+        ui.state(Pointed).light = one.light
+    imgui.pop_id()
+    return ImVec2(start.x + imgui.calc_text_size(name).x, start.y)
+
+
+def _line(ui: Ui, words: Words, one: Reason) -> None:
+    """Another light, in one line."""
+    end = _name(ui, one, chosen=False)
+    text = " ".join(filter(None, (plain(words.reason(one)), plain(words.answer(one)))))
+    if imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)):
+        tooltip_at(f"{ui.light_name(one.light)}: {FATE_NAMES[one.fate]}\n\n{text}\n\nClick to choose this light.")
+    below = imgui.get_cursor_screen_pos()
+    imgui.set_cursor_screen_pos(ImVec2(end.x + em(0.5), end.y))
+    imgui.text_colored(ERROR if one.wrong else QUIET, fitted(text, imgui.get_content_region_avail().x))
+    imgui.set_cursor_screen_pos(below)
+
+
+def _many(ui: Ui, words: Words, found: Why, known: Sequence[Explanation], chosen: int) -> None:
+    """Those of many lights that are looked for, those that are answered wrongly and the nearest first."""
+    paragraph(summary(known), QUIET)
+    wanted = [known[light] for light in lights.found(ui, "inspector") if light < min(len(known), len(found.reasons))]
+    nearest = nearest_first(wanted)
+    nearest.sort(key=lambda one: not found.reasons[one.light].wrong)
+    for one in nearest[:MOST_LIGHTS]:
+        if one.light != chosen:
+            _line(ui, words, found.reasons[one.light])
+    if len(nearest) > MOST_LIGHTS:
+        paragraph(f"the nearest {MOST_LIGHTS} are listed and drawn", QUIET)
+
+
+# --- modes ----------------------------------------------------------------------------------------------
+
+
+def _modes(ui: Ui, pick: Pick, frame: Frame, scene: Scene) -> None:
     """The occlusion mode and the shadow mode per light, and how the pixel compares with its two reference pixels."""
-    origins = ui.controller.history.origins_of(pick)
+    if not 0 <= pick.unit < len(frame.modes):
+        paragraph("Known when the picture shows its cell.", QUIET)
+        return
+    occlusion = OcclusionMode(int(modes.occlusion_mode(frame.modes[pick.unit])))
+    origins, covered = ui.controller.history.origins_of(pick), 0
     if imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_prop)):
         imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
         imgui.table_setup_column("mode", int(imgui.TableColumnFlags_.width_stretch), 1.5)
-        if pick.occlusion is not None:
-            mode = pick.occlusion
-            _mode("occlusion", mode.name, OCCLUSION_COLORS[mode], OCCLUSION_MEANING[mode])
-        for light, shadow in enumerate(() if pick.occlusion is OcclusionMode.DYNAMIC else pick.shadows):
-            if shadow is not None:
+        _mode("occlusion", occlusion.name, OCCLUSION_COLORS[occlusion], OCCLUSION_MEANING[occlusion])
+        for light in range(len(scene.lights)):
+            shadow = shadow_mode_of(frame, pick.unit, light)
+            if shadow is None:
+                break
+            covered += 1
+            if occlusion is not OcclusionMode.DYNAMIC:
                 _mode(ui.light_name(light), shadow.name, SHADOW_COLORS[shadow], SHADOW_MEANING[shadow])
                 if origins is not None and light < len(origins.lights):
                     _origin(ui, origins.lights[light], light)
         imgui.end_table()
-    uncovered = sum(mode is None for mode in pick.shadows)
+    uncovered = len(scene.lights) - covered
     if uncovered:
         paragraph(f"{uncovered} more {'light has' if uncovered == 1 else 'lights have'} no shadow mode", QUIET)
-    found, scene = ui.controller.inspector.why, ui.controller.session.scene
-    if found is not None and scene is not None:
-        words = Words(scene, found)
+    found = ui.controller.inspector.why
+    if found is not None:
         for number, one in enumerate(found.references):
-            sentence(ui, words.reference(one), f"reference {number}", QUIET)
+            sentence(ui, Words(scene, found).reference(one), f"reference {number}", QUIET)
 
 
-def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str) -> None:
+def _mode(name: str, mode: str, color: Color, meaning: str) -> None:
     imgui.table_next_column()
     swatch(color)
     paragraph(name, QUIET)
@@ -135,19 +284,8 @@ def _mode(name: str, mode: str, color: tuple[float, float, float], meaning: str)
 
 
 def _origin(ui: Ui, origin: Origin, light: int) -> None:
-    """The pictures, numbered as in the plots, in which the primitive was first seen lit by a light and blocked from it,
-    with the pixels that were."""
+    """The pictures, numbered as in the plots, in which the primitive was first seen lit by a light and blocked from
+    it."""
     for lit, number in origin.met():
-        found, word, by = ui.controller.origins.of(number, light, lit), "lit" if lit else "blocked", ""
-        if found is not None and found.pixel is not None:
-            by = f" at {found.pixel[0]}, {found.pixel[1]}" + (f" and {found.count - 1} more" if found.count > 1 else "")
-        elif found is not None:
-            by = " for reflected or refracted rays"
-        link = Link(f"picture {number}", frame=number, pixel=None if found is None else found.pixel)
-        sentence(ui, (f"{word} in ", link, by), f"{light} {word}", QUIET)
-
-
-def _describe(m: Material) -> str:
-    text = "diffuse ({:.3g}, {:.3g}, {:.3g}), specular ({:.3g}, {:.3g}, {:.3g})".format(*m.diffuse, *m.specular)
-    text += f", exponent {m.exponent:.4g}"
-    return text + (f", transmission {m.transmission:.3g}, index {m.ior:.3g}" if m.transmission else "")
+        word = "lit" if lit else "blocked"
+        sentence(ui, (f"{word} in ", Link(f"picture {number}", frame=number)), f"{light} {word}", QUIET)

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from tracer.frame import Frame, Settings
 from tracer.reasons import SECTIONS
 from tracer.why_in_words import Link, Sentence
 from viewer.state.pixels import Point
@@ -92,16 +91,17 @@ def _link(ui: Ui, link: Link, text: str, number: int) -> None:
 
 
 def go_to(ui: Ui, link: Link) -> None:
-    """Go to the frame, or select the pixel or the primitive, that a link stands for."""
+    """Go back to the frame, or select the pixel or the primitive, that a link stands for."""
     c = ui.controller
+    selection, point = c.selection, _point(ui, link)
     if link.frame is not None:
-        c.navigator.go(link.frame, point=_point(ui, link))
-    elif link.pixel is not None:
-        point = _point(ui, link)
-        if point is not None:
-            c.selection.select(point)
+        picked = selection.picked
+        c.navigator.go(link.frame)
+        selection.picked = picked
+    elif point is not None:
+        selection.select(point)
     elif link.primitive is not None and c.session.edited is not None:
-        c.selection.select_primitive(int(c.session.edited.primitives[link.primitive]))
+        selection.select_primitive(int(c.session.edited.primitives[link.primitive]))
 
 
 def _about(ui: Ui, link: Link) -> str:
@@ -114,15 +114,8 @@ def _about(ui: Ui, link: Link) -> str:
 
 
 def _point(ui: Ui, link: Link) -> Point | None:
-    """The pixel of a link as a point of the picture, or of the picture that set a mode; None where another picture is
-    shown than the one that it is of, or where that is no longer kept."""
-    c = ui.controller
-    of: Frame | Settings | None = None
-    if link.frame is not None:
-        moment = c.history.records.get(link.frame)
-        of = moment.settings if moment is not None else None
-    elif c.frame is not None and c.inspector.names_pixels_of(c.frame):
-        of = c.frame
-    if link.pixel is None or of is None:
+    """The pixel of a link as a point of the picture, None where another picture is shown than the one that it is of."""
+    frame = ui.controller.frame
+    if link.pixel is None or frame is None or not ui.controller.inspector.names_pixels_of(frame):
         return None
-    return (link.pixel[0] + 0.5) / of.width, (link.pixel[1] + 0.5) / of.height
+    return (link.pixel[0] + 0.5) / frame.width, (link.pixel[1] + 0.5) / frame.height

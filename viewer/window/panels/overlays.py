@@ -12,12 +12,12 @@ from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
 from tracer.light_cut import LightCut
 from tracer.reasons import Why
-from viewer.services.pixel_inspector import MOST_CLUSTERS, Answer, drawn_primitives
+from viewer.services.inspector import MOST_CLUSTERS, Inspection, drawn_primitives
 from viewer.state.palette import FATE_COLORS, SHADOW_COLORS, color_map
+from viewer.state.picking import outline_of, part_points, primitive_points
 from viewer.state.projection import Stroke, place, strokes
-from viewer.state.selection_lookup import outline_of, part_points, primitive_points
 from viewer.window import comparing
-from viewer.window.panels import ray_overlay, slicing
+from viewer.window.panels import rays, slicing
 from viewer.window.panels.area import Area, write_beside
 from viewer.window.panels.legend import LegendState
 from viewer.window.panels.links import Pointed
@@ -48,8 +48,9 @@ def show(ui: Ui, area: Area) -> None:
         return
     with pen(area, frame) as made:
         picked, answer = c.selection.picked, c.inspector.answer
-        if c.rays.visible:  # it shows the same rays, and more
-            ray_overlay.draw(ui, made, frame, BESIDE_CLUSTERS if c.inspector.cut is not None else 1.0)
+        tree = rays.listed(ui)
+        if tree is not None:  # it has the same rays, and more
+            rays.draw(ui, made, frame, tree, BESIDE_CLUSTERS if c.inspector.cut is not None else 1.0)
         elif picked is not None and answer is not None and c.session.draw.rays:
             _shadow_rays(ui, made, frame, answer, pointed)
         _why(ui, made, frame)
@@ -61,7 +62,7 @@ Line = tuple[tuple[float, float, float], float, int, list[Stroke]]
 """Colour, width in ems, light and strokes."""
 
 
-def shadow_lines(answer: Answer, frame: Frame) -> list[Line]:
+def shadow_lines(answer: Inspection, frame: Frame) -> list[Line]:
     """Outlines of what is named, then, for each light that is drawn, its ray to the point as far as it gets, and on."""
     lines: list[Line] = []
     for one in answer.drawn:
@@ -76,7 +77,7 @@ def shadow_lines(answer: Answer, frame: Frame) -> list[Line]:
     return lines
 
 
-def _shadow_rays(ui: Ui, made: Pen, frame: Frame, answer: Answer, pointed: int | None) -> None:
+def _shadow_rays(ui: Ui, made: Pen, frame: Frame, answer: Inspection, pointed: int | None) -> None:
     """The lights' rays to the point, with a disc at each light and a cross where its ray ends before the point."""
     others = BESIDE_CLUSTERS if ui.controller.inspector.cut is not None else 1.0
 

@@ -1,116 +1,127 @@
-"""What became of the rays of the clicked pixel: a tree that folds, with filters."""
+"""What became of the rays of the clicked pixel: a tree that folds, in the Inspector, and its rays over the picture.
+
+Rays are drawn on their way, and shadow rays as far as light comes, and on."""
 
 from __future__ import annotations
 
-from imgui_bundle import ImVec2, imgui
+from collections.abc import Sequence
+from enum import Enum
+from functools import partial
+from typing import NamedTuple
 
-from viewer.output.ray_rows import Row, Shown, totals
-from viewer.services.ray_inspector import RayInspector
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from tracer.frame import Frame
+from tracer.told_rays import AWAY, TRACED, RayTree
+from viewer.output.ray_rows import Filter, RayRows, Row, Shown, totals, unfolded
+from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels import lights
-from viewer.window.panels.ray_overlay import MOST_DRAWN
+from viewer.window.panels.marks import SHADE, Pen, Point
 from viewer.window.setting_rows import ALL, setting_switch
 from viewer.window.ui import RaysState, Ui
-from viewer.window.widgets import (
-    QUIET,
-    clipped,
-    em,
-    fitted,
-    paragraph,
-    same_line_for,
-    swatch,
-    tooltip,
-    tooltip_at,
-)
+from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip, tooltip_at
 
 _ROWS = 14  # of the tree that are seen at once
-_LIGHT = 7.0  # ems of width, at least, for the name of a light
+_LIGHT = 14.0  # ems of width, at most, for the name of a light
 
 
 def section(ui: Ui) -> None:
     """A part of the panel that folds; rays are listed, and drawn in the picture, where it is open."""
-    state = ui.state(RaysState)
-    rays = ui.controller.rays
-    wanted, state.unfold = state.unfold, max(state.unfold - 1, 0)
+    state, tree = ui.state(RaysState), ui.controller.inspector.tree
     imgui.dummy(ImVec2(0.0, em(0.15)))
-    if wanted:
+    if state.unfold:
         imgui.set_next_item_open(True)
     opened = imgui.collapsing_header("Rays")
     tooltip(f"what became of each ray of the clicked pixel{ui.key('Rays of the clicked pixel')}")
-    if wanted:
+    if state.unfold:
+        state.unfold -= 1
         imgui.set_scroll_here_y(0.0)
     if opened:
-        rays.watch()
-        rays.pointed = None
-        if rays.rows is not None:
-            _tree(ui, rays)
-        elif ui.controller.selection.picked is None:
+        state.drawn, state.pointed = imgui.get_frame_count(), None
+        if ui.controller.selection.picked is None:
             paragraph("Click a pixel to see what became of each of its rays.", QUIET)
+        elif tree is None:
+            paragraph("The rays are listed when the picture is whole.", QUIET)
         else:
-            paragraph("The rays are listed when the picture is whole.", QUIET)  # what it waits for is said above
+            _tree(ui, tree)
     setting_switch(ui, ALL["draw.rays"])
+
+
+def listed(ui: Ui) -> RayTree | None:
+    """The rays that the panel lists now, None where it lists none."""
+    open_ = ui.state(RaysState).drawn >= imgui.get_frame_count() - 1  # the picture may be drawn first
+    return ui.controller.inspector.tree if open_ and ui.controller.selection.picked is not None else None
+
+
+def rows(ui: Ui) -> list[tuple[int, Row]]:
+    """The rows that are seen, with their levels: at first, all that is below rays on their way."""
+    state, tree, scene = ui.state(RaysState), ui.controller.inspector.tree, ui.controller.session.scene
+    if tree is None or scene is None:
+        return []
+    top = ui.cached("rows of rays", tree, state.shown, lambda: RayRows(tree, scene, state.shown).top)
+    found: list[tuple[int, Row]] = ui.cached(
+        "rows of rays that are seen", top, state.toggled, lambda: list(unfolded(top, state.is_open))
+    )
+    return found
 
 
 # --- the tree ---------------------------------------------------------------------------------------
 
 
-def _filters(ui: Ui, rays: RayInspector) -> None:
+def _filters(ui: Ui, state: RaysState) -> None:
     """Which shadow rays are listed and drawn."""
     for number, shown in enumerate(Shown):
         if number:
             same_line_for(shown.value)
-        if imgui.radio_button(shown.value, rays.shown.shown is shown):
-            rays.refilter(rays.shown._replace(shown=shown))
+        if imgui.radio_button(shown.value, state.shown.shown is shown):
+            state.shown = state.shown._replace(shown=shown)
         tooltip(shown.meaning)
-    edge = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
-    if imgui.get_item_rect_max().x + em(_LIGHT) <= edge:
-        imgui.same_line()
-    imgui.set_next_item_width(min(em(2.0 * _LIGHT), imgui.get_content_region_avail().x))
+    imgui.set_next_item_width(min(em(_LIGHT), imgui.get_content_region_avail().x))
 
     def choose(light: int | None) -> None:
-        rays.refilter(rays.shown._replace(light=light))
+        state.shown = state.shown._replace(light=light)
 
-    lights.combo(ui, "rays", rays.shown.light, choose, lambda: choose(None))
+    lights.combo(ui, "rays", state.shown.light, choose, lambda: choose(None))
 
 
-def _tree(ui: Ui, rays: RayInspector) -> None:
+def _tree(ui: Ui, tree: RayTree) -> None:
     """Those rows that are seen; resting on one picks its rays out in the picture."""
-    assert rays.tree is not None
-    _filters(ui, rays)
+    state = ui.state(RaysState)
+    _filters(ui, state)
     height = imgui.get_text_line_height_with_spacing()
-    clipped(totals(rays.tree), QUIET)
-    if sum(rays.tree.counts.values()) > MOST_DRAWN:
-        tooltip(f"{totals(rays.tree)}\n\nAt most {MOST_DRAWN} shadow rays are drawn at once, and the selected one.")
-    changed: Row | None = None
-    if imgui.begin_child("rows", ImVec2(0.0, min(len(rays.seen) + 0.3, _ROWS) * height)):
-        selected, clipper = rays.selected, imgui.ListClipper()
-        clipper.begin(len(rays.seen), height)
+    clipped(totals(tree), QUIET)
+    if sum(tree.counts.values()) > MOST_DRAWN:
+        tooltip(f"{totals(tree)}\n\nAt most {MOST_DRAWN} shadow rays are drawn at once, and the selected one.")
+    seen = rows(ui)
+    if imgui.begin_child("rows", ImVec2(0.0, min(len(seen) + 0.3, _ROWS) * height)):
+        clipper = imgui.ListClipper()
+        clipper.begin(len(seen), height)
         while clipper.step():
-            for level, row in rays.seen[clipper.display_start : clipper.display_end]:
-                if _row(rays, level, row, selected is not None and selected.key == row.key):
-                    changed = row
+            for level, row in seen[clipper.display_start : clipper.display_end]:
+                _row(state, level, row)
         clipper.end()
     imgui.end_child()
-    if changed is not None:
-        rays.toggle(changed)
 
 
-def _row(rays: RayInspector, level: int, row: Row, selected: bool) -> bool:
-    """One row; whether it is to be folded or unfolded."""
+def _row(state: RaysState, level: int, row: Row) -> None:
+    """One row: its arrow folds it, a click selects it."""
     flags = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_avail_width
     flags |= imgui.TreeNodeFlags_.open_on_arrow | imgui.TreeNodeFlags_.open_on_double_click
     if row.below is None or not row.rows:
         flags |= imgui.TreeNodeFlags_.leaf
-    if selected:
+    if row.key == state.selected:
         flags |= imgui.TreeNodeFlags_.selected
     imgui.push_id(str(row.key))
     imgui.indent(max(em(0.8) * level, 0.01))
-    imgui.set_next_item_open(rays.is_open(row))
+    imgui.set_next_item_open(state.is_open(row))
     imgui.tree_node_ex("##row", int(flags))
-    toggled = imgui.is_item_toggled_open()
-    if imgui.is_item_clicked() and not toggled:
-        rays.select(None if selected else row)
+    if imgui.is_item_toggled_open():
+        state.toggled ^= {row.key}
+    elif imgui.is_item_clicked():
+        state.selected = None if row.key == state.selected else row.key
     if imgui.is_item_hovered():
-        rays.pointed = row
+        state.pointed = row
     imgui.same_line(0.0, em(0.2))
     if len(row.places):
         swatch(row.color)
@@ -118,7 +129,121 @@ def _row(rays: RayInspector, level: int, row: Row, selected: bool) -> bool:
     imgui.text_unformatted(text)
     imgui.unindent(max(em(0.8) * level, 0.01))
     imgui.pop_id()
-    tip = "\n".join(([] if text == row.text else [row.text]) + ([row.tip] if row.tip else []))
-    if rays.pointed is row and tip and not imgui.is_mouse_down(0):
+    tip = "\n".join(filter(None, ("" if text == row.text else row.text, row.tip)))
+    if state.pointed is row and tip and not imgui.is_mouse_down(0):
         tooltip_at(tip)
-    return bool(toggled)
+
+
+# --- the same rays over the picture -------------------------------------------------------------------
+
+MOST_DRAWN = 160  # shadow rays
+FAR = 3.0  # times the way to the first hit: how far a ray is drawn that leaves the scene
+_BEHIND = 0.4  # opacity of what lies behind something
+_FADED = 0.16  # of rays other than the one that is pointed at or selected
+_BLOCKED = ImVec4(0.84, 0.37, 0.0, 1.0)
+_PALE = ImVec4(0.8, 0.86, 1.0, 0.35)  # around what is dark
+_MANY = 40  # lines, from which on they are thin
+_MOST_OF_A_ROW = 64  # shadow rays of a row that are picked out
+
+
+class Part(Enum):
+    """What a line stands for, with its colour and its width in ems."""
+
+    PATH = (0.36, 0.93, 0.72), 0.2  # a reflected or refracted ray
+    ASKED = (0.98, 0.87, 0.25), 0.15  # a shadow ray that was traced, as far as light comes
+    SAVED = (0.98, 0.93, 0.66), 0.08  # one that was culled, as far as light comes
+    DARK = (0.06, 0.10, 0.24), 0.13  # the rest of a shadow ray, behind what blocks it
+
+
+class RayLine(NamedTuple):
+    """A line of a ray: of which path ray, and which shadow ray of that, -1 for the path ray itself."""
+
+    part: Part
+    ray: int
+    place: int
+    strokes: list[Stroke]
+
+
+def ray_lines(frame: Frame, tree: RayTree, shown: Filter) -> list[RayLine]:
+    """The rays on their way and the shadow rays that a filter lets be seen, MOST_DRAWN of these at most: those of the
+    first points first, and of one point evenly."""
+    lines, left = [], MOST_DRAWN
+    for ray in tree.rays:
+        if ray.parent >= 0:
+            length = ray.t if np.isfinite(ray.t) else FAR * tree.rays[0].t
+            way = strokes(frame, [ray.origin, ray.origin + length * ray.direction])
+            lines.append(RayLine(Part.PATH, ray.number, -1, way))
+        if ray.shadows is None:
+            continue
+        places = shown.places(ray.shadows)
+        places = places[ray.shadows.verdict[places] != AWAY]
+        if len(places) > left:
+            places = places[np.linspace(0, len(places) - 1, left).astype(int)]
+        left -= len(places)
+        for number in places.tolist():
+            lines += _shadow_lines(frame, tree, ray.number, number)
+    return lines
+
+
+def _shadow_lines(frame: Frame, tree: RayTree, number: int, place: int) -> list[RayLine]:
+    """A shadow ray from its light to its point."""
+    ray = tree.rays[number]
+    s = ray.shadows
+    assert s is not None
+    start, end = tree.samples[place].astype(np.float64), ray.end.astype(np.float64)
+    part = Part.ASKED if s.verdict[place] == TRACED else Part.SAVED
+    if s.blocker[place] < 0:
+        return [RayLine(part, number, place, strokes(frame, [start, end]))]
+    stop = start + float(s.blocked_at[place]) * (end - start)
+    return [
+        RayLine(part, number, place, strokes(frame, [start, stop])),
+        RayLine(Part.DARK, number, place, strokes(frame, [stop, end])),
+    ]
+
+
+def draw(ui: Ui, made: Pen, frame: Frame, tree: RayTree, alpha: float) -> None:
+    """Draw all rays, so transparent, and those of the rows that are selected or pointed at over them."""
+    state = ui.state(RaysState)
+    selected = next((row for _, row in rows(ui) if row.key == state.selected), None)
+    picked_out = [row for row in (selected, state.pointed) if row is not None]
+    lines: list[RayLine] = ui.cached("rays", frame, (tree, state.shown), lambda: ray_lines(frame, tree, state.shown))
+    clicked = place(frame, tree.rays[0].end) if tree.rays[0].shadows is not None else None
+    for line in lines:
+        _line(made, line, clicked, _FADED if picked_out else alpha, 0.55 if len(lines) > _MANY else 1.0)
+    for number, row in enumerate(picked_out):
+        for line in ui.cached(f"rays of row {number}", frame, row, partial(_of_row, tree, frame, lines, row)):
+            _line(made, line, clicked, 1.0)
+    _points(made, tree, frame, state.pointed or selected)
+
+
+def _of_row(tree: RayTree, frame: Frame, lines: Sequence[RayLine], row: Row) -> list[RayLine]:
+    """The lines of a row's rays."""
+    if not len(row.places):
+        return [line for line in lines if line.ray == row.ray and line.place < 0]
+    wanted = row.places[:: -(-len(row.places) // _MOST_OF_A_ROW)].tolist()
+    return [line for number in wanted for line in _shadow_lines(frame, tree, row.ray, number)]
+
+
+def _line(made: Pen, line: RayLine, hole: Point | None, alpha: float, width: float = 1.0) -> None:
+    """All of it but what would cover the clicked pixel."""
+    color, ems = line.part.value
+    around = _PALE if line.part is Part.DARK else SHADE
+    made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around, hole=hole)
+
+
+def _points(made: Pen, tree: RayTree, frame: Frame, chosen: Row | None) -> None:
+    """A ring around each point that is shaded, a larger one at the clicked one; a cross where the chosen ray ends."""
+    for ray in tree.rays:
+        at = place(frame, ray.end) if ray.shadows is not None else None
+        if at is not None:
+            alpha = 1.0 if chosen is None or chosen.ray == ray.number else 0.5
+            made.ring(at, None if ray.parent < 0 else 0.26, alpha)
+    if chosen is None or len(chosen.places) != 1:
+        return
+    ray, one = tree.rays[chosen.ray], int(chosen.places[0])
+    s = ray.shadows
+    if s is not None and s.blocker[one] >= 0:
+        start = tree.samples[one]
+        at = place(frame, start + s.blocked_at[one] * (ray.end - start))
+        if at is not None:
+            made.cross(at, _BLOCKED)

@@ -5,22 +5,14 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.output.exr import ENDING as EXR
-from viewer.services.pictures import JPEG
-from viewer.state.plans import MOST_MULTIPLE
+from viewer.output import exr
 from viewer.window.commands import copy_command
-from viewer.window.setting_rows import in_panel, setting_switch
+from viewer.window.setting_rows import in_panel, plan_rows, setting_switch
 from viewer.window.ui import CaptureKind, Dialog, Ui
-from viewer.window.widgets import QUIET, centred, checkbox, em, paragraph, properties, row, tooltip, wide_button
+from viewer.window.widgets import QUIET, centred, em, paragraph, properties, row, tooltip, wide_button
 
 NAME = "The dialog that saves a picture"
 TITLE = "Save picture as"
-_CAPTION = "{scene}, frame {frame}, {method}, {width} × {height}"
-_KINDS = {
-    ".png": ("PNG", "remembers how it was made, and can be checked"),
-    EXR: ("EXR", "linear colours with all buffers, and how it was made; legend, caption and drawings are left out"),
-    JPEG: ("JPEG", "small; forgets how it was made"),
-}
 
 
 def show(ui: Ui) -> None:
@@ -66,13 +58,17 @@ def show_dialog(ui: Ui) -> None:
     shown, stays = imgui.begin_popup_modal(TITLE, True, int(imgui.WindowFlags_.no_resize))
     if not shown:
         return
-    _plan(ui)
-    plan, pictures = ui.controller.pictures.plan, ui.controller.pictures
+    pictures = ui.controller.pictures
+    with properties("plan", 6.0) as rows:
+        if rows:
+            plan_rows(ui, pictures.plan, "multiple", "samples", "ending")
+            if pictures.plan.ending != exr.ENDING:
+                plan_rows(ui, pictures.plan, "legend", "caption")
+                tooltip(ui.template_help)
     imgui.spacing()
     done = not stays or imgui.is_key_pressed(imgui.Key.escape)
     width, height = pictures.size
-    kind = _KINDS[plan.ending][0]
-    paragraph(f"{kind}, {width} x {height}, into {ui.controller.preferences.picture_folder}", QUIET)
+    paragraph(f"{width} x {height} pixels, into {ui.controller.preferences.picture_folder}", QUIET)
     imgui.spacing()
     if imgui.button("Save", ImVec2(em(6.0), 0.0)):
         done = pictures.save() or done
@@ -82,38 +78,3 @@ def show_dialog(ui: Ui) -> None:
         ui.close(Dialog.SAVE_AS)
         imgui.close_current_popup()
     imgui.end_popup()
-
-
-def _plan(ui: Ui) -> None:
-    plan = ui.controller.pictures.plan
-    flat = plan.ending == EXR
-    with properties("plan", 6.0) as shown:
-        if not shown:
-            return
-        row("Size", "times the width and the height of the picture as it is now")
-        _, plan.multiple = imgui.slider_int("##multiple", plan.multiple, 1, MOST_MULTIPLE, "x %d")
-        plan.multiple = min(max(plan.multiple, 1), MOST_MULTIPLE)
-        row("Samples", "of each pixel")
-        changed, samples = imgui.input_int("##samples", plan.samples, 0)
-        if changed:
-            plan.samples = min(max(samples, 1), 4096)
-        row("Format")
-        for number, (ending, (name, tip)) in enumerate(_KINDS.items()):
-            if number:
-                imgui.same_line()
-            if imgui.radio_button(name, plan.ending == ending):
-                plan.ending = ending
-            tooltip(tip)
-        row("Caption", "a line below the picture, or nothing")
-        imgui.begin_disabled(flat)
-        imgui.set_next_item_width(-em(5.0))
-        _, plan.caption = imgui.input_text_with_hint("##caption", "none", plan.caption)
-        tooltip(ui.template_help)
-        imgui.same_line()
-        if imgui.button("Usual", ImVec2(-1.0, 0.0)):
-            plan.caption = _CAPTION
-        tooltip(_CAPTION)
-        imgui.end_disabled()
-    imgui.begin_disabled(flat)
-    checkbox("With legend", plan.legend, lambda on: setattr(plan, "legend", on), "where the view has one")
-    imgui.end_disabled()

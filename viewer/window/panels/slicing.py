@@ -8,9 +8,9 @@ from imgui_bundle import imgui
 from tracer.culling.voxels.tell import STATE_NAMES
 from tracer.light_cut import LightCut
 from viewer.services.controller import Controller
-from viewer.services.pixel_inspector import MOST_CLUSTERS
+from viewer.services.inspector import MOST_CLUSTERS
 from viewer.state.draw_options import AXES
-from viewer.state.picking import pixel_at
+from viewer.state.pixels import pixel_at
 from viewer.state.views import View
 from viewer.util.numbers import several
 from viewer.views import cell_lights, view_of

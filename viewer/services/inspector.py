@@ -1,7 +1,8 @@
 """What the renderer says of the clicked pixel or, until one is clicked, of the one under the pointer.
 
-What light reaches it and why its shadow rays were culled or traced, and which clusters of lights shade it.  An answer
-speaks of one moment of the scene, in world space, and so it stays right when the camera moves on.
+`inspect_pixel` is a pure function of the renderer and a pixel of a frame, asked as a query: what light reaches it, and
+why its shadow rays were culled or traced.  An answer speaks of one moment of the scene, in world space, and so it stays
+right while the camera moves and the next is on its way.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,13 +19,16 @@ from numpy.typing import NDArray
 from tracer.explanation import Explanation, explain, outline
 from tracer.frame import Frame
 from tracer.light_cut import LightCut, light_cut
-from tracer.reasons import Why
+from tracer.mode_origins import NEVER, Origins
+from tracer.reasons import TaughtBy, Why
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
+from tracer.told_rays import RayTree
 from tracer.why import why
 from viewer.services.queries import Ask, Newest
 from viewer.services.selection import Selection
-from viewer.state.picking import pixel_at, pixel_of, same_place
+from viewer.state.picking import pixel_of, same_place
+from viewer.state.pixels import pixel_at
 
 MOST_OCCLUDERS = 8  # of one light that are named and drawn
 MOST_LIGHTS = 40  # that are drawn, and listed at once
@@ -34,20 +38,18 @@ Pixel = tuple[int, int]
 
 
 @dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
-class Answer:
+class Inspection:
     """What was found for a pixel of a frame: an explanation for each light, outlines of what they name, and `why` its
     shadow rays were culled or traced, None where the renderer has gone on to another frame."""
 
     frame: Frame
-    x: int
-    y: int
     lights: tuple[Explanation, ...]
     outlines: dict[int, tuple[NDArray[np.float64], ...]]
     why: Why | None = None
 
     @cached_property
     def drawn(self) -> tuple[Explanation, ...]:
-        """Lights whose shadow rays are drawn."""
+        """Lights whose shadow rays are drawn: those that are due, or of many the nearest of these, in their order."""
         return drawn_lights(self.lights)
 
     @cached_property
@@ -57,15 +59,14 @@ class Answer:
         return sum(int(np.count_nonzero(ray.shadows.wrong)) for ray in rays if ray.shadows is not None)
 
 
-def explain_pixel(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Callable[[], bool]) -> Answer:
+def inspect_pixel(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Callable[[], bool]) -> Inspection:
     """Find out what lights do at a pixel."""
     lights = explain(renderer, frame, x, y)
     numbers = {number for one in drawn_lights(lights) for number in drawn_primitives(one)}
-    outlines = {number: outline(renderer.world, number) for number in numbers}
     reasons = None
     with suppress(LookupError):  # another frame has begun
         reasons = why(renderer, frame, x, y, cancelled)
-    return Answer(frame, x, y, lights, outlines, reasons)
+    return Inspection(frame, lights, {number: outline(renderer.world, number) for number in numbers}, reasons)
 
 
 def find_cut(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Callable[[], bool]) -> LightCut | None:
@@ -76,60 +77,92 @@ def find_cut(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Callab
         raise Cancelled("another frame has begun") from None
 
 
-class PixelInspector:
-    """`answer` is what is known of the pixel, None while nothing is, and `why` the newest reasons that are; `cut` are
-    the clusters that shade it, where they are wanted, and `awaits_cut` is the pixel whose clusters are to come."""
+def with_origins(found: Why, origins: Origins, name: Callable[[int], str]) -> Why:
+    """Return the same reasons with the frames that set the modes; `name` names a frame by its number."""
+    coverage = found.coverage
+    if coverage is not None and origins.whole != NEVER:
+        coverage = replace(coverage, taught=TaughtBy(origins.whole, name(origins.whole)))
+    reasons = []
+    for one in found.reasons:
+        met = origins.lights[one.light].met() if one.light < len(origins.lights) else ()
+        taught = tuple(TaughtBy(number, name(number), lit=lit, known=False) for lit, number in met)
+        instead = None if one.instead is None else replace(one.instead, taught=taught)
+        reasons.append(replace(one, taught=taught, instead=instead))
+    return replace(found, coverage=coverage, reasons=tuple(reasons))
+
+
+class Inspector:
+    """Asks about the pixel that is selected or pointed at; nothing is known of what is not visible from here.
+
+    `cut` are the clusters of lights that shade it, where they are wanted, and `awaits_cut` is the pixel whose clusters
+    are to come."""
 
     def __init__(self, selection: Selection, query: Ask) -> None:
         self._selection, self._query = selection, query
-        self._explained = Newest()
+        self._inspected = Newest()
+        self._frame: Frame | None = None
         self._subject: object = None
-        self._why: Answer | None = None  # with the newest reasons
+        self._forget()
+
+    def _forget(self) -> None:
+        self._inspected.forget()
+        self._told: Inspection | None = None  # the newest with reasons
+        self._traced: RayTree | None = None  # the newest; a picture that is shaded in part so far has none
         self.cut: LightCut | None = None
         self.awaits_cut: Pixel | None = None
-
-    @property
-    def answer(self) -> Answer | None:
-        found: Answer | None = self._explained.answer
-        return found
-
-    @property
-    def why(self) -> Why | None:
-        return None if self._why is None else self._why.why
-
-    @property
-    def problem(self) -> str:
-        """Why there is no answer, in one line."""
-        return self._explained.problem
 
     def update(self, frame: Frame | None, idle: bool, cuts: bool = False) -> None:
         """Take up what has been answered, and ask about what is looked at now.
 
         `frame` is the newest, None where nothing may be asked about it; what the pointer is on is asked about when
         `idle`, and `cuts` says that clusters are wanted."""
-        if frame is None:
+        kept, self._frame = self._selection.picked, frame
+        at = None
+        if frame is not None:
+            at = pixel_of(kept, frame) if kept is not None else self._pointed_at(frame, idle)
+        subject = None if at is None else "pointer" if kept is None else (kept.primitive, kept.x, kept.y, kept.seen)
+        if subject is None or subject != self._subject:
             self._forget()
+        self._subject = subject
+        if frame is None or at is None:
             return
-        kept = self._selection.picked
-        at = pixel_of(kept, frame) if kept is not None else self._pointed_at(frame, idle)
-        subject = "pointer" if kept is None else (kept.primitive, kept.x, kept.y, kept.seen)
-        if subject != self._subject or (kept is None and at is None):
-            self._forget()
-            self._subject = subject
-        if at is not None:
-            self._explained.take(self._query(explain_pixel, frame, *at))
-        answer = self.answer
-        if answer is not None and answer.why is not None:
-            self._why = answer
-        if answer is not None and _is_outdated(answer, frame):
-            self._explained.answer = None
-            if at is None or answer.frame.settings.method != frame.settings.method:
-                self._why = None  # else the next comes at once
+        self._inspected.take(self._query(inspect_pixel, frame, *at))
+        found: Inspection | None = self._inspected.answer
+        if found is not None and found.why is not None:
+            self._told, self._traced = found, found.why.tree or self._traced
         self._find_cut(frame, at if cuts and idle else None)
+
+    @property
+    def answer(self) -> Inspection | None:
+        """What is known of the pixel, None while that is nothing, or of another moment or method."""
+        found: Inspection | None = self._inspected.answer
+        return found if found is not None and self._is_of_now(found.frame) else None
+
+    @property
+    def why(self) -> Why | None:
+        """The newest reasons that are known; in motion those of the frame before, until the next come."""
+        told = self._told
+        return told.why if told is not None and self._is_of_now(told.frame, at_any_time=True) else None
+
+    @property
+    def tree(self) -> RayTree | None:
+        """What became of the pixel's rays, None while that is not known."""
+        return self._traced if self._traced is not None and self._is_of_now(self._traced.frame) else None
+
+    @property
+    def problem(self) -> str:
+        """Why there is no answer, in one line."""
+        return self._inspected.problem
 
     def names_pixels_of(self, frame: Frame) -> bool:
         """Whether pixels that `why` names are where this frame has them: it is of the same moment, place and size."""
-        return self._why is not None and same_place(self._why.frame, frame)
+        return self._told is not None and same_place(self._told.frame, frame)
+
+    def _is_of_now(self, then: Frame, at_any_time: bool = False) -> bool:
+        now = self._frame
+        if now is None or then.settings.method != now.settings.method:
+            return False
+        return at_any_time or then.time == now.time
 
     def _find_cut(self, frame: Frame, at: Pixel | None) -> None:
         self.cut = self.awaits_cut = None
@@ -140,10 +173,6 @@ class PixelInspector:
             elif future.exception() is None:
                 self.cut = future.result()
 
-    def _forget(self) -> None:
-        self._explained.forget()
-        self._why = self.cut = self.awaits_cut = None
-
     def _pointed_at(self, frame: Frame, idle: bool) -> Pixel | None:
         """The pixel under the pointer, while nothing moves and it shows something."""
         hovered = self._selection.hovered
@@ -151,12 +180,6 @@ class PixelInspector:
             return None
         x, y = pixel_at(frame, *hovered)
         return (x, y) if frame.primitive[y, x] >= 0 else None
-
-
-def _is_outdated(answer: Answer, frame: Frame) -> bool:
-    """Whether an answer speaks of another moment, or of what another method knew."""
-    then = answer.frame
-    return then.time != frame.time or then.settings.method != frame.settings.method
 
 
 def nearest_first(lights: Sequence[Explanation]) -> list[Explanation]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -18,16 +17,17 @@ from tracer.culling.fate import Fate
 from tracer.explanation import NO_CERTIFICATE, Explanation, explain
 from tracer.frame import Frame
 from tracer.renderer import Renderer
-from tracer.scene.model import Cancelled
+from tracer.told_rays import RayTree
 from tracer.why_in_words import Link
-from viewer.services import pixel_inspector
-from viewer.services.origin_pixels import find_pixels
-from viewer.services.pixel_inspector import MOST_LIGHTS, MOST_OCCLUDERS, Answer, PixelInspector, drawn_lights, find_cut
+from viewer.output.ray_rows import Filter
+from viewer.services import inspector as module
+from viewer.services.inspector import MOST_LIGHTS, MOST_OCCLUDERS, Inspection, Inspector, drawn_lights, find_cut
 from viewer.services.queries import Queries, Query
 from viewer.state import navigation
+from viewer.window.panels.inspector import summary, unanswered
 from viewer.window.panels.links import go_to
 from viewer.window.panels.overlays import BLOCKER, LIT, OCCLUDER, STOPPED, shadow_lines
-from viewer.window.panels.why import summary, unanswered
+from viewer.window.panels.rays import ray_lines
 from viewer.window.ui import Ui
 
 
@@ -50,13 +50,13 @@ class PixelDesk(Desk):
 
         super().until(holds)
 
-    def answered(self) -> Answer:
+    def answered(self) -> Inspection:
         frame = self.c.frame
         self.until(lambda: self.answer is not None and self.answer.frame is frame)
         return self.answer
 
     @property
-    def answer(self) -> Answer | None:
+    def answer(self) -> Inspection | None:
         return self.c.inspector.answer
 
     def _place(self, lit: bool) -> tuple[float, float]:
@@ -77,7 +77,7 @@ def desk(tiny_scene_file: Path, tmp_path: Path):
     assert desk.c.close()
 
 
-def blocked(answer: Answer) -> bool:
+def blocked(answer: Inspection) -> bool:
     return any(one.blocked_at is not None for one in answer.lights)
 
 
@@ -86,7 +86,8 @@ def test_the_pointer_is_followed_and_nothing_is_traced_for_it(desk: PixelDesk):
     traced = desk.c.history.frames
     desk.c.selection.hovered = desk.shadow
     answer = desk.answered()
-    assert blocked(answer) and answer.lights == explain(desk.renderer, desk.c.frame, answer.x, answer.y)
+    here = pixel(desk.c.frame, desk.shadow)
+    assert blocked(answer) and answer.lights == explain(desk.renderer, desk.c.frame, *here)
     desk.c.selection.hovered = desk.lit
     desk.until(lambda: not blocked(desk.answer))
     desk.c.selection.hovered = (0.5, 0.01)  # background
@@ -106,9 +107,9 @@ def test_another_time_is_another_answer(desk: PixelDesk):
     assert desk.answered().frame.time == desk.c.frame.time
     desk.c.motion.move(navigation.look(desk.c.session.camera, 2.5, 0.0, desk.c.motion.world_up))
     desk.until(lambda: not desk.c.active)
-    desk.c.motion.step(3)
     desk.until(lambda: not desk.c.active and desk.answer is None)
-    assert unanswered(Ui(desk.c)).startswith("The clicked point is not visible from here.")
+    inspector = desk.c.inspector
+    assert inspector.why is inspector.tree is None, "of what is not visible from here, nothing is said"
     desk.c.motion.move(navigation.look(desk.c.session.camera, -2.5, 0.0, desk.c.motion.world_up))
     desk.until(lambda: not desk.c.active)
     assert blocked(desk.answered())
@@ -162,7 +163,7 @@ def test_reasons_come_with_the_answer_and_say_what_the_frame_did(desk: PixelDesk
     answer = desk.answered()
     assert answer.why is not None and answer.why is desk.c.inspector.why
     tree = answer.why.tree
-    assert tree is not None and (tree.x, tree.y) == (answer.x, answer.y) == desk.c.selection.pixel
+    assert tree is desk.c.inspector.tree is not None and (tree.x, tree.y) == desk.c.selection.pixel
     assert [one.lit for one in answer.why.reasons] == [one.reached for one in answer.lights]
     assert [one.fate is not Fate.FACES_AWAY for one in answer.why.reasons] == [one.due for one in answer.lights]
     assert answer.wrong_beyond == 0
@@ -174,7 +175,7 @@ def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: PixelDesk):
     """In motion the reasons stay until the next come, but their pixels are elsewhere by then."""
     desk.c.selection.select(desk.shadow)
     answer, first, ui = desk.answered(), desk.c.frame, Ui(desk.c)
-    neighbour = Link("the right neighbour", pixel=(answer.x + 1, answer.y))
+    neighbour = Link("the right neighbour", pixel=(answer.why.x + 1, answer.why.y))
     desk.c.motion.move(navigation.look(desk.c.session.camera, 0.02, 0.0, desk.c.motion.world_up))
     desk.until(lambda: desk.c.frame is not first, ticks=1)
     assert desk.c.inspector.why is answer.why and not desk.c.inspector.names_pixels_of(desk.c.frame)
@@ -219,7 +220,7 @@ def test_clusters_are_those_of_the_pixel_and_the_picture_that_is_looked_at(monke
             raise LookupError("another frame has begun")
         return SimpleNamespace(frame=frame, x=x, y=y) if x == 0 else None
 
-    monkeypatch.setattr(pixel_inspector, "light_cut", light_cut)
+    monkeypatch.setattr(module, "light_cut", light_cut)
     queries, frame = Queries(), make_frame()
     selection = SimpleNamespace(picked=None, hovered=(0.0, 0.0))
     frame.primitive[:] = 0
@@ -230,7 +231,7 @@ def test_clusters_are_those_of_the_pixel_and_the_picture_that_is_looked_at(monke
                 asked.append(query)
                 query.answer(None, lambda: False)
 
-    inspector = PixelInspector(selection, lambda function, frame, *more: queries.ask(function, frame, more))
+    inspector = Inspector(selection, lambda function, frame, *more: queries.ask(function, frame, more))
 
     def look(frame: Frame) -> tuple[bool, object]:
         inspector.update(frame, idle=True, cuts=True)
@@ -261,7 +262,7 @@ def test_an_answer_that_fails_is_one_line_in_the_panel_and_stops_no_film(
     def fail(*_: object) -> None:
         raise ValueError("no such light")
 
-    monkeypatch.setattr(pixel_inspector, "explain", fail)
+    monkeypatch.setattr(module, "explain", fail)
     desk.c.motion.toggle_play()
     desk.c.selection.select(desk.shadow)
     desk.until(lambda: desk.c.inspector.problem == "no such light")
@@ -271,27 +272,44 @@ def test_an_answer_that_fails_is_one_line_in_the_panel_and_stops_no_film(
     assert unanswered(Ui(desk.c)) == "No answer: no such light."
 
 
-def test_a_frame_that_is_traced_once_more_for_its_pixels_gives_way_and_leaves_the_world(desk: PixelDesk):
-    frame, renderer, asked = desk.c.frame, desk.renderer, desk.c.frame.time
-    more = 0, asked + 1.0, frame.camera, frame.settings, 0, False
-    before = explain(renderer, frame, *pixel(frame, desk.shadow))
-    with pytest.raises(Cancelled):
-        find_pixels(renderer, frame, *more, lambda: True)
-    assert explain(renderer, frame, *pixel(frame, desk.shadow)) == before
-    finder = desk.c.origins
-    desk.c.selection.select(desk.lit)
-    with_query = SimpleNamespace(future=Future(), frames=[])
+def test_a_pixel_is_explained_after_a_failed_edit(desk: PixelDesk, monkeypatch: pytest.MonkeyPatch):
+    def fail(*_: object) -> None:
+        raise MemoryError("made to fail")
 
-    def query(function, frame, *arguments):
-        with_query.frames.append(frame)
-        return with_query.future
+    monkeypatch.setattr("viewer.services.editing.edited", fail)
+    desk.c.editing.switch(0, False)
+    desk.until(lambda: desk.c.notices.message is not None and "made to fail" in desk.said)
+    monkeypatch.undo()
+    desk.c.selection.select(desk.shadow)
+    assert blocked(desk.answered())
 
-    finder._query = query
-    traced = desk.c.traced
-    finder.update(desk.c.session.scene, traced)
-    assert with_query.frames == [traced.frame]
-    finder.update(desk.c.session.scene, None)  # something moves
-    assert with_query.future.cancelled()
+
+def test_rays_follow_the_camera_and_an_edit_of_the_scene(desk: PixelDesk):
+    """The picture before an edit and the one after are of the same time, camera and settings."""
+    c = desk.c
+
+    def tree(before: RayTree | None = None) -> RayTree:
+        def newest() -> bool:
+            found = c.inspector.tree
+            return found not in (None, before) and found.frame.primitive is c.frame.primitive and not c.active
+
+        desk.until(newest)
+        return c.inspector.tree
+
+    c.selection.select(desk.shadow)
+    first = tree()
+    c.motion.move(navigation.look(c.session.camera, 0.02, 0.0, c.motion.world_up))
+    moved = tree(first)
+    assert (moved.x, moved.y) == c.selection.pixel != (first.x, first.y)
+    drawn = len(ray_lines(moved.frame, moved, Filter()))
+    c.editing.switch(0, False)
+    edited = tree(moved)
+    assert len(ray_lines(edited.frame, edited, Filter())) < drawn, "a light less shines on it"
+    c.undo.undo()
+    again = tree(edited)
+    assert len(ray_lines(again.frame, again, Filter())) == drawn
+    other = replace(first, frame=replace(first.frame, color=first.frame.color.copy()))
+    assert (other, other.frame) != (first, first.frame), "arrays alone cannot be compared as one"
 
 
 def pixel(frame: Frame, point: tuple[float, float]) -> tuple[int, int]:

@@ -1,0 +1,325 @@
+"""Figure 1 as a drawing: where its boxes, texts and arrows lie, for the window and for SVG alike.
+
+The stages stand below each other, in one column or several side by side.  Lengths are those of the unit in which texts
+are measured; y goes down.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import combinations, pairwise
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+from tracer.frame import Frame
+from tracer.scene.model import Scene
+from viewer.output.figure1 import Figure, Stage, figure_of
+from viewer.output.overlays import font
+from viewer.state.palette import Color
+from viewer.state.session import Session
+from viewer.state.views import View
+from viewer.util.files import write_text
+from viewer.views.legend import wrapped
+
+# --- what a drawing consists of ------------------------------------------------------------------
+
+BOX, TIME, TEXT, STRONG, QUIET = "box", "time", "text", "strong", "quiet"
+"""Inks, whose colours are those of the page or the window: a stage's box, the bar of its time, and three of letters."""
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Box:
+    """A rectangle, filled with an ink or a colour, outlined in it where it is `hollow`, or, without any, only a place
+    about which something is said: `tip` says what it means, `view` shows it."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    ink: str | Color = ""
+    hollow: bool = False
+    tip: str = ""
+    view: View | None = None
+
+
+@dataclass(frozen=True)
+class Words:
+    """A line of text; its upper left corner, or the upper right one where it is aligned to the `right`."""
+
+    x: float
+    y: float
+    text: str
+    ink: str = TEXT
+    right: bool = False
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """A line from point to point along the axes, with a head of this half width at its end, or none."""
+
+    points: tuple[Point, ...]
+    head: float = 0.0
+
+    @property
+    def corners(self) -> tuple[Point, Point, Point]:
+        """The corners of its head."""
+        (x0, y0), (x, y) = self.points[-2:]
+        along, down = (x > x0) - (x < x0), (y > y0) - (y < y0)
+        back, side = (x - 2.0 * self.head * along, y - 2.0 * self.head * down), (self.head * down, self.head * along)
+        return (x, y), (back[0] + side[0], back[1] + side[1]), (back[0] - side[0], back[1] - side[1])
+
+
+@dataclass
+class Drawing:
+    """What is drawn, in this order, in so much room; whoever draws it makes all of it `scale` times as large."""
+
+    width: float
+    height: float = 0.0
+    scale: float = 1.0
+    parts: list[Box | Words | Arrow] = field(default_factory=list)
+
+    def at(self, x: float, y: float) -> Box | None:
+        """Return what is said something about at a point of the drawing as it is seen, above all else."""
+        x, y = x / self.scale, y / self.scale
+        said = (part for part in reversed(self.parts) if isinstance(part, Box) and part.tip)
+        return next((b for b in said if 0.0 <= x - b.x < b.width and 0.0 <= y - b.y < b.height), None)
+
+
+# --- where its parts lie ----------------------------------------------------------------------------
+
+# All in lines' heights.
+_PAD, _STEP = 0.35, 1.15  # the room inside a box and around it, and from line to line
+_ARROW, _ROWS = 0.7, 1.35  # from a box's left edge to the arrow that leaves it, and to the rows beside this
+_LOOP, _GUTTER = 1.1, 1.6  # the way back to the first stage, at the left edge, and the room between columns
+_BAR, _TIME = 0.4, 0.14  # how high a bar of parts is, and one of time
+_SQUARE, _BETWEEN = 0.7, 0.7  # a row's square of colour, and the room between its columns
+_HEAD = 0.28  # half of an arrow's head
+_WIDEST = 28.0  # a column, where there is room for several: else numbers stand far from their names
+_BOLD = 1.12  # how much wider bold letters are
+_SMALLEST = 0.6  # of the size of letters: what finds no room by smaller ones is scrolled
+
+Measure = Callable[[str], float]
+
+
+def lay_out(figure: Figure, measure: Measure, line: float, width: float, height: float) -> Drawing:
+    """Return the figure in so much room, in lines of text so high.
+
+    Rules are written out where they find room in letters of full size.  Else they are tips, and letters get smaller
+    until all is seen, but not so small that nobody can read them: then the figure is higher than the room."""
+    known, stages = cache(measure), len(figure.stages)
+    fewest = min(max(1, int(width / (_WIDEST * line))), stages)
+    best = None
+    for rules in (True, False):
+        for columns in range(fewest, stages + 1):
+            drawing = _Sheet(figure, known, line, width, columns, rules).drawing
+            drawing.scale = min(1.0, width / drawing.width, height / drawing.height)
+            if drawing.scale == 1.0:
+                return drawing
+            if best is None or drawing.scale > best.scale:
+                best = drawing
+    assert best is not None
+    best.scale = min(max(best.scale, _SMALLEST), width / best.width)
+    return best
+
+
+class _Sheet:
+    """The figure in so many columns, which are as wide as their texts at least."""
+
+    def __init__(self, figure: Figure, measure: Measure, line: float, width: float, columns: int, rules: bool) -> None:
+        self._measure, self._line, self._rules = measure, line, rules
+        gaps = (_LOOP + (columns - 1) * _GUTTER) * line
+        self._column = max((width - gaps) / columns, *map(self._least_width, figure.stages))
+        self.drawing = Drawing(columns * self._column + gaps)
+        if figure.title:
+            self._write(wrapped(figure.title, self._bold, self.drawing.width), 0.0, STRONG)
+            self.drawing.height += 0.3 * line
+        self._columns(figure.stages, columns)
+        x = _LOOP * line
+        said = " ".join((figure.next_frame, *figure.notes))
+        self._write(wrapped(said, measure, self.drawing.width - x), x, QUIET)
+
+    def _bold(self, text: str) -> float:
+        return _BOLD * self._measure(text)
+
+    def _write(self, lines: Sequence[str], x: float, ink: str = TEXT) -> None:
+        """Add lines of text at the bottom."""
+        for text in lines:
+            self.drawing.parts.append(Words(x, self.drawing.height, text, ink))
+            self.drawing.height += _STEP * self._line
+
+    def _arrow(self, *points: Point, head: float = _HEAD) -> None:
+        self.drawing.parts.append(Arrow(points, head * self._line))
+
+    def _columns(self, stages: Sequence[Stage], columns: int) -> None:
+        """All stages, from column to column, and the way from the last back to the first."""
+        drawing, line, top = self.drawing, self._line, self.drawing.height
+        entrance, foot, end = top + (_PAD + 0.5) * line, top, (0.0, 0.0)
+        heights = [self._height(stage) for stage in stages]
+        for number, span in enumerate(_split(heights, columns)):
+            x = _LOOP * line + number * (self._column + _GUTTER * line)
+            if number:  # from the foot of the column before
+                turn = x - 0.5 * _GUTTER * line
+                self._arrow(end, (turn, end[1]), (turn, entrance), (x, entrance))
+            drawing.height = top
+            for place in span:
+                leaves = self._stage(stages[place], x)
+                end = x + _ARROW * line, drawing.height
+                self._arrow((end[0], leaves), end, head=0.0 if place == span[-1] else _HEAD)
+            foot = max(foot, drawing.height)
+        left, drawing.height = 0.35 * line, foot + 0.15 * line
+        back = (end[0], drawing.height), (left, drawing.height), (left, entrance), (_LOOP * line, entrance)
+        self._arrow(end, *back)
+        drawing.height += 0.2 * line
+
+    def _height(self, stage: Stage) -> float:
+        """What a stage takes, found by drawing it elsewhere."""
+        own, self.drawing = self.drawing, Drawing(self._column)
+        self._stage(stage, 0.0)
+        scratch, self.drawing = self.drawing, own
+        return scratch.height
+
+    def _stage(self, stage: Stage, x: float) -> float:
+        """A box, and the rows beside the arrow that leaves it; returns where this leaves it."""
+        drawing, line, pad = self.drawing, self._line, _PAD * self._line
+        inner, heading, top = self._column - 2.0 * pad, f"{stage.name} {stage.section}".strip(), drawing.height
+        drawing.parts.append(Box(x, top, self._column, 0.0, BOX))
+        place = len(drawing.parts) - 1  # the box, which is as high as what is in it
+        drawing.height += pad
+        if self._bold(heading) + self._measure(stage.time) + _BETWEEN * line <= inner:
+            drawing.parts.append(Words(x + pad + inner, drawing.height, stage.time, QUIET, right=True))
+            self._write([heading], x + pad, STRONG)
+        else:
+            self._write([heading], x + pad, STRONG)
+            self._write([stage.time], x + pad, QUIET)
+        self._write(wrapped(stage.rule, self._measure, inner) if self._rules else [], x + pad)
+        if stage.bar:
+            self._bar(stage, x + pad, inner)
+        bottom = drawing.height + pad - 0.15 * line
+        tip = f"{heading}\n{stage.rule}\n{stage.time}"
+        drawing.parts[place] = Box(x, top, self._column, bottom - top, BOX, tip=tip, view=stage.view)
+        if stage.share:
+            height = _TIME * line
+            drawing.parts.append(Box(x, bottom - height, self._column * stage.share, height, TIME))
+        drawing.height = bottom + pad
+        self._rows(stage, x)
+        drawing.height = max(drawing.height, bottom + pad + 0.4 * line) + pad
+        return bottom
+
+    def _bar(self, stage: Stage, x: float, width: float) -> None:
+        """Parts of a whole beside each other, each as wide as its share."""
+        drawing, y, height = self.drawing, self.drawing.height + 0.15 * self._line, _BAR * self._line
+        place = Box(x, y, width, height, tip=stage.bar_tip, view=stage.view)
+        whole = max(sum(part.number for part in stage.bar), 1)
+        for part in stage.bar:
+            share = width * part.number / whole
+            if share and part.color is not None:
+                drawing.parts.append(Box(x, y, share, height, part.color, part.hollow))
+            x += share
+        drawing.parts.append(place)
+        drawing.height += (_BAR + 0.3) * self._line
+
+    # --- what leaves a stage ----------------------------------------------------------------------
+
+    def _least_width(self, stage: Stage) -> float:
+        """The width in which nothing of a stage is cut: its name, its time, and the rows that leave it."""
+        texts = max(self._bold(f"{stage.name} {stage.section}"), self._measure(stage.time)) + 2.0 * _PAD * self._line
+        room = self._names_at(stage) + self._numbers(stage) + self._shares(stage)
+        return max(texts, room + max((self._measure(flow.name) for flow in stage.flows), default=0.0))
+
+    def _names_at(self, stage: Stage) -> float:
+        return (_ROWS + (_SQUARE + 0.35 if any(flow.color for flow in stage.flows) else 0.0)) * self._line
+
+    def _numbers(self, stage: Stage) -> float:
+        return max((self._bold(f"{flow.number:,}") for flow in stage.flows), default=0.0) + _BETWEEN * self._line
+
+    def _shares(self, stage: Stage) -> float:
+        widest = max((self._measure(flow.share) for flow in stage.flows), default=0.0)
+        return widest + _BETWEEN * self._line if widest else 0.0
+
+    def _rows(self, stage: Stage, x: float) -> None:
+        """Square, name, number and share of each, below each other."""
+        drawing, line, square, right = self.drawing, self._line, _SQUARE * self._line, x + self._column
+        names, numbers, left = x + self._names_at(stage), right - self._shares(stage), x + _ROWS * line
+        for flow in stage.flows:
+            y, said = drawing.height, f"{flow.name}: {flow.number:,}" + (f" ({flow.share})" if flow.share else "")
+            if flow.color is not None:
+                inset = 0.5 * (line - square)
+                drawing.parts.append(Box(left, y + inset, square, square, flow.color, flow.hollow))
+            drawing.parts.append(Words(numbers, y, f"{flow.number:,}", STRONG, right=True))
+            if flow.share:
+                drawing.parts.append(Words(right, y, flow.share, QUIET, right=True))
+            self._write([flow.name], names)
+            tip = f"{said}\n{flow.tip}"
+            drawing.parts.append(Box(left, y, right - left, _STEP * line, tip=tip, view=flow.view))
+
+
+def _split(heights: Sequence[float], columns: int) -> list[range]:
+    """Consecutive spans, one for each column, whose highest is as low as can be."""
+
+    def highest(cuts: tuple[int, ...]) -> float:
+        return max(sum(heights[a:b]) for a, b in pairwise((0, *cuts, len(heights))))
+
+    best = min(combinations(range(1, len(heights)), columns - 1), key=highest)
+    return [range(a, b) for a, b in pairwise((0, *best, len(heights)))]
+
+
+# --- as SVG, in which text stays text, and what is said of a part is its tooltip ---------------------
+
+_WIDTH, _HEIGHT, _MARGIN = 1280.0, 720.0, 24.0
+_LETTER, _LINE = 15, 18.0  # how high letters and lines are
+_FONTS = "'DejaVu Sans', Verdana, Arial, Helvetica, sans-serif"  # the widest first, as texts are measured by it
+_INKS = {BOX: "#f4f5f7", TIME: "#1f6fbf", TEXT: "#1c2026", STRONG: "#1c2026", QUIET: "#5a6270"}
+_EDGES = {BOX: 'stroke="#aab1bc" rx="4"', TIME: ""}
+
+
+def write_svg(path: Path, frame: Frame, scene: Scene) -> None:
+    """Write the figure of a frame; raises OSError in one line."""
+    write_text(path, svg(figure_of(frame, f"{scene.path.stem}, frame {Session(scene).frame_at(frame.time)}")))
+
+
+def svg(figure: Figure) -> str:
+    """Return the text of the SVG."""
+    room = _WIDTH - 2 * _MARGIN, _HEIGHT - 2 * _MARGIN
+    drawing = lay_out(figure, font(_LETTER).getlength, _LINE, *room)
+    height = drawing.scale * drawing.height + 2 * _MARGIN
+    size = f'width="{_WIDTH:g}" height="{height:.0f}" viewBox="0 0 {_WIDTH:g} {height:.0f}"'
+    lines = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="{_FONTS}" font-size="{_LETTER}">',
+        f"<title>{escape(figure.title)}</title>",
+        '<rect width="100%" height="100%" fill="#ffffff"/>',
+        f'<g transform="translate({_MARGIN:g} {_MARGIN:g}) scale({drawing.scale:.4g})">',
+        *map(_element, drawing.parts),
+        "</g>",
+        "</svg>\n",
+    )
+    return "\n".join(lines)
+
+
+def _element(part: Box | Words | Arrow) -> str:
+    if isinstance(part, Words):
+        place = f'x="{part.x:.1f}" y="{part.y + 0.8 * _LINE:.1f}" fill="{_INKS[part.ink]}"'
+        weight, anchor = ' font-weight="600"' * (part.ink == STRONG), ' text-anchor="end"' * part.right
+        return f"<text {place}{weight}{anchor}>{escape(part.text)}</text>"
+    if isinstance(part, Arrow):
+        shape = f'<polyline points="{_points(part.points)}" fill="none" stroke="{_INKS[QUIET]}" stroke-width="1.5"/>'
+        return shape + f'<polygon points="{_points(part.corners)}" fill="{_INKS[QUIET]}"/>' * (part.head > 0.0)
+    color = _INKS.get(part.ink, "none") if isinstance(part.ink, str) else _hex(part.ink)
+    look = f'fill="{color}" {_EDGES.get(str(part.ink), _EDGE)}'
+    if part.hollow or not part.ink:
+        look = f'fill="none" stroke="{color}" stroke-width="2" pointer-events="all"'
+    place = f'x="{part.x:.1f}" y="{part.y:.1f}" width="{part.width:.1f}" height="{part.height:.1f}"'
+    return f"<rect {place} {look}><title>{escape(part.tip)}</title></rect>" if part.tip else f"<rect {place} {look}/>"
+
+
+_EDGE = 'stroke="#5a6270" stroke-width="0.5"'  # of what has a colour
+
+
+def _points(points: Sequence[Point]) -> str:
+    return " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+
+
+def _hex(color: Color) -> str:
+    return "#" + "".join(f"{round(255.0 * channel):02x}" for channel in color)

@@ -1,0 +1,247 @@
+"""States under a name, kept in the preferences: bookmarks, which are places in a scene, and presets, settings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from viewer.state import codec
+from viewer.state.methods import ADAPTIVE, BY_MODES, CERTIFIED, NO_CULLING
+from viewer.state.notices import Notices
+from viewer.state.preferences import NamedState, Preferences
+from viewer.state.session import Session
+from viewer.state.view_state import ViewState
+from viewer.state.views import View
+
+LONGEST_NAME = 60
+
+
+class NamedStates:
+    """What bookmarks and presets have in common; `kind` is what one is called."""
+
+    kind = ""
+
+    def __init__(self, session: Session, preferences: Preferences, notices: Notices, write: Callable[[], None]) -> None:
+        """`write` writes the preferences to their file."""
+        self._session, self._preferences, self._notices, self._write = session, preferences, notices, write
+
+    @property
+    def all(self) -> list[NamedState]:
+        """Those that the user has saved, in their order."""
+        raise NotImplementedError
+
+    def kept(self) -> dict[str, Any]:
+        """Return what is saved of the state that is shown."""
+        return codec.state_to_json(self._session.state)
+
+    def save(self, name: str) -> bool:
+        """Save what is shown under a name, in the place of one that has it; returns whether that could be done."""
+        name = _tidy(name)
+        if problem := self._problem(name):
+            self._notices.say(f"{self.kind} not saved: {problem}", error=True)
+            return False
+        found = next((one for one in self.all if one.name == name), None)
+        if found is None:
+            self.all.append(NamedState(name, self.kept()))
+        else:
+            found.state = self.kept()
+        self._write()
+        self._notices.say(f"{self.kind} {'saved' if found is None else 'replaced'}: {name}")
+        return True
+
+    def rename(self, index: int, name: str) -> bool:
+        """Give one another name; returns whether that could be done."""
+        name = _tidy(name)
+        problem = self._problem(name)
+        if not problem and any(one.name == name for one in self.all if one is not self.all[index]):
+            problem = f"there is a {self.kind} {name} already"
+        if problem:
+            self._notices.say(f"{self.kind} not renamed: {problem}", error=True)
+            return False
+        self.all[index].name = name
+        self._write()
+        return True
+
+    def move(self, index: int, to: int) -> None:
+        """Bring one to another place in the list."""
+        self.all.insert(to, self.all.pop(index))
+        self._write()
+
+    def delete(self, index: int) -> None:
+        gone = self.all.pop(index)
+        self._write()
+        self._notices.say(f"{self.kind} deleted: {gone.name}")
+
+    def _problem(self, name: str) -> str:
+        return "" if name else "give it a name"
+
+
+def _tidy(name: str) -> str:
+    return " ".join(name.split())[:LONGEST_NAME]
+
+
+class Bookmarks(NamedStates):
+    """Places in the open scene: camera, time and view."""
+
+    kind = "bookmark"
+
+    @property
+    def all(self) -> list[NamedState]:
+        scene = self._session.scene
+        if scene is None:
+            return []
+        return self._preferences.bookmarks.setdefault(str(Path(scene.path).absolute()), [])
+
+    def add(self) -> None:
+        """Save this place under a new name."""
+        self.save("")
+
+    def save(self, name: str) -> bool:
+        """See `NamedStates`; without a name it gets a new one: the frame's number where something moves, else the
+        next."""
+        session, taken = self._session, {mark.name for mark in self.all}
+        if session.scene is None:
+            return False
+        base = f"frame {session.frame}" if session.animated else f"place {len(taken) + 1}"
+        names = (base, *(f"{base} ({k})" for k in range(2, len(taken) + 3)))
+        return super().save(name if name.strip() else next(new for new in names if new not in taken))
+
+    def find(self, index: int) -> ViewState | None:
+        """Return the state of now with a bookmark's time, camera and view; None, and one line, where it is damaged."""
+        here = self._session.state
+        try:
+            found = codec.state_from_json(self.all[index].state, here)
+        except (ValueError, IndexError) as error:
+            self._notices.say(f"this bookmark is damaged: {error}", error=True)
+            return None
+        draw = found.draw
+        return replace(here, time=found.time, camera=found.camera).with_draw(
+            view=draw.view, light=draw.light, wipe=draw.wipe, tone=draw.tone, spans=draw.spans, slice=draw.slice
+        )
+
+
+# --- presets ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class BuiltIn:
+    """A preset that comes with the program: what its state says nothing of stays as it is."""
+
+    name: str
+    tip: str
+    state: dict[str, dict[str, Any]]
+
+
+BUILT_IN = (
+    BuiltIn(
+        "As in the paper",
+        "The method paper, tested one way, with zoom factor 4, 10 bounces, one ray a pixel and point lights; every "
+        "frame of the animation is traced in full at 512 x 512. (The window always traces through its fast trees; the "
+        "command bench takes the paper's kd-tree.)",
+        {
+            "settings": {
+                "method": BY_MODES, "symmetric": False, "zoom_factor": 4.0, "depth": 10, "samples": 1, "verify": False,
+                "lamp_radius": 0.0, "lamp_samples": None,
+            },
+            "pace": {
+                "fixed_size": True, "width": 512, "height": 512, "progressive": False, "every_frame": True,
+                "keep_tracing": False,
+            },
+        },
+    ),
+    BuiltIn(
+        "Every ray traced",
+        "No culling: the picture that all others are compared with.",
+        {"settings": {"method": NO_CULLING, "verify": False}},
+    ),
+    BuiltIn(
+        "Quick and exact",
+        "The method auto, which culls where that is quicker, in the size of the window, refined while nothing moves.",
+        {
+            "settings": {"method": ADAPTIVE, "verify": False, "samples": 16},
+            "pace": {"fixed_size": False, "progressive": True, "every_frame": False},
+        },
+    ),
+    BuiltIn(
+        "What the paper gets wrong",
+        "The method paper with every culled ray traced as well, and pixels with a wrong shadow marked.",
+        {
+            "settings": {"method": BY_MODES, "verify": True},
+            "draw": {"view": View.DIFFERENCE.value, "mark_wrong": True},
+        },
+    ),
+    BuiltIn(
+        "What certificates prove",
+        "The method certified, which goes on proving while nothing moves, and the view of its certificates.",
+        {
+            "settings": {"method": CERTIFIED, "verify": False},
+            "draw": {"view": View.CERTIFICATE.value},
+            "pace": {"keep_tracing": True},
+        },
+    ),
+)  # fmt: skip
+OF_THE_MOMENT = {"spans", "zoom", "slice", "caption", "savings", "magnified"}
+"""Options of drawing that belong to what is shown at the time: no preset keeps them."""
+
+
+class Presets(NamedStates):
+    """Settings, and how frames are drawn: those that come with the program, and the user's."""
+
+    kind = "preset"
+
+    def __init__(
+        self,
+        session: Session,
+        preferences: Preferences,
+        notices: Notices,
+        write: Callable[[], None],
+        locked: Callable[[], bool],
+        begin_step: Callable[[str], None] = lambda name: None,
+    ) -> None:
+        """Nothing is applied while `locked()`, which says so itself; `begin_step` names the step of undo that
+        follows."""
+        super().__init__(session, preferences, notices, write)
+        self._locked, self._begin_step = locked, begin_step
+
+    @property
+    def all(self) -> list[NamedState]:
+        return self._preferences.presets
+
+    @property
+    def names(self) -> list[str]:
+        """Those of the program first."""
+        return list(self._states)
+
+    @property
+    def _states(self) -> dict[str, dict[str, Any]]:
+        return {one.name: one.state for one in BUILT_IN} | {one.name: one.state for one in self.all}
+
+    def kept(self) -> dict[str, Any]:
+        state = super().kept()
+        draw = {name: value for name, value in state["draw"].items() if name not in OF_THE_MOMENT}
+        return {"settings": state["settings"], "draw": draw, "pace": state["pace"]}
+
+    def apply(self, name: str) -> None:
+        """Apply a preset; a damaged one is one line and changes nothing."""
+        if self._locked():
+            return
+        now = self._session.state
+        stored = self._states.get(name, {})
+        try:
+            parts = {part: stored[part] for part in ("settings", "draw", "pace") if part in stored}
+            if not parts:
+                raise ValueError("it holds no settings")
+            found = codec.state_from_json(parts, now).on_machine_of(now)
+        except ValueError as error:
+            self._notices.say(f"the preset {name} cannot be applied: {error}", error=True)
+            return
+        self._begin_step(f"preset {name}")
+        lights = len(self._session.scene.lights) if self._session.scene is not None else 0
+        self._session.state = found.with_draw(light=min(found.draw.light, max(lights - 1, 0)))
+        self._notices.say(f"preset applied: {name}")
+
+    def _problem(self, name: str) -> str:
+        built_in = any(preset.name == name for preset in BUILT_IN)
+        return f"{name} comes with the program; choose another name" if built_in else super()._problem(name)
