@@ -43,8 +43,8 @@ from viewer.state.scene_rows import Level
 from viewer.util.messages import say
 from viewer.util.screen import has_display, no_display_reason
 from viewer.window import app as viewer_app
+from viewer.window.actions import FindState
 from viewer.window.app import FASTEST, FASTEST_BY_PROCESSOR, App
-from viewer.window.commands import FindState
 from viewer.window.panels import find
 
 CAMERA = Camera((0.6, 0.9, 2.6), (-0.2, -0.3, -0.93), angle=40.0)
@@ -79,9 +79,9 @@ class Watch:
         app.params.callbacks.pre_new_frame = self.before
         app.params.callbacks.after_swap = self.after
 
-        def noted(table: Any, listing: Any, columns: Any, number: int, selected: bool) -> None:
+        def noted(ui: Any, table: Any, listing: Any, number: int, *how: bool) -> None:
             self.rows.add(number)
-            row(table, listing, columns, number, selected)
+            row(ui, table, listing, number, *how)
 
         find._row = noted
 

@@ -18,7 +18,6 @@ from tracer.scene.model import Scene
 from viewer.services.baseline import Baseline
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
-from viewer.services.edit_effects import BeforeEdits
 from viewer.services.editing import Editing
 from viewer.services.film import Films
 from viewer.services.frame_history import FrameHistory, FrameNavigator
@@ -59,7 +58,7 @@ class Controller:
         self.session = session = Session(state=codec.recalled(preferences.state))
         self.notices = notices = Notices(wake)
         self.renderer = renderer = RenderThread(wake)
-        self.scheduler = scheduler = FrameScheduler(session, preferences, renderer, wake)
+        self.scheduler = scheduler = FrameScheduler(renderer, wake)
         self.history = FrameHistory(session)
         self.selection = selection = Selection(session, lambda: self.frame)
         self.captures = captures = CaptureService(session, preferences, notices, wake)
@@ -85,7 +84,6 @@ class Controller:
             session, renderer, notices, runs.refuses, self._show_edited, undo.without_undo, scheduler.trace_once_more
         )
         self.table = SceneTable(session, selection, preferences, notices, captures, editing, wake)
-        self.before_edits = BeforeEdits(session, editing)
         self.questions = questions = Questions(runs, captures, wake)
         self.loader = loader = SceneLoader(session, preferences, notices, questions.before_opening, wake)
         self.preview = Preview(session, loader, motion, notices, wake)
@@ -182,63 +180,30 @@ class Controller:
         cuts = traced is not None and traced.whole and self.scheduler.drawn_view is View.CUTS
         self.inspector.update(frame, not self.motion.is_animating, cuts)
 
-    def list_scene(self) -> None:
-        """Fill the table of what is in the scene, while it is seen."""
-        self.table.update(self.own_traced, self.motion.is_animating)
-
-    def record_light(self) -> None:
-        """Have the chosen light recorded where the view needs it, unless a run has the render thread."""
-        if self.runs.current is None:
-            self.scheduler.record_light()
-
-    def compile_method(self) -> None:
-        """Compile what the chosen method has of its own, the first time that it is chosen."""
-        settings, scene = self.session.settings, self.session.scene
-        if scene is not None:
-            self.loader.prepare(settings.method, len(scene.lights), settings.accelerator)
-
     def frame_inputs(self, size: tuple[int, int]) -> FrameInputs:
         """Return what decides how the next frame is traced, in a window that has room for so many pixels."""
+        session = self.session
         return FrameInputs(
-            size,
-            moving=self.motion.under_way,
-            run=self.runs.current,
-            edited=self.editing.at_work,
-            ready=self.loader.ready,
-            second=self.comparing.second_method,
+            session.state, session.scene, session.camera, size,
+            moving=self.motion.under_way, playing=session.playing, counting=session.counting, run=self.runs.current,
+            edited=self.editing.at_work, ready=self.loader.ready, second=self.comparing.second_method,
             focus=self.selection.hovered,
-        )
-
-    def keep_frame(self) -> None:
-        """Keep the newest frame to compare with what edits make of it."""
-        traced, scheduler = self.own_traced, self.scheduler
-        fine = traced is not None and traced.whole and traced.request.divisor == 1
-        if self.runs.current is None:
-            of_edits = fine and not self.motion.is_animating and scheduler.shows_edits
-            more_comes = scheduler.awaits or scheduler.adds_samples or self.renderer.busy
-            self.before_edits.take(traced.frame if traced is not None and of_edits else None, not more_comes)
+        )  # fmt: skip
 
     def measure(self) -> None:
         """Measure in spare time how fast the picture is traced by the method and by none, while that is to be seen."""
-        scheduler, second = self.scheduler, self.comparing.second_method
+        second = self.comparing.second_method
         wanted = self.preferences.savings or bool(second)
-        busy = self.renderer.busy or scheduler.awaits or scheduler.adds_samples or scheduler.refines_lamps
-        busy = busy or self.loader.busy or self.runs.current is not None or self.editing.at_work or not wanted
+        busy = self.renderer.busy or self.loader.busy or self.runs.current is not None or self.editing.at_work
+        busy = busy or not self.scheduler.rests or self.scheduler.refines_lamps or not wanted
         self.baseline.update(self.traced, second, self.motion.is_animating, busy)
-
-    def keep_preferences(self) -> None:
-        """Save them soon after a change, while nothing moves."""
-        self.settings.note_method()
-        if not self.motion.is_animating:
-            self.settings.save_when_rested()
 
     def _fit_view(self) -> str:
         """Show the picture where the view has nothing to show in the scene that has just been opened; returns what is
         to be said of it, and of the method there."""
         session = self.session
         view, said = fitting_view(session.draw.view, session.settings, session.scene.lights if session.scene else ())
-        if view is not session.draw.view:
-            self.session.set_draw(view=view)
+        session.set_draw(view=view)
         return said
 
     def _show_again(self, arrival: Arrival) -> None:
@@ -271,7 +236,6 @@ class Controller:
         self.info = info
         self.renderer.use(renderer)
         self.editing.enter(renderer)
-        self.before_edits.forget()
         self.history.clear()
         self.scheduler.forget()
         self.baseline.forget()
@@ -284,6 +248,8 @@ class Controller:
         """Show the scene that is open with other edits: where we are, and what was chosen, stays."""
         before = self.session.edited
         same = before is not None and before.made_as(now)
+        if before is not None and not before.edits:
+            self.editing.before = self.comparing.b
         self.undo.without_undo(lambda: self.session.take(now))
         self.renderer.use(renderer, fresh=False)
         self.history.forget_modes(blank=False)

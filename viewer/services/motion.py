@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,8 +29,7 @@ LONGEST_STEP = 0.25
 Corner = Sequence[float]
 
 
-@dataclass(frozen=True)
-class _Glide:
+class _Glide(NamedTuple):
     """A camera on its way to another place, in so many seconds."""
 
     start: Camera
@@ -89,22 +88,16 @@ class Motion:
         """Bring time and camera to where they should be now; `shown` is the time of the newest whole picture."""
         now = time.monotonic()
         step, self._last = min(now - self._last, LONGEST_STEP), now
-        self._play(step, shown)
+        session, preferences = self._session, self._preferences
+        if session.playing and not session.pace.every_frame:
+            session.advance(step * preferences.playback_rate, preferences.loop)
+        elif session.playing and shown == session.time:  # this frame has been traced
+            session.advance_frame(preferences.loop)
         if self._glide is not None:
             t = (now - self._glide.began) / self._glide.seconds
-            self._session.change(camera=navigation.blend(self._glide.start, self._glide.end, t))
+            session.change(camera=navigation.blend(self._glide.start, self._glide.end, t))
             if t >= 1.0:
                 self._glide = None
-
-    def _play(self, step: float, shown: float | None) -> None:
-        """Go on in real time, or to the next frame once this one has been traced."""
-        session, preferences = self._session, self._preferences
-        if not session.playing:
-            return
-        if not session.pace.every_frame:
-            session.advance(step * preferences.playback_rate, preferences.loop)
-        elif shown == session.time:
-            session.advance_frame(preferences.loop)
 
     # --- the camera -------------------------------------------------------------------------------
 

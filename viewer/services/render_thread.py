@@ -25,11 +25,12 @@ from functools import partial
 from typing import Any
 
 from tracer.frame import Frame
+from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
 from viewer.services.jobs import TRACER, step_back
 from viewer.services.pair import Pair
 from viewer.services.queries import Function, Queries, Query
-from viewer.services.render_request import Parts, RenderRequest, Spare, Task, Traced, Traces
+from viewer.services.render_request import Parts, RenderRequest, Spare, Task, Traced
 from viewer.util.messages import Failure, failure
 
 QUERY_SECONDS = 0.25
@@ -43,12 +44,12 @@ class RenderThread:
     def __init__(self, wake: Callable[[], None] = lambda: None) -> None:
         self._wake = wake
         self._changed = threading.Condition()
-        self._renderer: Traces | None = None
+        self._renderer: Renderer | None = None
         self._pair: Pair | None = None  # of the renderer, with a second one; the thread's own
         self._waiting: RenderRequest | None = None
         self._running: RenderRequest | None = None
         self._shown = self._whole = False  # whether a part of what is running, or all of it, has been
-        self._task: tuple[Traces, Task] | None = None
+        self._task: tuple[Renderer, Task] | None = None
         self._queries = Queries()
         self._spare: Spare | None = None
         self._placed_at: float | None = None  # the time of what was traced last
@@ -64,7 +65,7 @@ class RenderThread:
         self._thread = threading.Thread(target=self._run, name="shadowcull render", daemon=True)
         self._thread.start()
 
-    def use(self, renderer: Traces | None, fresh: bool = True) -> None:
+    def use(self, renderer: Renderer | None, fresh: bool = True) -> None:
         """Trace this renderer's scene from now on; whatever was asked of the old one is dropped, and a task ended.
 
         `fresh` says that it knows nothing of modes yet."""
@@ -90,12 +91,6 @@ class RenderThread:
             if self._running is not None and request.supersedes(self._running, self._shown):
                 self._cancel = True
             self._changed.notify_all()
-
-    def hurry(self, request: RenderRequest) -> None:
-        """If this is what waits, let it wait no longer than it must, and come about as it says now."""
-        with self._changed:
-            if self._waiting == request:
-                self.submit(request)
 
     def perform(self, task: Task) -> None:
         """Do this instead of frames, from now on until it is done; what is under way is cut short, or dropped.
@@ -166,10 +161,6 @@ class RenderThread:
                 return True
             return self._task is not None or (self._renderer is not None and self._waiting is not None)
 
-    @property
-    def running(self) -> RenderRequest | None:
-        return self._running
-
     def close(self, timeout: float = 10.0) -> bool:
         """Cancel and end the thread; false if it did not end in time (it is a daemon and dies with the program)."""
         with self._changed:
@@ -226,13 +217,13 @@ class RenderThread:
         """Whether there is spare work, and the world stands in a frame's time, to which it can be put back."""
         return self._spare is not None and self._placed_at is not None and not self._reset
 
-    def _forget(self, renderer: Traces) -> None:
+    def _forget(self, renderer: Renderer) -> None:
         """Forget all modes, as was asked."""
         renderer.reset_modes()
         self._fresh = True
         self._pair = None
 
-    def _perform(self, renderer: Traces, task: Task, reset: bool) -> None:
+    def _perform(self, renderer: Renderer, task: Task, reset: bool) -> None:
         try:
             if reset:
                 self._forget(renderer)
@@ -242,7 +233,7 @@ class RenderThread:
                 self._performing = False
             self._wake()
 
-    def _spend(self, renderer: Traces, work: Spare, moment: float) -> None:
+    def _spend(self, renderer: Renderer, work: Spare, moment: float) -> None:
         """One step of spare work; the world stands as it did before when it ends."""
 
         def wanted() -> bool:
@@ -263,7 +254,7 @@ class RenderThread:
                 self._spare = None if self._spare is work else self._spare
             self._wake()
 
-    def _answer(self, renderer: Traces, query: Query, moved: bool = False) -> None:
+    def _answer(self, renderer: Renderer, query: Query, moved: bool = False) -> None:
         """Answer a query; `moved` says that the world stands as in another frame than the query's."""
         began = time.monotonic()
 
@@ -279,7 +270,7 @@ class RenderThread:
             self._complain(problem, "no answer")
         self._wake()
 
-    def _answer_meanwhile(self, renderer: Traces, moment: float) -> None:
+    def _answer_meanwhile(self, renderer: Renderer, moment: float) -> None:
         """Answer what was asked about the picture that is being refined."""
         with self._changed:
             if renderer is not self._renderer:
@@ -291,7 +282,7 @@ class RenderThread:
             else:
                 query.future.cancel()
 
-    def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
+    def _trace(self, renderer: Renderer, request: RenderRequest, reset: bool) -> None:
         failed = first = shown = None
         try:
             if reset or request.warmup is not None:
@@ -320,7 +311,7 @@ class RenderThread:
                     self._learnt.append(self._first_to_learn(shown))
         self._wake()
 
-    def _warm_up(self, renderer: Traces, request: RenderRequest) -> None:
+    def _warm_up(self, renderer: Renderer, request: RenderRequest) -> None:
         """Trace the frames that set the modes of a picture."""
         as_wanted = renderer.settings
         renderer.settings = replace(as_wanted, verify=False)
@@ -331,7 +322,7 @@ class RenderThread:
                 self._learnt.append(self._first_to_learn(traced))
         renderer.settings = as_wanted
 
-    def _parts_of(self, renderer: Traces, request: RenderRequest) -> Parts:
+    def _parts_of(self, renderer: Renderer, request: RenderRequest) -> Parts:
         """Return the parts and samples of a picture, each with that by the second method where there is one."""
         if not request.second:
             self._pair = None  # nor is what it has learnt kept in memory
@@ -345,7 +336,7 @@ class RenderThread:
         fresh, self._fresh = self._fresh, False
         return replace(traced, fresh=fresh)
 
-    def _deliver(self, renderer: Traces, traced: Traced) -> bool:
+    def _deliver(self, renderer: Renderer, traced: Traced) -> bool:
         """Hand out a frame, unless it is of a scene that was left meanwhile; whether more of it is wanted."""
         with self._changed:
             if renderer is self._renderer:

@@ -27,13 +27,11 @@ class SettingsController:
         self, session: Session, preferences: Preferences, notices: Notices, locked: Callable[[], bool]
     ) -> None:
         self._session, self._preferences, self._notices, self._locked = session, preferences, notices, locked
-        self._stored = self._tried = self._now()  # as others have seen them; what could not be stored, too
+        self._stored = self._tried = self._seen = self._now()  # as others have seen them; what could not be stored, too
         self._looked = time.monotonic()
-        self._seen: dict[str, Any] = {}
-        self._problem: str | None = None
         self._told: str | None = None
         self._writer = BackgroundWriter()
-        self._writing: Future[None] | None = None
+        self._writing: Future[str | None] | None = None
 
     def set(self, one: Setting, value: Any) -> None:
         """Change a setting of the state or of the preferences; a wrong value is one line and changes nothing."""
@@ -56,8 +54,8 @@ class SettingsController:
         except ValueError as error:
             self._notices.say(str(error), error=True)
             return
+        self._note_method()
         self._session.state = state
-        self.note_method()
 
     def set_light(self, light: int) -> None:
         """Choose the light of the views that show one; past the last comes the first."""
@@ -75,10 +73,10 @@ class SettingsController:
         now = Method.parse(self._session.settings.method)
         return "" if now.culls else with_additions(self._preferences.method, now.additions)
 
-    def note_method(self) -> None:
-        """Note the method that culls, to come back to; once in each frame of the window."""
+    def _note_method(self) -> None:
+        """Note the method that culls, to come back to."""
         method = self._session.settings.method
-        if method != self._preferences.method and Method.parse(method).culls:
+        if Method.parse(method).culls:
             self._preferences.method = method
 
     def reset(self, kept: Collection[str]) -> None:
@@ -98,30 +96,35 @@ class SettingsController:
         """Write the preferences to their file soon, beside what other windows have written.
 
         That is done on a thread, so that the window waits for neither the disk nor another window."""
-        mine = self._now()
-        self._writing = self._writer.write(lambda: self._write(mine))
+        self._tried = data = self._now()
+
+        def write() -> str | None:
+            problem = save_preferences(data, base=self._stored)
+            self._stored = data if problem is None else self._stored
+            return problem
+
+        self._writing = self._writer.write(write)
 
     def finish(self) -> None:
         """Save, and wait until it is done."""
         self.save()
         if self._writing is not None:
-            self._writing.result()
-        self._tell()
+            self._tell(self._writing.result())
 
-    def save_when_rested(self) -> None:
+    def save_when_rested(self, moving: bool = False) -> None:
         """Save what was changed and has rested for a moment, so that little is lost with the program, and say once what
-        could not be saved."""
-        self._tell()
-        now = time.monotonic()
-        if now < self._looked + REST_SECONDS or (self._writing is not None and not self._writing.done()):
+        could not be saved; not while anything is `moving`."""
+        now, writing = time.monotonic(), self._writing
+        if moving or now < self._looked + REST_SECONDS or (writing is not None and not writing.done()):
             return
+        if writing is not None and not writing.cancelled():
+            self._tell(writing.result())
         self._looked, before, self._seen = now, self._seen, self._now()
         if self._seen == before and self._seen != self._tried:
             self.save()
 
-    def _tell(self) -> None:
+    def _tell(self, problem: str | None) -> None:
         """Say once why the last save failed, in one line."""
-        problem = self._problem
         if problem and problem != self._told:
             self._notices.say(problem, error=True)
         self._told = problem
@@ -129,14 +132,8 @@ class SettingsController:
     def _now(self) -> dict[str, Any]:
         """The preferences as they are stored, with the state that the next window starts with."""
         state = self._session.state
-        self.note_method()
+        self._note_method()
         self._preferences.state = codec.remembered(state)
         if self._preferences.start_where_left and self._session.scene is not None:
             self._preferences.last = codec.state_to_json(state)
         return codec.to_json(self._preferences)
-
-    def _write(self, data: dict[str, Any]) -> None:
-        self._tried = data
-        self._problem = save_preferences(data, base=self._stored)
-        if self._problem is None:
-            self._stored = data

@@ -69,15 +69,14 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Comparing", c.comparing.end_beside_wipe)
     # The scheduler: queries about the newest frame are answered before the next.
     step("Inspecting the pixel", c.inspect_pixel)
-    step("Listing the scene", c.list_scene)
-    step("Compiling the method", c.compile_method)
+    step("Listing the scene", lambda: c.table.update(c.own_traced))
+    step("Compiling the method", c.loader.compile_method)
     step("Asking for the next frame", lambda: c.scheduler.request(c.frame_inputs(size)))
-    step("Recording the light", c.record_light)
+    step("Recording the light", c.scheduler.record_light)
     # What the newest frame is kept for.
-    step("Keeping the frame", c.keep_frame)
     step("Selecting where one went", lambda: c.navigator.select_when_shown(c.traced))
     step("Measuring speed", c.measure)
-    step("Saving preferences", c.keep_preferences)
+    step("Saving preferences", lambda: c.settings.save_when_rested(c.motion.is_animating))
 
 
 class App:

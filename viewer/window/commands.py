@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from tracer.method import Kind, Method, additions, bases
 from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
 from viewer.state.comparison import CompareMode
 from viewer.state.methods import toggled, with_base
-from viewer.state.pixels import FIT, MOST, STEP, Point, zoomed
+from viewer.state.pixels import MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.scene_rows import Level
 from viewer.state.tone import NEUTRAL, brighter
 from viewer.state.views import View
 from viewer.views import view_of
-from viewer.window import edit_commands
+from viewer.window.actions import FindState, copy_command, fit, offer, pin, pointed_at, zoom_by
 from viewer.window.camera_commands import camera, time
 from viewer.window.command import Command, Condition, scene_open, switch
+from viewer.window.panels import what_if
 from viewer.window.setting_rows import setting_command
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
@@ -32,24 +33,10 @@ _COMPARE = {
 }
 
 
-@dataclass
-class FindState:
-    """`focus` asks for the keyboard above the table, of which `drawn` rows were drawn last, each `height` pixels high,
-    in the order `order`."""
-
-    focus: bool = False
-    drawn: int = 0
-    height: float = 0.0
-    order: object = None
-
-
 def build(ui: Ui) -> list[Command]:
     """Return all commands, in the order of the menus."""
-    menus = (_file, edit_commands.build, _view, _picture, _compare, camera, time, _culling, _run, _help)
+    menus = (_file, _edit, _view, _picture, _compare, camera, time, _culling, _run, _help)
     return [command for menu in menus for command in menu(ui)]
-
-
-# --- the menus -------------------------------------------------------------------------------------
 
 
 def _file(ui: Ui) -> list[Command]:
@@ -76,6 +63,22 @@ def _file(ui: Ui) -> list[Command]:
         switch("Start where I left off", "File", p, "start_where_left", separated=True),
         Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset)),
         Command("Quit", "File", lambda: ui.desktop.exit(), "Ctrl+Q", separated=True),
+    ]  # fmt: skip
+
+
+def _edit(ui: Ui) -> list[Command]:
+    undo = ui.controller.undo
+    return [
+        Command("Undo", "Edit", undo.undo, "Ctrl+Z", repeats=True, title=lambda: f"Undo {undo.undoes}".rstrip(),
+                enabled=Condition(lambda: bool(undo.undoes), "there is nothing to undo")),
+        Command("Redo", "Edit", undo.redo, "Ctrl+Shift+Z", repeats=True, title=lambda: f"Redo {undo.redoes}".rstrip(),
+                enabled=Condition(lambda: bool(undo.redoes), "there is nothing to redo"), other_keys=("Ctrl+Y",)),
+        Command("Command palette", "Edit", lambda: ui.open(Dialog.PALETTE), "Ctrl+Shift+P", separated=True,
+                tip="finds commands, settings, scenes, bookmarks and presets as you type"),
+        Command("Presets...", "Edit/Presets", lambda: ui.toggle(Dialog.PRESETS),
+                checked=lambda: Dialog.PRESETS in ui.dialogs,
+                tip="save the settings under a name; rename and delete presets"),
+        *what_if.commands(ui),
     ]  # fmt: skip
 
 
@@ -225,7 +228,7 @@ def _picture(ui: Ui) -> list[Command]:
     def expose(stops: float) -> Callable[[], None]:
         def change() -> None:
             session.set_draw(tone=brighter(session.draw.tone, stops))
-            ui.controller.notices.say(f"exposure {session.draw.tone.exposure:+.3g} stops")
+            ui.controller.notices.say(f"exposure {session.draw.tone.exposure:+.3g} EV")
 
         return change
 
@@ -235,9 +238,9 @@ def _picture(ui: Ui) -> list[Command]:
     chosen = Condition(lambda: ui.pixels.region is not None, "no region is chosen")
     toned = Condition(lambda: not session.draw.tone.neutral, "colours are shown as traced")
     return [
-        Command("Zoom in", "Picture", lambda: zoom_by(ui, STEP, _at(ui)), "Equal", repeats=True,
+        Command("Zoom in", "Picture", lambda: zoom_by(ui, STEP, pointed_at(ui)), "Equal", repeats=True,
                 enabled=larger, other_keys=("Shift+Equal", "KeypadAdd")),
-        Command("Zoom out", "Picture", lambda: zoom_by(ui, 1.0 / STEP, _at(ui)), "Minus", repeats=True,
+        Command("Zoom out", "Picture", lambda: zoom_by(ui, 1.0 / STEP, pointed_at(ui)), "Minus", repeats=True,
                 enabled=enlarged, other_keys=("KeypadSubtract",)),
         Command("Fit picture", "Picture", lambda: fit(ui), "Shift+F", enabled=enlarged),
         switch("Values in pixels", "Picture", p, "pixel_values", separated=True),
@@ -358,52 +361,3 @@ def _help(ui: Ui) -> list[Command]:
         dialog(Dialog.KEYS, "F1", "keys shortcuts"),
         dialog(Dialog.ABOUT),
     ]
-
-
-# --- what some of them do, which panels do as well ---------------------------------------------------
-
-
-def copy_command(ui: Ui) -> None:
-    """Put the command that makes the picture on the clipboard."""
-    words = ui.controller.pictures.command()
-    if words is not None:
-        ui.desktop.copy(words)
-
-
-def _at(ui: Ui) -> tuple[float, float]:
-    """Return where the pointer is in the picture's room, else its middle."""
-    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.draw.zoom
-    if hovered is None:
-        return 0.5, 0.5
-    return (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale
-
-
-def zoom_by(ui: Ui, factor: float, at: Point = (0.5, 0.5)) -> None:
-    """Enlarge the picture; `at`, 0 to 1 in the room that it has, stays where it is."""
-    session = ui.controller.session
-    session.set_draw(zoom=zoomed(session.draw.zoom, factor, at))
-
-
-def fit(ui: Ui) -> None:
-    """Show all of the picture."""
-    ui.controller.session.set_draw(zoom=FIT)
-
-
-def offer(ui: Ui, panel: str) -> None:
-    """Open a panel, unless panels are hidden."""
-    if not ui.panels_hidden:
-        ui.show_panel(panel)
-
-
-def pin(ui: Ui, point: Point | None = None) -> None:
-    """Watch the pixel at a point, under the pointer, or that was clicked; or watch it no longer.  Says so."""
-    c = ui.controller
-    clicked, point = c.selection.pixel, point or c.selection.hovered
-    if point is None and clicked is not None and c.frame is not None:
-        point = (clicked[0] + 0.5) / c.frame.width, (clicked[1] + 0.5) / c.frame.height
-    if c.frame is None or point is None:
-        c.notices.say("point at a pixel, or click one, to watch it")
-        return
-    c.notices.say(ui.pixels.pin(c.frame, point))
-    if ui.pixels.watched:
-        offer(ui, "Pixels")

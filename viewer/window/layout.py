@@ -59,7 +59,7 @@ SPACES = (
     ("Bottom", "MainDockSpace", imgui.Dir.down, 0.30),
     ("LeftBottom", "Left", imgui.Dir.down, 0.52),
     ("RightBottom", "Right", imgui.Dir.down, 0.37),
-    ("RightMiddle", "Right", imgui.Dir.down, 0.56),
+    ("RightMiddle", "Right", imgui.Dir.down, 0.52),
 )
 PANELS = {
     panel.label: panel
@@ -186,7 +186,8 @@ class Layout:
         if panel.label in self._to_front:
             self._to_front.discard(panel.label)
             imgui.set_next_window_focus()
-        shown, stays = imgui.begin(panel.label, None if is_picture else True, flags)
+        # A tab in the back has no cross, nor room for one: so all are found by eye, and none is closed by mistake.
+        shown, stays = imgui.begin(panel.label, True if _in_front(panel.label) and not is_picture else None, flags)
         try:
             if shown:
                 self._ui.guard.panel(f"The panel {panel.label}", lambda: panel.show(self._ui))
@@ -200,6 +201,14 @@ def _seen(label: str) -> bool:
     """Return whether a panel was drawn, and not behind another's tab."""
     window = imgui.internal.find_window_by_name(label)
     return window is not None and window.was_active and not window.hidden
+
+
+def _in_front(label: str) -> bool:
+    """Return whether a panel is no tab behind another's."""
+    window = imgui.internal.find_window_by_name(label)
+    node: Any = window.dock_node if window is not None else None
+    front = node.visible_window if node is not None else None
+    return window is None or front is None or front.id_ == window.id_
 
 
 def _node_of(label: str) -> Any:

@@ -27,10 +27,6 @@ class Parts:
         self.settings = SettingsController(self.session, self.preferences, self.notices, lambda: self.locked)
         self.bookmarks = Bookmarks(self.session, self.preferences, self.notices, self.settings.save)
 
-    def change(self, **changes: object) -> None:
-        self.settings.change(**changes)
-        self.settings.note_method()  # as in each frame of the window
-
     def follow_settings(self) -> None:
         self.settings.save_when_rested()
         if self.settings._writing is not None:
@@ -56,10 +52,9 @@ def test_a_setting_is_changed_and_remembered_unless_it_is_no_good_or_locked():
 )
 def test_culling_is_turned_off_and_on_as_it_was_with_what_was_added_meanwhile(chosen: str, toggled: list[str]):
     parts = Parts()
-    parts.change(method=chosen)
+    parts.settings.change(method=chosen)
     for method in toggled:
         parts.settings.toggle_culling()
-        parts.settings.note_method()
         assert parts.session.settings.method == method
 
 
@@ -139,5 +134,5 @@ def test_preferences_that_cannot_be_saved_are_said_once(own_settings: Path, monk
         for _ in range(4):
             now[0] += REST_SECONDS
             parts.follow_settings()
-    said = [entry.text for entry in parts.notices.log.entries()]
+    said = [entry.text for entry in parts.notices.entries()]
     assert len(said) == 1 and said[0].startswith("settings not saved: ") and parts.notices.current.error, said

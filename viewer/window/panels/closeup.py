@@ -12,7 +12,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.state.comparison import Side
 from viewer.state.pixels import GRID_FROM, STEP, Point, panned, pixels_shown, region_between
-from viewer.window import commands, comparing
+from viewer.window import actions, comparing
 from viewer.window.keyboard import HELD
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
@@ -46,7 +46,7 @@ def wheel(ui: Ui, area: Area) -> bool:
         return False
     if io.mouse_wheel:
         at = (io.mouse_pos.x - area.corner.x) / area.size.x, (io.mouse_pos.y - area.corner.y) / area.size.y
-        commands.zoom_by(ui, STEP**io.mouse_wheel, at)
+        actions.zoom_by(ui, STEP**io.mouse_wheel, at)
     return True
 
 
@@ -72,7 +72,7 @@ def drag(ui: Ui, area: Area) -> bool:
         ui.pixels.region = region_between(start, here) if moved and max(moved) >= 0.5 else None
     if released:
         if state.gesture == "region" and ui.pixels.region is not None:
-            commands.offer(ui, "Pixels")
+            actions.offer(ui, "Pixels")
         state.gesture = ""
     return True
 
@@ -93,7 +93,7 @@ def menu(ui: Ui) -> None:
         if imgui.menu_item("Inspect this pixel", "Click", False, True)[0]:
             c.selection.select(state.menu_at)
         if imgui.menu_item("Watch this pixel, or no longer", ui.key_label("Watch pixel"), False, True)[0]:
-            commands.pin(ui, state.menu_at)
+            actions.pin(ui, state.menu_at)
         imgui.separator()
     for name in ("Keep as A", "Fit picture", "Clear region"):
         command = next((one for one in ui.commands if one.name == name), None)

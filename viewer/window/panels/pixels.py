@@ -17,7 +17,7 @@ from viewer.state.views import View
 from viewer.views import values_of, words_at
 from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
-from viewer.window import commands, comparing
+from viewer.window import actions, comparing
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
 
@@ -51,7 +51,7 @@ def _watched(ui: Ui) -> None:
     imgui.same_line(0.0, em(1.0))
     if not c.session.draw.zoom.fits:
         if imgui.small_button("Fit"):
-            commands.fit(ui)
+            actions.fit(ui)
         imgui.same_line()
     zoom = c.session.draw.zoom
     clipped("the whole picture" if zoom.fits else f"enlarged {zoom.scale:.3g} times", QUIET)

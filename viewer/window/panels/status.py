@@ -62,7 +62,7 @@ def _hints(ui: Ui) -> str:
 
 def _badge(ui: Ui) -> None:
     """Show how many errors and faults nobody has read yet; a click opens the log."""
-    unread = ui.controller.notices.log.unread
+    unread = ui.controller.notices.unread
     if not unread:
         return
     fault = any(entry.level is Level.FAULT for entry in unread)
@@ -145,15 +145,15 @@ def first_picture(c: Controller) -> str:
 
 def show_log(ui: Ui) -> None:
     """Show the panel: every message there was, newest first."""
-    log = ui.controller.notices.log
-    log.mark_read()
-    entries = log.entries()
+    notices = ui.controller.notices
+    notices.mark_read()
+    entries = notices.entries()
     if imgui.button(f"{icons.ICON_FA_COPY}  Copy all") and entries:
         imgui.set_clipboard_text("".join(e.as_text for e in entries))
     tooltip("Copy everything that is listed, oldest first.")
     imgui.same_line()
     if imgui.button("Clear"):
-        log.clear()
+        notices.clear()
     if imgui.begin_child("entries", ImVec2(0.0, 0.0)):
         if not entries:
             imgui.text_colored(QUIET, "No messages yet.")
