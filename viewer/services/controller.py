@@ -275,7 +275,7 @@ class Controller:
             self.undo.begin_step(f"going to {self.bookmarks.all[index].name}")
             self.restore(state)
             if state.camera is not None:
-                self.motion.fly_to(state.camera, start)
+                self.motion.glide(state.camera, start)
 
     def next_bookmark(self, step: int) -> None:
         """Go to the next bookmark of the list, or with -1 to the one before; past the last comes the first."""

@@ -51,17 +51,3 @@ def offer(ui: Ui, panel: str) -> None:
     """Open a panel, unless panels are hidden."""
     if not ui.panels_hidden:
         ui.show_panel(panel)
-
-
-def pin(ui: Ui, point: Point | None = None) -> None:
-    """Watch the pixel at a point, under the pointer, or that was clicked; or watch it no longer.  Says so."""
-    c = ui.controller
-    clicked, point = c.selection.pixel, point or c.selection.hovered
-    if point is None and clicked is not None and c.frame is not None:
-        point = (clicked[0] + 0.5) / c.frame.width, (clicked[1] + 0.5) / c.frame.height
-    if c.frame is None or point is None:
-        c.notices.say("point at a pixel, or click one, to watch it")
-        return
-    c.notices.say(ui.pixels.pin(c.frame, point))
-    if ui.pixels.watched:
-        offer(ui, "Pixels")

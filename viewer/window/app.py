@@ -31,7 +31,7 @@ from viewer.window.gl_window import NO_OPENGL, closing_by_signals
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
-from viewer.window.panels import dialogs, loading, named_states, picture, status, tour
+from viewer.window.panels import dialogs, named_states, picture, status, tour
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -76,7 +76,7 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     # What the newest frame is kept for.
     step("Selecting where one went", lambda: c.navigator.select_when_shown(c.traced))
     step("Measuring speed", c.measure)
-    step("Saving preferences", lambda: c.settings.save_when_rested(c.motion.is_animating))
+    step("Saving preferences", lambda: c.settings.save_changes(c.motion.is_animating))
 
 
 class App:
@@ -166,7 +166,6 @@ class App:
         step("Reading the keys", lambda: menus.handle_keys(ui))
         step("Flying", lambda: picture.fly(ui))
         step("Comparing", lambda: comparing.read_key(ui))
-        overlay("The progress of loading", lambda: loading.show(ui))
         dialogs.show(ui)
         overlay("The tour", lambda: tour.show(ui), ui.tour.end)
         overlay("The notice", lambda: status.show_fault(ui), self.controller.notices.dismiss_faults)

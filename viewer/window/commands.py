@@ -16,7 +16,7 @@ from viewer.state.scene_rows import Level
 from viewer.state.tone import NEUTRAL, brighter
 from viewer.state.views import View
 from viewer.views import view_of
-from viewer.window.actions import FindState, copy_command, fit, offer, pin, pointed_at, zoom_by
+from viewer.window.actions import FindState, copy_command, fit, offer, pointed_at, zoom_by
 from viewer.window.camera_commands import camera, time
 from viewer.window.command import Command, Condition, scene_open, switch
 from viewer.window.panels import what_if
@@ -223,7 +223,7 @@ def _interface(ui: Ui) -> list[Command]:
 
 def _picture(ui: Ui) -> list[Command]:
     """Zoom and values of pixels, exposure and what is clipped."""
-    session, p, watched = ui.controller.session, ui.controller.preferences, ui.pixels.watched
+    session, p = ui.controller.session, ui.controller.preferences
 
     def expose(stops: float) -> Callable[[], None]:
         def change() -> None:
@@ -234,8 +234,6 @@ def _picture(ui: Ui) -> list[Command]:
 
     larger = Condition(lambda: session.draw.zoom.scale < MOST, f"{MOST:.0f} times is the largest zoom")
     enlarged = Condition(lambda: not session.draw.zoom.fits, "the whole picture is shown")
-    watching = Condition(lambda: bool(watched), "no pixel is watched")
-    chosen = Condition(lambda: ui.pixels.region is not None, "no region is chosen")
     toned = Condition(lambda: not session.draw.tone.neutral, "colours are shown as traced")
     return [
         Command("Zoom in", "Picture", lambda: zoom_by(ui, STEP, pointed_at(ui)), "Equal", repeats=True,
@@ -244,9 +242,6 @@ def _picture(ui: Ui) -> list[Command]:
                 enabled=enlarged, other_keys=("KeypadSubtract",)),
         Command("Fit picture", "Picture", lambda: fit(ui), "Shift+F", enabled=enlarged),
         switch("Values in pixels", "Picture", p, "pixel_values", separated=True),
-        Command("Watch pixel", "Picture", lambda: pin(ui), "Shift+P"),
-        Command("Unwatch all pixels", "Picture", watched.clear, enabled=watching),
-        Command("Clear region", "Picture", lambda: setattr(ui.pixels, "region", None), enabled=chosen),
         Command("Brighter", "Picture", expose(_STOPS), "RightBracket", repeats=True, separated=True),
         Command("Darker", "Picture", expose(-_STOPS), "LeftBracket", repeats=True),
         Command("Colours as traced", "Picture", lambda: session.set_draw(tone=NEUTRAL), enabled=toned),
