@@ -31,7 +31,7 @@ from viewer.window.widgets import (
     row,
     same_line_for,
     swatch,
-    tooltip_above,
+    tooltip,
 )
 
 _LIST, _DETAILS = 13.0, 14.0  # ems of width
@@ -99,13 +99,13 @@ def _details(ui: Ui, hunts: Hunts, number: int, find: Counterexample, scene: Sce
     same_line_for(figure)
     if imgui.button(figure):
         hunts.save_figure(number)
-    tooltip_above("Save it beside the right picture; shadowcull check draws it again")
+    tooltip("Save it beside the right picture; shadowcull check draws it again")
     imgui.end_disabled()
     rays = f"{icons.ICON_FA_CODE_BRANCH}  Rays"
     same_line_for(rays)
     if imgui.button(rays):
         ui.show_rays()
-    tooltip_above(f"what became of each ray of the pixel{ui.key('Rays of the clicked pixel')}")
+    tooltip(f"what became of each ray of the pixel{ui.key('Rays of the clicked pixel')}")
     for color, name in ((find.color, "shown"), (find.reference, "right")):
         red, green, blue = (min(max(channel, 0.0), 1.0) for channel in color)
         swatch((red, green, blue))
