@@ -228,16 +228,10 @@ class FrameScheduler:
         return with_base(method, NO_CULLING) if waits else method
 
     def _next_lamp_samples(self, coarse: bool) -> int:
-        """Return how many samples lamps have in the next frame."""
-        lamps, asked, traced = self.lamps, self._asked, self.traced
-        if self._each_is_whole:
-            return lamps.wanted
-        if coarse or self.inputs.playing:
-            return min(refinement.FEWEST_LAMP_SAMPLES, lamps.wanted)
-        if asked is None or asked.divisor > 1 or not self._is_of_inputs(asked):
-            return lamps.first
-        has, come = lamps.most(asked.settings), traced is not None and traced.whole and traced.request == asked
-        return min(max(lamps.first, lamps.after(has) if come else has), lamps.wanted)
+        """Return how many samples lamps have in the next frame: all of them once a picture with fewer is there."""
+        shown = self.traced is not None and self.traced.whole and self._is_of_inputs(self.traced.request)
+        adds = shown and not coarse and not self.inputs.playing
+        return self.lamps.wanted if adds or self._each_is_whole else self.lamps.first
 
     @property
     def settings(self) -> Settings:

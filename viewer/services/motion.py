@@ -22,7 +22,6 @@ from viewer.state.session import Session
 
 IDLE_AFTER = 0.25
 """Seconds after a movement by hand until nothing moves."""
-GLIDE_SECONDS = 0.35
 LONGEST_STEP = 0.25
 """Seconds, at most, by which time and a flown camera go on between two frames, however long the window slept."""
 
@@ -120,15 +119,13 @@ class Motion:
         self._session.change(camera=camera)
         self.by_hand()
 
-    def glide(self, camera: Camera, start: Camera | None = None, seconds: float = GLIDE_SECONDS) -> None:
-        """Move the camera there in a moment's time, from where it is or from `start`."""
+    def glide(self, camera: Camera, start: Camera | None = None) -> None:
+        """Move the camera there from where it is or from `start`, for as long as the way is, so that the eye can
+        follow."""
         if not self._locked():
-            self._glide = _Glide(start or self._session.camera, camera, time.monotonic(), seconds)
-
-    def fly_to(self, camera: Camera, start: Camera | None = None) -> None:
-        """The same, for as long as the way is: a flight that the eye can follow."""
-        start = start or self._session.camera
-        self.glide(camera, start, navigation.flight_seconds(start, camera, self.pace))
+            start = start or self._session.camera
+            seconds = navigation.flight_seconds(start, camera, self.pace)
+            self._glide = _Glide(start, camera, time.monotonic(), seconds)
 
     def halt(self) -> None:
         """Leave the camera where it is."""

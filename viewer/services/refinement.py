@@ -6,8 +6,7 @@ has chosen them, as the method or as the view, more frames follow, until none ar
 into samples.
 
 Shadow modes are those of a lamp as it is sampled, and are dropped when the number of its samples changes.  So all
-frames of a motion have the same number, with which the frame that follows at rest begins as well; and each step takes
-four times as many samples as the one before, so that there are few of them.
+frames of a motion have the same number, which the first frame at rest has as well, and the next has all of them.
 """
 
 from __future__ import annotations
@@ -27,9 +26,7 @@ MOST_FRAMES = 40
 """Frames at idle, at most, in which certificates are made."""
 SECONDS = 0.4
 """That each of these may spend on certificates: the picture is there already, and a movement ends them at once."""
-FEWEST_LAMP_SAMPLES = 4
-"""Samples of a lamp in motion, and in the first frame at rest."""
-LAMP_SAMPLES_GROWTH = 4
+FIRST_LAMP_SAMPLES = 4
 MOST_RADII = 16
 """Radii of lamps whose samples are known at once."""
 OFFERED = (1, 4, 16, 64, 256)
@@ -132,12 +129,5 @@ class LampSamples:
 
     @property
     def first(self) -> int:
-        """How many the first frame at rest has."""
-        return self.wanted if self.wanted < 2 * FEWEST_LAMP_SAMPLES else FEWEST_LAMP_SAMPLES
-
-    def after(self, samples: int) -> int:
-        """Return the samples of the frame after one with so many: the last step is skipped where it adds little."""
-        more = FEWEST_LAMP_SAMPLES
-        while more <= samples:
-            more *= LAMP_SAMPLES_GROWTH
-        return self.wanted if 2 * more > self.wanted else more
+        """How many there are in motion, and in the first frame at rest."""
+        return min(FIRST_LAMP_SAMPLES, self.wanted)

@@ -16,8 +16,8 @@ from viewer.state.preferences import Preferences, save_preferences
 from viewer.state.session import Session
 from viewer.util.files import BackgroundWriter
 
-REST_SECONDS = 2.0
-"""How long preferences are as they are before they are saved."""
+SAVED_EVERY = 2.0
+"""Seconds, where preferences have changed."""
 
 
 class SettingsController:
@@ -27,11 +27,10 @@ class SettingsController:
         self, session: Session, preferences: Preferences, notices: Notices, locked: Callable[[], bool]
     ) -> None:
         self._session, self._preferences, self._notices, self._locked = session, preferences, notices, locked
-        self._stored = self._tried = self._seen = self._now()  # as others have seen them; what could not be stored, too
+        self._stored = self._tried = self._now()  # as others have seen them; what could not be stored, too
         self._looked = time.monotonic()
-        self._told: str | None = None
         self._writer = BackgroundWriter()
-        self._writing: Future[str | None] | None = None
+        self._writing: Future[None] | None = None
 
     def set(self, one: Setting, value: Any) -> None:
         """Change a setting of the state or of the preferences; a wrong value is one line and changes nothing."""
@@ -98,10 +97,12 @@ class SettingsController:
         That is done on a thread, so that the window waits for neither the disk nor another window."""
         self._tried = data = self._now()
 
-        def write() -> str | None:
+        def write() -> None:
             problem = save_preferences(data, base=self._stored)
-            self._stored = data if problem is None else self._stored
-            return problem
+            if problem is None:
+                self._stored = data
+            else:
+                self._notices.say(problem, error=True)
 
         self._writing = self._writer.write(write)
 
@@ -109,25 +110,15 @@ class SettingsController:
         """Save, and wait until it is done."""
         self.save()
         if self._writing is not None:
-            self._tell(self._writing.result())
+            self._writing.result()
 
-    def save_when_rested(self, moving: bool = False) -> None:
-        """Save what was changed and has rested for a moment, so that little is lost with the program, and say once what
-        could not be saved; not while anything is `moving`."""
+    def save_changes(self, moving: bool = False) -> None:
+        """Save what was changed, now and then, so that little is lost with the program; not while anything moves."""
         now, writing = time.monotonic(), self._writing
-        if moving or now < self._looked + REST_SECONDS or (writing is not None and not writing.done()):
-            return
-        if writing is not None and not writing.cancelled():
-            self._tell(writing.result())
-        self._looked, before, self._seen = now, self._seen, self._now()
-        if self._seen == before and self._seen != self._tried:
-            self.save()
-
-    def _tell(self, problem: str | None) -> None:
-        """Say once why the last save failed, in one line."""
-        if problem and problem != self._told:
-            self._notices.say(problem, error=True)
-        self._told = problem
+        if not moving and now >= self._looked + SAVED_EVERY and (writing is None or writing.done()):
+            self._looked = now
+            if self._now() != self._tried:
+                self.save()
 
     def _now(self) -> dict[str, Any]:
         """The preferences as they are stored, with the state that the next window starts with."""

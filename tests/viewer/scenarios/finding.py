@@ -8,8 +8,8 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.services.scene_table import Listing
 from viewer.state.scene_rows import Level
+from viewer.window.actions import FindState
 from viewer.window.menus import ANY_POPUP
-from viewer.window.view_commands import FindState
 
 KEY = imgui.Key
 ROWS_SEEN = 60  # at most, in a window of these sizes
@@ -103,7 +103,7 @@ def finding(d: Driver) -> None:
     listing = _known(d)
     part = int(listing.rows[0])
     row = d.context.item_info(f"//Find/**/{_id(part)}/##row").rect_full
-    d.context.mouse_move_to_pos((row.min.x + 60.0, 0.5 * (row.min.y + row.max.y)))  # on its name, at no column's edge
+    d.context.mouse_move_to_pos((row.min.x + 35.0, 0.5 * (row.min.y + row.max.y)))  # on its name, at no column's edge
     d.context.mouse_click(0)
     d.frames(3)
     assert c.selection.part == part

@@ -91,10 +91,7 @@ def zooming(d: Driver) -> None:
     step = test.results.approaches[0].steps[4]
     d.context.item_click("//Zoom test/**/4 step 4##shot")
     d.frames(3)
-    assert d.ui.frame_preview.step() is step
-    d.context.item_click("//Picture/**/Fly there")
     d.settle()
-    assert d.ui.frame_preview is None
     assert np.allclose(d.c.frame.camera.position, step.camera.position)
     files = saved_results(d, "Zoom test")
     assert json.loads(files[".json"].read_text())["primitive"] == test.start.primitive

@@ -196,7 +196,7 @@ class Window:
 
 def test_at_idle_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_for_twice():
     window = Window(lamp_radius=0.5, lamp_samples=64)
-    assert window.rest() == [(4, 1), (16, 1), (64, 2), (64, 2)], "the last knows more about shadows"
+    assert window.rest() == [(4, 1), (64, 2), (64, 2)], "the last knows more about shadows"
     assert window.rest() == []
     assert not window.scheduler.refines_lamps and window.scheduler.lamp_samples_shown == 64
     window.session.change(settings=replace(window.session.settings, lamp_samples=256))
@@ -216,7 +216,7 @@ def test_all_pictures_of_a_motion_have_as_many_samples():
         window.move()
         asked += window.rest(1, moving=True)
     assert asked == [(4, 1)] * 5
-    assert window.rest() == [(16, 1), (64, 2), (64, 2)], "the last of them is the first at idle"
+    assert window.rest() == [(64, 2), (64, 2)], "the last of them is the first at idle"
 
 
 def test_points_have_one_sample_and_whole_pictures_all_of_them():
@@ -276,7 +276,7 @@ def test_between_steps_it_is_known_that_more_is_to_come():
         window.request()
         seen.append((scheduler.lamp_samples_shown, scheduler.awaits, scheduler.refines_lamps))
         scheduler.take()
-    assert seen[:4] == [(0, True, False), (4, True, True), (16, True, True), (64, True, False)], "the last knows more"
+    assert seen[:3] == [(0, True, False), (4, True, True), (64, True, False)], "the last knows more"
     assert seen[-1] == (64, False, False)
     window.move()
     window.request()
