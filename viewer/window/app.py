@@ -27,7 +27,7 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.messages import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, graphics, menus, style
+from viewer.window import commands, graphics, menus, style
 from viewer.window.full_screen import Rect
 from viewer.window.gl_window import PATIENCE, ContextLoss, closing_by_signals, open_window
 from viewer.window.guard import Guard
@@ -70,7 +70,7 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Moving", c.move)
     step("Noting what can be undone", c.undo.note_changes)
     step("Editing the scene", c.apply_edits)
-    step("Comparing", c.comparing.end_beside_wipe)
+    step("Comparing", c.comparing.update)
     # The scheduler: queries about the newest frame are answered before the next.
     step("Inspecting the pixel", c.inspect_pixel)
     step("Listing the scene", c.list_scene)
@@ -199,7 +199,7 @@ class App:
         overlay("The strip of folded panels", lambda: show_strip(ui), lambda: setattr(ui.fold, "drawer", ""))
         step("Reading the keys", lambda: menus.handle_keys(ui))
         step("Flying", lambda: picture.fly(ui))
-        step("Comparing", lambda: comparing.read_key(ui))
+        step("Comparing", lambda: sides.read_key(ui))
         overlay("The progress of loading", lambda: loading.show(ui))
         dialogs.show(ui)
         overlay("The tour", lambda: tour.show(ui), ui.tour.end)
@@ -270,7 +270,7 @@ class App:
     def _set_frame_rate(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
         idling = self.params.fps_idling
-        lively = self.controller.motion.is_animating or self.controller.comparing.blinks()
+        lively = self.controller.motion.is_animating
         by_processor = lively and self.drawn_by_processor
         idling.enable_idling = by_processor or not lively
         idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE

@@ -12,13 +12,6 @@ from viewer.window.setting_rows import setting_command
 from viewer.window.ui import Ui
 
 _STOPS = 0.5  # of exposure by a key
-_NAMES = {
-    CompareMode.FLIP: "Flip between A and B",
-    CompareMode.WIPE: "Wipe between A and B",
-    CompareMode.SIDE: "A and B side by side",
-    CompareMode.DIFFERENCE: "Signed difference B - A",
-    CompareMode.BLINK: "Blink A and B",
-}
 
 
 def comparing(ui: Ui) -> list[Command]:
@@ -33,7 +26,7 @@ def comparing(ui: Ui) -> list[Command]:
         offer(ui, "Compare")
 
     def by(mode: CompareMode) -> Command:
-        return Command(_NAMES[mode], "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.meaning,
+        return Command(mode.command, "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.help,
                        checked=lambda: comparing.state.on and comparing.state.mode is mode)  # fmt: skip
 
     return [

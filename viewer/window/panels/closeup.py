@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.state.comparison import Side
+from viewer.services.comparing import Side
 from viewer.state.keymap import HELD
 from viewer.state.pixels import GRID_FROM, STEP, Point, panned, pixels_shown, region_between
-from viewer.window import comparing, picture_commands
+from viewer.window import picture_commands
+from viewer.window.panels import sides
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import em
@@ -107,7 +108,7 @@ def menu(ui: Ui) -> None:
 
 def show(ui: Ui, area: Area, side: Side | None = None) -> None:
     """Over the picture of a side, or what else is seen: grid and values, watched pixels, the region."""
-    found = comparing.words(ui, comparing.draw_options(ui), side)
+    found = sides.words(ui, sides.draw_options(ui), side)
     if found is None:
         return
     frame, words = found

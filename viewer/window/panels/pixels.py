@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.frame import Frame
-from viewer.state.comparison import Side
+from viewer.services.comparing import Side
 from viewer.state.picking import pixel_at
 from viewer.state.pixels import ALL
 from viewer.state.readings import can_draw
@@ -17,7 +17,8 @@ from viewer.state.views import View
 from viewer.views import values_of, words_at
 from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
-from viewer.window import comparing, picture_commands
+from viewer.window import picture_commands
+from viewer.window.panels import sides
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
 
@@ -60,11 +61,11 @@ def _watched(ui: Ui) -> None:
         text = "Ctrl+wheel zooms into the picture, Ctrl+drag moves it. Watch the pixel under the pointer"
         paragraph(f"{text}{ui.key('Watch pixel')}.", QUIET)
         return
-    sides = c.comparing.sides
+    seen = c.comparing.seen
     of_view = c.scheduler.drawn_view not in (View.COLOR, View.WIPE)  # else the value is the colour
     columns = [("", 1.2), ("pixel", 4.0), ("primitive", 3.6), ("colour", 8.4)]
     columns += [(c.scheduler.drawn_view.label.lower(), 5.0)] if of_view else []
-    columns += [("the same in A", 8.4 if not of_view else 5.0)] if sides is not None else []
+    columns += [("the same in A", 8.4 if not of_view else 5.0)] if seen is not None else []
     flags = int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)
     if imgui.begin_table(f"watched pixels {len(columns)}", len(columns), flags):
         for name, width in columns:
@@ -73,7 +74,7 @@ def _watched(ui: Ui) -> None:
         gone = None
         for number, point in enumerate(ui.pixels.watched):
             imgui.push_id(number)
-            if _pixel(ui, frame, number, point, sides[0] if sides is not None else None):
+            if _pixel(ui, frame, number, point, seen.a if seen is not None else None):
                 gone = number
             imgui.pop_id()
         if gone is not None:
@@ -110,15 +111,16 @@ def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Sid
 
 
 def _value(ui: Ui, frame: Frame, view: View, light: int, x: int, y: int) -> str:
-    return " ".join(words_at(frame, replace(comparing.draw_options(ui), view=view, light=light), x, y)) or "-"
+    return " ".join(words_at(frame, replace(sides.draw_options(ui), view=view, light=light), x, y)) or "-"
 
 
 def _histogram(ui: Ui) -> None:
     """How the values of the region lie, and the range of the colour map from them."""
     c, frame, region = ui.controller, ui.controller.frame, ui.pixels.region
-    options = comparing.draw_options(ui)
+    options = sides.draw_options(ui)
     view, light = options.view, options.light
-    difference = comparing.difference(ui)
+    seen = c.comparing.seen
+    difference = seen.difference if seen is not None else None
     if frame is None or not can_draw(frame, view, light):
         return
     if difference is not None and difference.pixels.shape != frame.primitive.shape:
