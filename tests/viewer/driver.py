@@ -1,12 +1,19 @@
-"""A user's hands and eyes in the real window: what scenarios drive it with."""
+"""A user's hands and eyes in the real window: what scenarios drive it with.
+
+Items are called as ImGui's test engine does, "//Panel/**/label": a panel, any groups in it, and a label.  What is not
+there fails within seconds, with its name and those of the nearest items that are there.
+"""
 
 from __future__ import annotations
 
+import re
 import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from difflib import SequenceMatcher, get_close_matches
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 from imgui_bundle import glfw_utils, hello_imgui, imgui
@@ -17,15 +24,77 @@ from tests.sweeps import cases
 from tests.viewer.fakes import with_certificates
 from tracer.experiments.runner import Run
 from tracer.frame import Frame
+from viewer.state.views import View
+from viewer.views import colorize
 from viewer.window.app import App
+from viewer.window.keyboard import chord
 
 PATIENCE = 240.0  # a first run compiles the kernels
+SOON = 5.0  # seconds within which an item that is to be used must be there
 SIZES = ((1280, 800), (1600, 1000))  # of windows that people have
 FASTEST = 1000.0  # frames a second: they are counted here, not timed
 # Seconds from frame to frame while it waits, and while it traces, which needs the processor, unless there is news; and
 # while it only makes sure that nothing more comes.
 SELDOM, BUSY, SETTLING = 0.02, 0.05, 0.004
 RASTERIZER_DISCARD = 0x8C89  # what OpenGL calls: to draw up to where pixels would be filled
+_NAMED = re.compile(r"0x[0-9A-F]+: depth \d+: '(.+)' in window '(.+)'")
+
+Rect = tuple[float, float, float, float]
+T = TypeVar("T")
+
+
+class Hands:
+    """The test engine's context, which fails as soon as an item is not there, or anything else cannot be done."""
+
+    def __init__(self, context: Any) -> None:
+        self._context = context
+
+    def __getattr__(self, name: str) -> Any:
+        act = getattr(self._context, name)
+
+        def checked(*arguments: Any) -> Any:
+            wanted = arguments[0] if arguments and isinstance(arguments[0], str) else ""
+            if name.startswith(("item_", "mouse_")) and name != "item_exists" and wanted.startswith("//"):
+                self._await(wanted)
+            found = act(*arguments)
+            assert not self._context.is_error(), f"{name} failed: {', '.join(map(repr, arguments))}"
+            return found
+
+        return checked
+
+    def _await(self, item: str) -> None:
+        end = time.monotonic() + SOON
+        while not self._context.item_exists(item):
+            assert time.monotonic() < end, f"there is no item {item!r}; {self._nearest(item)}"
+            self._context.yield_()
+
+    def _nearest(self, item: str) -> str:
+        """Say which items are called nearly like this, those of its window first."""
+        window, label = item.removeprefix("//").split("/")[0], item.split("/")[-1]
+        there = self.items()
+        nearest = sorted(there, key=lambda one: (one[0] != window, -_likeness(label, one[1])))[:6]
+        said = ", ".join(repr(name) if owner == window else f"{name!r} in {owner}" for owner, name in nearest)
+        hidden = "" if any(owner == window for owner, _ in there) else f"; {window} is not shown"
+        return f"nearest are {said or 'none'}{hidden}"
+
+    def items(self) -> list[tuple[str, str]]:
+        """Return the window and the label of each item that is drawn."""
+        engine = imgui.test_engine
+        settings, found = engine.get_io(hello_imgui.get_imgui_test_engine()), engine.TestItemList()
+        windows = [w.name for w in imgui.get_current_context().windows if w.was_active and not w.hidden]
+        for name in windows:
+            self._context.gather_items(found, f"//{name}", -1)
+        said, settings.config_verbose_level = settings.config_verbose_level, engine.TestVerboseLevel.debug
+        before = self._context.test_output.log.get_text_len()
+        self._context.log_item_list(found)  # labels are told in the log alone
+        settings.config_verbose_level = said
+        told = _NAMED.findall(self._context.test_output.log.get_text()[before:])
+        return list(dict.fromkeys((window.split("/")[0], label) for label, window in told))
+
+
+def _likeness(wanted: str, there: str) -> float:
+    """How much of a text another has, 0 to 1."""
+    return SequenceMatcher(None, wanted.lower(), there.lower()).ratio()
 
 
 class Driver:
@@ -34,9 +103,10 @@ class Driver:
     def __init__(self, app: App, context, folder: Path, dozes: bool = False) -> None:
         """`dozes`: the window rests when nothing moves, as for a user, else it draws frame after frame."""
         self.app, self.ui, self.c = app, app.ui, app.controller
-        self.context, self.folder = context, folder
+        self.context, self.folder = Hands(context), folder
         self._in_frame: list[Callable[[], None]] = []
         self._of_window: list[Callable[[], None]] = []  # done when the window is drawn, pixels and all
+        self._reading: list[str] | None = None  # what the window's next frame writes is wanted
         stay_awake = app._set_frame_rate
         self._news = threading.Event()
 
@@ -80,6 +150,28 @@ class Driver:
                 self._of_window.pop()()
 
         call.before_imgui_render, call.before_swap = begin, end
+        self._can_read()
+
+    def _can_read(self) -> None:
+        """Have ImGui's own log say what a frame writes, where that is wanted: from the menus, which come first, on."""
+        call, context = self.app.params.callbacks, imgui.get_current_context()
+        show_menus, before_render = call.show_menus, call.before_imgui_render
+
+        def begin() -> None:
+            if self._reading is not None:
+                imgui.internal.log_to_buffer(0)
+                context.log_window = imgui.internal.find_window_by_name("Debug##Default")  # not the menus' alone
+            show_menus()
+
+        def end() -> None:
+            if self._reading is not None and context.log_enabled:
+                self._reading.append(context.log_buffer.c_str())
+                imgui.log_finish()
+            before_render()
+
+        call.show_menus, call.before_imgui_render = begin, end
+
+    # Waiting
 
     def wait(self, until: Callable[[], bool], what: str, patience: float = PATIENCE, seldom: float = SELDOM) -> None:
         end = time.monotonic() + patience
@@ -117,12 +209,71 @@ class Driver:
         self.wait(rested, "an idle picture", seldom=SETTLING)
         self.frames(2)
 
-    def shown(self) -> np.ndarray:
-        """The drawn view, read where GL work is done: scenarios run on a thread without the window's context."""
-        got: list[np.ndarray] = []
-        self._in_frame.append(lambda: got.append(self.ui.graphics.display.read()))
-        self.wait(lambda: bool(got), "the picture to be read")
+    def change(self, **settings: Any) -> None:
+        """Change settings of the tracer, and wait for their picture."""
+        self.c.settings.change(**settings)
+        self.settle()
+
+    def see(self, view: View) -> None:
+        """Choose a view, and wait for its picture."""
+        self.c.session.set_draw(view=view)
+        self.settle()
+
+    def open(self, path: Path) -> None:
+        """Let a scene go over the window, and wait for its picture."""
+        self.drop(path)
+        self.wait(lambda: self.c.session.scene.path.name == path.name, f"the scene {path.name}")
+        self.settle()
+
+    # Eyes
+
+    def text(self) -> str:
+        """Return all that the window writes, but for what is written over the picture: panels, menus, dialogs."""
+        self._reading = found = []
+        while not found:
+            self.frames(1)
+        self._reading = None
+        return found[0]
+
+    def expect(self, *texts: str, patience: float = 20.0) -> None:
+        """Wait until the window writes all of these."""
+        end = time.monotonic() + patience
+        while missing := [text for text in texts if text not in (seen := self.text())]:
+            if time.monotonic() > end:
+                lines = sorted(seen.splitlines(), key=lambda line: -_likeness(missing[0], line))[:6]
+                raise AssertionError(f"the window does not say {missing[0]!r}; nearest are {lines}")
+
+    @property
+    def said(self) -> str:
+        """The newest notice."""
+        message = self.c.notices.message
+        return "" if message is None else message.text
+
+    def place(self, item: str) -> Rect:
+        """Left, top, right and bottom of an item."""
+        area = self.context.item_info(item).rect_full
+        return area.min.x, area.min.y, area.max.x, area.max.y
+
+    def has(self, item: str) -> bool:
+        """Whether an item is there."""
+        return bool(self.context.item_exists(item))
+
+    def inside(self, look: Callable[[], T]) -> T:
+        """Return what is seen where GL work is done: scenarios run on a thread without the window's context."""
+        got: list[T] = []
+        self._in_frame.append(lambda: got.append(look()))
+        self.wait(lambda: bool(got), "the window's next frame")
         return got[0]
+
+    def shown(self) -> np.ndarray:
+        """The drawn view, (h, w, 3) uint8."""
+        return self.inside(self.ui.graphics.display.read)
+
+    def expect_picture(self, most: int = 2, **options: Any) -> None:
+        """The picture is that which the command line draws of the frame with what is chosen, to so many steps."""
+        draw = replace(self.c.session.draw, **options)
+        off = np.abs(self.shown().astype(int) - colorize(self.c.frame, draw))
+        assert off.max() <= most, f"{draw.view}: off by {off.max()} at {np.argwhere(off > most)[:3].tolist()}"
 
     def window(self) -> np.ndarray:
         """All of the window as it is drawn next."""
@@ -180,9 +331,57 @@ class Driver:
                 imgui.internal.set_scroll_y(window, window.scroll_max.y)
         self.frames(3)
 
-    def press(self, key: int, count: int = 1) -> None:
-        self.context.key_press(key, count)
+    # Hands
+
+    def press(self, key: int | str, count: int = 1) -> None:
+        """Press a key, also by its name: "Ctrl+O"."""
+        self.context.key_press(chord(key) if isinstance(key, str) else key, count)
         self.frames(2)
+
+    def type(self, text: str) -> None:
+        self.context.key_chars(text)
+        self.frames(2)
+
+    def click(self, item: str, frames: int = 3) -> None:
+        """Click an item, and let some of the window's frames follow."""
+        self.context.item_click(item)
+        self.frames(frames)
+
+    def choose(self, entry: str) -> None:
+        """Choose an entry of a menu: "View/Depth"."""
+        try:
+            self.context.menu_click(f"//##MainMenuBar/{entry}")
+        except AssertionError:
+            there = [f"{command.menu}/{command.name}" for command in self.ui.commands]
+            raise AssertionError(
+                f"no menu has {entry!r}; nearest are {get_close_matches(entry, there, 5, 0.0)}"
+            ) from None
+        self.frames(3)
+
+    def enter(self, item: str, value: float | str) -> None:
+        """Give a field another value."""
+        self.context.item_input_value(item, value)
+        self.frames(3)
+
+    def hover(self, item: str) -> None:
+        self.context.mouse_move(item)
+        self.frames(3)
+
+    def show_panel(self, name: str) -> None:
+        self.ui.show_panel(name)
+        self.frames(4)
+
+    def point(self, across: float, down: float) -> None:
+        """Rest the pointer on the picture, 0 to 1 across and down."""
+        left, top, right, bottom = self.picture_edges()
+        self.context.mouse_move_to_pos((left + across * (right - left), top + down * (bottom - top)))
+        self.frames(2)
+
+    def pick(self, across: float, down: float, button: int = 0) -> None:
+        """Click the picture there."""
+        self.point(across, down)
+        self.context.mouse_click(button)
+        self.frames(3)
 
     def hold(self, key: int, seconds: float) -> None:
         self.context.key_down(key)
@@ -194,10 +393,9 @@ class Driver:
         left, top, right, bottom = self.picture_edges()
         return 0.5 * (left + right), 0.5 * (top + bottom)
 
-    def picture_edges(self) -> tuple[float, float, float, float]:
+    def picture_edges(self) -> Rect:
         """Left, top, right and bottom of the picture inside its window."""
-        area = self.context.item_info("//Picture/picture").rect_full
-        return area.min.x, area.min.y, area.max.x, area.max.y
+        return self.place("//Picture/picture")
 
     def drag(self, start: tuple[float, float], by: tuple[float, float], button: int = 0) -> None:
         self.context.mouse_move_to_pos(start)

@@ -24,7 +24,7 @@ from tracer.scene.model import Scene
 from tracer.setting import Setting, settings_of
 from tracer.settings import Settings
 from viewer.state import codec
-from viewer.state import edits as scene_edits
+from viewer.state.changes import as_options
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
@@ -92,7 +92,7 @@ def words(state: ViewState, scene: Scene | None, output: str, folders: Sequence[
         found += [f"--caption={draw.caption.replace('{', '{{').replace('}', '}}')}"]
     if warmup.frames:
         found += ["--before", codec.text(warmup.frames)]
-    found += scene_edits.as_options(state.edits)
+    found += as_options(state.edits)
     for folder in folders:
         found += ["--folder", str(folder.absolute())]
     return found + ([] if path.suffix.lower() in AFF_EXTENSIONS else _meshes(state))

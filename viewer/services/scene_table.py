@@ -137,10 +137,12 @@ class SceneTable:
 
     def hide(self, row: int, hidden: bool = True) -> None:
         """Hide a row's object or primitive, or show it again, with the object that it belongs to."""
+        edits = self._editing.now
         if self.level is Level.OBJECTS or not hidden:
-            self._editing.hide(self._object_of(row), hidden)
+            edits = edits.with_thing(self._object_of(row), not hidden)
         if self.level is Level.PRIMITIVES:
-            self._editing.hide_primitive(row, hidden)
+            edits = edits.with_primitive(row, not hidden)
+        self._editing.change(edits)
 
     def _object_of(self, row: int) -> str:
         """The name of a row's object, "" where no scene is open."""

@@ -1,9 +1,13 @@
-"""Whether and how the live picture, B, is compared with another, A: a part of the window's state."""
+"""Two pictures beside each other, A and B, the live one; and whether and how they are compared, which is a part of the
+window's state."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+
+from tracer.frame import Frame
+from viewer.state.views import View
 
 
 class CompareMode(StrEnum):
@@ -32,6 +36,46 @@ class Source(StrEnum):
 
     KEPT = "kept"
     METHOD = "method"
+
+
+@dataclass(frozen=True)
+class Side:
+    """One of the two pictures: a frame in a view, of the scene of this name, at the frame number of its animation;
+    `light_number` is what people call its light."""
+
+    frame: Frame
+    view: View
+    light: int
+    scene: str
+    number: int
+    light_number: int | None = None
+
+    @property
+    def method(self) -> str:
+        return self.frame.settings.method
+
+    @property
+    def view_in_words(self) -> str:
+        """Its view, and the light where that is about one."""
+        number = self.light if self.light_number is None else self.light_number
+        return f"{self.view.label.lower()}{f', light {number}' if self.view.of_light else ''}"
+
+    def named(self, other: Side) -> str:
+        """Return the method that traced it, and what else sets it apart from the other."""
+        parts = [self.method]
+        if self.view_in_words != other.view_in_words:
+            parts.append(self.view_in_words)
+        if self.scene != other.scene:
+            parts.append(self.scene)
+        if self.frame.time != other.frame.time or self.scene != other.scene:
+            parts.append(f"frame {self.number}")
+        mine, its = self.frame.settings, other.frame.settings
+        for name, text in (("depth", "depth {}"), ("samples", "{} samples"), ("lamp_samples", "{} lamp samples")):
+            if getattr(mine, name) not in (None, getattr(its, name)):
+                parts.append(text.format(getattr(mine, name)))
+        if len(parts) == 1 and mine.method == its.method and self.frame.camera != other.frame.camera:
+            parts.append("another camera")
+        return ", ".join(parts)
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,13 @@ from viewer.window.ui import Ui
 _STOPS = 0.5  # of exposure by a key
 
 
+def copy_command(ui: Ui) -> None:
+    """Put the command that makes the picture on the clipboard."""
+    words = ui.controller.pictures.command()
+    if words is not None:
+        ui.desktop.copy(words)
+
+
 def comparing(ui: Ui) -> list[Command]:
     """The menu Compare."""
     c = ui.controller

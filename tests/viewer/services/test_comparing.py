@@ -12,8 +12,7 @@ from tests.viewer.drawn import values_in
 from tests.viewer.fakes import make_frame, with_tree
 from tracer.frame import Settings
 from tracer.geometry.accelerators import BVH8, LAZY
-from viewer.services.comparing import Side
-from viewer.state.comparison import CompareMode
+from viewer.state.comparison import CompareMode, Side
 from viewer.state.draw_options import Slice
 from viewer.state.views import View
 

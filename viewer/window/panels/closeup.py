@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from viewer.services.comparing import Side
+from viewer.state.comparison import Side
 from viewer.state.keymap import HELD
 from viewer.state.pixels import GRID_FROM, STEP, Point, panned, pixels_shown, region_between
 from viewer.window import picture_commands

@@ -7,9 +7,10 @@ from itertools import groupby
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.services.comparing import Side
-from viewer.state.comparison import CompareMode, Source
-from viewer.state.frame_rows import beside, change
+from tracer.frame import Frame
+from viewer.state.comparison import CompareMode, Side, Source
+from viewer.state.frame_rows import Row, beside, change
+from viewer.state.in_turn import InTurn
 from viewer.state.palette import LESS, MORE
 from viewer.window.panels.method_choice import method_list
 from viewer.window.ui import Ui
@@ -121,6 +122,12 @@ def _limit(ui: Ui) -> None:
     imgui.end_disabled()
 
 
+def pairs(ui: Ui, a: Frame, b: Frame, timed: InTurn | None = None) -> list[tuple[Row, Row]]:
+    """Return the rows of two frames, found once."""
+    found: list[tuple[Row, Row]] = ui.cached("pairs", a, (b, timed), lambda: beside(a, b, timed))
+    return found
+
+
 def _columns(ui: Ui) -> None:
     """The statistics of A and B, and what B has more or less."""
     c = ui.controller
@@ -137,12 +144,11 @@ def _columns(ui: Ui) -> None:
     for name, width in (("A", 1.25), ("B", 1.25), ("difference", 1.0), ("per cent", 0.85)):
         imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
     _heads(a, b)
-    found = ui.cached("columns", a.frame, (b.frame, timed), lambda: beside(a.frame, b.frame, timed))
-    for group, pairs in groupby(found, lambda pair: pair[0].group):
+    for group, found in groupby(pairs(ui, a.frame, b.frame, timed), lambda pair: pair[0].group):
         imgui.table_next_row()
         imgui.table_next_column()
         clipped(group)
-        for one, other in pairs:
+        for one, other in found:
             imgui.table_next_row()
             imgui.table_next_column()
             clipped(" / ".join(dict.fromkeys(filter(None, (one.name, other.name)))), QUIET)

@@ -19,7 +19,6 @@ from viewer.state.picking import point_at
 from viewer.util.numbers import whole_percent
 from viewer.window.panels import (
     closeup,
-    edited_picture,
     filmstrip,
     legend,
     loading,
@@ -31,6 +30,7 @@ from viewer.window.panels import (
     status,
     timeline,
     tour,
+    what_if,
 )
 from viewer.window.panels.area import Area, size_of, write_lines
 from viewer.window.panels.legend import LegendState
@@ -104,13 +104,12 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     sides.draw_picture(ui, sides.PICTURE, texture, area)
     sides.draw_wiped(ui, area)
     with _inside(area):
-        edited_picture.show_changed(ui, area.whole, area.whole_end)
         overlays.show(ui, area)
     _pointer(ui, area)
     closeup.show(ui, area)
     lower = _title(ui, area)
     with _inside(area):
-        edited_picture.show_lights(ui, area.whole, area.whole_end)
+        what_if.show_lights(ui, area.whole, area.whole_end)
     sides.show(ui, area, lower)
     legend.show(ui, area.corner, area.end)
     missing.show(ui, area.corner, area.end)
@@ -202,7 +201,7 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
         c.selection.hovered = (u, v)
         if not closeup.wheel(ui, area):
             _wheel(ui, io.mouse_wheel)
-    if takes_edits and edited_picture.handle(ui, area.whole, area.whole_size):
+    if takes_edits and what_if.handle(ui, area.whole, area.whole_size):
         return
     if sides.drag_line(ui, area) or closeup.drag(ui, area):
         return

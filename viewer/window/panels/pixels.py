@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.frame import Frame
-from viewer.services.comparing import Side
+from viewer.state.comparison import Side
 from viewer.state.picking import pixel_at
 from viewer.state.pixels import ALL
 from viewer.state.readings import can_draw

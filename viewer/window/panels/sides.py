@@ -9,8 +9,7 @@ from imgui_bundle import ImVec2, imgui
 
 from tracer.frame import Frame
 from tracer.method import Method
-from viewer.services.comparing import Side
-from viewer.state.comparison import CompareMode, Source
+from viewer.state.comparison import CompareMode, Side, Source
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import LESS, MORE, Color
 from viewer.state.picking import pixel_at
