@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import groupby
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from viewer.state import terms
 from viewer.state.frame_rows import TIME, WORK, Row, rows
@@ -43,7 +43,8 @@ def show(ui: Ui) -> None:
 def _table(name: str, found: list[Row]) -> None:
     """Draw names, exact numbers at the right edge, and shares where any number has a whole."""
     shares = any(row.share for row in found) and imgui.get_content_region_avail().x > em(_SHORT_OF_ROOM)
-    if not imgui.begin_table(name, 3 if shares else 2, int(imgui.TableFlags_.sizing_stretch_prop)):
+    room = ImVec2(-em(0.2), 0.0)  # as columns may be wider by parts of a pixel
+    if not imgui.begin_table(name, 3 if shares else 2, int(imgui.TableFlags_.sizing_stretch_prop), room):
         return
     imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_stretch), 1.2)
     imgui.table_setup_column("number", int(imgui.TableColumnFlags_.width_stretch), 1.0)
