@@ -10,6 +10,7 @@ import pytest
 
 from tests.commands import complaint, run
 from tests.viewer.marbles import write_marbles
+from viewer.cli.console import Work
 
 SEARCH = ("--frames", "0-24", "--step", 6, "--size", "96x96", "--depth", 2, "--threads", 1)
 
@@ -44,6 +45,18 @@ def test_finds_are_written_checked_and_explained(capfd: pytest.CaptureFixture[st
     assert "has counterexamples already" in complaint(again)
 
 
+def test_ctrl_c_while_figures_are_drawn_keeps_the_findings(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        Work, "count", lambda work, label, *_: setattr(work, "stopped", work.stopped or label.startswith("figure"))
+    )
+    code, _, err = run(capfd, "hunt", "marbles.aff", *SEARCH, "--keep", 2, "-o", "wrong")
+    assert code == 130 and "the figures from here on are not drawn" in err
+    names = {path.name for path in Path("wrong").iterdir()}
+    assert {"find-1.json", "hunt.json"} <= names and not any(name.endswith(".png") for name in names)
+
+
 def test_frames_before_are_part_of_a_picture(capfd: pytest.CaptureFixture[str]) -> None:
     """A picture after one frame, as after `--warmup`, is checked, and its command makes it again."""
     before = json.dumps([[0.0, None]])
@@ -67,8 +80,8 @@ def test_an_exact_method_and_words_that_are_not_understood(capfd: pytest.Capture
     for arguments, said in (
         (("--frames", "50-99"), "the scene's frame numbers are 0 to 59"),
         (("--method", "luck"), "invalid choice: 'luck'"),
-        (("--radius", "-1"), "is not in 0 to 100"),
-        (("--keep", "0"), "is not in 1 to 1000"),
+        (("--radius", "-1"), "is not a number from 0 to 100"),
+        (("--keep", "0"), "is not a whole number from 1 to 1000"),
     ):
         assert said in complaint(run(capfd, "hunt", "marbles.aff", *arguments))
     assert "not understood" in complaint(run(capfd, "explain", "marbles.aff", "--pixel", "1,1", "--before", "[1]"))

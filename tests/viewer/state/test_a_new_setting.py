@@ -35,7 +35,7 @@ entry.run()
 assert changed == [("draw.sparkle", True)] and entry.checked is False, "the palette"
 assert "let light sparkle" in render.parser().format_help(), "the help of the command line"
 given = render.parser().parse_args(["a.aff", "-o", "a.png", "--sparkle"])
-assert given.sparkle is True and "sparkle" in [one.name for one in pictures._DRAWN], "its options"
+assert given.sparkle is True and "sparkle" in [one.name for one in pictures.DRAWN], "its options"
 assert "--sparkle" in commands.words(shown, None, "a.png"), "the command that is copied"
 stored = codec.state_to_json(shown, of_picture=True)
 assert stored["draw"]["sparkle"] is True and codec.state_from_json(stored).draw.sparkle, "a saved picture"
