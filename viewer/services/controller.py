@@ -20,8 +20,8 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
 from viewer.services.editing import Editing
 from viewer.services.film import Films
-from viewer.services.frame_history import FrameHistory, FrameNavigator
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
+from viewer.services.history import FrameHistory, FrameNavigator
 from viewer.services.hunts import Hunts
 from viewer.services.inspector import Inspector
 from viewer.services.jobs import Wake
@@ -77,9 +77,8 @@ class Controller:
         self.presets = Presets(session, preferences, notices, settings.save, runs.refuses, undo.begin_step)
         self.inspector = Inspector(selection, renderer.query)
         self.navigator = navigator = FrameNavigator(
-            session, preferences, self.history, scheduler, runs, undo, selection, notices, self.restore,
-            self.reset_modes,
-        )  # fmt: skip
+            session, self.history, scheduler, runs, undo, selection, notices, self.restore, self.reset_modes
+        )
         self.editing = editing = Editing(
             session, renderer, notices, runs.refuses, self._show_edited, undo.without_undo, scheduler.trace_once_more
         )

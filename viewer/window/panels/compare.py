@@ -12,7 +12,7 @@ from viewer.state.comparison import CompareMode, Side, Source
 from viewer.state.frame_rows import Row, beside, change
 from viewer.state.in_turn import InTurn
 from viewer.state.palette import LESS, MORE
-from viewer.window.panels.method_choice import method_list
+from viewer.window.panels.culling import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
