@@ -77,10 +77,11 @@ def _space(ui: Ui) -> list[Command]:
     )
     c, s = ui.controller, ui.controller.session
 
-    def step(layers: int) -> None:
-        layer = view_of(s.draw.view).layer(c.frame, s.draw.slice) if c.frame is not None else None
-        if layer is not None:
-            s.set_draw(slice=layer.goes_to(s.draw.slice, layer.number + layers))
+    def step(steps: int) -> None:
+        cut = s.draw.slice
+        layers = view_of(s.draw.view).layers(c.frame, cut.axis) if c.frame is not None else 0
+        if layers:
+            s.set_draw(slice=cut.in_layer(cut.layer(layers) + steps, layers))
 
     def turn() -> None:
         cut = s.draw.slice
