@@ -18,6 +18,8 @@ from numbers import Integral, Real
 from types import NoneType
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
+from tracer.similar import did_you_mean
+
 _KEY = "setting"
 _ON, _OFF = ("on", "yes", "true", "1"), ("off", "no", "false", "0")
 T = TypeVar("T")
@@ -187,7 +189,8 @@ class Setting:
         else:
             value = self.kind.parse(typed) if hasattr(self.kind, "parse") else typed
         if value is None:
-            raise ValueError(f"{word or 'nothing'} is not {self.expected_shown if shown else self.expected}")
+            expected = self.expected_shown if shown else self.expected
+            raise ValueError(f"{word or 'nothing'} is not {expected}{did_you_mean(typed, map(str, self.choices))}")
         if self.problem(value):
             expected = self.expected_shown if shown else self.expected
             raise ValueError(f"{typed} is not {expected}" if self.check is anything else self.problem(value))

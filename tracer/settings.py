@@ -83,7 +83,7 @@ class Settings:
     )  # fmt: skip
     lamp_samples: int | None = setting(
         None, "Lamp samples",
-        "Points from which each lamp shines, as the scene says if not set, or 16 for a point that became a sphere.",
+        "Points from which each lamp shines; a point that became a sphere has 16 unless this says more or fewer.",
         low=1, high=MAX_SAMPLES, unset="scene", option="--lamp-samples", panel="Lamps",
     )  # fmt: skip
     threads: int = setting(
@@ -92,7 +92,7 @@ class Settings:
     )  # fmt: skip
     accelerator: str = setting(
         BVH8, "Tree",
-        "The tree that rays are traced through; a change builds it anew, and modes and certificates are learnt again.",
+        "The tree that rays are traced through; modes and certificates are learnt anew in another.",
         choices=TREES, option="--accelerator", panel="Rendering", stored=PICTURES, remembered=False,
     )  # fmt: skip
     record_lights: bool = setting(False, "Record lights", "Fill `Frame.due` and `Frame.lit`.", stored=NEVER)

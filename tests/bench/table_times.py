@@ -79,9 +79,9 @@ class Watch:
         app.params.callbacks.pre_new_frame = self.before
         app.params.callbacks.after_swap = self.after
 
-        def noted(table: Any, listing: Any, columns: Any, number: int, selected: bool) -> None:
+        def noted(ui: Any, table: Any, listing: Any, number: int, *how: bool) -> None:
             self.rows.add(number)
-            row(table, listing, columns, number, selected)
+            row(ui, table, listing, number, *how)
 
         find._row = noted
 

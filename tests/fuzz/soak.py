@@ -31,6 +31,7 @@ import numpy as np
 from tests.viewer.desk import Desk
 from tracer.method import Method
 from tracer.renderer import Renderer
+from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Camera
 from viewer.state.views import View
 
@@ -167,14 +168,14 @@ class Soak:
             editing.show_everything()
             return
         light = int(rng.integers(max(len(scene.lights), 1)))
-        edits: list[Callable[[], None]] = [
-            lambda: editing.hide_primitive(int(rng.integers(scene.primitive_count))),
-            lambda: editing.switch(light, bool(rng.random() < 0.5)),
-            lambda: editing.move_light(light, tuple(rng.normal(size=3).tolist())),
-            editing.show_everything,
-            editing.clear,
+        edits = [
+            editing.now.with_primitive(int(rng.integers(scene.primitive_count)), False),
+            editing.now.with_light(light, bool(rng.random() < 0.5)),
+            editing.now.with_light_at(light, tuple(rng.normal(size=3).tolist())),
+            replace(editing.now, hidden_primitives=frozenset()),
+            NO_EDITS,
         ]
-        edits[rng.integers(len(edits))]()
+        editing.change(edits[rng.integers(len(edits))])
 
     def _undo(self) -> None:
         self.c.undo.undo()

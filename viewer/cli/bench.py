@@ -53,7 +53,7 @@ def parser() -> Parser:
     add = parser.add_argument
     options.add_scene(parser)
     help_ = (
-        f"which methods: {options.method_names()}; none is always measured too; or all, for those that are worth "
+        f"which methods: {options.METHODS}; none is always measured too; or all, for those that are worth "
         "comparing in the scene (default: paper)"
     )
     add("--methods", type=arguments.methods_or_all, default=["paper"], metavar="M,...", help=help_)

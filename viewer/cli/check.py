@@ -6,17 +6,17 @@ import json
 import tempfile
 from argparse import Namespace
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import lru_cache
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
 from tracer import fingerprint
-from tracer.frame import Frame
 from tracer.geometry.world import World
 from tracer.method import Method
 from tracer.renderer import Renderer
@@ -24,7 +24,7 @@ from tracer.scene.edits import Edits, edited
 from tracer.scene.files import read_regular
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
-from tracer.scene.model import Cancelled, Scene, SceneError
+from tracer.scene.model import Scene, SceneError
 from tracer.settings import Settings
 from tracer.version import program_version
 from viewer.cli import options
@@ -41,8 +41,7 @@ from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
 from viewer.util.messages import ERROR, in_one_line, printable
 
-KINDS = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", exr.ENDING: b"\x76\x2f\x31\x01"}
-"""How a file of each kind that is checked begins."""
+KINDS = (".png", exr.ENDING, ".pdf")
 ROUNDING = 2  # of 255, by which a GPU may draw a view otherwise
 EPILOG = """\
 examples:
@@ -51,8 +50,8 @@ examples:
 
 A picture carries its scene, camera, time, settings, view and the frames that its modes came from. It is true if it is
 the same again, bit for bit; a view that a GPU has drawn may be off by rounding. Otherwise the line says how many
-pixels differ, and what has changed since: a part of the scene, the version, or the file itself. Files that are
-missing, or none of these kinds, are errors. The exit code is 0 only if all are true.
+pixels differ, and what has changed since: a part of the scene, the version, or the file itself. Files that cannot be
+read, or carry nothing of this program, are errors. The exit code is 0 only if all are true.
 """
 
 
@@ -74,18 +73,22 @@ def run(given: Namespace) -> int:
         for number, path in enumerate(given.pictures):
             work.count(f"checking {path.name}", number, len(given.pictures))
             try:
-                verdict = checker.check(path)
-            except (ValueError, OSError) as error:
-                work.note(f"{ERROR}{path}: {_why(error)}")
+                data, kept = read(path)
+            except (ValueError, OSError, SyntaxError) as error:  # the last is Pillow's
+                why = in_one_line(error if str(path) in str(error) else f"{path}: {error}")
+                work.note(f"{ERROR}{why}")
                 good = False
                 continue
+            try:
+                verdict = checker.verdict(path, data, kept)
+            except (SceneError, ValueError, OSError) as error:
+                verdict = Verdict(None, in_one_line(error).removeprefix(f"{path}: "))
             good &= verdict.true is True
             print(printable(f"{path}: {verdict}"), flush=True)
     return 0 if good else FAILED
 
 
-@dataclass(frozen=True)
-class Verdict:
+class Verdict(NamedTuple):
     """Whether a file is true, None where that cannot be told, and why."""
 
     true: bool | None
@@ -95,179 +98,134 @@ class Verdict:
         return f"{ {True: 'true', False: 'FALSE', None: 'unknown'}[self.true] }: {self.text}"
 
 
+def read(path: Path) -> tuple[Mapping[str, Any], NDArray[Any]]:
+    """Return what a file carries, and what is compared of it: pixels (h, w, 3), of an EXR as floats, or a PDF's bytes.
+
+    Raises ValueError or OSError, in one line."""
+    ending = path.suffix.lower()
+    if not path.exists():
+        raise ValueError(f"{path}: no such file")
+    if ending == exr.ENDING:
+        exr.check()
+        color, data = exr.read(path)
+        return data, color
+    if ending == ".pdf":
+        file = read_regular(path)
+        text = text_of_pdf(file)
+        if text is None:
+            raise ValueError(f"{path}: a PDF, but not a figure of Shadowcull")
+        return json.loads(text), np.frombuffer(file, np.uint8)
+    if ending != ".png" and path.is_file():
+        raise ValueError(f"{path}: check reads PNG and EXR pictures, and figures as PNG or PDF")
+    return capture.read_data(path), _pixels(path.read_bytes())
+
+
+def _pixels(file: bytes) -> NDArray[np.uint8]:
+    with Image.open(BytesIO(file), formats=("PNG",)) as image:
+        return np.asarray(image.convert("RGB"))
+
+
 class Checker:
     """Checks one file after another; a scene that several have in common is read once."""
 
     def __init__(self, given: Namespace, work: Work) -> None:
         self._given, self._work = given, work
-        self._scene: tuple[tuple[Path, MeshOptions, Edits], Scene] | None = None
-        self._world: tuple[str, World] | None = None
+        self._scene: Scene | None = None
+        self._read, self._world = lru_cache(1)(self._read_scene), lru_cache(1)(self._make_world)
 
-    def check(self, path: Path) -> Verdict:
-        """Raises Cancelled, and ValueError or OSError for a file that cannot be read, or is of no kind that can be
-        checked; every other failure is a verdict."""
-        kind = _kind_of(path)
-        try:
-            return {".pdf": self._check_pdf, exr.ENDING: self._check_exr}.get(kind, self._check_png)(path)
-        except Cancelled:
-            raise
-        except (SceneError, ValueError, OSError) as error:
-            text = in_one_line(error)
-            return Verdict(None, text.removeprefix(f"{path}: "))
+    def verdict(self, path: Path, data: Mapping[str, Any], kept: NDArray[Any]) -> Verdict:
+        """Make it again and compare; raises SceneError, ValueError or OSError, in one line, where that cannot be."""
+        again = self._again(path, data, kept)
+        ending, size = path.suffix.lower(), f"{kept.shape[1]} × {kept.shape[0]}" if kept.ndim > 1 else ""
+        if kept.shape == again.shape and (kept == again).all():
+            same = {".pdf": "byte for byte", exr.ENDING: f"{size}, the colours bit for bit"}
+            return Verdict(True, same.get(ending, f"{size}, bit for bit"))
+        if ending == ".pdf":
+            words = "the file is another"
+        elif kept.shape != again.shape:
+            words = f"it has {size} pixels, and {again.shape[1]} × {again.shape[0]} when made again"
+        else:
+            differ = (kept != again).any(axis=-1)
+            words = f"{int(differ.sum()):,} of {differ.size:,} pixels differ"
+            if ending == ".png":
+                most = int(np.abs(kept.astype(np.int16) - again).max())
+                words += f", by {most} of 255 at most"
+                if most <= ROUNDING and data.get("picture", {}).get("by_gpu"):
+                    return Verdict(True, f"{size}, but for the rounding of the GPU that drew it: {words}")
+        return Verdict(False, f"{words}; {self._since(data, kept if ending == '.png' else None)}")
 
-    def _check_png(self, path: Path) -> Verdict:
-        data = capture.read_data(path)
-        with Image.open(BytesIO(read_regular(path)), formats=("PNG",)) as image:
-            kept = np.asarray(image.convert("RGB"))
+    def _again(self, path: Path, data: Mapping[str, Any], kept: NDArray[Any]) -> NDArray[Any]:
+        """What `read` would give of the file, were it made now."""
         if "figure" in data:
-            again = self._figure(path, data, ".png")
-            with Image.open(BytesIO(again), formats=("PNG",)) as image:
-                return self._compared(kept, np.asarray(image.convert("RGB")), data, {}, False)
+            file = self._figure(path, data)
+            return np.frombuffer(file, np.uint8) if kept.ndim == 1 else _pixels(file)
         if data.get("picture", {}).get("style", {}).get("annotations"):
-            return Verdict(None, "arrows, boxes or words are drawn on it, which are not drawn any more")
+            raise ValueError("arrows, boxes or words are drawn on it, which are not drawn any more")
         if data.get("window"):
-            return Verdict(None, "it shows two pictures, or the window with its panels, which cannot be rendered again")
-        wanted = self._wanted(data)
-        forgotten = wanted.warmup.unknown and not wanted.warmup.modes
-        if forgotten and wanted.draw.view is View.COLOR and wanted.draw.savings is None:
-            return self._against_tracing_all(path, kept, wanted)
-        frame, wanted = self._traced(path, wanted)
-        pixels, _ = stills.draw(frame, self._open_scene, wanted)
-        return self._compared(
-            kept, pixels, data, frame.statistics.to_dict(), bool(data.get("picture", {}).get("by_gpu"))
-        )
-
-    def _against_tracing_all(self, path: Path, kept: NDArray[np.uint8], wanted: ViewState) -> Verdict:
-        """What can be said of a picture whose modes nobody can learn again: where it is not that without culling."""
-        settings = replace(wanted.settings, method=NO_CULLING)
-        frame, plain = self._traced(path, replace(wanted, settings=settings, warmup=Warmup()))
-        pixels, _ = stills.draw(frame, self._open_scene, plain)
-        if pixels.shape != kept.shape:
+            raise ValueError("it shows two pictures, or the window with its panels, which cannot be rendered again")
+        wanted = codec.picture_from_json(data)
+        linear = kept.dtype != np.uint8
+        unknown = bool(wanted.warmup.unknown and not wanted.warmup.modes)
+        if unknown and (linear or wanted.draw.view is not View.COLOR or wanted.draw.savings is not None):
             raise ValueError(_not_again(wanted))
-        apart = np.abs(kept.astype(np.int16) - pixels.astype(np.int16)).max(axis=-1)
-        differ, most = int((apart > 0).sum()), int(apart.max(initial=0))
-        if not differ:
-            return Verdict(True, "bit for bit the picture with every shadow ray traced: nothing of its culling shows")
-        return Verdict(
-            None,
-            f"but for {differ:,} of {apart.size:,} pixels it is the picture with every shadow ray traced; these differ "
-            f"by {most} of 255 at most, which culling may have done: {_not_again(wanted)}",
-        )
-
-    def _wanted(self, data: Mapping[str, Any]) -> ViewState:
-        """Return the state that a picture carries; raises ValueError in one line."""
-        return codec.picture_from_json(data)
-
-    def _traced(self, path: Path, wanted: ViewState) -> tuple[Frame, ViewState]:
-        """The frame of a picture, once more; raises ValueError, in one line, where that cannot be."""
-        if wanted.warmup.unknown and not wanted.warmup.modes:
-            raise ValueError(_not_again(wanted))
-        scene, wanted = self._prepared(path, wanted, (wanted.settings.method,))
-        stills.check_light(wanted, scene)
-        renderer = Renderer(scene, wanted.settings, world=self._world_of(scene, wanted))
+        # What nobody can learn again may not show: then it is the picture with every shadow ray traced.
+        traced = replace(wanted.with_settings(method=NO_CULLING), warmup=Warmup()) if unknown else wanted
+        scene, traced, world = self._prepared(path, traced, (traced.settings.method,))
+        stills.check_light(traced, scene)
 
         def tell(done: int, frames: int) -> None:
             self._work.count(f"{path.name}, frame {done + 1} of {frames}", done, frames)
 
-        return stills.trace(renderer, wanted, on_frame=tell, cancelled=self._work.cancelled), wanted
+        renderer = Renderer(scene, traced.settings, world=world)
+        frame = stills.trace(renderer, traced, on_frame=tell, cancelled=self._work.cancelled)
+        pixels = frame.color.astype(kept.dtype) if linear else stills.draw(frame, scene, traced)[0]
+        if unknown and not np.array_equal(pixels, kept):
+            raise ValueError(_not_again(wanted))
+        return pixels
 
-    @property
-    def _open_scene(self) -> Scene:
-        assert self._scene is not None
-        return self._scene[1]
-
-    def _check_exr(self, path: Path) -> Verdict:
-        """By its linear colours, as they are kept: with 32 bits, or with 16."""
-        exr.check()
-        kept, data = exr.read(path)
-        frame, _ = self._traced(path, self._wanted(data))
-        color = frame.color.astype(kept.dtype)
-        size = f"{kept.shape[1]} × {kept.shape[0]}"
-        if kept.shape != color.shape:
-            return Verdict(False, f"it has {size} pixels; {self._since(data, None)}")
-        differ = int((kept != color).any(axis=-1).sum())
-        if not differ:
-            return Verdict(True, f"{size}, the colours bit for bit")
-        since = self._since(data, None) + _counted(data.get("statistics"), frame.statistics.to_dict())
-        return Verdict(False, f"the colours of {differ:,} of {color[..., 0].size:,} pixels differ; {since}")
-
-    def _check_pdf(self, path: Path) -> Verdict:
-        kept = read_regular(path)
-        text = text_of_pdf(kept)
-        if text is None:
-            return Verdict(None, "a PDF, but not a figure of Shadowcull")
-        data = json.loads(text)
-        if self._figure(path, data, ".pdf") == kept:
-            return Verdict(True, "byte for byte")
-        return Verdict(False, f"the file is another; {self._since(data, None)}")
-
-    def _figure(self, path: Path, data: Mapping[str, Any], ending: str) -> bytes:
+    def _figure(self, path: Path, data: Mapping[str, Any]) -> bytes:
         """The file of a figure, made again."""
         state = codec.picture_from_json(data)
         wanted = comparison_of(data["figure"], state.size)
-        scene, state = self._prepared(path, state, wanted.methods)
+        scene, state, world = self._prepared(path, state, wanted.methods)
 
         def tell(method: str, done: int, frames: int) -> None:
             self._work.count(f"{path.name}, {method}, frame {done + 1} of {frames}", done, frames)
 
-        shown = comparison.trace(scene, state, wanted, self._world_of(scene, state), tell, self._work.cancelled)
+        shown = comparison.trace(scene, state, wanted, world, tell, self._work.cancelled)
         with tempfile.TemporaryDirectory() as folder:
-            again = Path(folder) / f"again{ending}"
+            again = Path(folder) / f"again{path.suffix.lower()}"
             # What it carries is what the other carried: times and versions are of then.
             comparison.save(shown, again, json.dumps(data))
             return again.read_bytes()
 
-    def _prepared(self, path: Path, wanted: ViewState, methods: tuple[str, ...]) -> tuple[Scene, ViewState]:
-        """Return the scene, read, and the state with the path that it has now; raises ValueError where it is gone."""
+    def _prepared(self, path: Path, wanted: ViewState, methods: tuple[str, ...]) -> tuple[Scene, ViewState, World]:
+        """The scene, the state with the path that it has now, and the world; raises ValueError where it is gone."""
         found = find_scene(str(wanted.scene), path)
         if found is None:
             raise ValueError(f"its scene is gone: {wanted.scene}")
-        if self._scene is None or self._scene[0] != (found, wanted.meshes, wanted.edits):
-            read = load_visible_scene(found, self._work.progress, self._given.folder, wanted.meshes)
-            self._scene = (found, wanted.meshes, wanted.edits), edited(read, wanted.edits).scene
-            self._world = None
-        scene = self._scene[1]
+        scene = self._scene = self._read(found, wanted.meshes, wanted.edits)
         options.prepare_kernels(self._work, len(scene.lights), wanted.settings.accelerator, *methods)
-        settings = replace(wanted.settings, threads=wanted.settings.threads or self._given.threads)
         start, end = scene.time_range
         if not start <= wanted.time <= end:
             raise ValueError(f"its time, {wanted.time:g} s, is none of the scene's any more")
-        return scene, replace(wanted, scene=str(found), settings=settings)
+        wanted = wanted.with_settings(threads=wanted.settings.threads or self._given.threads)
+        world = self._world(found, wanted.meshes, wanted.edits, wanted.settings.accelerator)
+        return scene, replace(wanted, scene=str(found)), world
 
-    def _world_of(self, scene: Scene, wanted: ViewState) -> World:
-        accelerator = wanted.settings.accelerator
-        if self._world is None or self._world[0] != accelerator:
-            self._world = accelerator, World(scene, wanted.time, accelerator, self._work.progress)
-        return self._world[1]
+    def _read_scene(self, path: Path, meshes: MeshOptions, edits: Edits) -> Scene:
+        return edited(load_visible_scene(path, self._work.progress, self._given.folder, meshes), edits).scene
 
-    def _compared(
-        self,
-        kept: NDArray[np.uint8],
-        again: NDArray[np.uint8],
-        data: Mapping[str, Any],
-        statistics: Mapping[str, Any],
-        by_gpu: bool,
-    ) -> Verdict:
-        size = f"{kept.shape[1]} × {kept.shape[0]}"
-        if kept.shape != again.shape:
-            now = f"{again.shape[1]} × {again.shape[0]}"
-            return Verdict(False, f"it has {size} pixels, and {now} when made again; {self._since(data, kept)}")
-        apart = np.abs(kept.astype(np.int16) - again.astype(np.int16)).max(axis=-1)
-        differ, most = int((apart > 0).sum()), int(apart.max(initial=0))
-        if not differ:
-            return Verdict(True, f"{size}, bit for bit")
-        words = f"{differ:,} of {apart.size:,} pixels differ, by {most} of 255 at most"
-        if by_gpu and most <= ROUNDING:
-            return Verdict(True, f"{size}, but for the rounding of the GPU that drew it: {words}")
-        return Verdict(False, f"{words}; {self._since(data, kept)}{_counted(data.get('statistics'), statistics)}")
+    def _make_world(self, path: Path, meshes: MeshOptions, edits: Edits, accelerator: str) -> World:
+        scene = self._read(path, meshes, edits)
+        return World(scene, scene.time_range[0], accelerator, self._work.progress)
 
     def _since(self, data: Mapping[str, Any], kept: NDArray[np.uint8] | None) -> str:
-        """What has changed since a file was made, in words."""
-        made = data.get("made")
+        """What has changed since a file was made, in words; `kept` are the pixels of one that says their code."""
+        made, found = data.get("made"), []
         if not isinstance(made, Mapping) or self._scene is None:
             return "it does not say what it was made of"
-        found = []
-        was, now = made.get("scene", {}), fingerprint.of_scene(self._scene[1])
+        was, now = made.get("scene", {}), fingerprint.of_scene(self._scene)
         parts = [part for part, code in now.items() if isinstance(was, Mapping) and was.get(part) != code]
         if parts:
             found.append(f"the scene's {' and '.join(filter(None, [', '.join(parts[:-1]), parts[-1]]))}")
@@ -287,31 +245,3 @@ def _not_again(wanted: ViewState) -> str:
     else:
         way = "Backspace in the window forgets all modes: what is saved after it can be made again"
     return f"it cannot be made again: {wanted.warmup.unknown}{f'; {way}' if way else ''}"
-
-
-def _counted(then: Any, now: Mapping[str, Any]) -> str:
-    """The counters of shadow rays that are others than then."""
-    if not isinstance(then, Mapping) or not now:
-        return ""
-    was, counts = then.get("shadow", {}), now["shadow"]
-    names = [name for name in ("due", "culled", "dynamic_only") if was.get(name) != counts[name]]
-    told = ", ".join(f"{name.replace('_', ' ')} {was.get(name):,} then, {counts[name]:,} now" for name in names)
-    return f"; shadow rays {told}" if told else ""
-
-
-def _kind_of(path: Path) -> str:
-    """The ending of the kind that a file's first bytes say it is of.
-
-    Raises ValueError, in one line, for another kind, and OSError for a file that cannot be read."""
-    data = read_regular(path)
-    for ending, start in KINDS.items():
-        if data.startswith(start):
-            return ending
-    raise ValueError("not a file that can be checked; check reads PNG and EXR pictures, and figures as PNG or PDF")
-
-
-def _why(error: Exception) -> str:
-    """Why a file cannot be read."""
-    if isinstance(error, FileNotFoundError):
-        return "no such file"
-    return getattr(error, "strerror", None) or str(error)

@@ -54,7 +54,7 @@ def parser() -> Parser:
     add("--pixel", type=arguments.pixel, required=True, metavar="X,Y", help=help_)
     options.add_moment(parser)
     options.add_size(parser)
-    help_ = f"how shadow rays are culled: {options.method_names()} (default: {DEFAULT_METHOD})"
+    help_ = f"how shadow rays are culled: {options.METHODS} (default: {DEFAULT_METHOD})"
     add("--method", type=arguments.method, metavar="M", help=help_)
     only = ("all", "traced", "untraced", "blocked", "wrong")
     add("--only", choices=only, default="all", help="which shadow rays are listed (default: all)")

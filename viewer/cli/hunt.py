@@ -20,6 +20,7 @@ from tracer.scene.model import Cancelled, Scene
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, print_table, titled, working
+from viewer.output import commands
 from viewer.services import comparison, counterexamples
 from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
@@ -45,7 +46,7 @@ def parser() -> Parser:
     parser = Parser("hunt", description, EPILOG + options.method_summaries())
     add = parser.add_argument
     options.add_scene(parser)
-    help_ = f"whose wrong pixels: {options.method_names()} (default: paper)"
+    help_ = f"whose wrong pixels: {options.METHODS} (default: paper)"
     add("--method", type=arguments.method, default="paper", metavar="M", help=help_)
     help_ = "the frames A to B of the path, or one (default: all)"
     add("--frames", type=arguments.frame_span, metavar="A-B", help=help_)
@@ -104,7 +105,7 @@ def _write(found: hunt.Results, scene: Scene, search: Search, world: World, give
     written, meshes = [], options.mesh_options(given)
     for rank, find in enumerate(found.finds, 1):
         stem = given.output / f"find-{rank}"
-        counterexamples.save_json(find, found, scene, stem.with_suffix(".json"), options.mesh_arguments(meshes))
+        counterexamples.save_json(find, found, scene, stem.with_suffix(".json"), commands.mesh_options(meshes))
         if not work.stopped:
             work.count(f"figure {rank} of {len(found.finds)}", rank - 1, len(found.finds))
             of_file = meshes.of_file(Path(scene.path))

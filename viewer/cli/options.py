@@ -22,18 +22,20 @@ from tracer.scene.model import Scene
 from tracer.scene.things import things
 from tracer.setting import Setting, setting_of, settings_of
 from tracer.settings import Settings
-from tracer.similar import did_you_mean
-from viewer.cli.arguments import UPS, Parser, before, count, number, several, size, whole
+from viewer.cli.arguments import UPS, Parser, before, count, number, several, size
 from viewer.cli.console import Work
 from viewer.services import stills
+from viewer.state.changes import as_options
 from viewer.state.draw_options import Slice
 from viewer.util import resources
 from viewer.views.legend import lights_in_words
 
 CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
+METHODS = "a method of the list below, with additions as in certified+cache"
 MOST_PIXELS = 1 << 26  # 8192 × 8192; a frame's buffers then take some 4 GB
-_INDEX = count(0, 2**31 - 1)
+INDEX = count(0, 2**31 - 1)
 _LISTED = 8  # names that a message lists, at most
+_METAVARS: dict[type, str] = {int: "N", float: "X", Slice: "AXIS:PART"}
 
 # --- the scene -------------------------------------------------------------------------------------
 
@@ -68,14 +70,17 @@ def read_scene(path: Path, options: Namespace, work: Work) -> Scene:
     scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
     for warning in scene.warnings:
         work.note(f"warning: {warning}")
-    return _edited(scene, options) if hasattr(options, "hide") else scene
+    if not hasattr(options, "hide"):
+        return scene
+    check_edits(edits := edits_of(options), scene)
+    return edited(scene, edits).scene
 
 
 def add_meshes(parser: Parser) -> None:
     """Add how meshes are read; without these options a model that comes alone is set in a studio."""
     add = parser.add_argument_group("meshes (OBJ, PLY, STL, glTF, GLB)").add_argument
-    help_ = "the axis that points up in a model without camera and lights: x, y, z, -x, -y or -z (default: a guess)"
-    add("--up", choices=UPS, metavar="AXIS", help=help_)
+    help_ = "the axis that points up in a model without camera and lights (default: a guess)"
+    add("--up", choices=UPS, metavar="|".join(UPS), help=help_)
     help_ = (
         "where the file has no normals, round edges that are bent by up to DEG degrees; 0: none (default: 40 for a "
         "model without camera and lights, else 0)"
@@ -86,29 +91,24 @@ def add_meshes(parser: Parser) -> None:
 
 
 def mesh_options(options: Namespace) -> MeshOptions:
+    """Return how meshes are read."""
     return MeshOptions(not options.no_studio, options.up, options.crease)
-
-
-def mesh_arguments(meshes: MeshOptions) -> list[str]:
-    """Return the words of a command line that ask for this."""
-    up = [f"--up={meshes.up}"] if meshes.up is not None else []
-    crease = [f"--crease={meshes.crease!r}"] if meshes.crease is not None else []
-    return [*up, *crease, *([] if meshes.studio else ["--no-studio"])]
 
 
 # --- edits -----------------------------------------------------------------------------------------
 
 
 def add_edits(parser: argparse.ArgumentParser) -> None:
-    """Add what edits the scene before it is traced; each may be given several times."""
+    """Add what edits the scene before it is traced."""
+    group = parser.add_argument_group("edits of the scene, each of which may be given several times")
 
     def add(name: str, metavar: str, help_: str, kind: Any = str) -> None:
-        parser.add_argument(name, type=kind, action="append", default=[], metavar=metavar, help=help_)
+        group.add_argument(name, type=kind, action="append", default=[], metavar=metavar, help=help_)
 
-    add("--without-light", "N", "switch off this light; edits may be given several times", _INDEX)
+    add("--without-light", "N", "switch off this light", INDEX)
     add("--move-light", "N=X,Y,Z", "put this light elsewhere", _moved_light)
-    add("--hide", "NAME", "hide this object, by its name in the Inspector")
-    add("--hide-primitive", "N", "hide this primitive alone", _INDEX)
+    add("--hide", "NAME", "hide this object")
+    add("--hide-primitive", "N", "hide this primitive alone", INDEX)
     add("--make-static", "NAME=T", "freeze a moving object where it is at T seconds, as static geometry", _name_at)
     add("--make-moving", "NAME", "treat a static object as one that could move; it stays where it is")
 
@@ -117,7 +117,7 @@ def _moved_light(text: str) -> tuple[int, tuple[float, float, float]]:
     light, _, place = text.partition("=")
     try:
         x, y, z = (float(part) for part in place.split(","))
-        index = _INDEX(light)
+        index = INDEX(light)
     except ValueError:
         raise ValueError(f"{text!r} is not a light and a place; give them like 2=1.5,3,-0.5") from None
     if not max(abs(x), abs(y), abs(z)) <= LARGEST:
@@ -137,6 +137,7 @@ def _name_at(text: str) -> tuple[str, float]:
 
 
 def edits_of(options: Namespace) -> Edits:
+    """Return the edits that are asked for."""
     return Edits(
         frozenset(options.without_light),
         tuple(sorted(dict(options.move_light).items())),
@@ -147,42 +148,24 @@ def edits_of(options: Namespace) -> Edits:
     )
 
 
-def edits_as_options(edits: Edits) -> dict[str, Any]:
-    """Return edits, such as those of a saved picture, by the names of the options."""
-    return {
-        "without_light": sorted(edits.lights_off),
-        "move_light": list(edits.moved_lights),
-        "hide": sorted(edits.hidden),
-        "hide_primitive": sorted(edits.hidden_primitives),
-        "make_static": list(edits.static),
-        "make_moving": sorted(edits.moving),
-    }
-
-
-def _edited(scene: Scene, options: Namespace) -> Scene:
-    """Edit the scene; raises ValueError, in one line, for what the scene does not have."""
-    edits = edits_of(options)
-    moves = {thing.name: thing.moves for thing in things(scene)}
-    static, moving = ([name for name in moves if moves[name] is moved] for moved in (False, True))
-    for option, kind, names, known in (
-        ("--hide", "object", edits.hidden, list(moves)),
-        ("--make-moving", "static object", edits.moving, static),
-        ("--make-static", "moving object", (name for name, _ in edits.static), moving),
-    ):
-        for name in names:
-            if name not in known:
-                more = f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
-                there = f"; there is {', '.join(known[:_LISTED])}{more}" if known else ""
-                raise ValueError(f"{option} {name}: no {kind} of this name{there}")
-    for option, lights in (("--without-light", edits.lights_off), ("--move-light", dict(edits.moved_lights))):
-        for light in lights:
-            if light >= len(scene.lights):
-                raise ValueError(f"{option} {light}: {lights_in_words(len(scene.lights))}")
-    for primitive in edits.hidden_primitives:
-        if primitive >= scene.primitive_count:
-            last = scene.primitive_count - 1
-            raise ValueError(f"--hide-primitive {primitive}: the scene has the primitives 0 to {last}")
-    return edited(scene, edits).scene
+def check_edits(edits: Edits, scene: Scene) -> None:
+    """Raise ValueError, in one line, for what the scene does not have."""
+    known = as_options(edits.within(scene))
+    for word in as_options(edits):
+        if word in known:
+            continue
+        option, _, target = word.partition("=")
+        if "light" in option:
+            why = lights_in_words(len(scene.lights))
+        elif option == "--hide-primitive":
+            why = f"the scene has the primitives 0 to {scene.primitive_count - 1}"
+        else:
+            kind = {"--make-static": "moving object", "--make-moving": "static object"}.get(option, "object")
+            names = [one.name for one in things(scene) if kind == "object" or one.moves == (kind == "moving object")]
+            more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+            there = f"; there is {', '.join(names[:_LISTED])}{more}" if names else ""
+            why = f"no {kind} of this name{there}"
+        raise ValueError(f"{option} {target}: {why}")
 
 
 def light_index(options: Namespace, option: str, number: int, scene: Scene) -> int:
@@ -204,7 +187,7 @@ def light_index(options: Namespace, option: str, number: int, scene: Scene) -> i
 def add_moment(parser: Parser) -> None:
     """Add two ways to name a moment of the animation, of which one may be given."""
     moment = parser.add_mutually_exclusive_group()
-    moment.add_argument("--frame", type=whole, metavar="N", help="number of the frame in the animation (default: 0)")
+    moment.add_argument("--frame", type=count(), metavar="N", help="number of the frame in the animation (default: 0)")
     moment.add_argument("--time", type=number(), metavar="T", help="time in seconds, instead of a frame")
 
 
@@ -212,7 +195,7 @@ def moment(scene: Scene, options: Namespace) -> float:
     """Return the time that is asked for, that of the first frame by default; raises ValueError in one line."""
     start, end = scene.time_range
     if options.time is not None:
-        if not (math.isfinite(options.time) and start <= options.time <= end):
+        if not start <= options.time <= end:
             raise ValueError(f"--time {options.time:g}: the scene's time runs from {start:g} to {end:g} seconds")
         return float(options.time)
     frame = options.frame or 0
@@ -224,7 +207,7 @@ def moment(scene: Scene, options: Namespace) -> float:
 
 def add_history(parser: Parser) -> None:
     """Add the frames from which modes are learnt: those before on the path, or any."""
-    help_ = "first trace the N frames before it"
+    help_ = "first trace the N frames before it, from which culling learns"
     parser.add_argument("--warmup", type=count(0, 100_000), default=0, metavar="N", help=help_)
     help_ = "before these, trace the frames of this list of [time, camera], or of a JSON file of `hunt`"
     parser.add_argument("--before", type=before, default=(), metavar="JSON", help=help_)
@@ -243,6 +226,7 @@ def warmup_times(scene: Scene, time: float, warmup: int, work: Work) -> list[flo
 
 
 def add_size(parser: Parser) -> None:
+    """Add the size of pictures."""
     help_ = "width and height in pixels (default: 512x512)"
     parser.add_argument("--size", type=size, default=(512, 512), metavar="WxH", help=help_)
 
@@ -267,26 +251,12 @@ def add_setting(
         kept: dict[str, Any] = {"action": "store_const", "const": not one.default}
         help_ = f"do not {help_}" if one.default else help_
     else:
-        kept = {"type": parse or _asking(one), "metavar": _METAVARS.get(one.kind, one.name.upper())}
-        told = str(getattr(default, "value", default)) if one.choices or one.kind in (int, float) else one.text(default)
-        told = f"as the {one.unset} says" if default is None else told.removesuffix(".0")
-        help_ += f"{': ' if one.choices else ''}{', '.join(map(str, one.choices))} (default: {told})"
+        names = "|".join(map(str, one.choices))
+        kept = {"type": parse or one.parse, "metavar": names or _METAVARS.get(one.kind, one.name.upper())}
+        meanings = "; ".join(f"{choice}: {meaning}" for choice, meaning in one.choices.items() if meaning)
+        told = f"as the {one.unset} says" if default is None else str(default).removesuffix(".0")
+        help_ += f"{f'. {meanings}' if meanings else ''} (default: {told})"
     parser.add_argument(one.option, dest=one.name, default=default, help=help_.replace("%", "%%"), **kept)
-
-
-def _asking(one: Setting) -> Callable[[str], Any]:
-    """Let a setting read its value, and ask what may have been meant where that is one of few."""
-
-    def parse(text: str) -> Any:
-        try:
-            return one.parse(text)
-        except ValueError as error:
-            raise ValueError(f"{error}{did_you_mean(text, map(str, one.choices))}") from None
-
-    return parse
-
-
-_METAVARS: dict[type, str] = {int: "N", float: "X", Slice: "AXIS:PART"}
 
 
 def add_tracing(parser: Parser, accelerator: str = BVH8, many_lamps: bool = False, zoom_factor: bool = True) -> None:
@@ -330,13 +300,6 @@ def prepare_kernels(work: Work, lights: int, accelerator: str, *methods: str) ->
     warm_up(work.progress, lights, accelerator, certificates)
     for name in methods:
         make_ready(name, lights, accelerator, work.progress)
-
-
-def method_names() -> str:
-    """Name the methods, and what can be added to them."""
-    names = [kind.name for kind in bases(measures=True)]
-    added = " or ".join(f"+{kind.name}" for kind in additions(measures=True))
-    return f"{', '.join(names[:-1])} or {names[-1]}, each with or without {added}, as in certified+cache"
 
 
 def method_summaries() -> str:

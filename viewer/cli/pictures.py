@@ -1,4 +1,4 @@
-"""What a picture is to be like: the options of `render`, `film` and `figure`, beside what a saved picture carries."""
+"""What a picture is to be like: the options of `render`, `film` and `figure`, as a state, and a state as these."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import json
 from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import LARGE
@@ -16,48 +15,48 @@ from tracer.scene.model import Scene
 from tracer.setting import settings_of
 from tracer.settings import Settings
 from viewer.cli import arguments, options
-from viewer.cli.arguments import ChosenView, Parser
+from viewer.cli.arguments import ChosenView, Parser, view_form
 from viewer.output import capture, commands
 from viewer.services import stills
 from viewer.services.scene_files import find_scene, is_capture
 from viewer.state import codec
-from viewer.state.draw_options import MIDDLE, DrawOptions
+from viewer.state.draw_options import DrawOptions
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
-from viewer.state.tone import NEUTRAL, Tone
 from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
 
-LOWER_LEFT = 0.0, 1.0
 _SPECIAL = {"view", "spans", "savings", "caption"}  # whose options are no plain values
-_DRAWN = [one for one in settings_of(DrawOptions) if one.option and one.path not in _SPECIAL]
+DRAWN = [one for one in settings_of(DrawOptions) if one.option and one.path not in _SPECIAL]
 OR_PICTURE = ", or a saved picture or a state as .json, for its scene, settings and view"
 _LARGEST_STATE = 1 << 26  # bytes
 
 
 def add_picture(parser: Parser) -> None:
     """Add what one picture is to be like."""
-    add = parser.add_argument
     options.add_size(parser)
     options.add_settings(parser, Settings, "samples")
     help_ = (
-        f"how shadow rays are culled: {options.method_names()} (default: {DEFAULT_METHOD}, or the method that a view "
-        "belongs to: certified, lightcuts, voxels or lie-exact)"
+        f"how shadow rays are culled: {options.METHODS} (default: {DEFAULT_METHOD}, or the method that a view belongs "
+        f"to: {', '.join(SHOWN_BY.values())})"
     )
-    add("--method", type=arguments.method, metavar="M", help=help_)
+    parser.add_argument("--method", type=arguments.method, metavar="M", help=help_)
+    add = parser.add_argument_group("what is drawn").add_argument
     help_ = (
-        "what to draw: color, occlusion, shadow:LIGHT, primitive, depth, normal, pixel-count, difference, wipe:PART, "
-        "certificate:LIGHT, penumbra:LIGHT, lights, cuts, voxels:LIGHT, cell-lights, tree, fate:LIGHT, "
-        "moving-shadow:LIGHT, saved or cost, as counts of rays or as shares like saved:share (default: color)"
+        f"what to show: {', '.join(map(view_form, View))}. LIGHT is the number of a light, 0 if left out; wipe shows "
+        "the traced picture left of a line at this PART of the width, 0 to 1, and the right one on its other side; "
+        ":share shows shares of rays, not counts (default: color)"
     )
-    add("--view", type=arguments.view, default="color", metavar="V", help=help_)
-    options.add_settings(parser, DrawOptions, *(one.name for one in _DRAWN))
-    help_ = "what has the first and the last colour in the views depth, saved, cost and lights (default: as they come)"
+    add("--view", type=arguments.view, default=ChosenView(), metavar="V", help=help_)
+    options.add_settings(parser, DrawOptions, *(one.name for one in DRAWN))
+    with_range = ", ".join(view.value for view in View if view.has_range)
+    help_ = f"what has the first and the last colour in the views {with_range} (default: as they come)"
     add("--range", type=arguments.value_range, metavar="LOW:HIGH", help=help_)
-    help_ = "where the legend is: 0,0 is the upper left (default: 0,1)"
-    add("--legend-at", type=arguments.place, metavar="X,Y", help=help_)
+    help_ = "where the legend is: 0,0 is the upper left, 1,1 the lower right (default: 0,1)"
+    add("--legend-at", type=arguments.place, default=DrawOptions().legend_at, metavar="X,Y", help=help_)
     help_ = "above the picture, what culling saves: a sentence, with TEXT about steps and time, and a bar"
     add("--savings", nargs="?", const="", metavar="TEXT", help=help_)
-    help_ = "a line below the picture, like '{scene}, frame {frame}'"
+    fields = ", ".join(f"{{{name}}}" for name in capture.FIELDS)
+    help_ = f"a line below the picture; it may have the fields {fields}"
     add("--caption", default="", metavar="TEXT", help=help_)
     add("--camera", type=arguments.camera, metavar="JSON", help=f"another camera: {options.CAMERA}")
     options.add_edits(parser)
@@ -76,14 +75,13 @@ def wanted_state(scene: Scene, settings: Settings, given: Namespace) -> ViewStat
 
     Raises ValueError, in one line, for a moment or a light that the scene does not have."""
     view, light, wipe, shares = given.view
-    edits = options.edits_of(given)
     if view.of_light:
         light = options.light_index(given, f"--view {view.value}:", light, scene)
     draw = DrawOptions(
-        view=view, light=light if view.of_light else edits.light_index(light) or 0, wipe=wipe, shares=shares,
-        legend_at=given.legend_at or LOWER_LEFT, savings=given.savings, caption=given.caption,
+        view=view, light=light, wipe=wipe, shares=shares, legend_at=given.legend_at, savings=given.savings,
+        caption=given.caption,
     )  # fmt: skip
-    for one in _DRAWN:
+    for one in DRAWN:
         draw = one.put(draw, getattr(given, one.name))
     draw = draw.with_span(given.range)
     unknown = ""
@@ -92,25 +90,19 @@ def wanted_state(scene: Scene, settings: Settings, given: Namespace) -> ViewStat
     warmup = Warmup(given.before, given.warmup, given.repeat, unknown=unknown)
     meshes = options.mesh_options(given).of_file(given.path)
     path, time = str(given.path.absolute()), options.moment(scene, given)
-    return ViewState(path, meshes, edits, time, given.camera, settings, draw, warmup=warmup)
-
-
-def _tone(given: Namespace) -> Tone:
-    return Tone(given.exposure, given.white, given.curve)
+    return ViewState(path, meshes, options.edits_of(given), time, given.camera, settings, draw, warmup=warmup)
 
 
 def check_display(given: Namespace) -> None:
-    """Raise ValueError, in one line, for options that the view has no use for."""
+    """Raise ValueError, in one line, for options that do nothing in the view."""
     view, shares = given.view.view, given.view.shares
-    if not view.shows_picture and not _tone(given).neutral:
-        raise ValueError(f"--exposure, --white and --tone are for pictures: --view {view.value} shows none")
-    if given.clipping and not view.shows_clipped:
-        raise ValueError(f"--mark-clipped is for the views color and wipe, not {view.value}")
-    if given.slice != MIDDLE and not view.has_slice:
-        raise ValueError(f"--slice is for the views voxels and tree, not {view.value}")
-    if given.range is not None and (not view.has_range or shares):
-        names = ", ".join(one.value for one in View if one.has_range)
-        raise ValueError(f"--range is for views of numbers: {names}{' as counts' if shares else ''}")
+    for one in settings_of(DrawOptions):
+        unasked = given.range is None if one.name == "spans" else getattr(given, one.name, None) == one.default
+        if one.option and not unasked and not one.applies(ViewState(draw=DrawOptions(view=view, shares=shares))):
+            used = ", ".join(other for other in View if one.applies(ViewState(draw=DrawOptions(view=other))))
+            raise ValueError(
+                f"{one.option} does nothing in the view {view}{':share' if shares else ''}; it is for {used}"
+            )
 
 
 def check_view(settings: Settings, view: View, option: str = "--method") -> None:
@@ -125,10 +117,8 @@ def check_view(settings: Settings, view: View, option: str = "--method") -> None
     elif view is View.CUTS and not method.clusters:
         why = f"the method {settings.method} makes no clusters of lights"
     elif view.needs_fates and method.clusters:
-        why, instead = (
-            f"the method {settings.method} shades by clusters of lights: single lights have no rays",
-            BY_MODES,
-        )
+        why = f"the method {settings.method} shades by clusters of lights: single lights have no rays"
+        instead = BY_MODES
     elif shows is not None and not any(name == method.base or method.has(name) for name in shows):
         why = f"not with the method {settings.method}"
     if why:
@@ -189,36 +179,18 @@ def filled_in(parser: Parser, given: Namespace, words: list[str]) -> Namespace:
     Raises CaptureError, in one line."""
     if not carries_state(given.path):
         return given
-    state, saved = state_of(given.path), given.path
-    parser.set_defaults(**_as_options(state))
-    given = parser.parse_args(words)
+    saved, state = given.path, state_of(given.path)
+    for _ in range(2):  # once more, without what the view that is given has no use for
+        kept, _ = parser.parse_known_args([given.scene, *commands.options(state)])
+        kept.accelerator, kept.time = state.settings.accelerator, None
+        given = parser.parse_args(words, kept)
+        state = state.with_draw(view=given.view.view, shares=given.view.shares)
     given.path = Path(state.scene)
-    view, draw = given.view.view, state.draw  # a view that has no use for something takes none of the state's
-    if not view.shows_picture and _tone(given) == draw.tone:
-        given.exposure, given.white, given.curve = NEUTRAL.exposure, NEUTRAL.white, NEUTRAL.curve
-    given.clipping &= view.shows_clipped or not draw.clipping
-    given.slice = given.slice if view.has_slice or given.slice != draw.slice else MIDDLE
-    if given.range == draw.span and (view is not draw.view or given.view.shares):
-        given.range = None
     if given.frame is None and given.time is None:
         given.time = state.time
     if "buffers" in given and not (given.output or given.buffers or given.to_tev or given.print_command):
         given.output = _free_name(f"{saved.stem}-rendered")
     return given
-
-
-def _as_options(state: ViewState) -> dict[str, Any]:
-    """Return a state by the names that options have in the namespace."""
-    draw, warmup, meshes = state.draw, state.warmup, state.meshes
-    kept = {one.name: one.get(state) for one in settings_of(ViewState) if one.option}
-    kept |= {"view": ChosenView(draw.view, state.edits.light_number(draw.light), draw.wipe, draw.shares)}
-    kept |= {"legend_at": draw.legend_at, "range": draw.span}
-    kept |= {"caption": draw.caption.replace("{", "{{").replace("}", "}}")}
-    kept |= {"size": (state.settings.width, state.settings.height)}
-    kept |= {"before": warmup.frames, "warmup": warmup.of_path, "repeat": warmup.repeats}
-    kept |= {"no_studio": not meshes.studio, "up": meshes.up, "crease": meshes.crease}
-    kept |= {"camera": state.camera} if state.camera is not None else {}
-    return kept | options.edits_as_options(state.edits)
 
 
 def _free_name(stem: str) -> Path:

@@ -20,11 +20,12 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.method import Method
 from tracer.scene.load import AFF_EXTENSIONS
+from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
-from tracer.setting import Setting, settings_of
+from tracer.setting import settings_of
 from tracer.settings import Settings
 from viewer.state import codec
-from viewer.state import edits as scene_edits
+from viewer.state.changes import as_options
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
@@ -71,14 +72,23 @@ def by_one_thread(state: ViewState) -> bool:
 def words(state: ViewState, scene: Scene | None, output: str, folders: Sequence[Path] = ()) -> list[str]:
     """Return the words after `shadowcull` that make the picture of a state again, to the bit; `scene` names frames by
     their numbers, `folders` are those that it may read files from besides its own."""
-    settings, draw, warmup, path = state.settings, state.draw, state.warmup, Path(state.scene)
-    found = ["render", scene_word(path), "-o", f"./{output}" if output.startswith("-") else output]
-    found += ["--size", f"{settings.width}x{settings.height}", *_moment(state.time, scene)]
+    found = ["render", scene_word(Path(state.scene)), "-o", f"./{output}" if output.startswith("-") else output]
+    found += options(state, scene)
+    for folder in folders:
+        found += ["--folder", str(folder.absolute())]
+    return found
+
+
+def options(state: ViewState, scene: Scene | None = None) -> list[str]:
+    """Return what a state says beside its scene as options of `render`."""
+    settings, draw, warmup = state.settings, state.draw, state.warmup
+    found = ["--size", f"{settings.width}x{settings.height}", *_moment(state.time, scene)]
     found += ["--method", settings.method, *_view(state)]
     if state.camera is not None:
         found += ["--camera", json.dumps(state.camera.to_json())]
     for one in settings_of(ViewState):
-        if one.path not in _SPECIAL and _counts(one, state):
+        counts = by_one_thread(state) if one.path == "settings.threads" else state.applies(one)
+        if one.path not in _SPECIAL and counts:
             found += one.words(one.get(state))
     for option, count in (("--warmup", warmup.of_path), ("--repeat", warmup.repeats)):
         found += [option, str(count)] if count else []
@@ -92,20 +102,12 @@ def words(state: ViewState, scene: Scene | None, output: str, folders: Sequence[
         found += [f"--caption={draw.caption.replace('{', '{{').replace('}', '}}')}"]
     if warmup.frames:
         found += ["--before", codec.text(warmup.frames)]
-    found += scene_edits.as_options(state.edits)
-    for folder in folders:
-        found += ["--folder", str(folder.absolute())]
-    return found + ([] if path.suffix.lower() in AFF_EXTENSIONS else _meshes(state))
+    found += as_options(state.edits)
+    return found + ([] if Path(state.scene).suffix.lower() in AFF_EXTENSIONS else mesh_options(state.meshes))
 
 
-_SPECIAL = {"settings.method", "draw.view", "draw.spans", "draw.savings", "draw.caption", "draw.shares"}
+_SPECIAL = {"settings.method", "draw.view", "draw.spans", "draw.savings", "draw.caption"}
 """Settings whose options are no plain values."""
-
-
-def _counts(one: Setting, state: ViewState) -> bool:
-    if one.path == "settings.threads":
-        return by_one_thread(state)
-    return one.path != "draw.slice" or state.draw.view.has_slice
 
 
 def _view(state: ViewState) -> list[str]:
@@ -123,9 +125,8 @@ def _line(wipe: float, width: int) -> str:
     return "1" if column >= width else f"{(column + 0.5) / width:.9f}"
 
 
-def _meshes(state: ViewState) -> list[str]:
-    """How a mesh is read."""
-    meshes = state.meshes
+def mesh_options(meshes: MeshOptions) -> list[str]:
+    """Return the options that ask for how a mesh is read."""
     up = [f"--up={meshes.up}"] if meshes.up is not None else []
     crease = [f"--crease={meshes.crease!r}"] if meshes.crease is not None else []
     return [*up, *crease, *([] if meshes.studio else ["--no-studio"])]

@@ -18,7 +18,6 @@ from tracer.scene.model import Scene
 from viewer.services.baseline import Baseline
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
-from viewer.services.edit_effects import BeforeEdits
 from viewer.services.editing import Editing
 from viewer.services.film import Films
 from viewer.services.frame_history import FrameHistory, FrameNavigator
@@ -85,7 +84,6 @@ class Controller:
             session, renderer, notices, runs.refuses, self._show_edited, undo.without_undo, scheduler.trace_once_more
         )
         self.table = SceneTable(session, selection, preferences, notices, captures, editing, wake)
-        self.before_edits = BeforeEdits(session, editing)
         self.questions = questions = Questions(runs, captures, wake)
         self.loader = loader = SceneLoader(session, preferences, notices, questions.before_opening, wake)
         self.preview = Preview(session, loader, motion, notices, wake)
@@ -184,7 +182,7 @@ class Controller:
 
     def list_scene(self) -> None:
         """Fill the table of what is in the scene, while it is seen."""
-        self.table.update(self.own_traced, self.motion.is_animating)
+        self.table.update(self.own_traced)
 
     def record_light(self) -> None:
         """Have the chosen light recorded where the view needs it, unless a run has the render thread."""
@@ -208,15 +206,6 @@ class Controller:
             second=self.comparing.second_method,
             focus=self.selection.hovered,
         )
-
-    def keep_frame(self) -> None:
-        """Keep the newest frame to compare with what edits make of it."""
-        traced, scheduler = self.own_traced, self.scheduler
-        fine = traced is not None and traced.whole and traced.request.divisor == 1
-        if self.runs.current is None:
-            of_edits = fine and not self.motion.is_animating and scheduler.shows_edits
-            more_comes = scheduler.awaits or scheduler.adds_samples or self.renderer.busy
-            self.before_edits.take(traced.frame if traced is not None and of_edits else None, not more_comes)
 
     def measure(self) -> None:
         """Measure in spare time how fast the picture is traced by the method and by none, while that is to be seen."""
@@ -271,7 +260,6 @@ class Controller:
         self.info = info
         self.renderer.use(renderer)
         self.editing.enter(renderer)
-        self.before_edits.forget()
         self.history.clear()
         self.scheduler.forget()
         self.baseline.forget()
@@ -284,6 +272,8 @@ class Controller:
         """Show the scene that is open with other edits: where we are, and what was chosen, stays."""
         before = self.session.edited
         same = before is not None and before.made_as(now)
+        if before is not None and not before.edits:
+            self.editing.before = self.comparing.b
         self.undo.without_undo(lambda: self.session.take(now))
         self.renderer.use(renderer, fresh=False)
         self.history.forget_modes(blank=False)

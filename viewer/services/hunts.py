@@ -19,7 +19,7 @@ from viewer.services import comparison, counterexamples
 from viewer.services.frame_history import FrameNavigator, JumpTarget
 from viewer.services.runs import FileRun, Runs, check_size
 from viewer.state import navigation
-from viewer.state.edits import as_options
+from viewer.state.changes import as_options
 from viewer.state.notices import Notices
 from viewer.state.pixels import around
 from viewer.state.plans import HuntPlan, frames_within

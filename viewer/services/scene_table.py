@@ -1,16 +1,17 @@
 """The table of objects and primitives: what the newest whole picture knows of each, filtered and in order.
 
 All of it is worked out on a thread of its own, and only while somebody looks at the table; the window never waits.
-What is typed or clicked takes effect at once.  A newer picture brings newer numbers at once, but the rows stay in their
-places while the pointer is on them or something moves, and those that stand equal keep their order.
+What is typed or clicked takes effect at once, and a newer picture of the same scene as soon as the pointer is not on
+the table.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
@@ -24,39 +25,42 @@ from viewer.services.selection import Selection
 from viewer.state.notices import Notices
 from viewer.state.parts import parts_of
 from viewer.state.preferences import Preferences
-from viewer.state.row_filter import Listing, Order, listed
+from viewer.state.row_filter import FilterError, Order, listed
 from viewer.state.scene_rows import Level, Table, tables_of
 from viewer.state.session import Session
 
 
 @dataclass(frozen=True, eq=False)
-class _Source:
+class Source:
     """What tables are made of; with `light` None, shadow modes are those for all lights together."""
 
     now: Edited
     frame: Frame
     light: int | None
 
-    def is_like(self, other: _Source) -> bool:
+    def is_like(self, other: Source) -> bool:
         """Whether the tables of another would be the same: further samples of a picture count nothing."""
         names = ("primitive", "modes", "cells", "saved", "due_rays", "wrong")
         same = all(getattr(self.frame, name) is getattr(other.frame, name) for name in names)
         return same and (self.now is other.now and self.light == other.light)
 
 
-@dataclass(frozen=True)
-class _Made:
-    """Both tables of a source, and one of them as it is listed; `in_order` says that its rows have been sorted anew."""
+@dataclass(frozen=True, eq=False)
+class Listing:
+    """A table, and the numbers of its rows that are seen, in their order, (rows,) int32; where the filter is not
+    understood, `problem` says why, and the rows are those of before."""
 
-    source: _Source
+    source: Source
     tables: dict[Level, Table]
-    listing: Listing
-    in_order: bool
+    table: Table
+    rows: NDArray[np.int32]
+    order: Order
+    problem: str = ""
 
 
 class SceneTable:
     """`level` is what rows are, `orders` what is asked of each level; with `all_lights` shadow modes are those for all
-    lights together, else for the session's.  `held` says that the rows must not move under the pointer."""
+    lights together, else for the session's.  `held` says that the pointer is on it, where rows must not move."""
 
     def __init__(
         self,
@@ -68,23 +72,20 @@ class SceneTable:
         editing: Editing,
         wake: Callable[[], None] = lambda: None,
     ) -> None:
-        self._session, self._selection, self._wake = session, selection, wake
+        self.selection, self._session, self._wake = selection, session, wake
         self._preferences, self._notices, self._files, self._editing = preferences, notices, files, editing
         self.level = Level.OBJECTS
         self.orders = dict.fromkeys(Level, Order(column="pixels", descending=True))
         self.all_lights = self.visible = self.held = self._watched = False
-        self.chosen = 0  # the serial of the selection that was made here last, or has been shown
-        self._source: _Source | None = None  # the newest
-        self._made: dict[Level, _Made] = {}
-        self._job: Job[_Made] | None = None
+        self._source: Source | None = None  # the newest
+        self._listings: dict[Level, Listing] = {}
+        self._job: Job[Listing] | None = None
         self._asked: object = None  # what the newest job was started for; where it fails, it is not tried again
-        self._told = ""  # why the last has failed
 
     @property
     def listing(self) -> Listing | None:
         """What is known of the level that is looked at; None while nothing is."""
-        made = self._made.get(self.level)
-        return None if made is None else made.listing
+        return self._listings.get(self.level)
 
     @property
     def order(self) -> Order:
@@ -99,11 +100,11 @@ class SceneTable:
 
     def filter(self, text: str) -> None:
         """Show the rows that this finds."""
-        self.orders[self.level] = Order(text, self.order.column, self.order.descending)
+        self.orders[self.level] = replace(self.order, text=text)
 
     def sort(self, column: str, descending: bool) -> None:
         """Sort by a column."""
-        self.orders[self.level] = Order(self.order.text, column, descending)
+        self.orders[self.level] = replace(self.order, column=column, descending=descending)
 
     def open_part(self, part: int) -> None:
         """List the primitives of a part."""
@@ -115,16 +116,15 @@ class SceneTable:
 
     def select(self, row: int) -> None:
         """Select a row's object or primitive in the picture."""
-        selection = self._selection
+        selection = self.selection
         done = selection.select_part(row) if self.level is Level.OBJECTS else selection.select_primitive(row)
         if not done:
             self._notices.say("it is hidden" if self.is_hidden(row) else "it is not in the scene at this time")
-        self.chosen = selection.serial
 
     @property
     def selected(self) -> int:
         """The row of what is selected in the picture, -1 for none."""
-        picked, now = self._selection.picked, self._session.edited
+        picked, now = self.selection.picked, self._session.edited
         if picked is None or now is None or not 0 <= picked.primitive < len(now.primitives):
             return -1
         number = int(now.primitives[picked.primitive])
@@ -137,10 +137,12 @@ class SceneTable:
 
     def hide(self, row: int, hidden: bool = True) -> None:
         """Hide a row's object or primitive, or show it again, with the object that it belongs to."""
+        edits = self._editing.now
         if self.level is Level.OBJECTS or not hidden:
-            self._editing.hide(self._object_of(row), hidden)
+            edits = edits.with_thing(self._object_of(row), not hidden)
         if self.level is Level.PRIMITIVES:
-            self._editing.hide_primitive(row, hidden)
+            edits = edits.with_primitive(row, not hidden)
+        self._editing.change(edits)
 
     def _object_of(self, row: int) -> str:
         """The name of a row's object, "" where no scene is open."""
@@ -150,32 +152,17 @@ class SceneTable:
         parts = parts_of(original)
         return parts.names[row if self.level is Level.OBJECTS else int(parts.part_of[row])]
 
-    @property
-    def selection_serial(self) -> int:
-        """The number of the newest selection, here or in the picture."""
-        return self._selection.serial
-
-    def place_of(self, row: int) -> int | None:
-        """How many rows are seen above a row; None where it is not among them."""
-        listing = self.listing
-        if listing is None or row < 0:
-            return None
-        found = np.flatnonzero(listing.rows == row)
-        return int(found[0]) if len(found) else None
-
     def save(self) -> None:
         """Write the rows that are seen as CSV into the folder of the pictures."""
-        made, scene = self._made.get(self.level), self._session.scene
-        if made is None or scene is None:
+        listing, scene = self.listing, self._session.scene
+        if listing is None or scene is None:
             self._notices.say("there is no table yet: open the panel Find")
-        elif self._session.edits != made.source.now.edits or made.listing.order != self.order or not made.in_order:
+        elif self._session.edits != listing.source.now.edits or listing.order != self.order:
             self._notices.say("the table is not up to date yet: save it when the picture shows the edited scene")
         else:
-            table, rows, folder = made.listing.table, made.listing.rows, self._preferences.picture_folder
-            name = f"{scene.path.stem}-{table.level.value.lower()}"
-            self._files.write(
-                lambda: exports.save(folder, name, ".csv", lambda path: exports.write_rows(table, rows, path))
-            )
+            folder, name = self._preferences.picture_folder, f"{scene.path.stem}-{self.level.value.lower()}"
+            write = lambda path: exports.write_rows(listing.table, listing.rows, path)  # noqa: E731
+            self._files.write(lambda: exports.save(folder, name, ".csv", write))
 
     # --- one frame of the window -----------------------------------------------------------------
 
@@ -183,51 +170,50 @@ class SceneTable:
         """Somebody looks at the table in this frame of the window."""
         self._watched = True
 
-    def update(self, traced: Traced | None, moving: bool) -> None:
+    def update(self, traced: Traced | None) -> None:
         """Take up what has been made, and have made what is missing; `traced` is the newest picture, None where it is
-        none of the session's, and `moving` says that another follows soon."""
+        none of the session's."""
         self.visible, self._watched = self._watched, False
         self._session.counting = self.visible
         now = self._session.edited
         if self._source is not None and (now is None or self._source.now.original is not now.original):
-            self._source, self._made = None, {}
+            self._source, self._listings = None, {}
         if self._job is not None and self._job.done:
-            self._take(self._job)
-            self._job = None
+            made, failure, self._job = self._job.result, self._job.failure, None
+            if failure is not None:
+                self._notices.report(failure)
+            if made is not None and self._source is not None and made.source.now.original is self._source.now.original:
+                self._listings[made.table.level] = made
         if not self.visible or now is None or self._job is not None:
             return
         if traced is not None and traced.whole and traced.request.divisor == 1:
-            newest = _Source(now, traced.frame, None if self.all_lights else self._session.draw.light)
-            if self._source is None or not newest.is_like(self._source):
+            newest, source = (
+                Source(now, traced.frame, None if self.all_lights else self._session.draw.light),
+                self._source,
+            )
+            stays = self.held and source is not None and source.now is now and source.light == newest.light
+            if source is None or not (stays or newest.is_like(source)):
                 self._source = newest
         if self._source is not None:
-            self._make(self._source, self.held or moving)
+            self._make(self._source)
 
-    def _make(self, source: _Source, stays: bool) -> None:
-        """Have a listing made, unless it is there or has failed: in order, or, where rows `stay`, as they are."""
-        level, order, made, before = self.level, self.order, self._made.get(self.level), self.listing
-        done = made is not None and made.source is source and made.listing.order == order
-        asked = (source, level, order, stays)
-        if asked == self._asked or (done and made is not None and (made.in_order or stays)):
+    def _make(self, source: Source) -> None:
+        """Have a listing made, unless it is there or was tried."""
+        level, order, before = self.level, self.order, self.listing
+        asked = source, level, order
+        if asked == self._asked or (before is not None and (before.source, before.order) == (source, order)):
             return
-        known = next((one.tables for one in self._made.values() if one.source is source), None)
+        tables = next((one.tables for one in self._listings.values() if one.source is source), None)
 
-        def work(_: Progress) -> _Made:
-            tables = known or tables_of(source.now, source.frame, source.light)
-            table = tables[level]
-            if stays and before is not None and before.order == order and before.table.rows == table.rows:
-                if len(before.rows):
-                    return _Made(source, tables, Listing(table, before.rows, order, before.problem), False)
-            return _Made(source, tables, listed(table, order, before), True)
+        def work(_: Progress) -> Listing:
+            known = tables or tables_of(source.now, source.frame, source.light)
+            table, problem = known[level], ""
+            try:
+                rows = listed(table, order)
+            except FilterError as error:
+                problem, rows = str(error), np.arange(table.rows, dtype=np.int32)
+                if before is not None and before.table.rows == table.rows:
+                    rows = before.rows
+            return Listing(source, known, table, rows, order, problem)
 
         self._asked, self._job = asked, Job("The table", work, self._wake)
-
-    def _take(self, job: Job[_Made]) -> None:
-        if job.failure is not None:
-            if job.failure.text != self._told:  # once, while pictures come that it fails for alike
-                self._notices.report(job.failure)
-            self._told = job.failure.text
-        made = job.result
-        if made is not None and self._source is not None and made.source.now.original is self._source.now.original:
-            self._told = ""
-            self._made[made.listing.table.level] = made

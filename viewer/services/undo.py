@@ -1,4 +1,4 @@
-"""Undo and redo: a list of states.
+"""Undo and redo: a list of states, and where in it we are.
 
 Nobody has to announce a change: the state is compared from one of the window's frames to the next.  Changes that belong
 together are one step: all of a drag, all of a flight until the camera rests, all turns of the wheel until it does.
@@ -9,49 +9,27 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from tracer.scene.mesh_options import MeshOptions
-from tracer.setting import ALWAYS, settings_of
 from viewer.services.motion import Motion
-from viewer.state import edits as scene_edits
+from viewer.state.changes import CAMERA, changes
 from viewer.state.notices import Notices
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 
 MOST_STEPS = 200
-_CAMERA = "camera"
 _BY_STROKES = {"draw.tone.exposure", "draw.tone.white", "draw.zoom"}  # changed little by little, by the wheel or a key
 _STROKE_SECONDS = 0.6  # from one stroke to the next, at most, for both to be one step
 
 
 @dataclass(frozen=True)
 class Step:
-    """What was done, in a few words, and what held before and after; `with_time`, it goes to another time as well."""
+    """A state, and what was done to come to it, in a few words; `with_time`, it went to another time as well."""
 
     name: str
-    before: ViewState
-    after: ViewState
-    with_time: bool = False
-
-
-@dataclass(frozen=True)
-class _Coming:
-    """What is brought back once the mesh has been read for it, what to say then, and the steps as they were before."""
-
     state: ViewState
-    with_time: bool
-    said: str
-    done: list[Step]
-    undone: list[Step]
-
-
-@dataclass
-class _Open:
-    """A step that may go on."""
-
-    before: ViewState
-    fields: dict[str, str] = field(default_factory=dict)
+    with_time: bool = False
 
 
 class Undo:
@@ -75,150 +53,129 @@ class Undo:
 
     def clear(self) -> None:
         """Forget all steps, as another scene is open."""
-        self._done: list[Step] = []
-        self._undone: list[Step] = []
-        self._open: _Open | None = None
-        self._coming: _Coming | None = None
-        self._last: ViewState | None = None
+        self._steps: list[Step] = []
+        self._at = 0  # the step whose state is shown, which is kept up to date
+        self._open: set[str] = set()  # what has changed in the newest step, where that may go on
+        self._coming: tuple[int, str] | None = None  # where we are once the mesh is read for it, and what to say then
         self._changed_at = 0.0
-        self._name = ""
-        self._time: float | None = None  # before what is about to change, if that goes to another time
+        self._named = "", False
 
     @property
     def undoes(self) -> str:
         """What would be undone; "" where there is nothing."""
-        if self._open is not None:
-            return _name_of(self._open.fields)
-        return self._done[-1].name if self._done else ""
+        return self._steps[self._at].name if self._at > 0 else ""
 
     @property
     def redoes(self) -> str:
         """What would be done again; "" where there is nothing."""
-        return self._undone[-1].name if self._undone and self._open is None else ""
+        return self._steps[self._at + 1].name if self._at + 1 < len(self._steps) else ""
 
     def begin_step(self, name: str, with_time: bool = False) -> None:
         """Name what is about to change, which is a step of its own; `with_time`, it brings back the time as well."""
         self.note_changes()
         self._close()
-        self._name, self._time = name, self._session.time if with_time else None
+        self._named = name, with_time
 
     def without_undo(self, change: Callable[[], None]) -> None:
         """Let something change that follows from a step, and is none itself."""
         self.note_changes()
         change()
-        if self._last is not None:
-            self._last = self._state()
+        self._keep_up()
 
     def note_changes(self) -> None:
         """Take up what has changed since the last frame of the window."""
-        if self._coming is not None and not self._come():
-            return
+        if self._coming is not None:
+            if self._reading():
+                return
+            self._arrive(*self._coming)
         now = self._state()
         if now is None:
             return
-        if self._last is None:
-            self._last = now
-            return
-        changed = {} if now == self._last else _changes(self._last, now)
-        name, self._name = self._name, ""
-        before, self._time = self._time, None
-        moved = before is not None and before != now.time
+        if not self._steps:
+            self._steps = [Step("", now)]
+        last = self._steps[self._at].state
+        changed = {} if now == last else changes(last, now)
+        (name, with_time), self._named = self._named, ("", False)
+        moved = with_time and now.time != last.time
         if name and (changed or moved):
             self._close()
-            then = self._last if before is None else replace(self._last, time=before)
-            self._add(Step(name, then, now, with_time=moved))
+            self._add(Step(name, now, moved))
         elif changed:
-            if self._open is not None and not changed.keys() <= self._open.fields.keys():
+            if not changed.keys() <= self._open:
                 self._close()
-            self._open = self._open or _Open(self._last)
-            self._open.fields |= changed
+                self._add(Step("", now))
+            self._open |= changed.keys()
             self._changed_at = time.monotonic()
-        self._last = now
+            self._steps[-1] = Step(_name_of(changes(self._steps[-2].state, now)), now)
+        self._keep_up()
         if not self._goes_on:
             self._close()
 
     def undo(self) -> None:
         """Bring back what held before the newest step."""
-        self._go("undo")
+        self._go(-1, "undo")
 
     def redo(self) -> None:
         """Do again what was undone last."""
-        self._go("redo")
+        self._go(1, "redo")
 
     # --- inside ----------------------------------------------------------------------------------
 
-    def _go(self, way: str) -> None:
+    def _go(self, by: int, way: str) -> None:
         if self._locked() or self._coming is not None:
             return
         self.note_changes()
         self._close()
-        back = way == "undo"
-        steps, others = (self._done, self._undone) if back else (self._undone, self._done)
-        if not steps:
+        to = self._at + by
+        if not 0 <= to < len(self._steps):
             self._notices.say(f"there is nothing to {way}")
             return
-        before = list(self._done), list(self._undone)
-        step = steps.pop()
-        others.append(step)
-        state = step.before if back else step.after
-        self._start(_Coming(state, step.with_time, f"{way}ne: {step.name}", *before))
+        said, meshes = f"{way}ne: {self._steps[max(to, self._at)].name}", self._steps[to].state.meshes
+        if meshes == self._session.meshes:
+            self._arrive(to, said)
+        else:
+            self._coming = to, said
+            self._read_as(meshes)
+
+    def _arrive(self, to: int, said: str) -> None:
+        """Show the state of a step, or stay where its mesh could not be read."""
+        self._coming = None
+        session, wanted, with_time = self._session, self._steps[to].state, self._steps[max(to, self._at)].with_time
+        if wanted.meshes != session.meshes:
+            return
+        start, playing = session.camera, session.playing
+        self._motion.halt()
+        session.restore(wanted if with_time else replace(wanted, time=session.time))
+        session.change(compare=wanted.compare)
+        session.playing = playing and not with_time
+        if wanted.camera is not None and wanted.camera != start:
+            self._motion.glide(wanted.camera, start)
+        self._at = to
+        self._keep_up()
+        self._notices.say(said)
+
+    def _add(self, step: Step) -> None:
+        self._steps = [*self._steps[: self._at + 1], step][-MOST_STEPS - 1 :]
+        self._at = len(self._steps) - 1
 
     @property
     def _goes_on(self) -> bool:
         """Whether more may come of the step that is open."""
-        if self._open is None:
-            return False
-        fields = self._open.fields.keys()
-        strokes = fields <= _BY_STROKES and time.monotonic() < self._changed_at + _STROKE_SECONDS
-        return self.held or strokes or (_CAMERA in fields and self._motion.is_dragging)
+        strokes = self._open <= _BY_STROKES and time.monotonic() < self._changed_at + _STROKE_SECONDS
+        return bool(self._open) and (self.held or strokes or (CAMERA in self._open and self._motion.is_dragging))
 
     def _close(self) -> None:
         """End the step that is open; what has come back to where it was is none."""
-        opened, self._open = self._open, None
-        if opened is None or self._last is None:
-            return
-        fields = _changes(opened.before, self._last)
-        if fields:
-            self._add(Step(_name_of(fields), opened.before, self._last))
+        if self._open and not self._steps[-1].name:
+            self._at -= 1
+            self._steps.pop()
+            self._keep_up()
+        self._open = set()
 
-    def _add(self, step: Step) -> None:
-        self._done = [*self._done, step][-MOST_STEPS:]
-        self._undone = []
-
-    def _start(self, coming: _Coming) -> None:
-        """Bring a state back, now or once its mesh is read."""
-        if coming.state.meshes == self._session.meshes:
-            self._bring(coming)
-        else:
-            self._coming = coming
-            self._read_as(coming.state.meshes)
-
-    def _come(self) -> bool:
-        """Bring back what a mesh is being read for, or forget of it where nothing has come of the reading; whether
-        either is done."""
-        coming = self._coming
-        if coming is None or self._reading():
-            return coming is None
-        self._coming = None
-        if coming.state.meshes == self._session.meshes:
-            self._bring(coming)
-        else:
-            self._done, self._undone = coming.done, coming.undone
-        return True
-
-    def _bring(self, coming: _Coming) -> None:
-        session, wanted, playing = self._session, coming.state, self._session.playing
-        start = session.camera
-        if not coming.with_time:
-            wanted = replace(wanted, time=session.time)
-        self._motion.halt()
-        session.restore(wanted)
-        session.change(compare=wanted.compare)
-        session.playing = playing and not coming.with_time
-        if wanted.camera is not None and wanted.camera != start:
-            self._motion.glide(wanted.camera, start)
-        self._last = self._state()
-        self._notices.say(coming.said)
+    def _keep_up(self) -> None:
+        now = self._state()
+        if now is not None and self._steps:
+            self._steps[self._at] = replace(self._steps[self._at], state=now)
 
     def _state(self) -> ViewState | None:
         session = self._session
@@ -228,30 +185,6 @@ class Undo:
         return replace(session.state, camera=self._motion.destination or session.state.camera)
 
 
-def _changes(old: ViewState, new: ViewState) -> dict[str, str]:
-    """What has changed from the one to the other: for each field, in a few words, what it is now."""
-    changed = {
-        one.path: one.in_words(one.get(new))
-        for one in settings_of(ViewState)
-        if one.stored == ALWAYS and one.get(old) != one.get(new)
-    }
-    changed |= {f"comparison.{name}": said for name, said in old.compare.changes(new.compare).items()}
-    if old.meshes != new.meshes:
-        return changed | {"meshes": _meshes_in_words(old.meshes, new.meshes)}  # which has a first camera of its own
-    if old.camera != new.camera:
-        changed[_CAMERA] = "camera onto the scene's path" if new.camera is None else "camera"
-    return changed | scene_edits.differences(old.edits, new.edits)
-
-
-def _name_of(fields: dict[str, str]) -> str:
-    first, *others = fields.values()
+def _name_of(changed: dict[str, str]) -> str:
+    first, *others = [*changed.values()] or [""]
     return f"{first} and {len(others)} more" if len(others) > 1 else " and ".join([first, *others])
-
-
-def _meshes_in_words(before: MeshOptions, after: MeshOptions) -> str:
-    """How a mesh is read now, where it was read in another way before."""
-    if before.studio != after.studio:
-        return f"studio {'on' if after.studio else 'off'}"
-    if before.up != after.up:
-        return f"{after.up} up" if after.up is not None else "up as it was guessed"
-    return f"crease angle {after.crease:g}°" if after.crease is not None else "usual crease angle"

@@ -18,10 +18,7 @@ from numpy.typing import NDArray
 
 from viewer.state.scene_rows import COLUMNS, Level, Table, Values
 
-HINTS = {
-    Level.PRIMITIVES: "wall   pixels>100   mode:full_shadow   share<50   -is:dynamic",
-    Level.OBJECTS: "wall   pixels>100   rendered>0   share<50   -is:dynamic",
-}
+HINT = "wall   pixels>100   is:dynamic"
 HELP = """All of what you type must hold:
   wall    rows with this in a name
   1234    the primitive with this number
@@ -32,6 +29,10 @@ HELP = """All of what you type must hold:
   object="left wall"    the whole name
   -is:seen    all others"""
 _MODES = ("occlusion", "shadow")
+_STATES = {
+    "seen": "pixels>0", "unseen": "pixels=0", "wrong": "wrong>0", "dynamic": "motion=dynamic",
+    "static": "motion=static", "hidden": "hidden=hidden", "shown": "hidden=shown",
+}  # fmt: skip
 _TOKEN = re.compile(r'(?:[^\s"]|"[^"]*"?)+')
 _COMPARISON = re.compile(r"^([a-zA-Z_]+)(>=|<=|>|<|=|:)(.*)$", re.DOTALL)
 _RANGE = re.compile(r"^([\d.]+)-([\d.]+)$")
@@ -49,13 +50,35 @@ class FilterError(ValueError):
     """What was typed is not understood; the message is one line that says what, and what to do."""
 
 
+@dataclass(frozen=True)
+class Order:
+    """What is asked of a level: the text of its filter, and the column that its rows are sorted by."""
+
+    text: str = ""
+    column: str = ""
+    descending: bool = False
+
+
+def listed(table: Table, order: Order) -> NDArray[np.int32]:
+    """The numbers of the rows that are seen, in their order; raises FilterError."""
+    rows = np.flatnonzero(matching(table, order.text)).astype(np.int32)
+    values = table.columns.get(order.column)
+    if values is None:
+        return rows
+    keys = values.keys[rows]
+    if order.descending:
+        keys = -keys.astype(np.int64) if keys.dtype.kind in "iu" else -keys  # NaN stays last
+        if values.words is not None:
+            keys[values.numbers[rows] < 0] = len(values.words)
+    return rows[np.argsort(keys, kind="stable")]
+
+
 def matching(table: Table, text: str) -> NDArray[np.bool_]:
     """(rows,) the rows that are to be seen; raises FilterError."""
     found = np.ones(table.rows, np.bool_)
     for token in _TOKEN.findall(text):
-        turned = len(token) > 1 and token[0] == "-"
-        one = _holds(table, token[1:] if turned else token)
-        found &= ~one if turned else one
+        negated = len(token) > 1 and token[0] == "-"
+        found &= _holds(table, token[negated:]) != negated
     return found
 
 
@@ -63,29 +86,26 @@ def _holds(table: Table, token: str) -> NDArray[np.bool_]:
     comparison = _COMPARISON.match(token)
     if comparison is None:
         return _anywhere(table, token.replace('"', ""))
-    name, comparing, wanted = comparison[1].lower(), comparison[2], comparison[3].replace('"', "")
+    name, sign, wanted = comparison[1].lower(), comparison[2], comparison[3].replace('"', "")
     if not wanted:
-        raise FilterError(f"{name}{comparing} needs a value")
+        raise FilterError(f"{name}{sign} needs a value")
     if name == "is":
-        return _state(table, wanted.lower())
+        if wanted.lower() not in _STATES:
+            raise FilterError(f"is:{wanted} is not known: there are {', '.join(_STATES)}")
+        return _holds(table, _STATES[wanted.lower()])
     if name == "mode" and table.level is Level.PRIMITIVES:
-        return _modes(table, [mode for mode in _MODES if table.columns.get(mode) is not None], wanted)
+        return _has_mode(table, [mode for mode in _MODES if table.columns.get(mode) is not None] or _MODES, wanted)
     values = _column(table, name)
     if values.words is None:
-        return _number(values, comparing, wanted)
-    if comparing not in (":", "="):
+        return _compares(values, sign, wanted)
+    if sign not in (":", "="):
         raise FilterError(f"{name} is a word: write {name}:{wanted}")
-    if name in _MODES:
-        return _modes(table, [name], wanted)
-    folded = wanted.casefold()
-    if comparing == ":":
-        return _with(values, [folded in word.casefold() for word in values.words])
-    return _with(values, [folded == word.replace('"', "").casefold() for word in values.words])
+    return _has_mode(table, [name], wanted) if name in _MODES else _has_word(values, wanted, whole=sign == "=")
 
 
 def _column(table: Table, name: str) -> Values:
     known = [column.name for column in COLUMNS[table.level]]
-    if name not in known:
+    if name not in known and name not in table.columns:
         close = get_close_matches(name, known, 1)
         hint = f"do you mean {close[0]}?" if close else f"there are {', '.join(known)}"
         raise FilterError(f"no column is called {name}: {hint}")
@@ -99,35 +119,32 @@ def _anywhere(table: Table, word: str) -> NDArray[np.bool_]:
     """The primitive of this number, or rows with the word in a name."""
     if table.level is Level.PRIMITIVES and word.isdecimal():
         return np.arange(table.rows) == _as_number(word)
-    found = np.zeros(table.rows, np.bool_)
-    for name in ("object", "kind", "material", "texture"):
-        values = table.columns.get(name)
-        if values is not None and values.words:
-            found |= _with(values, [word.casefold() in one.casefold() for one in values.words])
-    return found
+    named = (table.columns.get(name) for name in ("object", "kind", "material", "texture"))
+    return np.logical_or.reduce([_has_word(values, word) for values in named if values is not None])
 
 
-def _with(values: Values, wanted: Sequence[bool]) -> NDArray[np.bool_]:
-    """Rows whose word is one of those wanted."""
-    return np.array([*wanted, False], np.bool_)[values.numbers]  # -1 finds the last of them
+def _has_word(values: Values, wanted: str, whole: bool = False) -> NDArray[np.bool_]:
+    """Rows whose word has this in it, or is it as a `whole`."""
+    wanted, words = wanted.casefold(), [word.replace('"', "").casefold() for word in values.words or ()]
+    holds = [wanted == word if whole else wanted in word for word in words]
+    return np.array([*holds, False], np.bool_)[values.numbers]  # -1 finds the last of them
 
 
-def _modes(table: Table, names: Sequence[str], wanted: str) -> NDArray[np.bool_]:
+def _has_mode(table: Table, names: Sequence[str], wanted: str) -> NDArray[np.bool_]:
     """Rows with a mode like this in one of these columns."""
-    columns = [_column(table, name) for name in names or _MODES]
+    wanted, columns = re.sub(r"[_-]", " ", wanted), [_column(table, name) for name in names]
     known = {word for values in columns for word in values.words or ()}
-    like = {word for word in known if re.sub(r"[_-]", " ", wanted.casefold()) in word}
-    if not like:
+    if not any(wanted.casefold() in word for word in known):
         raise FilterError(f"no mode is called {wanted}: there are {', '.join(sorted(known))}")
-    return np.logical_or.reduce([_with(values, [word in like for word in values.words or ()]) for values in columns])
+    return np.logical_or.reduce([_has_word(values, wanted) for values in columns])
 
 
-def _number(values: Values, comparing: str, wanted: str) -> NDArray[np.bool_]:
+def _compares(values: Values, sign: str, wanted: str) -> NDArray[np.bool_]:
     between = _RANGE.match(wanted)
-    if between is not None and comparing in (":", "="):
+    if between is not None and sign in (":", "="):
         low, high = _as_number(between[1]), _as_number(between[2])
         return (values.numbers >= low) & (values.numbers <= high)
-    return np.asarray(_OPERATORS[comparing](values.numbers, _as_number(wanted)), np.bool_)
+    return np.asarray(_OPERATORS[sign](values.numbers, _as_number(wanted)), np.bool_)
 
 
 def _as_number(text: str) -> float:
@@ -135,72 +152,3 @@ def _as_number(text: str) -> float:
         return float(text.rstrip("%"))
     except ValueError:
         raise FilterError(f"{text} is no number") from None
-
-
-_STATES: dict[str, tuple[str, Callable[[NDArray], NDArray]]] = {  # a column, and which of its numbers
-    "seen": ("pixels", lambda pixels: pixels > 0),
-    "unseen": ("pixels", lambda pixels: pixels == 0),
-    "wrong": ("wrong", lambda wrong: wrong > 0),
-    "dynamic": ("motion", lambda motion: motion == 1),
-    "static": ("motion", lambda motion: motion == 0),
-    "hidden": ("hidden", lambda hidden: hidden == 1),
-    "shown": ("hidden", lambda hidden: hidden == 0),
-}
-
-
-def _state(table: Table, wanted: str) -> NDArray[np.bool_]:
-    """Rows of which something is true."""
-    if wanted not in _STATES:
-        raise FilterError(f"is:{wanted} is not known: there are {', '.join(_STATES)}")
-    name, holds = _STATES[wanted]
-    values = table.columns[name] if name in ("motion", "hidden") else _column(table, name)
-    assert values is not None
-    return np.asarray(holds(values.numbers), np.bool_)
-
-
-# --- the rows that are seen, in their order ---------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Order:
-    """What is asked of a level: the text of its filter, and the column that its rows are sorted by."""
-
-    text: str = ""
-    column: str = ""
-    descending: bool = False
-
-
-@dataclass(frozen=True)
-class Listing:
-    """A table, and the numbers of its rows that are seen, in their order, (rows,) int32; `problem` says why the filter
-    is not understood, "" where it is."""
-
-    table: Table
-    rows: NDArray[np.int32]
-    order: Order
-    problem: str = ""
-
-
-def listed(table: Table, order: Order, before: Listing | None) -> Listing:
-    """The rows of a table in this order.  Those that stand equal keep the order that they had before; where the filter
-    is not understood, those are seen that were before."""
-    try:
-        found, problem = matching(table, order.text), ""
-    except FilterError as error:
-        found, problem = np.ones(table.rows, np.bool_), str(error)
-        if before is not None and before.table.rows == table.rows:
-            found = np.zeros(table.rows, np.bool_)
-            found[before.rows] = True
-    rows = np.flatnonzero(found).astype(np.int32)
-    values = table.columns.get(order.column)
-    same = before is not None and before.order.column == order.column and before.order.descending == order.descending
-    if same and before is not None and len(before.rows) == len(rows) and found[before.rows].all():
-        rows = before.rows
-    if values is None:
-        return Listing(table, rows, order, problem)
-    keys = values.keys[rows]
-    if order.descending:
-        keys = -keys.astype(np.int64) if keys.dtype.kind in "iu" else -keys  # NaN stays last
-        if values.words is not None:
-            keys[values.numbers[rows] < 0] = len(values.words)
-    return Listing(table, rows[np.argsort(keys, kind="stable")], order, problem)

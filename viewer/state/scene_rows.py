@@ -18,7 +18,7 @@ from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
-from viewer.state.parts import KINDS, Parts, parts_of
+from viewer.state.parts import KINDS, parts_of
 from viewer.state.readings import has_modes_of_cells
 from viewer.util.numbers import count
 
@@ -117,7 +117,6 @@ class Table:
         return NOTHING if values is None else values.text(row)
 
 
-_MOTION, _HIDDEN = ("static", "dynamic"), ("shown", "hidden")
 _OCCLUSION, _SHADOW = (  # in words, by their numbers
     (*(mode.name.replace("_", " ").lower() for mode in kind), "several") for kind in (OcclusionMode, ShadowMode)
 )
@@ -127,9 +126,56 @@ def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table
     """Both tables as a frame of the edited scene knows them, with shadow modes for a light, or None for all.
 
     Their rows are the parts and primitives of the scene as it was read, in its order."""
-    parts, total, here = parts_of(now.original), now.original.primitive_count, len(now.primitives)
-    shown = frame.primitive.reshape(-1)
-    hit = (shown >= 0) & (shown < here)
+    scene, edits, parts, total = now.original, now.edits, parts_of(now.original), now.original.primitive_count
+    counts = _counts(now, frame)
+    occlusion, shadow = (_as_read(now, codes) for codes in modes_of(frame, len(now.primitives), light))
+    resting = dict(edits.static)
+    moving = np.array(
+        [name in edits.moving or (moves and name not in resting) for name, moves in zip(parts.names, parts.moving)],
+        np.int8,
+    )
+    hidden = np.array([name in edits.hidden for name in parts.names], np.int8)
+    hidden_too = hidden[parts.part_of]
+    hidden_too[list(edits.hidden_primitives)] = 1
+
+    def states(motion: NDArray, hidden: NDArray) -> dict[str, Values | None]:
+        return {"motion": Values(motion, ("static", "dynamic")), "hidden": Values(hidden, ("shown", "hidden"))}
+
+    def in_parts(which: NDArray | None) -> Values | None:
+        """How many of these primitives each part has."""
+        return None if which is None else Values(np.bincount(parts.part_of[which], minlength=len(hidden)))
+
+    def having(codes: NDArray | None, mode: int) -> Values | None:
+        return None if codes is None else in_parts(codes == mode)
+
+    primitives = {
+        "number": Values(np.arange(total, dtype=np.int32)),
+        "object": Values(parts.part_of, parts.names),
+        "kind": Values(parts.kind, KINDS),
+        "material": Values(parts.material, tuple(material.name for material in scene.materials)),
+        "texture": Values(parts.texture, tuple(texture.name for texture in scene.textures)),
+        "occlusion": None if occlusion is None else Values(occlusion, _OCCLUSION),
+        "shadow": None if shadow is None else Values(shadow, _SHADOW),
+        **states(moving[parts.part_of], hidden_too), **_counted(counts),
+    }  # fmt: skip
+    sums = {name: np.bincount(parts.part_of, one, len(hidden)).astype(np.int64) for name, one in counts.items()}
+    objects = {
+        "object": Values(np.arange(len(hidden), dtype=np.int32), parts.names),
+        "primitives": Values(parts.sizes),
+        "seen": in_parts(counts["pixels"] > 0),
+        "rendered": having(occlusion, OcclusionMode.FULLY_RENDERED),
+        "full_shadow": having(shadow, ShadowMode.FULL_SHADOW),
+        "non_shadow": having(shadow, ShadowMode.NON_SHADOW),
+        **states(moving, hidden), **_counted(sums),
+    }  # fmt: skip
+    found = (Level.PRIMITIVES, total, primitives), (Level.OBJECTS, len(hidden), objects)
+    return {level: Table(level, rows, columns) for level, rows, columns in found}
+
+
+def _counts(now: Edited, frame: Frame) -> dict[str, NDArray]:
+    """(primitives,) each: pixels, and rays at these as far as the frame counts them."""
+    shown, total = frame.primitive.reshape(-1), now.original.primitive_count
+    hit = (shown >= 0) & (shown < len(now.primitives))
     at = now.primitives[shown[hit]]
     shaded = True if frame.shaded is None else frame.shaded  # the others have the nearest's rays
     counts = {"pixels": np.bincount(at, minlength=total).astype(np.int32)}
@@ -137,73 +183,7 @@ def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table
         if buffer is not None:
             rays = np.where(shaded, buffer, 0).reshape(-1)[hit]
             counts[name] = np.bincount(at, rays, minlength=total).astype(np.int64)
-
-    modes_found: list[NDArray | None] = []
-    for codes in modes_of(frame, here, light):
-        if codes is not None and now.scene is not now.original:
-            found = np.full(total, UNKNOWN, np.int8)
-            found[now.primitives] = codes
-            codes = found
-        modes_found.append(codes)
-    return {
-        Level.PRIMITIVES: _primitives(now, parts, counts, *modes_found),
-        Level.OBJECTS: _objects(now, parts, counts, *modes_found),
-    }
-
-
-def _primitives(now: Edited, parts: Parts, counts: dict, occlusion: NDArray | None, shadow: NDArray | None) -> Table:
-    scene, of_part = now.original, _of_parts(now, parts)
-    hidden = of_part["hidden"].numbers[parts.part_of]
-    hidden[list(now.edits.hidden_primitives)] = 1
-    total = scene.primitive_count
-    columns = {
-        "number": Values(np.arange(total, dtype=np.int32)),
-        "object": Values(parts.part_of, parts.names),
-        "kind": Values(parts.kind, KINDS),
-        "material": Values(parts.material, tuple(material.name for material in scene.materials)),
-        "texture": Values(parts.texture, tuple(texture.name for texture in scene.textures)),
-        "motion": Values(of_part["motion"].numbers[parts.part_of], _MOTION),
-        "hidden": Values(hidden, _HIDDEN),
-        "occlusion": None if occlusion is None else Values(occlusion, _OCCLUSION),
-        "shadow": None if shadow is None else Values(shadow, _SHADOW),
-        **_counted(counts),
-    }
-    return Table(Level.PRIMITIVES, total, columns)
-
-
-def _objects(now: Edited, parts: Parts, counts: dict, occlusion: NDArray | None, shadow: NDArray | None) -> Table:
-    number = len(parts.names)
-
-    def having(codes: NDArray | None, mode: int) -> Values | None:
-        return None if codes is None else count_of(codes == mode)
-
-    def count_of(which: NDArray) -> Values:
-        return Values(np.bincount(parts.part_of[which], minlength=number).astype(np.int32))
-
-    sums = {name: np.bincount(parts.part_of, one, minlength=number).astype(np.int64) for name, one in counts.items()}
-    columns = {
-        **_of_parts(now, parts),
-        "object": Values(np.arange(number, dtype=np.int32), parts.names),
-        "primitives": Values(parts.sizes),
-        "seen": count_of(counts["pixels"] > 0),
-        "rendered": having(occlusion, OcclusionMode.FULLY_RENDERED),
-        "full_shadow": having(shadow, ShadowMode.FULL_SHADOW),
-        "non_shadow": having(shadow, ShadowMode.NON_SHADOW),
-        **_counted(sums),
-    }
-    return Table(Level.OBJECTS, number, columns)
-
-
-def _of_parts(now: Edited, parts: Parts) -> dict[str, Values]:
-    """Of each part, whether it can move, as the scene is edited, and whether it is hidden."""
-    moving, resting = now.edits.moving, dict(now.edits.static)
-    named = zip(parts.names, parts.moving.tolist(), strict=True)
-    return {
-        "motion": Values(
-            np.array([name in moving or (moves and name not in resting) for name, moves in named], np.int8), _MOTION
-        ),
-        "hidden": Values(np.array([name in now.edits.hidden for name in parts.names], np.int8), _HIDDEN),
-    }
+    return counts
 
 
 def _counted(counts: dict[str, NDArray]) -> dict[str, Values | None]:
@@ -214,6 +194,15 @@ def _counted(counts: dict[str, NDArray]) -> dict[str, Values | None]:
         np.divide(100.0 * saved, due, out=share, where=due > 0, casting="unsafe")
     found = {"due": due, "saved": saved, "share": share, "wrong": counts.get("wrong"), "pixels": counts["pixels"]}
     return {name: None if numbers is None else Values(numbers) for name, numbers in found.items()}
+
+
+def _as_read(now: Edited, codes: NDArray | None) -> NDArray | None:
+    """Modes by the primitives of the scene as it was read; hidden ones have none."""
+    if codes is None or now.scene is now.original:
+        return codes
+    found = np.full(now.original.primitive_count, UNKNOWN, np.int8)
+    found[now.primitives] = codes
+    return found
 
 
 def modes_of(frame: Frame, total: int, light: int | None) -> tuple[NDArray | None, NDArray | None]:

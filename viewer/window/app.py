@@ -78,7 +78,6 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Asking for the next frame", lambda: c.scheduler.request(c.frame_inputs(size)))
     step("Recording the light", c.record_light)
     # What the newest frame is kept for.
-    step("Keeping the frame", c.keep_frame)
     step("Selecting where one went", lambda: c.navigator.select_when_shown(c.traced))
     step("Measuring speed", c.measure)
     step("Saving preferences", c.keep_preferences)

@@ -36,7 +36,7 @@ class Command:
     the user gives it others, written as it is shown, e.g. "Ctrl+O"; `other_keys` do the same on other keyboards, and
     are not shown; `also` holds words by which the palette finds it, too; `checked` makes it a tick in its menu, where
     `tip` says more about it; `title` is what it is called now, where that changes, and "" where it is not to be
-    seen."""
+    seen; its keys work `while_typing` into a field."""
 
     name: str
     menu: str
@@ -50,6 +50,7 @@ class Command:
     also: str = ""
     other_keys: tuple[str, ...] = ()
     title: Callable[[], str] | None = None
+    while_typing: bool = False
 
     @property
     def label(self) -> str:

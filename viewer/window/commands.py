@@ -7,17 +7,17 @@ from dataclasses import replace
 
 from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
-from viewer.window import edit_commands
 from viewer.window.camera_commands import camera, time
 from viewer.window.command import Command, Condition, scene_open, switch
-from viewer.window.picture_commands import comparing, looking
+from viewer.window.panels import what_if
+from viewer.window.picture_commands import comparing, copy_command, looking
 from viewer.window.ui import CaptureKind, Dialog, Ui
 from viewer.window.view_commands import culling, view
 
 
 def build(ui: Ui) -> list[Command]:
     """All commands, in the order of the menus."""
-    menus = _file, edit_commands.build, view, looking, comparing, camera, time, culling, _run, _help
+    menus = _file, _edit, view, looking, comparing, camera, time, culling, _run, _help
     return [command for menu in menus for command in menu(ui)]
 
 
@@ -45,6 +45,23 @@ def _file(ui: Ui) -> list[Command]:
         switch("Start where I left off", "File", p, "start_where_left", separated=True),
         Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset)),
         Command("Quit", "File", lambda: ui.desktop.exit(), "Ctrl+Q", separated=True),
+    ]  # fmt: skip
+
+
+def _edit(ui: Ui) -> list[Command]:
+    undo = ui.controller.undo
+    return [
+        Command("Undo", "Edit", undo.undo, "Ctrl+Z", repeats=True, title=lambda: f"Undo {undo.undoes}".rstrip(),
+                enabled=Condition(lambda: bool(undo.undoes), "there is nothing to undo")),
+        Command("Redo", "Edit", undo.redo, "Ctrl+Shift+Z", repeats=True, title=lambda: f"Redo {undo.redoes}".rstrip(),
+                enabled=Condition(lambda: bool(undo.redoes), "there is nothing to redo"), other_keys=("Ctrl+Y",)),
+        Command("Command palette", "Edit", lambda: ui.open(Dialog.PALETTE), "Ctrl+Shift+P",
+                separated=True, while_typing=True,
+                tip="finds commands, settings, scenes, bookmarks and presets as you type"),
+        Command("Presets...", "Edit/Presets", lambda: ui.toggle(Dialog.PRESETS),
+                checked=lambda: Dialog.PRESETS in ui.dialogs,
+                tip="save the settings under a name; rename and delete presets"),
+        *what_if.commands(ui),
     ]  # fmt: skip
 
 
@@ -82,13 +99,6 @@ def _meshes(ui: Ui) -> list[Command]:
         Command("Turn the model", "File", turn, "Ctrl+U", enabled=stands,
                 tip="another axis points up: y, z, x, -y, -z, -x in turn"),
     ]  # fmt: skip
-
-
-def copy_command(ui: Ui) -> None:
-    """Put the command that makes the picture on the clipboard."""
-    words = ui.controller.pictures.command()
-    if words is not None:
-        ui.desktop.copy(words)
 
 
 def _run(ui: Ui) -> list[Command]:

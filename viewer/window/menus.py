@@ -16,17 +16,18 @@ ANY_POPUP = int(imgui.PopupFlags_.any_popup_id) | int(imgui.PopupFlags_.any_popu
 
 
 def handle_keys(ui: Ui) -> None:
-    """Run the commands whose keys were just pressed, unless the user is typing or a dialog is up."""
+    """Run the commands whose keys were just pressed; while the user is typing only those for that, and none while a
+    dialog is up."""
     ui.keyboard.update()
-    modifiers = ui.keyboard.update_modifiers(ui.keymap)
-    if imgui.get_io().want_text_input or ui.keyboard.wanted_for:
+    modifiers, typing = ui.keyboard.update_modifiers(ui.keymap), imgui.get_io().want_text_input
+    if ui.keyboard.wanted_for:
         return
-    if imgui.is_key_pressed(imgui.Key.escape, repeat=False) and close_newest(ui):
+    if not typing and imgui.is_key_pressed(imgui.Key.escape, repeat=False) and close_newest(ui):
         return
     if imgui.is_popup_open("", ANY_POPUP):
         return
     for command in ui.commands:
-        keys = ui.keymap.of(command.name)
+        keys = ui.keymap.of(command.name) if command.while_typing or not typing else ()
         if any(_pressed(ui, command, key, modifiers) for key in keys) and command.enabled():
             ui.guard.step(f"The command {command.name}", command.run)
 

@@ -21,6 +21,13 @@ _NAMES = {
 }
 
 
+def copy_command(ui: Ui) -> None:
+    """Put the command that makes the picture on the clipboard."""
+    words = ui.controller.pictures.command()
+    if words is not None:
+        ui.desktop.copy(words)
+
+
 def comparing(ui: Ui) -> list[Command]:
     """The menu Compare."""
     c = ui.controller

@@ -19,13 +19,15 @@ from viewer.window.ui import Ui
 
 @dataclass
 class FindState:
-    """`focus` asks for the keyboard above the table, of which `drawn` rows were drawn last, each `height` pixels high,
-    in the order `order`."""
+    """`focus` asks for the keyboard above the table; `enters` says that Enter was pressed there, and the row that it
+    selects is to come.  `drawn` rows were drawn last, in the order `order`, and `serial` is of the selection whose row
+    has been shown."""
 
     focus: bool = False
+    enters: bool = False
     drawn: int = 0
-    height: float = 0.0
     order: object = None
+    serial: int = 0
 
 
 def view(ui: Ui) -> list[Command]:

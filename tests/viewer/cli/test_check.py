@@ -73,7 +73,7 @@ def test_pictures_stay_true_until_something_changes(capfd: pytest.CaptureFixture
     data["state"]["settings"]["depth"] = 0
     capture.write(Path("old.png"), pixels("plain.png"), json.dumps(data))
     code, (line,) = verdict(capfd, "old.png")
-    assert code == 1 and "the version, 0.0.1 then" in line and "shadow rays due" in line
+    assert code == 1 and "the version, 0.0.1 then" in line
 
 
 @pytest.mark.parametrize("method", ["paper", "none"])
@@ -111,8 +111,6 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
         ("drawn", {"picture": {"style": {"annotations": [{"kind": "box"}]}}}),
     ):
         capture.write(Path(f"{name}.png"), pixels("a.png"), json.dumps(data | change))
-    Image.new("RGB", (4, 4)).save("plain.png")
-    Path("other.pdf").write_bytes(b"%PDF-1.4")
     said = {
         "window.png": "panels",
         "unknown.png": "learnt elsewhere",
@@ -120,8 +118,6 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
         "damaged.png": "warmup.of_path: expected a whole number, got text",
         "drawn.png": "drawn on it",
         "figure.png": "its figure is damaged",
-        "plain.png": "not one saved",
-        "other.pdf": "not a figure",
     }
     code, lines = verdict(capfd, *said)
     assert code == 1 and len(lines) == len(said)
@@ -137,7 +133,14 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
 def test_files_that_cannot_be_checked_are_errors(capfd: pytest.CaptureFixture[str]) -> None:
     assert run(capfd, "render", "room.aff", "-o", "good.png", *SIZE)[0] == 0
     Path("folder").mkdir()
+    Image.new("RGB", (4, 4)).save("plain.png")
+    Path("other.pdf").write_bytes(b"%PDF-1.4")
+    Path("cut.png").write_bytes(Path("good.png").read_bytes()[:-40])
+    assert "cut.png: cannot be read as a picture: it is cut off" in complaint(run(capfd, "render", "cut.png"))
     said = {
+        "cut.png": "cannot be read as a picture: it is cut off",
+        "plain.png": "a picture, but not one saved by Shadowcull",
+        "other.pdf": "a PDF, but not a figure of Shadowcull",
         "none.png": "no such file",
         "none.exr": "no such file",
         "folder": "it is a folder, not a file",

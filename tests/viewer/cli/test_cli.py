@@ -290,7 +290,7 @@ def test_slices_and_cells_are_drawn_by_methods_that_have_them(
         (("--view", "tree"), "bvh8 builds all of its tree before rays come; give --accelerator kdtree-lazy"),
         (("--view", "voxels", "--method", "none"), "not with the method none; give --method voxels"),
         (("--view", "cell-lights", "--method", "paper"), "give --method lie-exact"),
-        (("--slice", "x:0.1"), "--slice is for the views voxels and tree, not color"),
+        (("--slice", "x:0.1"), "--slice does nothing in the view color; it is for voxels, tree"),
         (("--view", "voxels", "--slice", "q:0.1"), "is not a slice"),
     ):
         code, _, errors = render(capfd, room, "-o", path, *wrong)
@@ -361,7 +361,7 @@ def test_warm_up_is_shorter_where_the_animation_starts(
 
 @pytest.mark.parametrize(
     "view",
-    ["color", "colour", "occlusion", "shadow:1", "primitives", "primitive", "depth", "normals", "count", "pixel-count"],
+    ["color", "occlusion", "shadow:1", "primitive", "depth", "normal", "pixel-count"],
 )
 def test_every_view_makes_a_picture(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, view: str) -> None:
     output = tmp_path / "view.png"
@@ -401,8 +401,8 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         ([], "nothing to write"),
         (["-o", "OUT/x.png", "--frame", "10"], "frame numbers are 0 to 9"),
         (["-o", "OUT/x.png", "--frame", "-1"], "frame numbers are 0 to 9"),
-        (["-o", "OUT/x.png", "--frame", "two"], "'two' is not a whole number"),
-        (["-o", "OUT/x.png", "--time", "nan"], "time runs from 0 to 9"),
+        (["-o", "OUT/x.png", "--frame", "two"], "two is not a whole number"),
+        (["-o", "OUT/x.png", "--time", "nan"], "nan is not a number"),
         (["-o", "OUT/x.png", "--time", "9.5"], "time runs from 0 to 9"),
         (["-o", "OUT/x.png", "--frame", "1", "--time", "1"], "not allowed with"),
         (["-o", "OUT/x.png", "--size", "big"], "is not a size"),
@@ -424,8 +424,8 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--view", "shadow:7"], "lights are 0 to 1"),
         (["-o", "OUT/x.png", "--view", "depth:1"], "is not a view"),
         (["-o", "OUT/x.png", "--view", "difference:1"], "is not a view"),
-        (["-o", "OUT/x.png", "--view", "wipe:half"], "is not a view; the views are color, occlusion, shadow:LIGHT"),
-        (["-o", "OUT/x.png", "--view", "wipe:1.5"], "the line of a wipe lies at 0 to 1"),
+        (["-o", "OUT/x.png", "--view", "wipe:half"], "is not a view; give wipe:PART: half is not a number from 0 to 1"),
+        (["-o", "OUT/x.png", "--view", "wipe:1.5"], "1.5 is not a number from 0 to 1"),
         (["-o", "OUT/x.png", "--camera", "{bad"], '--camera: {bad is not JSON; give a camera like {"position"'),
         (["-o", "OUT/x.png", "--camera", "{}"], "--camera: a camera's position"),
         (["-o", "OUT/x.png", "--camera", "nowhere.json"], "neither JSON nor a file"),
@@ -434,7 +434,7 @@ def test_a_scene_is_known_by_its_name(capfd: pytest.CaptureFixture[str]) -> None
         (["-o", "OUT/x.png", "--zoom-factor", "nan"], "argument --zoom-factor: nan is not a number from"),
         (["-o", "OUT/x.png", "--zoom-factor", "much"], "argument --zoom-factor: much is not a number from"),
         (["-o", "OUT/x.png", "--warm", "3"], "unrecognized arguments"),
-        (["-o", "OUT/x.png", "--warmup", "-3"], "-3 is not in"),
+        (["-o", "OUT/x.png", "--warmup", "-3"], "-3 is not a whole number from 0 to"),
         (["-o", "OUT/x.png", "--wurmup", "3"], "unrecognized arguments: --wurmup 3: did you mean '--warmup'?"),
         (["-o", "OUT/x.png", "--telepathy"], "unrecognized arguments: --telepathy (see"),
     ],
@@ -557,7 +557,7 @@ def test_ctrl_c_ends_what_is_done_instead_of_the_window(monkeypatch: pytest.Monk
     for name in set(os.environ) - set(without_display()):
         monkeypatch.delenv(name)
     terminal = Terminal("--or-picture")
-    terminal.interrupt_once(r"frame \d+ of 20")  # which of them are shown depends on the speed
+    terminal.interrupt_once(r"frame ([2-9]|1\d) of 20")  # which of them are shown depends on the speed
     assert terminal.end() == 130 and "cancelled after" in terminal.said
 
 
@@ -636,12 +636,15 @@ def test_exposure_and_tone_are_those_of_the_picture_alone(
         (("--tone", "sepia"), "sepia is not one of none, reinhard, filmic, srgb"),
         (("--exposure", "17"), "17 is not a number from -16 to 16"),
         (("--white", "0"), "0 is not a number from 0.01 to 1000"),
-        (("--range", "5:2", "--view", "depth"), "'5:2' is not a range: the first number must be the smaller one"),
-        (("--range", "much", "--view", "depth"), "'much' is not a range; give one like 0:12.5"),
-        (("--range", "0:5"), "--range is for views of numbers: depth, saved, cost, lights"),
-        (("--range", "0:5", "--view", "cost:share"), "--range is for views of numbers"),
-        (("--exposure", "1", "--view", "normal"), "--view normal shows none"),
-        (("--mark-clipped", "--view", "depth"), "--mark-clipped is for the views color and wipe, not depth"),
+        (("--range", "5:2", "--view", "depth"), "'5:2' is not a range; give the smaller number and the larger one"),
+        (("--range", "much", "--view", "depth"), "'much' is not a range"),
+        (("--range", "0:5"), "--range does nothing in the view color; it is for depth, saved, cost, lights"),
+        (("--range", "0:5", "--view", "cost:share"), "in the view cost:share"),
+        (
+            ("--exposure", "1", "--view", "normal"),
+            "--exposure does nothing in the view normal; it is for color, ",
+        ),
+        (("--mark-clipped", "--view", "depth"), "--mark-clipped does nothing in the view depth; it is for color, wipe"),
     ],
 )
 def test_options_of_display_that_cannot_be(

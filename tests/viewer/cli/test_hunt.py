@@ -67,8 +67,8 @@ def test_an_exact_method_and_words_that_are_not_understood(capfd: pytest.Capture
     for arguments, said in (
         (("--frames", "50-99"), "the scene's frame numbers are 0 to 59"),
         (("--method", "luck"), "invalid choice: 'luck'"),
-        (("--radius", "-1"), "is not in 0 to 100"),
-        (("--keep", "0"), "is not in 1 to 1000"),
+        (("--radius", "-1"), "is not a number from 0 to 100"),
+        (("--keep", "0"), "is not a whole number from 1 to 1000"),
     ):
         assert said in complaint(run(capfd, "hunt", "marbles.aff", *arguments))
     assert "not understood" in complaint(run(capfd, "explain", "marbles.aff", "--pixel", "1,1", "--before", "[1]"))

@@ -152,7 +152,7 @@ def test_its_tone_and_its_range_come_back_where_the_view_has_any(room: Path, cap
     assert run(capfd, "film", room, "-o", "frames", *film)[0] == 0
     assert np.array_equal(np.asarray(Image.open("frames/0000.png")), pixels["toned"])
     code, _, said = run(capfd, "film", room, "-o", "none", *film, "--view", "normal")
-    assert code == 1 and "--view normal shows none" in said
+    assert code == 1 and "--exposure does nothing in the view normal" in said
     assert (
         kept["distances"].draw.span == (2.0, 9.0)
         and kept["distances"].draw.tone.neutral

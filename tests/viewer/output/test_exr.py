@@ -61,7 +61,7 @@ def test_it_can_be_checked(capfd: pytest.CaptureFixture[str]) -> None:
     Path("room.aff").write_text(ROOM.replace("l -3 4 2", "l -3 3 2"))
     Path("none.exr").write_bytes(b"none")
     code, out, said = run(capfd, "check", "full.exr", "none.exr")
-    assert code == 1 and "the scene's lights" in out and "none.exr: not a file that can be checked" in said
+    assert code == 1 and "the scene's lights" in out and "none.exr: cannot be read" in said
 
 
 def test_without_the_library_one_line_says_so(

@@ -9,7 +9,7 @@ import pytest
 from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO, MeshOptions
 from tracer.settings import Settings
 from viewer.cli.main import viewer_parser
-from viewer.cli.options import mesh_arguments, mesh_options
+from viewer.cli.options import mesh_options
 from viewer.output import commands
 from viewer.state import codec
 from viewer.state.view_state import ViewState
@@ -23,7 +23,7 @@ def test_the_command_and_the_options_lead_back(meshes: MeshOptions) -> None:
         mesh_options(viewer_parser().parse_args([w for w in words if w.startswith(("--up", "--crease", "--no-st"))]))
         == meshes
     )
-    assert mesh_options(viewer_parser().parse_args(["a.ply", *mesh_arguments(meshes)])) == meshes
+    assert mesh_options(viewer_parser().parse_args(["a.ply", *commands.mesh_options(meshes)])) == meshes
     of_aff = commands.words(ViewState("/a.aff", meshes, settings=Settings(method="none")), None, "a.png")
     assert not {"--no-studio", "--up=-z"} & set(of_aff)
 

@@ -132,15 +132,15 @@ _PEN = "\uf304"
 def _log(d: Driver) -> None:
     d.ui.show_panel("Plots")
     d.frames(3)
-    d.c.notices.log.mark_read()
+    d.c.notices.mark_read()
     d.c.notices.say("this could not be done", error=True)
     d.frames(2)
-    assert len(d.c.notices.log.unread) == 1
+    assert len(d.c.notices.unread) == 1
     bar = imgui.internal.find_window_by_name("##MainStatusBar_8")
     assert bar is None or bar.active
     d.ui.show_panel("Log")
     d.frames(4)
-    assert not d.c.notices.log.unread, "seen"
+    assert not d.c.notices.unread, "seen"
 
 
 def _reloading(d: Driver) -> None:

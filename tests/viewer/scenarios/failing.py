@@ -24,7 +24,7 @@ KEY = imgui.Key
 def failing(d: Driver) -> None:
     """Whatever fails, in drawing, a panel, a menu, a command or a thread, is a notice; the window lives on."""
     d.settle()
-    notices, log, guard, display = d.c.notices, d.c.notices.log, d.ui.guard, d.ui.graphics.display
+    notices, guard, display = d.c.notices, d.ui.guard, d.ui.graphics.display
     again = f"{icons.ICON_FA_ROTATE_RIGHT}  Try again"
 
     def fail(*_: object) -> None:
@@ -36,7 +36,7 @@ def failing(d: Driver) -> None:
         d.frames(8)  # a flood would be counted by now
         notice = notices.newest_fault
         assert about in notice.text and "made to fail" in notice.text and "Traceback" in notice.details, notice
-        assert notice.count == times and len([e for e in log.entries() if e.text == notice.text]) == 1
+        assert notice.count == times and len([e for e in notices.entries() if e.text == notice.text]) == 1
         d.context.item_click(f"//##fault/{icons.ICON_FA_COPY}  Copy details")
         d.frames(2)
         assert imgui.get_clipboard_text() == notice.as_text
@@ -76,7 +76,7 @@ def failing(d: Driver) -> None:
         setattr(module, name, fail)
         noticed(f"The panel {label}")
         assert f"The panel {label}" in guard.broken
-        d.pause(QUIET_AFTER)
+        d.pause(QUIET_AFTER.total_seconds())
         d.context.item_click(f"//{label}/{again}")
         noticed(f"The panel {label}", 2)
         setattr(module, name, good)
@@ -102,7 +102,7 @@ def failing(d: Driver) -> None:
     d.ui.commands = [replace(c, run=fail) if c.name == "Depth" else c for c in d.ui.commands]
     d.press(KEY._5)
     noticed("The command Depth")
-    d.pause(QUIET_AFTER)
+    d.pause(QUIET_AFTER.total_seconds())
     d.context.menu_click("//##MainMenuBar/View/Depth")
     noticed("The command Depth", 2)
 
@@ -124,11 +124,11 @@ def failing(d: Driver) -> None:
     # All of it is in the log, with what the status bar has said.
     d.ui.show_panel("Log")
     d.frames(3)
-    texts = [e.text for e in log.entries()]
+    texts = [e.text for e in notices.entries()]
     assert sum("made to fail" in t for t in texts) >= 10 and any("opened in" in t for t in texts)
     d.context.item_click(f"//Log/{icons.ICON_FA_COPY}  Copy all")
     d.frames(2)
     assert all(t in imgui.get_clipboard_text() for t in texts)
     d.context.item_click("//Log/Clear")
     d.frames(2)
-    assert not log.entries()
+    assert not notices.entries()

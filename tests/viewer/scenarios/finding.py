@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.services.scene_table import Listing
 from viewer.state.scene_rows import Level
+from viewer.window.menus import ANY_POPUP
 from viewer.window.view_commands import FindState
 
 KEY = imgui.Key
@@ -44,8 +45,14 @@ def finding(d: Driver) -> None:
     assert c.selection.picked.primitive == first, "Enter selects the first row"
     d.context.item_input("//Find/##filterPrimitives")
     d.context.key_chars("pixel")
+    table.filter("number>7")  # whose rows are still to come when Enter is pressed, as in a large scene
     d.context.key_press(KEY.enter)
-    assert "pixel" in table.order.text
+    d.wait(lambda: c.selection.picked.primitive > 7, "the first of the rows that came", 20.0)
+    d.context.item_input("//Find/##filterPrimitives")
+    d.press(int(KEY.p) | int(KEY.mod_ctrl) | int(KEY.mod_shift))
+    assert imgui.is_popup_open("##command palette", ANY_POPUP), "the palette comes while one types"
+    d.context.key_press(KEY.escape)
+    d.frames(3)
 
     # A row in the far middle selects in the picture; a click in the picture scrolls to its row.
     table.filter("")
@@ -95,7 +102,10 @@ def finding(d: Driver) -> None:
     d.context.item_click("//Find/Objects")
     listing = _known(d)
     part = int(listing.rows[0])
-    d.context.item_click(f"//Find/**/{_id(part)}/##row")
+    row = d.context.item_info(f"//Find/**/{_id(part)}/##row").rect_full
+    d.context.mouse_move_to_pos((row.min.x + 60.0, 0.5 * (row.min.y + row.max.y)))  # on its name, at no column's edge
+    d.context.mouse_click(0)
+    d.frames(3)
     assert c.selection.part == part
     shown = d.shown()
     d.press(KEY.escape)

@@ -1,4 +1,4 @@
-"""What if: a light off and elsewhere, an object hidden; what changes is said, and undo brings all back."""
+"""What if: a light off and elsewhere, an object hidden; it is compared with what was, and undo brings all back."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from imgui_bundle import imgui
 from PIL import Image
 
 from tests.viewer.driver import Driver
-from viewer.window.panels.edited_picture import marks_of
+from viewer.state.comparison import CompareMode
+from viewer.window.panels.what_if import marks_of
 
 KEY = imgui.Key
 UNDO = int(imgui.Key.z) | int(imgui.Key.mod_ctrl)
@@ -39,16 +40,15 @@ def what_if(d: Driver) -> None:
     d.wait(lambda: not c.editing.under_way, "the light off", 20.0)
     d.settle()
     assert len(c.session.scene.lights) == len(c.session.original.lights) - 1
-    found = c.before_edits.effects
-    assert found is not None and found.exact == int((c.frame.color != traced).any(-1).sum()) > 0
-    due = {one.name: one for one in found.counters}["due"]
-    assert due.before == before.statistics.shadow.due > due.after == c.frame.statistics.shadow.due
-    d.context.item_click("//What if/**/Show changed pixels")
+    d.context.item_click("//What if/**/Compare with the picture before")
     d.frames(5)
     look(d, "2-light-off")
+    a, b = c.comparing.sides
+    assert (a.frame, b.frame) == (before, c.frame) and c.comparing.state.mode is CompareMode.DIFFERENCE
     d.scroll_down("What if")
     look(d, "2-scrolled")
-    d.context.item_click("//What if/**/Show changed pixels")
+    d.context.item_click("//What if/**/End the comparison")
+    assert c.comparing.sides is None
 
     # What was clicked, hidden.
     left, top, right, bottom = d.picture_edges()

@@ -16,7 +16,6 @@ from tests.viewer.desk import Desk
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edits
 from tracer.scene.things import things
-from viewer.services.edit_effects import Lack
 
 SCENE = """
 b 0.3 0.4 0.5
@@ -52,9 +51,14 @@ def desk(tmp_path: Path) -> Iterator[Desk]:
     assert found.c.close()
 
 
-def edit(desk: Desk, change) -> None:
-    """Make an edit, and wait for the picture of it."""
-    change()
+def edit(desk: Desk, what: str, *values: object) -> None:
+    """Make an edit, by the name of what makes it of those there are, and wait for the picture of it."""
+    editing = desk.c.editing
+    editing.change(getattr(editing.now, what)(*values))
+    until_edited(desk)
+
+
+def until_edited(desk: Desk) -> None:
     desk.until(lambda: not desk.c.editing.under_way)
     desk.rest()
 
@@ -74,22 +78,23 @@ def test_edits_of_all_kinds_are_shown_and_undone(desk: Desk):
     desk.rest()
     before, original = c.frame.color.copy(), c.session.scene
     steps = {
-        "light 1 off": lambda: c.editing.switch(1, False),
-        "light 0 moved": lambda: c.editing.move_light(0, (-1.0, 6.0, 2.0)),
-        "ball hidden": lambda: c.editing.hide("ball"),
-        "car static": lambda: c.editing.make_static("car"),
-        "parts moving": lambda: c.editing.let_move("parts"),
-        "primitive 0 hidden": lambda: c.editing.hide_primitive(0),
+        "light 1 off": ("with_light", 1, False),
+        "light 0 moved": ("with_light_at", 0, (-1.0, 6.0, 2.0)),
+        "ball hidden": ("with_thing", "ball", False),
+        "car static": ("with_static", "car", c.session.time),
+        "parts moving": ("with_moving", "parts", True),
+        "primitive 0 hidden": ("with_primitive", 0, False),
     }
     pictures = []
     for name, change in steps.items():
         pictures.append(c.frame.color.copy())
-        edit(desk, change)
+        edit(desk, *change)
         assert c.undo.undoes == name
         assert np.array_equal(c.frame.color, fresh(desk)), name
     assert [len(c.session.scene.objects), len(c.session.scene.lights)] == [2, 1]
     for picture in reversed(pictures):
-        edit(desk, c.undo.undo)
+        c.undo.undo()
+        until_edited(desk)
         assert np.array_equal(c.frame.color, picture)
     assert c.session.scene is original and np.array_equal(c.frame.color, before) and not c.session.edits
     assert c.undo.undoes == "method certified", "edits make no steps but their own"
@@ -97,63 +102,50 @@ def test_edits_of_all_kinds_are_shown_and_undone(desk: Desk):
 
 def test_hidden_objects_that_move_and_moved_lights_keep_the_renderer(desk: Desk):
     c, renderer = desk.c, desk.c.renderer._renderer
-    edit(desk, lambda: c.editing.hide("car"))
-    edit(desk, lambda: c.editing.move_light(1, (2.0, 5.0, 2.0)))
+    edit(desk, "with_thing", "car", False)
+    edit(desk, "with_light_at", 1, (2.0, 5.0, 2.0))
     assert c.renderer._renderer is renderer and np.array_equal(c.frame.color, fresh(desk))
-    edit(desk, lambda: c.editing.hide("ball"))
+    edit(desk, "with_thing", "ball", False)
     assert c.renderer._renderer is not renderer and np.array_equal(c.frame.color, fresh(desk))
-    edit(desk, c.editing.clear)
+    c.editing.clear()
+    until_edited(desk)
     assert c.renderer._renderer is renderer, "with all that it knows"
     assert np.array_equal(c.frame.color, fresh(desk))
 
 
-def test_what_changed_is_told_against_the_picture_before(desk: Desk):
-    c = desk.c
-    c.settings.change(method="paper")
+def test_the_modes_of_all_edited_scenes_are_forgotten(desk: Desk, monkeypatch: pytest.MonkeyPatch):
+    c, original, resets = desk.c, desk.c.renderer._renderer, []
+    monkeypatch.setattr(original, "reset_modes", lambda: resets.append(c.session.edits))
+    edit(desk, "with_thing", "ball", False)
+    hidden = c.renderer._renderer
+    c.reset_modes()
     desk.rest()
-    assert c.before_edits.lack is Lack.NO_EDITS
+    assert not resets, "only once it is shown again"
+    edit(desk, "with_thing", "ball", True)
+    assert c.renderer._renderer is original and len(resets) == 1
+    c.reset_modes()
+    desk.rest()
+    edit(desk, "with_thing", "ball", False)
+    assert c.renderer._renderer is not hidden and len(resets) == 2
+
+
+def test_the_picture_before_the_edits_is_kept_to_be_compared_with(desk: Desk):
+    c = desk.c
     before = c.frame
-    edit(desk, lambda: c.editing.switch(1, False))
-    found = c.before_edits.effects
-    assert found.exact == int((c.frame.color != before.color).any(-1).sum()) > 0
-    assert found.most == int(np.abs(c.frame.pixels.astype(int) - before.pixels).max())
-    due = {one.name: one for one in found.counters}["due"]
-    assert (due.before, due.after) == (before.statistics.shadow.due, c.frame.statistics.shadow.due)
-    assert [one.light for one in found.shadows] == [0]
-    assert found.shadows[0].counts.sum() == c.session.scene.primitive_count
-    # From elsewhere there is nothing to compare with until that is traced.
-    c.session.go_to_frame(5)
-    desk.rest()
-    assert c.before_edits.lack is Lack.ELSEWHERE
-    steps = c.undo.undoes
-    c.before_edits.take_anew()
-    desk.tick()
-    assert c.before_edits.taking and c.editing.under_way
-    desk.until(lambda: not c.before_edits.taking and not c.editing.under_way)
-    desk.rest()
-    assert c.session.edits == Edits(lights_off=frozenset({1})) and c.undo.undoes == steps
-    assert c.before_edits.effects.exact > 0
-
-
-def test_an_edit_made_while_the_others_are_put_aside_brings_them_back(desk: Desk):
-    c = desk.c
-    edit(desk, lambda: c.editing.hide("ball"))
-    c.session.go_to_frame(5)
-    desk.rest()
-    c.before_edits.take_anew()
-    desk.until(lambda: not c.session.edited.edits)
-    c.editing.switch(0, False)
-    desk.until(lambda: not c.editing.under_way)
-    desk.rest()
-    assert c.session.edits == Edits(hidden=frozenset({"ball"}), lights_off=frozenset({0}))
-    assert not c.before_edits.taking and np.array_equal(c.frame.color, fresh(desk))
-    edit(desk, c.undo.undo)
-    assert c.session.edits == Edits(hidden=frozenset({"ball"})) and c.undo.undoes == "ball hidden"
+    assert c.editing.before is None
+    edit(desk, "with_light", 1, False)
+    edit(desk, "with_thing", "ball", False)
+    assert c.editing.before.frame is before
+    c.editing.clear()
+    until_edited(desk)
+    again = c.frame
+    edit(desk, "with_light", 0, False)
+    assert c.editing.before.frame is again
 
 
 def test_no_picture_of_an_edited_scene_comes_before_the_session_has_it(desk: Desk):
     c = desk.c
-    c.editing.move_light(0, (1.0, 5.0, 4.0))
+    c.editing.change(c.editing.now.with_light_at(0, (1.0, 5.0, 4.0)))
     c.session.go_to_frame(5)  # so that there is something to ask for
     desk.tick()
     while c.renderer.busy:
@@ -161,14 +153,14 @@ def test_no_picture_of_an_edited_scene_comes_before_the_session_has_it(desk: Des
     assert c.renderer.take() is None and c.session.scene is c.session.original
     # A light that is dragged is seen on its way.
     for n in range(4):
-        came, light = len(desk.came), (n % 4 - 2.0, 5.0, 4.0)
+        came = len(desk.came)
 
         def drag(came: int = came) -> bool:
             x, y, z = c.session.edits.light_place(0)
-            c.editing.move_light(0, (x + 1e-4, y, z))
+            c.editing.change(c.editing.now.with_light_at(0, (x + 1e-4, y, z)))
             return len(desk.came) > came
 
-        c.editing.move_light(0, light)
+        c.editing.change(c.editing.now.with_light_at(0, (n % 4 - 2.0, 5.0, 4.0)))
         desk.until(drag)
     desk.rest()
     assert np.array_equal(c.frame.color, fresh(desk))
@@ -176,9 +168,9 @@ def test_no_picture_of_an_edited_scene_comes_before_the_session_has_it(desk: Des
 
 def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
     c, said = desk.c, "the scene is being edited; start again when the picture shows it"
-    c.editing.hide("ball")
+    c.editing.change(Edits(hidden=frozenset({"ball"})))
     desk.tick()
-    c.editing.hide("ball", False)  # it is being hidden nevertheless
+    c.editing.clear()  # it is being hidden nevertheless
     for start in (c.runs.start_experiment, c.hunts.start, c.films.start, c.runs.start_zoom_test):
         c.notices.message = None
         start()
@@ -194,8 +186,8 @@ def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
 
 def test_edits_stay_when_the_scene_is_read_again_as_far_as_it_has_their_targets(desk: Desk):
     c = desk.c
-    edit(desk, lambda: c.editing.hide("ball"))
-    edit(desk, lambda: c.editing.switch(1, False))
+    edit(desk, "with_thing", "ball", False)
+    edit(desk, "with_light", 1, False)
     path = Path(c.session.scene.path)
     path.write_text(SCENE.replace("x ball", "x globe"))
     c.loader.reload()
@@ -210,11 +202,11 @@ def test_the_command_makes_the_edited_picture_again(
 ):
     c = desk.c
     c.settings.change(method="certified")
-    edit(desk, lambda: c.editing.switch(0, False))
-    edit(desk, lambda: c.editing.move_light(1, (-1.1, 4.7, 1e-6)))
-    edit(desk, lambda: c.editing.make_static("car"))
-    edit(desk, lambda: c.editing.hide_primitive(0))
-    edit(desk, lambda: c.editing.let_move("ball"))
+    edit(desk, "with_light", 0, False)
+    edit(desk, "with_light_at", 1, (-1.1, 4.7, 1e-6))
+    edit(desk, "with_static", "car", c.session.time)
+    edit(desk, "with_primitive", 0, False)
+    edit(desk, "with_moving", "ball", True)
     words = shlex.split(c.pictures.command())
     assert words[0] == "shadowcull" and "--without-light=0" in words
     monkeypatch.chdir(tmp_path)
@@ -224,7 +216,8 @@ def test_the_command_makes_the_edited_picture_again(
     # The picture remembers its edits.
     assert run(capfd, "check", made)[0] == 0
     here = c.session.edits
-    edit(desk, c.editing.clear)
+    c.editing.clear()
+    until_edited(desk)
     c.loader.open(made.absolute())
     desk.until(lambda: c.session.edits == here and not c.editing.under_way)
     desk.rest()

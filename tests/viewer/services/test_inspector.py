@@ -277,7 +277,7 @@ def test_a_pixel_is_explained_after_a_failed_edit(desk: PixelDesk, monkeypatch: 
         raise MemoryError("made to fail")
 
     monkeypatch.setattr("viewer.services.editing.edited", fail)
-    desk.c.editing.switch(0, False)
+    desk.c.editing.change(desk.c.editing.now.with_light(0, False))
     desk.until(lambda: desk.c.notices.message is not None and "made to fail" in desk.said)
     monkeypatch.undo()
     desk.c.selection.select(desk.shadow)
@@ -302,7 +302,7 @@ def test_rays_follow_the_camera_and_an_edit_of_the_scene(desk: PixelDesk):
     moved = tree(first)
     assert (moved.x, moved.y) == c.selection.pixel != (first.x, first.y)
     drawn = len(ray_lines(moved.frame, moved, Filter()))
-    c.editing.switch(0, False)
+    c.editing.change(c.editing.now.with_light(0, False))
     edited = tree(moved)
     assert len(ray_lines(edited.frame, edited, Filter())) < drawn, "a light less shines on it"
     c.undo.undo()

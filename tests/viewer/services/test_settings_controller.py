@@ -139,5 +139,5 @@ def test_preferences_that_cannot_be_saved_are_said_once(own_settings: Path, monk
         for _ in range(4):
             now[0] += REST_SECONDS
             parts.follow_settings()
-    said = [entry.text for entry in parts.notices.log.entries()]
+    said = [entry.text for entry in parts.notices.entries()]
     assert len(said) == 1 and said[0].startswith("settings not saved: ") and parts.notices.current.error, said

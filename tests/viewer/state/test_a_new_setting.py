@@ -16,8 +16,7 @@ import runpy
 from types import SimpleNamespace
 from viewer.cli import pictures, render
 from viewer.output import commands
-from viewer.services import undo
-from viewer.state import codec
+from viewer.state import changes, codec
 from viewer.state.view_state import ViewState
 from viewer.window import setting_rows
 
@@ -36,12 +35,12 @@ entry.run()
 assert changed == [("draw.sparkle", True)] and entry.checked is False, "the palette"
 assert "let light sparkle" in render.parser().format_help(), "the help of the command line"
 given = render.parser().parse_args(["a.aff", "-o", "a.png", "--sparkle"])
-assert given.sparkle is True and "sparkle" in [one.name for one in pictures._DRAWN], "its options"
+assert given.sparkle is True and "sparkle" in [one.name for one in pictures.DRAWN], "its options"
 assert "--sparkle" in commands.words(shown, None, "a.png"), "the command that is copied"
 stored = codec.state_to_json(shown, of_picture=True)
 assert stored["draw"]["sparkle"] is True and codec.state_from_json(stored).draw.sparkle, "a saved picture"
 assert codec.recalled(codec.remembered(shown)).draw.sparkle, "the next window"
-assert undo._changes(state, shown) == {"draw.sparkle": "sparkle on"}, "undo"
+assert changes.changes(state, shown) == {"draw.sparkle": "sparkle on"}, "undo"
 assert "| Sparkle (`draw.sparkle`) | Let light sparkle. |" in runpy.run_path("tools/settings_table.py")["page"]()
 print("seen everywhere")
 """

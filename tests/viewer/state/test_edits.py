@@ -12,7 +12,7 @@ from tracer.scene.edits import NO_EDITS, Edits, edited
 from tracer.scene.lights import light_in_words, named_light, number_of
 from viewer.cli.options import add_edits, edits_of, light_index
 from viewer.state import codec
-from viewer.state import edits as scene_edits
+from viewer.state.changes import edits_in_words, one_by_one
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 
@@ -33,11 +33,11 @@ def test_edits_come_back_from_json_however_many_they_are():
 
 
 def test_each_edit_has_words_and_can_go_by_itself():
-    listed = scene_edits.one_by_one(ALL_KINDS)
+    listed = one_by_one(ALL_KINDS)
     words = [text for text, _ in listed]
-    assert sorted(words) == sorted(scene_edits.in_words(ALL_KINDS)) and "light 1 off" in words
+    assert sorted(words) == sorted(edits_in_words(NO_EDITS, ALL_KINDS).values()) and "light 1 off" in words
     for text, without in listed:
-        assert list(scene_edits.differences(without, ALL_KINDS).values()) == [text]
+        assert list(edits_in_words(without, ALL_KINDS).values()) == [text]
 
 
 def test_the_chosen_light_stays_whatever_lights_are_off():

@@ -2,44 +2,41 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import replace
-
-import pytest
-
-from viewer.state.notices import Notices
+from viewer.state.notices import INFO_LASTS, Notices
 from viewer.util.messages import failure
 
 
 def test_errors_and_faults_are_unread_until_the_log_is_read():
     notices = Notices()
     notices.say("opened")
-    assert notices.log.unread == []
+    assert notices.unread == []
     notices.say("cannot be opened", error=True)
     notices.fault(failure(RuntimeError("a mistake"), known=()))
-    assert [entry.text for entry in notices.log.unread] == ["cannot be opened", "RuntimeError: a mistake"]
+    assert [entry.text for entry in notices.unread] == ["cannot be opened", "RuntimeError: a mistake"]
     notices.fault(failure(RuntimeError("a mistake"), known=()))
-    assert len(notices.log.unread) == 2, "the same again is counted once"
-    notices.log.mark_read()
-    assert notices.log.unread == [] and len(notices.log.entries()) == 3
+    assert len(notices.unread) == 2, "the same again is counted once"
+    notices.mark_read()
+    assert notices.unread == [] and len(notices.entries()) == 3
     notices.fault(failure(RuntimeError("a mistake"), known=()))
-    assert len(notices.log.unread) == 1, "it has come once more"
-    notices.log.clear()
-    assert notices.log.unread == []
+    assert len(notices.unread) == 1, "it has come once more"
+    notices.clear()
+    assert notices.unread == []
 
 
-def test_a_newer_notice_survives_the_end_of_an_older(monkeypatch: pytest.MonkeyPatch):
-    """A thread may say something while the window looks whether the last notice is old."""
+def test_a_notice_goes_after_a_while_and_an_error_stays():
     notices = Notices()
-    notices.say("older")
+    for error in (False, True):
+        notices.say("said", error)
+        assert notices.current.text == "said"
+        notices.message.at -= INFO_LASTS
+        assert (notices.current is not None) == error
 
-    def now() -> float:
-        if notices.message.text == "older":
-            monkeypatch.setattr(time, "monotonic", lambda: 100.0)
-            notices.say("newer")
-        return 100.0
 
-    notices.message = replace(notices.message, at=0.0)
-    monkeypatch.setattr(time, "monotonic", now)
-    notices.current  # noqa: B018
-    assert notices.message.text == "newer" and notices.current is notices.message
+def test_an_internal_error_is_shown_until_it_is_dismissed():
+    notices = Notices()
+    for text in ("one", "two", "one"):
+        notices.fault(failure(RuntimeError(text), known=()))
+    assert [entry.count for entry in notices.faults] == [2, 1] and "two" in notices.newest_fault.as_text
+    notices.dismiss_faults()
+    notices.fault(failure(RuntimeError("one"), known=()))
+    assert notices.newest_fault is None, "what fails in every frame does not come back at once"

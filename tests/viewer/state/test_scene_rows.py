@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from dataclasses import replace
 
@@ -14,8 +15,8 @@ from tracer.frame import Frame, Settings
 from tracer.scene.edits import Edited, Edits, edited
 from tracer.scene.model import CONE, Quadrics, SceneObject, Texture, empty_quadrics
 from viewer.state.parts import KINDS, parts_of
-from viewer.state.row_filter import FilterError, matching
-from viewer.state.scene_rows import NOTHING, Level, Table, tables_of
+from viewer.state.row_filter import FilterError, Order, listed, matching
+from viewer.state.scene_rows import NOTHING, Level, Table, Values, tables_of
 
 RECORDED = Settings(width=16, height=8, verify=True, record_work=True)
 
@@ -122,6 +123,18 @@ def test_rows_keep_their_numbers_where_things_are_hidden(now: Edited) -> None:
     assert column(table, "hidden") == ["shown", "hidden", "shown", "hidden", "hidden", "shown", "shown"]
     assert [said == NOTHING for said in column(table, "shadow")] == [p not in left for p in range(7)]
     assert np.flatnonzero(matching(table, "is:hidden")).tolist() == [1, 3, 4]
+
+
+def test_rows_are_sorted_both_ways_and_what_is_not_known_comes_last() -> None:
+    names = Values(np.arange(4, dtype=np.int32), tuple("dCaB"))
+    table = Table(Level.PRIMITIVES, 4, {"pixels": Values(np.array([3, 1, 2, 1])), "object": names})
+    assert listed(table, Order(column="pixels")).tolist() == [1, 3, 2, 0]
+    assert listed(table, Order(column="pixels", descending=True)).tolist() == [0, 2, 1, 3]
+    assert listed(table, Order(column="object")).tolist() == [2, 3, 1, 0], "capitals come where their letters do"
+    words = Values(np.array([-1, 1, 0]), ("a", "b"))
+    with_none = Table(table.level, 3, {"share": Values(np.array([np.nan, 5.0, 7.0])), "texture": words})
+    for name, descending in itertools.product(("share", "texture"), (False, True)):
+        assert listed(with_none, Order(column=name, descending=descending))[-1] == 0, name
 
 
 # --- what is typed above them ---------------------------------------------------------------------------

@@ -25,7 +25,7 @@ _ROWS = 6  # of the list that are seen at once
 _SMALLEST, _LARGEST = 1e-5, 0.1  # radius on the slider, of the scene's diagonal
 _SCENE_SAYS = "as the scene says"
 _RADIUS = " A larger lamp has softer shadows, and more pixels in its penumbra, where no ray can be saved."
-_SAMPLES = " Each takes a shadow ray. In motion there are few; at idle more follow, up to these."
+_SAMPLES = " Each takes a shadow ray. In motion there are few; at rest more follow, up to these."
 
 
 @dataclass
@@ -38,48 +38,39 @@ class LightFilters:
 def lamp_rows(ui: Ui) -> None:
     """Rows of settings: what lamps point lights are made, and how many samples these have."""
     c = ui.controller
-    s = c.session.settings
-    scene = c.session.scene
-    assert scene is not None
+    s, size = c.session.settings, diagonal(c.info.get("bounds"))
     radius, samples = ALL["settings.lamp_radius"], ALL["settings.lamp_samples"]
     row(radius.label, radius.help + _RADIUS)
-    size = diagonal(c.info.get("bounds"))
-    smallest, largest = _SMALLEST * size, _LARGEST * size
-    button = imgui.get_frame_height() if s.lamp_radius is not None else 0.0
-    imgui.set_next_item_width(-button - (em(0.2) if button else 0.0) - 1.0)
+    imgui.set_next_item_width(-imgui.get_frame_height() - em(0.3))
     shown = "%.7g" if s.lamp_radius else ("points" if s.lamp_radius == 0.0 else _SCENE_SAYS)
-    flags = int(imgui.SliderFlags_.logarithmic)
-    changed, size = imgui.slider_float("##lamp-radius", s.lamp_radius or 0.0, smallest, largest, shown, flags)
+    smallest, flags = _SMALLEST * size, int(imgui.SliderFlags_.logarithmic)
+    changed, value = imgui.slider_float("##lamp-radius", s.lamp_radius or 0.0, smallest, _LARGEST * size, shown, flags)
     if changed:
-        c.settings.change(lamp_radius=0.0 if size <= smallest else float(f"{size:.3g}"))
-    if button:
-        imgui.same_line(0.0, em(0.2))
-        if imgui.button("x##lamp-radius", (button, button)):
-            c.settings.change(lamp_radius=None)
-        tooltip("lights as the scene says")
+        c.settings.change(lamp_radius=0.0 if value <= smallest else float(f"{value:.3g}"))
+    imgui.same_line(0.0, em(0.2))
+    imgui.begin_disabled(s.lamp_radius is None)
+    if imgui.button("x##lamp-radius"):
+        c.settings.change(lamp_radius=None)
+    imgui.end_disabled()
+    tooltip("lights as the scene says")
     row(samples.label, samples.help + _SAMPLES)
-    most = c.scheduler.lamps.wanted
-    imgui.begin_disabled(most == 1 and not c.scheduler.lamps.any)
-    if imgui.begin_combo("##lamp-samples", str(s.lamp_samples) if s.lamp_samples else _SCENE_SAYS):
+    imgui.begin_disabled(c.scheduler.lamps.wanted == 1 and not c.scheduler.lamps.any)
+    if imgui.begin_combo("##lamp-samples", str(s.lamp_samples or _SCENE_SAYS)):
         for number in (None, *OFFERED):
-            if imgui.selectable(str(number) if number else _SCENE_SAYS, s.lamp_samples == number)[0]:
+            if imgui.selectable(str(number or _SCENE_SAYS), s.lamp_samples == number)[0]:
                 c.settings.change(lamp_samples=number)
         imgui.end_combo()
     imgui.end_disabled()
 
 
 def diagonal(bounds: Sequence[Sequence[float]] | None) -> float:
-    """How large a scene is; 1 where nothing is in it."""
+    """Return how large a scene is; 1 where nothing is in it."""
     return (math.dist(*bounds) if bounds is not None else 0.0) or 1.0
 
 
 def table(ui: Ui) -> None:
     """A list of all lights; a click chooses the one that views show."""
-    shown = found(ui, "table")
-    height = min(max(len(shown), 1), _ROWS) * imgui.get_text_line_height_with_spacing() + 2.0
-    if imgui.begin_child("lights", (0.0, height)):
-        _rows(ui, shown, ui.controller.session.draw.light, ui.controller.settings.set_light, described=True)
-    imgui.end_child()
+    _list(ui, "table", _ROWS, ui.controller.session.draw.light, ui.controller.settings.set_light)
 
 
 def combo(
@@ -91,26 +82,57 @@ def combo(
             ui.state(LightFilters).texts[place] = ""
         if all_of_them is not None and imgui.selectable("all lights", chosen is None)[0]:
             all_of_them()
-        shown = found(ui, place)
-        if imgui.begin_child("lights", (0.0, min(max(len(shown), 1), 2 * _ROWS) * _line() + 2.0)):
-            if _rows(ui, shown, chosen, choose, described=False):
-                imgui.close_current_popup()
-        imgui.end_child()
+        if _list(ui, place, 2 * _ROWS, chosen, choose):
+            imgui.close_current_popup()
         imgui.end_combo()
 
 
+def _list(ui: Ui, place: str, most: int, chosen: int | None, choose: Callable[[int], None]) -> bool:
+    """The lights that are found, so many rows of them at once; whether one was clicked."""
+    numbers, line, clicked = found(ui, place), imgui.get_text_line_height_with_spacing(), False
+    if imgui.begin_child("lights", (0.0, min(max(len(numbers), 1), most) * line + 2.0)):
+        clipper = imgui.ListClipper()
+        clipper.begin(len(numbers), line)
+        while clipper.step():
+            for k in range(clipper.display_start, clipper.display_end):
+                if _row(ui, numbers[k], chosen == numbers[k]):
+                    choose(numbers[k])
+                    clicked = True
+        clipper.end()
+    imgui.end_child()
+    return clicked
+
+
+def _row(ui: Ui, index: int, chosen: bool) -> bool:
+    scene, s = ui.controller.session.scene, ui.controller.session.settings
+    assert scene is not None
+    (light,) = as_lamps((scene.lights[index],), s.lamp_radius, s.lamp_samples)
+    strongest, side = max(*light.color, 1e-9), imgui.get_text_line_height()
+    red, green, blue = (channel / strongest for channel in light.color)
+    imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.0)  # white ones are seen on white
+    imgui.color_button(f"##light{index}", (red, green, blue, 1.0), int(imgui.ColorEditFlags_.no_tooltip), (side, side))
+    imgui.pop_style_var()
+    imgui.same_line()
+    remarks = [] if light.kind == "point" else [f"{light.kind}, {light.samples}"]
+    remarks += ["moves"] if light.track else []
+    remarks += ["not culled"] if index >= MAX_CULLED_LIGHTS else []
+    said = f"  ({', '.join(remarks)})" if remarks else ""
+    clicked, _ = imgui.selectable(f"{ui.light_name(index)}{said}##{index}", chosen)
+    tooltip(description(light))
+    return clicked
+
+
 def found(ui: Ui, place: str, among: Scene | None = None) -> Sequence[int]:
-    """The lights whose names have what is typed above them, of the scene that is shown or of another; all where they
-    are few, and nothing is typed."""
-    state = ui.state(LightFilters)
-    scene = among or ui.controller.session.scene
+    """Return the lights whose names have what is typed above them, of the scene that is shown or of another; all where
+    they are few, and nothing is typed."""
+    state, scene = ui.state(LightFilters), among or ui.controller.session.scene
     assert scene is not None
     number = len(scene.lights)
     if number <= FEW:
         return range(number)
-    text = state.texts.get(place, "")
     imgui.set_next_item_width(-1.0)
-    _, text = imgui.input_text_with_hint(f"##find-{place}", f"find among {count(number)} lights", text)
+    hint = f"find among {count(number)} lights"
+    _, text = imgui.input_text_with_hint(f"##find-{place}", hint, state.texts.get(place, ""))
     state.texts[place] = text
     numbers: Sequence[int] = ui.cached(f"lights {place}", scene, text, lambda: matching(scene.lights, text))
     if text:
@@ -119,64 +141,22 @@ def found(ui: Ui, place: str, among: Scene | None = None) -> Sequence[int]:
 
 
 def matching(lights: Sequence[Light], text: str) -> Sequence[int]:
-    """Numbers of the lights in whose number, name or kind every typed word occurs; a number alone is that light's."""
+    """Return numbers of the lights in whose number, name or kind every typed word occurs; a number alone is that
+    light's."""
     words = text.lower().split()
-    if not words:
-        return range(len(lights))
-    if len(words) == 1 and words[0].isdecimal() and len(lights) and int(words[0]) <= number_of(lights, len(lights) - 1):
-        return [i for i in range(len(lights)) if number_of(lights, i) == int(words[0])]
-    said = (f"light {number_of(lights, i)} {light.name.lower()} {light.kind}" for i, light in enumerate(lights))
+    numbers = [number_of(lights, i) for i in range(len(lights))]
+    if len(words) == 1 and words[0].isdecimal() and int(words[0]) in range(max(numbers, default=0) + 1):
+        return [i for i, number in enumerate(numbers) if number == int(words[0])]
+    said = (f"light {numbers[i]} {light.name.lower()} {light.kind}" for i, light in enumerate(lights))
     return [i for i, one in enumerate(said) if all(word in one for word in words)]
 
 
-def _rows(ui: Ui, numbers: Sequence[int], chosen: int | None, choose: Callable[[int], None], described: bool) -> bool:
-    """Those rows of a list that are seen; whether one was clicked."""
-    scene, s, any_clicked = ui.controller.session.scene, ui.controller.session.settings, False
-    assert scene is not None
-    clipper = imgui.ListClipper()
-    clipper.begin(len(numbers), _line())
-    while clipper.step():
-        for k in range(clipper.display_start, clipper.display_end):
-            index = numbers[k]
-            (light,) = as_lamps((scene.lights[index],), s.lamp_radius, s.lamp_samples)
-            _color(index, light)
-            imgui.same_line()
-            clicked, _ = imgui.selectable(f"{ui.light_name(index)}{_remarks(index, light)}##{index}", chosen == index)
-            if described:
-                tooltip(description(light))
-            if clicked:
-                choose(index)
-                any_clicked = True
-    clipper.end()
-    return any_clicked
-
-
-def _line() -> float:
-    return float(imgui.get_text_line_height_with_spacing())
-
-
-def _color(index: int, light: Light) -> None:
-    strongest = max(*light.color, 1e-9)
-    red, green, blue = (channel / strongest for channel in light.color)
-    side = imgui.get_text_line_height()
-    imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.0)  # white ones are seen on white
-    imgui.color_button(f"##light{index}", (red, green, blue, 1.0), int(imgui.ColorEditFlags_.no_tooltip), (side, side))
-    imgui.pop_style_var()
-
-
-def _remarks(index: int, light: Light) -> str:
-    parts = [] if light.kind == "point" else [f"{light.kind}, {light.samples}"]
-    parts += ["moves"] if light.track else []
-    parts += ["not culled"] if index >= MAX_CULLED_LIGHTS else []
-    return f"  ({', '.join(parts)})" if parts else ""
-
-
 def description(light: Light) -> str:
-    """A light in words: its kind, size, samples, falloff, place and colour."""
+    """Return a light in words: its kind, size, samples, falloff, place and colour."""
     size = f" of radius {light.radius:.4g}" if light.kind in ("sphere", "dome") else ""
     if light.kind == "rectangle":
         size = " of {:.4g} x {:.4g}".format(*(math.hypot(*edge) for edge in light.edges))
     samples = "" if light.kind == "point" else f", {light.samples} {'sample' if light.samples == 1 else 'samples'}"
     falloff = "no falloff" if light.falloff == "none" else "falls off with the square of the distance"
     place = "at ({:.4g}, {:.4g}, {:.4g}), colour ({:.3g}, {:.3g}, {:.3g})".format(*light.position, *light.color)
-    return f"{light.kind}{size}{samples}; {falloff}; {place}. Views of one light show the one that is chosen."
+    return f"{light.kind}{size}{samples}; {falloff}; {place}"

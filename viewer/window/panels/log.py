@@ -29,9 +29,9 @@ class LogState:
 def show(ui: Ui) -> None:
     """Draw the panel: every message there was, newest first."""
     state = ui.state(LogState)
-    log = ui.controller.notices.log
-    log.mark_read()
-    entries = [e for e in log.entries() if not (state.errors_only and e.level is Level.NOTICE)]
+    notices = ui.controller.notices
+    notices.mark_read()
+    entries = [e for e in notices.entries() if not (state.errors_only and e.level is Level.NOTICE)]
     _, state.errors_only = imgui.checkbox("Errors only", state.errors_only)
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_COPY}  Copy all") and entries:
@@ -39,7 +39,7 @@ def show(ui: Ui) -> None:
     tooltip("Copy everything that is listed, oldest first.")
     imgui.same_line()
     if imgui.button("Clear"):
-        log.clear()
+        notices.clear()
     if imgui.begin_child("entries", ImVec2(0.0, 0.0)):
         if not entries:
             imgui.text_colored(QUIET, "No errors yet." if state.errors_only else "No messages yet.")

@@ -20,7 +20,6 @@ from viewer.util.numbers import whole_percent
 from viewer.window import comparing
 from viewer.window.panels import (
     closeup,
-    edited_picture,
     filmstrip,
     legend,
     loading,
@@ -32,6 +31,7 @@ from viewer.window.panels import (
     status,
     timeline,
     tour,
+    what_if,
 )
 from viewer.window.panels.area import Area, size_of, write_lines
 from viewer.window.panels.legend import LegendState
@@ -55,7 +55,8 @@ def show(ui: Ui) -> None:
     if above > 0.0:
         start = imgui.get_cursor_pos()
         ui.guard.panel("What culling saves", lambda: savings.show(ui, room.x))
-        imgui.set_cursor_pos(ImVec2(start.x, start.y + above))
+        imgui.set_cursor_pos(start)
+        imgui.dummy(ImVec2(room.x, above - imgui.get_style().item_spacing.y))  # where nothing follows, ImGui complains
         room.y -= above
     strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
     room.y -= strip
@@ -107,16 +108,15 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     if seen is not None:
         sides.draw_a(ui, area, seen)
     with _inside(area):
-        edited_picture.show_changed(ui, area.whole, area.whole_end)
         overlays.show(ui, area)
     _pointer(ui, area)
     closeup.show(ui, area)
     if seen is not None:
         overlays.show_worst_pixels(ui, area, seen[1].frame)
     sides.show(ui, area)
-    lower = _title(ui, area)
     with _inside(area):
-        edited_picture.show_lights(ui, area.whole, area.whole_end)
+        what_if.show_lights(ui, area.whole, area.whole_end)
+    lower = _title(ui, area)
     if seen is not None:
         sides.show_names(ui, area, seen, lower)
     legend.show(ui, area.corner, area.end)
@@ -204,12 +204,12 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
     c, io = ui.controller, imgui.get_io()
     if ui.picture.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.picture.pivot, ui.picture.pivot_scene = None, c.session.scene
-    u, v = area.to_picture(io.mouse_pos.x, io.mouse_pos.y)
+    u, v = area.to_picture(io.mouse_pos.x + 0.5, io.mouse_pos.y + 0.5)  # the middle of the screen's pixel
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.selection.hovered = (u, v)
         if not closeup.wheel(ui, area):
             _wheel(ui, io.mouse_wheel)
-    if takes_edits and edited_picture.handle(ui, area.whole, area.whole_size):
+    if takes_edits and what_if.handle(ui, area.whole, area.whole_size):
         return
     if sides.handle(ui, area) or closeup.drag(ui, area):
         return

@@ -54,7 +54,7 @@ def _hints(ui: Ui) -> str:
 
 def _badge(ui: Ui) -> None:
     """How many errors and faults nobody has read yet; a click shows them."""
-    unread = ui.controller.notices.log.unread
+    unread = ui.controller.notices.unread
     if not unread:
         return
     fault = any(entry.level is Level.FAULT for entry in unread)

@@ -1,22 +1,30 @@
-"""What if: lights off or elsewhere, objects hidden, static or able to move, and what that changes."""
+"""What if: lights off or elsewhere, objects hidden, static or able to move; and what that changes.
+
+While the panel is on the screen, lights are marked in the picture, to be dragged."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from dataclasses import dataclass
+from itertools import dropwhile, takewhile
 
-from imgui_bundle import imgui
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
+from numpy.typing import NDArray
 
+from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
-from tracer.scene.things import Thing
-from tracer.why_in_words import primitive_in_words
-from viewer.services.edit_effects import Effects, Lack, Transitions
-from viewer.state import terms
-from viewer.state.edits import one_by_one
-from viewer.window.edit_commands import WhatIfState
+from viewer.state.changes import one_by_one
+from viewer.state.comparison import CompareMode, Source
+from viewer.state.picking import same_place
+from viewer.state.projection import at_depth, place, seen_from
+from viewer.window.command import Command, Condition
 from viewer.window.panels import lights
+from viewer.window.panels.compare import figures
+from viewer.window.panels.marks import SHADE
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
@@ -28,40 +36,159 @@ from viewer.window.widgets import (
     heading,
     paragraph,
     right,
+    short,
     tooltip,
+    tooltip_at,
     wide_button,
 )
 
-_TIPS = {
-    "due": terms.MEANINGS[terms.DUE],
-    "steps": "nodes of trees that rays of all kinds enter",
-    "tests": "rays of all kinds tested against primitives",
-    "certified": "certificates, voxels, cells or light buffers, whatever the method makes, in this frame",
-}
-_ROWS = 12  # of the list of lights that are seen at least: a few need no scroll bar in the panel, which has its own
-_MOST_PAIRS = 4  # of transitions of a light that are listed
-_MOST_BLOCKERS = 4
+_ROWS = 12  # of the list of lights that are seen at once
+_MOST_MARKS = 64  # of lights: more would hide the picture
+_REACH = 0.7  # ems from a mark's middle at which it can be taken hold of
+_ON, _HELD, _OFF = ImVec4(1.0, 0.93, 0.45, 1.0), ImVec4(0.42, 0.70, 0.96, 1.0), ImVec4(0.62, 0.65, 0.70, 1.0)
+_DIGITS = 6  # of a place to which a light is brought
+_STATIC = "It stays where it is at this moment, and counts as what never moves: its primitives carry modes."
+_CAN_MOVE = "It stays where it is, but counts as able to move: no modes, and its shadows are always traced."
+
+
+@dataclass
+class WhatIfState:
+    """The frame of ImGui's in which the panel was drawn last, and the light that the pointer drags."""
+
+    drawn: int = -9
+    held_light: int | None = None
+
+
+def commands(ui: Ui) -> list[Command]:
+    """What changes the scene that is shown, not its file."""
+    editing = ui.controller.editing
+
+    def hide() -> None:
+        editing.change(editing.now.with_thing(_pointed_at(ui) or "", False))
+
+    return [
+        Command("What if...", "Edit/What if", lambda: ui.show_panel("What if"), separated=True,
+                tip="switch off a light, hide an object, and see what changes"),
+        Command("Hide the object", "Edit/What if", hide, tip="that was clicked, or is under the pointer",
+                enabled=Condition(lambda: bool(_pointed_at(ui)), "click an object first, or point at one")),
+        Command("Show everything", "Edit/What if", editing.show_everything,
+                enabled=Condition(lambda: bool(editing.now.hidden or editing.now.hidden_primitives),
+                                  "nothing is hidden")),
+        Command("Take all edits back", "Edit/What if", editing.clear, tip="the scene as its file says",
+                enabled=Condition(lambda: bool(editing.now), "the scene is as its file says")),
+    ]  # fmt: skip
+
+
+def _pointed_at(ui: Ui) -> str | None:
+    """The name of the object that was clicked, else of that under the pointer; None for nothing."""
+    c, now = ui.controller, ui.controller.session.edited
+    pick = c.selection.picked or c.selection.at(c.selection.hovered)
+    if now is None or pick is None or not 0 <= pick.primitive < len(now.primitives):
+        return None
+    return now.thing_of(pick.primitive).name
+
+
+# --- the panel ---------------------------------------------------------------------------------------
 
 
 def show(ui: Ui) -> None:
     """The panel."""
-    state = ui.state(WhatIfState)
     edited = ui.controller.session.edited
     if edited is None:
         paragraph("No scene is open.", QUIET)
         return
-    state.drawn = imgui.get_frame_count()
+    ui.state(WhatIfState).drawn = imgui.get_frame_count()
     if not ui.controller.editing.now:
         paragraph("Change the scene, not its file, and see what that changes. Undo brings all back.", QUIET)
     _object(ui, edited)
     _lights(ui, edited)
     _edits(ui)
-    _effects(ui)
-    if state.below < 0.0:  # where the list of lights ends
-        state.below += imgui.get_cursor_pos_y()
+    _changed(ui)
 
 
-# --- what is edited ----------------------------------------------------------------------------------
+def _object(ui: Ui, edited: Edited) -> None:
+    """What was clicked."""
+    pick, editing = ui.controller.selection.picked, ui.controller.editing
+    heading("Object")
+    if pick is None or not 0 <= pick.primitive < len(edited.primitives):
+        paragraph("Click an object in the picture to hide it, or to let it move.", QUIET)
+        return
+    thing, primitive = edited.thing_of(pick.primitive), int(edited.primitives[pick.primitive])
+    clipped(thing.name)
+    if wide_button("Hide all of it", thing.name, 2):
+        editing.change(editing.now.with_thing(thing.name, False))
+    imgui.same_line()
+    if wide_button("Hide primitive", f"primitive {primitive} alone", 1):
+        editing.change(editing.now.with_primitive(primitive, False))
+    if thing.moves:
+        static, now = thing.name in dict(editing.now.static), ui.controller.session.time
+
+        def rest(on: bool) -> None:
+            editing.change(editing.now.with_static(thing.name, now if on else None))
+
+        checkbox("Static", static, rest, _STATIC)
+    else:
+
+        def move(on: bool) -> None:
+            editing.change(editing.now.with_moving(thing.name, on))
+
+        checkbox("Can move", thing.name in editing.now.moving, move, _CAN_MOVE)
+
+
+def _lights(ui: Ui, edited: Edited) -> None:
+    """All lights of the scene as it was read, with a tick for those that are on."""
+    original = edited.original
+    heading(f"Lights ({len(original.lights)})")
+    if not original.lights:
+        paragraph("The scene has no lights.", QUIET)
+        return
+    numbers = lights.found(ui, "what if", original)
+    places = original.light_positions(ui.controller.session.time)
+    line = imgui.get_frame_height_with_spacing()
+    if imgui.begin_child("switches", (0.0, min(max(len(numbers), 1), _ROWS) * line + 2.0)):
+        clipper = imgui.ListClipper()
+        clipper.begin(len(numbers), line)
+        while clipper.step():
+            for k in range(clipper.display_start, clipper.display_end):
+                imgui.push_id(numbers[k])
+                _light(ui, edited, numbers[k], places[numbers[k]].tolist())
+                imgui.pop_id()
+        clipper.end()
+    imgui.end_child()
+    paragraph("Drag a light in the picture, or type where it is.", QUIET)
+
+
+def _light(ui: Ui, edited: Edited, number: int, own_place: list[float]) -> None:
+    editing = ui.controller.editing
+    name, moved = light_in_words(number, edited.original.lights[number].name), editing.now.light_place(number)
+    on = number not in editing.now.lights_off
+    checkbox("##on", on, lambda now: editing.change(editing.now.with_light(number, now)), f"{name}: on or off")
+    imgui.same_line()
+    room, button = imgui.get_content_region_avail().x, imgui.get_frame_height() if moved is not None else 0.0
+    names = max(em(2.5), min(imgui.calc_text_size(name).x + em(0.4), room - em(10.5)))
+    start = imgui.get_cursor_pos_x()
+    imgui.align_text_to_frame_padding()
+    imgui.text_unformatted(fitted(name, names - em(0.4)))
+    imgui.same_line(start + names)
+    imgui.set_next_item_width(-button - 1.0)
+    speed = 0.001 * lights.diagonal(ui.controller.info.get("bounds"))  # units for each pixel of the pointer's way
+    exact = int(imgui.SliderFlags_.no_round_to_format)
+    changed, typed = imgui.drag_float3("##place", list(moved or own_place), speed, -LARGEST, LARGEST, "%.3g", exact)
+    tooltip("{} is at {:.6g}, {:.6g}, {:.6g}. Drag a number, or double-click it to type".format(name, *typed))
+    if changed:
+        _move(ui, number, typed)
+    if moved is not None:
+        imgui.same_line(0.0, 0.0)
+        if imgui.button(icons.ICON_FA_ROTATE_LEFT, (button, button)):
+            editing.change(editing.now.with_light_at(number, None))
+        tooltip("back to where it was")
+
+
+def _move(ui: Ui, number: int, to: tuple[float, float, float] | list[float]) -> None:
+    x, y, z = (float(f"{part:.{_DIGITS}g}") for part in to)
+    editing = ui.controller.editing
+    editing.change(editing.now.with_light_at(number, (x, y, z)))
+    ui.controller.motion.by_hand()
 
 
 def _edits(ui: Ui) -> None:
@@ -83,200 +210,132 @@ def _edits(ui: Ui) -> None:
         editing.clear()
 
 
-# --- the object --------------------------------------------------------------------------------------
-
-
-def _object(ui: Ui, edited: Edited) -> None:
-    """What was clicked, and what blocks its light."""
+def _changed(ui: Ui) -> None:
+    """What became of the shadow rays, and the way to compare with the picture before the edits."""
     c = ui.controller
-    pick = c.selection.picked
-    heading("Object")
-    if pick is None or not 0 <= pick.primitive < len(edited.primitives):
-        paragraph("Click an object in the picture to hide it, or to let it move.", QUIET)
-        return
-    thing = edited.thing_of(pick.primitive)
-    clipped(thing.name)
-    _thing(ui, thing, int(edited.primitives[pick.primitive]))
-    answer = c.inspector.answer
-    blockers = [] if answer is None else [one.blocker for one in answer.lights if one.blocker is not None]
-    for primitive in list(dict.fromkeys(blockers))[:_MOST_BLOCKERS]:
-        if 0 <= primitive < len(edited.primitives):
-            _blocker(ui, edited, primitive)
-
-
-def _thing(ui: Ui, thing: Thing, primitive: int) -> None:
-    """What can be done with the object, and with this primitive of it."""
-    editing = ui.controller.editing
-    if wide_button("Hide all of it", thing.name, 2):
-        editing.hide(thing.name)
-    imgui.same_line()
-    if wide_button("Hide primitive", f"primitive {primitive} alone", 1):
-        editing.hide_primitive(primitive)
-    if thing.moves:
-        static = thing.name in dict(editing.now.static)
-        tip = "it stays where it is at this moment, and counts as what never moves: it carries modes"
-        checkbox("Static", static, lambda on: editing.make_static(thing.name, on), tip)
-    else:
-        tip = (
-            "it stays where it is, but counts as an object that could move: no modes, and its shadows are always traced"
-        )
-        checkbox("Can move", thing.name in editing.now.moving, lambda on: editing.let_move(thing.name, on), tip)
-
-
-def _blocker(ui: Ui, edited: Edited, primitive: int) -> None:
-    """What blocks a light of the clicked point."""
-    name, editing = edited.thing_of(primitive).name, ui.controller.editing
-    imgui.push_id(f"blocker {primitive}")
-    if imgui.small_button(icons.ICON_FA_EYE_SLASH):
-        editing.hide(name)
-    tooltip(f"hide {name}, all of it")
-    imgui.same_line()
-    if imgui.small_button("1"):
-        editing.hide_primitive(int(edited.primitives[primitive]))
-    tooltip("hide this primitive alone")
-    imgui.same_line()
-    clipped(f"blocks: {primitive_in_words(edited.scene, primitive)}")
-    imgui.pop_id()
-
-
-# --- lights ------------------------------------------------------------------------------------------
-
-
-def _lights(ui: Ui, edited: Edited) -> None:
-    """All lights of the scene as it was read, with a tick for those that are on."""
-    state = ui.state(WhatIfState)
-    original = edited.original
-    heading(f"Lights ({len(original.lights)})")
-    if not original.lights:
-        paragraph("The scene has no lights.", QUIET)
-        return
-    numbers = lights.found(ui, "what if", original)
-    line, room = imgui.get_frame_height_with_spacing(), imgui.get_content_region_avail().y - state.below
-    height = min(max(len(numbers), 1) * line, max(_ROWS * line, room)) + 2.0
-    if imgui.begin_child("switches", (0.0, height)):
-        clipper = imgui.ListClipper()
-        clipper.begin(len(numbers), imgui.get_frame_height_with_spacing())
-        while clipper.step():
-            for k in range(clipper.display_start, clipper.display_end):
-                _light(ui, edited, numbers[k])
-        clipper.end()
-    imgui.end_child()
-    state.below = -imgui.get_cursor_pos_y()
-    paragraph("Drag a light in the picture, or type where it is.", QUIET)
-
-
-def _light(ui: Ui, edited: Edited, number: int) -> None:
-    editing, light = ui.controller.editing, edited.original.lights[number]
-    imgui.push_id(number)
-    on = number not in editing.now.lights_off
-    name = light_in_words(number, light.name)
-    checkbox("##on", on, lambda now: editing.switch(number, now), f"{name}: on or off")
-    imgui.same_line()
-    moved = editing.now.light_place(number)
-    button = imgui.get_frame_height() if moved is not None else 0.0
-    x, y, z = moved or edited.original.light_positions(ui.controller.session.time)[number].tolist()
-    names = max(em(4.0), imgui.get_content_region_avail().x - em(13.0) - button)
-    start = imgui.get_cursor_pos_x()
-    imgui.align_text_to_frame_padding()
-    imgui.text_unformatted(fitted(name, names - em(0.4)))
-    imgui.same_line(start + names)
-    imgui.set_next_item_width(-button - 1.0)
-    speed = 0.001 * lights.diagonal(ui.controller.info.get("bounds"))  # units for each pixel of the pointer's way
-    changed, place = imgui.drag_float3("##place", [x, y, z], speed, -LARGEST, LARGEST, "%.4g")
-    tooltip(f"where {name} is: x, y, z. Drag a number, or double-click it to type")
-    if changed and list(place) != [x, y, z]:
-        editing.move_light(number, (float(f"{place[0]:.6g}"), float(f"{place[1]:.6g}"), float(f"{place[2]:.6g}")))
-        ui.controller.motion.by_hand()
-    if moved is not None:
-        imgui.same_line(0.0, 0.0)
-        if imgui.button(icons.ICON_FA_ROTATE_LEFT, (button, button)):
-            editing.move_light(number, None)
-        tooltip("back to where it was")
-    imgui.pop_id()
-
-
-# --- what has changed --------------------------------------------------------------------------------
-
-
-def _effects(ui: Ui) -> None:
-    """From the picture before the edits to this one."""
-    before = ui.controller.before_edits
-    if before.lack is Lack.NO_EDITS:
+    before, frame, comparing = c.editing.before, c.frame, c.comparing
+    if not c.editing.now or before is None or frame is None:
         return
     heading("What has changed")
-    if before.taking:
-        paragraph("The picture without the edits is being traced.", QUIET)
+    if not same_place(before.frame, frame):
+        text = "The picture before the edits is from elsewhere. Take all back and undo that, to compare from here."
+        paragraph(text, QUIET)
         return
-    found = before.effects
-    if found is None:
-        paragraph(before.lack.value, QUIET)
-        if before.lack is Lack.ELSEWHERE and wide_button("Trace it", "the edits are put aside until it has come"):
-            before.take_anew()
-        return
-    _pixels(ui, found)
-    _counters(found)
-    _transitions(ui, "Occlusion modes", [found.occlusion] if found.occlusion is not None else [], "primitives")
-    _transitions(ui, "Shadow modes", found.shadows, "primitives")
-    _transitions(ui, "Certificates", found.certificates, "pixels")
-
-
-def _pixels(ui: Ui, found: Effects) -> None:
-    if found.changes is None:
-        paragraph("The pictures have different numbers of samples until this one is done.", QUIET)
-        return
-    share = 100.0 * found.pixels / max(found.changes.size, 1)
-    paragraph(f"{count(found.pixels)} pixels ({share:.1f} %), by up to {found.most} of 255")
-    tooltip(f"{count(found.exact)} where differences count that a screen does not show")
-    state = ui.state(WhatIfState)
-    checkbox("Show changed pixels", state.changed_shown, lambda on: setattr(state, "changed_shown", on),
-             "in magenta on the dimmed picture, the brighter the more they changed; in the view Colour")  # fmt: skip
-
-
-def _counters(found: Effects) -> None:
-    flags = int(imgui.TableFlags_.sizing_stretch_prop)
-    if not imgui.begin_table("counters", 4, flags):
-        return
-    columns = {"": 1.5, "before": 1.0, "now": 1.0, "change": 1.1}
-    for name, width in columns.items():
-        imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
-    imgui.table_next_row()
-    for name in columns:
-        imgui.table_next_column()
-        right(name, QUIET)
-    for one in found.counters:
-        imgui.table_next_row()
-        imgui.table_next_column()
-        clipped(one.name.capitalize(), QUIET)
-        tooltip(_TIPS.get(one.name, terms.MEANINGS.get(one.name, "")) or one.name)
-        change = one.after - one.before
-        for text in (count(one.before), count(one.after), f"{'+' if change > 0 else ''}{count(change)}"):
+    on = comparing.state.on and comparing.kept is before
+    if wide_button("End the comparison" if on else "Compare with the picture before", "in the panel Compare"):
+        if on:
+            comparing.end()
+        else:
+            comparing.kept = before
+            comparing.change(source=Source.KEPT, same_view=True)
+            comparing.start(CompareMode.DIFFERENCE)
+    if imgui.begin_table("counters", 4):
+        for name, width in (("name", 1.5), ("before", 1.0), ("now", 1.0), ("change", 1.1)):
+            imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
+        found = dropwhile(lambda one: not one.heading, figures(ui, before.frame, frame, None))
+        next(found)  # the heading of what follows
+        table = [("Rays", "before", "now", "change", "")]
+        for one in takewhile(lambda one: not one.heading, found):
+            said = f"{one.tip}: {count(one.a or 0)} before, {count(one.b or 0)} now"
+            a, b, change = map(short, (one.a or 0, one.b or 0, one.difference or 0))
+            table.append((one.name, a, b, change, said))
+        for name, *numbers, tip in table:
+            imgui.table_next_row()
             imgui.table_next_column()
-            right(text)
-    imgui.end_table()
+            clipped(name, QUIET)
+            if tip:
+                tooltip(tip)
+            for number in numbers:
+                imgui.table_next_column()
+                right(number, None if tip else QUIET)
+        imgui.end_table()
 
 
-def _transitions(ui: Ui, title: str, listed: Sequence[Transitions], units: str) -> None:
-    """How many went from which state to which, by light."""
-    if not listed:
+# --- over the picture --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A light of the scene as it was read, where it is in the picture, 0 to 1 from the left and the top."""
+
+    number: int
+    name: str
+    at: tuple[float, float]
+    position: NDArray[np.float64]
+    on: bool
+
+
+def marks_of(ui: Ui, frame: Frame) -> list[Mark]:
+    """The lights that are in the picture, those that are off as well."""
+    edited = ui.controller.session.edited
+    if edited is None or len(edited.original.lights) > _MOST_MARKS:
+        return []
+    wanted, found = ui.controller.editing.now, []
+    positions = edited.original.light_positions(frame.time)
+    for number, moved in wanted.moved_lights:
+        positions[number] = moved
+    for number, position in enumerate(positions):
+        at = place(frame, position)
+        if at is not None and 0.0 <= at[0] <= 1.0 and 0.0 <= at[1] <= 1.0:
+            name = light_in_words(number, edited.original.lights[number].name)
+            found.append(Mark(number, name, at, position, number not in wanted.lights_off))
+    return found
+
+
+def _open(ui: Ui) -> bool:
+    """Whether the panel is on the screen."""
+    return imgui.get_frame_count() - ui.state(WhatIfState).drawn <= 2
+
+
+def handle(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
+    """Let the pointer drag a light in the plane of the screen; whether it holds one.  The picture is ImGui's last
+    item."""
+    state, frame = ui.state(WhatIfState), ui.controller.frame
+    if frame is None or not (_open(ui) or state.held_light is not None):
+        state.held_light = None
+        return False
+    mouse, marks, editing = imgui.get_io().mouse_pos, marks_of(ui, frame), ui.controller.editing
+    if state.held_light is None:
+        near = _nearest(marks, corner, size) if imgui.is_item_hovered() else None
+        if near is None:
+            return False
+        if not (imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left)):
+            if not imgui.is_item_active():
+                tooltip_at(f"{near.name}: drag it; a click switches it {'off' if near.on else 'on'}")
+            return False
+        state.held_light, ui.picture.dragged, ui.picture.pressed_at = near.number, False, (mouse.x, mouse.y)
+    held, delta = state.held_light, imgui.get_io().mouse_delta
+    ui.picture.dragged |= math.dist(ui.picture.pressed_at, (mouse.x, mouse.y)) > em(0.3)
+    mark = next((mark for mark in marks if mark.number == held), None)  # none while it is out of the picture
+    if mark is not None and ui.picture.dragged and (delta.x or delta.y):  # as far along the view as it is
+        at = (mouse.x - corner.x) / size.x, (mouse.y - corner.y) / size.y
+        _move(ui, held, at_depth(frame, at, float(seen_from(frame.camera, mark.position)[2])))
+    if not imgui.is_item_active():
+        if not ui.picture.dragged:
+            editing.change(editing.now.with_light(held, held in editing.now.lights_off))
+        state.held_light = None
+    return True
+
+
+def _nearest(marks: list[Mark], corner: ImVec2, size: ImVec2) -> Mark | None:
+    mouse = imgui.get_io().mouse_pos
+
+    def away(mark: Mark) -> float:
+        return math.dist((mouse.x, mouse.y), (corner.x + mark.at[0] * size.x, corner.y + mark.at[1] * size.y))
+
+    nearest = min(marks, key=away, default=None)
+    return nearest if nearest is not None and away(nearest) <= em(_REACH) else None
+
+
+def show_lights(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """A sun for each light that is on, a ring for each that is off."""
+    frame = ui.controller.frame
+    if frame is None or not _open(ui):
         return
-    changed = sum(one.changed for one in listed)
-    flags = imgui.TreeNodeFlags_.span_avail_width | imgui.TreeNodeFlags_.default_open
-    if not imgui.tree_node_ex(f"{title}: {count(changed)} changed###{title}", int(flags)):
-        return
-    kept = sum(int(one.counts.trace() - one.counts[0, 0]) for one in listed)
-    of_lights = ", summed over the lights" if listed[0].light is not None and len(listed) > 1 else ""
-    paragraph(f"{count(kept)} {units} have the same as before{of_lights}", QUIET)
-    for one in listed:
-        pairs = one.pairs()
-        if not pairs:
-            continue
-        if one.light is not None:
-            edited = ui.controller.session.edited
-            assert edited is not None
-            clipped(light_in_words(one.light, edited.original.lights[one.light].name))
-        for before, after, number in pairs[:_MOST_PAIRS]:
-            clipped(f"   {before} {icons.ICON_FA_ARROW_RIGHT} {after}: {count(number)}", QUIET)
-        others = sum(number for _, _, number in pairs[_MOST_PAIRS:])
-        if others:
-            clipped(f"   others: {count(others)}", QUIET)
-    imgui.tree_pop()
+    draw, held = imgui.get_window_draw_list(), ui.state(WhatIfState).held_light
+    for mark in marks_of(ui, frame):
+        at = ImVec2(corner.x + mark.at[0] * (end.x - corner.x), corner.y + mark.at[1] * (end.y - corner.y))
+        icon = icons.ICON_FA_SUN if mark.on else icons.ICON_FA_CIRCLE_XMARK
+        color, size = _HELD if mark.number == held else _ON if mark.on else _OFF, imgui.calc_text_size(icon)
+        draw.add_circle_filled(at, 0.65 * size.y, imgui.get_color_u32(SHADE))
+        draw.add_text(ImVec2(at.x - size.x / 2.0, at.y - size.y / 2.0), imgui.get_color_u32(color), icon)
