@@ -23,6 +23,7 @@ Words = tuple[str, ...]
 Lights = tuple[Light, ...]
 T = TypeVar("T")
 
+
 class Highlight(NamedTuple):
     """What the window alone asks of a view: the fate that stands out, and whether the wipe has its line."""
 

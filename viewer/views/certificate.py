@@ -51,11 +51,11 @@ class Certificates(ClassView):
         title = self.title(draw, lights)
         if frame.certificates is None or not has_shadow_mode(frame.certificates, draw.light):
             return not_culled(title)
-        cells = np.zeros(_MOVES + 1, np.int64)
+        cells = [0] * len(self.classes)
         if frame.cells is not None:
             there = hits(frame) & (frame.cells >= 0)
             _, first = np.unique(frame.cells[there], return_index=True)
-            cells = np.bincount(self.found(frame, draw)[there][first], minlength=_MOVES + 1)
+            cells = np.bincount(self.found(frame, draw)[there][first], minlength=len(cells)).tolist()
         entries = self.entries(self.counted(frame, draw), [count(n) for n in cells])
         return Legend(title, ("pixels", "cells"), (*entries, *at_rest(frame)))
 

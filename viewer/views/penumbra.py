@@ -71,14 +71,14 @@ class Penumbra(ClassView):
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         found, few, most = self.found(frame, draw), self.palette[Arrival.FEW], self.palette[Arrival.MOST]
-        colors, between = self.palette[found], (found == Arrival.FEW) | (found == Arrival.MOST)
+        colors, between = self.palette[found], np.isin(found, (Arrival.FEW, Arrival.MOST))
         share = _reaching(frame, draw.light)[between].astype(np.float32)[:, None]
         colors[between] = few + share * (most - few)
         return by_color(frame, draw, colors, draw.shading)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
-        pixels, found, (asked, reached) = self.counted(frame, draw), self.found(frame, draw), samples_of(frame, draw.light)
-        between = (found == Arrival.FEW) | (found == Arrival.MOST)
+        pixels, (asked, reached) = self.counted(frame, draw), samples_of(frame, draw.light)
+        between = np.isin(self.found(frame, draw), (Arrival.FEW, Arrival.MOST))
         facts = [fact("samples", count(int(asked.max(initial=0))), "of the light, that a pixel faces at most")]
         if faced := int(asked[between].sum()):
             share = percent(int(reached[between].sum()) / faced, 1.0)

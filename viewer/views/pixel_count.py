@@ -8,8 +8,8 @@ from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
-from viewer.views.legend import Entry, Legend, Scale
 from viewer.views.kinds import culled_by_modes
+from viewer.views.legend import Entry, Legend, Scale
 from viewer.views.paint import by_number
 
 

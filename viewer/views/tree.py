@@ -146,7 +146,7 @@ def _behind(frame: Frame, draw: DrawOptions) -> Pixels:
 
 
 def _in_company(line: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Find pixels of lines with two neighbours of lines at least: others are dots, as of a flat box that is far away."""
+    """Find pixels of lines with two neighbours of lines at least: others are dots, as of flat boxes far away."""
     padded = np.pad(line, 1)
     height, width = line.shape
     near = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3) if (y, x) != (1, 1)]

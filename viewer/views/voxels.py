@@ -49,7 +49,7 @@ class Voxels(FrameView):
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         numbers, lines = voxels_seen(frame, draw.slice)
         pixels, there = by_color(frame, draw, dimmed(frame, draw.tone, draw.beneath)), numbers >= 0
-        colors = _PALETTE[voxels_of(frame).states(draw.light, numbers[there])]
+        colors = _PALETTE[voxels_of(frame).states(draw.light, numbers[there].astype(np.int64))]
         colors[lines[there]] *= np.float32(CELL_LINE)
         pixels[there] = in_bytes(colors)
         return pixels
@@ -120,7 +120,7 @@ def voxels_seen(frame: Frame, cut: Slice) -> tuple[NDArray[np.int32], NDArray[np
 def _voxels_seen(frame: Frame, states: VoxelStates, cut: Slice) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
     grid, sides = states.grid, states.shape
     seen = met(frame, cut.axis, plane_of(states, cut))
-    along = (seen.points - np.float32((grid.x, grid.y, grid.z))) * np.float32(grid.per_unit)
+    along = (seen.points - np.array((grid.x, grid.y, grid.z), np.float32)) * np.float32(grid.per_unit)
     with np.errstate(invalid="ignore"):
         there = ~seen.behind & ((along >= 0.0) & (along < sides)).all(axis=-1)
     place = np.where(there[..., None], along, 0.0).astype(np.int64)

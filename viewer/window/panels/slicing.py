@@ -1,4 +1,4 @@
-"""The slice through space: its rows in the panel View; and beside the pointer, what a view of space shows of a pixel."""
+"""The slice through space: its rows in the panel View; and what a view of space says beside the pointer."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from imgui_bundle import imgui
 
 from tracer.light_cut import LightCut
 from viewer.services.controller import Controller
-from viewer.services.pixel_inspector import MOST_CLUSTERS
+from viewer.services.inspector import MOST_CLUSTERS
 from viewer.state.draw_options import AXES
-from viewer.state.picking import pixel_at
+from viewer.state.pixels import pixel_at
 from viewer.state.views import View
 from viewer.util.numbers import several
 from viewer.views import view_of, words_at
