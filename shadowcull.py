@@ -10,7 +10,7 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-OWN = {"tracer": "load_scene", "viewer": "viewer.script"}
+OWN = {"tracer": "load_scene", "viewer": "viewer.__main__"}
 """The packages, and what stands in the first file of each and of no other's."""
 ALONE = "install shadowcull in an environment of its own, as by 'pipx install shadowcull'"
 

@@ -1,6 +1,5 @@
-"""The viewer: everything a person touches, over the `tracer`.
+"""The viewer: everything a person touches, over the `tracer`; `show` opens its window from scripts and notebooks.
 
-    script           `viewer.show`, the window for scripts and notebooks
     cli | window     the command line; the window, which alone knows GL and widgets
     services         threads, files, runs, and the controller that wires them
     output           pictures, figures, legends, reports
@@ -10,6 +9,65 @@
 Each knows only what is below it.  `viewer.__main__` starts the command line, and hands it the window to open.
 """
 
-from viewer.script import show
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tracer.frame import Frame
+    from tracer.scene.model import Scene
+
 
 __all__ = ["show"]
+
+
+def show(
+    scene: Scene | str | Path,
+    on_frame: Callable[[Frame], bool | None] | None = None,
+    **settings: Any,
+) -> Frame | None:
+    """Open the viewer on a scene, and wait until it is closed.
+
+    Parameters
+    ----------
+    scene : Scene, str or Path
+        What to show: a scene that was loaded or made, a file, or the name of a scene that comes with the program.
+    on_frame : callable, optional
+        Called with each whole `Frame` that the window shows. It runs between two frames of the window, which waits for
+        it. If it returns False, the window is closed. If it raises an exception, the window says so and goes on.
+    **settings
+        Fields of `tracer.Settings` to begin with, such as `method="certified"`. The size is the window's.
+
+    Returns
+    -------
+    Frame or None
+        The last frame that was shown, or None if there was none.
+
+    Raises
+    ------
+    ValueError
+        If a setting is out of range.
+    OSError
+        If there is no display, or if a library that the window needs is missing.
+    """
+    # Here, so that commands that need none of it start quickly.
+    from tracer.scene.model import Scene
+    from tracer.settings import Settings
+    from viewer.util import resources
+    from viewer.util.screen import has_display, no_display_reason
+
+    Settings(**settings).validated()
+    if not has_display():
+        raise OSError(f"{no_display_reason()}; tracer.Renderer needs none")
+    try:
+        from viewer.window import app
+    except ImportError as error:
+        raise OSError(f"no window can be opened, as a library is missing ({error})") from error
+    own = isinstance(scene, Scene)
+    path = None if own else resources.scene_path(str(scene))
+    opened = app.App(path, settings, scene=scene if own else None, on_frame=on_frame)  # type: ignore[arg-type]
+    opened.ui.tour.end()
+    opened.run()
+    return opened.controller.frame

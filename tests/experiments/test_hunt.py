@@ -14,7 +14,7 @@ from tracer.experiments import counterexample, hunt, warmup_frames
 from tracer.experiments.counterexample import AROUND, PATH
 from tracer.experiments.hunt import Results, Search
 from tracer.ray_tree import ray_tree
-from viewer.services.counterexamples import crop_of
+from viewer.services.hunts import crop_of
 
 SETTINGS = tracer.Settings(width=96, height=96, depth=2, method="paper", threads=1)
 FRAMES = LAST // STEP + 1

@@ -232,6 +232,17 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     settings: _Varied = _Varied()
 
 
+_TAKES = {
+    "seeds": "a list of whole numbers from 0 to 2147483647",
+    "shake": "a number from 0 to 1",
+    "frames": "a whole number from 1 to 1000000",
+    "first": "a whole number from 0 to 1000000",
+    "last": "a whole number from 0 to 1000000",
+    "warmup": "a whole number from 0 to 1000000",
+}
+"""What is said of a value that is none, where the types above give a range."""
+
+
 class StudyError(ValueError):
     """A study cannot be read; the message is one line."""
 
@@ -339,7 +350,11 @@ class _Reader:
         if missing is not None:
             return StudyError(f"{self._path}: no {missing[1]}; give a list")
         *table, name = keys
-        return self._wrong(name, ".".join(table), re.sub(r"`(.*?)`", kinds_in_words, what[:1].lower() + what[1:]))
+        expected = (one.expected for one in settings_of(Settings) if one.name == name and one.kind is not bool)
+        takes = next((f"{values}, or a list of such" for values in expected), "")
+        takes = takes or _TAKES.get(name, "")
+        plain = re.sub(r"`(.*?)`", kinds_in_words, what[:1].lower() + what[1:])
+        return self._wrong(name, ".".join(table), f"{plain}; give {takes}" if takes else plain)
 
     def _wrong(self, name: str, table: str, message: str) -> StudyError:
         line = self._line(name, table)

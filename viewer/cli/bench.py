@@ -6,13 +6,13 @@ Ctrl-C ends it after the last whole frame: what is done is shown, and written wh
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.table import Table
 
 from tracer.experiments import experiment, lamp_experiment
-from tracer.experiments.experiment import REFERENCE, Experiment, Results, Row
+from tracer.experiments.experiment import REFERENCE, Experiment, Results
 from tracer.experiments.lamp_experiment import CEILING, LampExperiment, LampResults, LampRow
 from tracer.geometry.world import World
 from tracer.method import line_up
@@ -20,14 +20,13 @@ from tracer.scene.load import check_scene_file
 from tracer.settings import Settings
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
-from viewer.cli.console import left_out, named, print_table, terminal_width, titled, width_of, working
+from viewer.cli.console import columns_help, fitted, listed, print_table, terminal_width, titled, width_of, working
 from viewer.output import exports
-from viewer.output.reports import SPEED_UP, WRONG, caveats, frames_in_words, leaders, lines
+from viewer.output.reports import LAMPS, METHOD, TABLE_1, Column, caveats, experiment_title, leaders, table_1
 from viewer.state import terms
-from viewer.util.messages import printable
 
 ALL = "all"  # methods that are worth comparing in the scene
-EPILOG = """\
+EPILOG = f"""\
 examples:
   shadowcull bench kitchen.aff --path-frames 100
   shadowcull bench Robot.aff --frames 100:200 --size 256x256 --verify
@@ -44,7 +43,8 @@ frame, their average and maximum, and with --verify the wrong answers.
 Several values of --lamp-radius or --lamp-samples make another table: for each radius, number of samples and method
 the time of a frame, its shadow rays, the speed-up over none, and how much that is of the speed-up of free, for which
 shadow rays cost nothing. The JSON then has the figures of all lamps under "lamps".
-"""
+
+{columns_help(TABLE_1)}"""
 
 
 def parser() -> Parser:
@@ -90,27 +90,28 @@ def run(given: Namespace) -> int:
         numbers = frame_range(given.frames, len(times))
         options.prepare_kernels(work, len(scene.lights), given.accelerator, *methods)
         world = World(scene, times[0], settings.accelerator, work.progress)
+        results: Results | LampResults
         if by_lamps:
             kinds = lamp_experiment.kinds_of_lamps(scene, radii, samples)
-            lamps = work.perform(LampExperiment(scene, settings, methods, kinds, times, numbers), world)
-            finished = len(lamps.runs) == len(kinds) and len(lamps.runs[-1].frames) == len(numbers)
-            cancelled = f"in lamps {len(lamps.runs)} of {len(kinds)}; the table is of the frames that are done"
+            results = work.perform(LampExperiment(scene, settings, methods, kinds, times, numbers), world)
+            whole = len(results.runs) == len(kinds) and len(results.runs[-1].frames) == len(numbers)
+            done = f"in lamps {len(results.runs)} of {len(kinds)}; the table is of the frames that are done"
         else:
             results = work.perform(Experiment(scene, settings, methods, times, numbers), world)
-            finished = len(results.frames) == len(numbers)
-            cancelled = f"after {len(results.frames)} of {len(numbers)} frames; the table is of these"
-        if not finished:
-            work.note(f"cancelled {cancelled}")
-        failures = exports.write_files(lamps if by_lamps else results, wanted)
-    if by_lamps:
-        print_table(lamp_table(lamps, terminal_width()))
+            whole = len(results.frames) == len(numbers)
+            done = f"after {len(results.frames)} of {len(numbers)} frames; the table is of these"
+        if not whole:
+            work.note(f"cancelled {done}")
+        failures = exports.write_files(results, wanted)
+    if isinstance(results, LampResults):
+        print_table(lamp_table(results, terminal_width()))
     else:
         print_table(bench_table(results, given.verify, terminal_width()))
         for line in leaders(experiment.table(results), timed=not given.verify):
             print(line)
     if failures:
         raise OSError("; ".join(failures))
-    return 0 if finished else INTERRUPTED
+    return 0 if whole else INTERRUPTED
 
 
 def frame_range(text: str | None, count: int) -> range:
@@ -127,97 +128,48 @@ def frame_range(text: str | None, count: int) -> range:
     return numbers
 
 
-# --- tables ----------------------------------------------------------------------------------------
-
 MOST_COLUMNS = 5
 """Methods that have columns, at most; more have lines."""
-# What columns are called where methods have lines; the other figures are left to the files.
-COLUMNS = {
-    "traversal steps saved, average": "steps\nsaved",
-    "intersection tests saved, average": "tests\nsaved",
-    WRONG: "wrong",
-    "time of a frame, median": "a frame",
-    "time of all frames": "all\nframes",
-    "  of it preparing": "preparing",
-    SPEED_UP: "speed-\nup",
-    "memory of the method": "memory",
-}
-_LEAST_WANTED = ("preparing", "all\nframes", "memory", "a frame", "tests\nsaved", "wrong")
-"""Columns that are left out, one after another, where there is no room for all."""
 
 
 def bench_table(results: Results, verified: bool, width: int | None) -> Table:
     """Make the table for a terminal so wide; None for any width."""
-    rows = experiment.table(results)
+    rows, columns = experiment.table(results), table_1(verified)
+    title = f"Work of shadow rays\n{experiment_title(results)}"
+    caption = "; ".join([*caveats(results), *([] if verified else ["--verify counts wrong answers"])])
     if len(rows) <= MOST_COLUMNS:
-        table = _begun(results, verified)
+        table = titled(title, caption)
         table.add_column("")
         for row in rows:
             table.add_column(row.method.replace("+", "\n+"), justify="right")
-        for heading, cell in lines(verified):
-            table.add_row(heading, *(cell(row) for row in rows))
+        for column in columns:
+            table.add_row(column.meaning, *(column.cell(row) for row in rows))
         if width is None or width_of(table) <= width:
             return table
-    left = left_out(_LEAST_WANTED, lambda left: [_by_lines(results, rows, verified, left)], width)
-    return _by_lines(results, rows, verified, left)
-
-
-def _by_lines(results: Results, rows: Sequence[Row], verified: bool, left: Sequence[str]) -> Table:
-    table = _begun(results, verified)
-    table.add_column("method", no_wrap=True)
-    shown = [(COLUMNS[name], cell) for name, cell in lines(verified) if name in COLUMNS and COLUMNS[name] not in left]
-    for heading, _ in shown:
-        table.add_column(heading, justify="right", no_wrap=True)
-    for row in rows:
-        table.add_row(row.method, *(cell(row) for _, cell in shown))
-    missing = named([heading for heading in left if verified or heading != "wrong"])
-    wider = f"a wider terminal shows {missing}, too; " if missing else ""
-    table.caption = f"{table.caption}; {wider}--csv FILE has all figures"
-    return table
-
-
-def _begun(results: Results, verified: bool) -> Table:
-    caption = [*caveats(results), *([] if verified else ["--verify counts wrong answers"])]
-    return titled(f"Work of shadow rays\n{_which(results)}", "; ".join(caption))
-
-
-def _which(results: Results) -> str:
-    width, height = results.size
-    return f"{printable(Path(results.scene).name)}, {width} × {height}, {frames_in_words(results)}"
-
-
-_OF_LAMPS: dict[str, Callable[[LampRow], str]] = {
-    "frame,\nmedian": lambda row: f"{1000.0 * row.frame_seconds:,.1f} ms",
-    "shadow\nrays": lambda row: f"{row.shadow_rays:,.0f}",
-    "saved": lambda row: "" if row.method in (REFERENCE, CEILING) else f"{row.known:.1%}",
-    "speed-\nup": lambda row: f"{row.speed_up:.2f}",
-    "of free": lambda row: f"{row.share_of_free:.1%}",
-}
+    caption += "; --csv FILE has all figures"
+    return fitted([METHOD, *columns], lambda some: [listed(some, rows, title, caption)], width)[0]
 
 
 def lamp_table(results: LampResults, width: int | None) -> Table:
     """Make a table with a row for each method under each kind of lamps, as `bench_table`."""
-    return _lamp_table(
-        results, left_out(("shadow\nrays", "saved", "of free"), lambda left: [_lamp_table(results, left)], width)
-    )
+    rows = lamp_experiment.table(results)
+
+    def made(columns: Sequence[Column[LampRow]]) -> list[Table]:
+        return [listed([*kinds, *columns], rows, title, caption, _lamps)]
+
+    kinds: list[Column[LampRow]] = [
+        Column("radius", "of the lamps", lambda row: _lamps(row)[0]),
+        Column("samples", "of each lamp", lambda row: _lamps(row)[1]),
+    ]
+    title = f"What culling is worth under lamps\n{experiment_title(results.runs[0])}"
+    caption = "\n".join((
+        f"shadow rays: due per frame; speed-up: over {REFERENCE}, all frames; {CEILING}: shadow rays cost nothing",
+        f"saved: shadow rays {terms.MEANINGS[terms.SAVED]}; --csv FILE has all figures",
+    ))  # fmt: skip
+    return fitted(LAMPS, made, width)[0]
 
 
-def _lamp_table(results: LampResults, left: Sequence[str]) -> Table:
-    wider = f"\na wider terminal shows {named(left)}, too; --csv FILE has all figures" if left else ""
-    table = titled(
-        f"What culling is worth under lamps\n{_which(results.runs[0])}",
-        f"shadow rays: due per frame; speed-up: over {REFERENCE}, all frames; {CEILING}: shadow rays cost nothing\n"
-        f"{terms.SAVED} are shadow rays {terms.MEANINGS[terms.SAVED]}{wider}",
-    )
-    shown = {name: cell for name, cell in _OF_LAMPS.items() if name not in left}
-    for name in ("radius", "samples", "method", *shown):
-        table.add_column(name, justify="left" if name == "method" else "right", no_wrap=True)
-    before: tuple[str, str] | None = None
-    for row in lamp_experiment.table(results):
-        radius = "scene's" if row.lamp_radius is None else f"{row.lamp_radius:g}"
-        kind = radius, "scene's" if row.lamp_samples is None else str(row.lamp_samples)
-        if before is not None and kind != before:
-            table.add_section()
-        table.add_row(*(kind if kind != before else ("", "")), row.method, *(cell(row) for cell in shown.values()))
-        before = kind
-    return table
+def _lamps(row: LampRow) -> tuple[str, str]:
+    """Their radius and their samples, in words."""
+    radius = "scene's" if row.lamp_radius is None else f"{row.lamp_radius:g}"
+    return radius, "scene's" if row.lamp_samples is None else str(row.lamp_samples)

@@ -11,7 +11,7 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
-from typing import TypeVar
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -23,7 +23,10 @@ from tracer.geometry.world import World
 from tracer.scene.model import Cancelled
 from viewer.util.messages import in_one_line, printable, say
 
-T = TypeVar("T")
+if TYPE_CHECKING:
+    from viewer.output.reports import Column
+
+Row = TypeVar("Row")
 
 _PACE_OVER = 600.0  # seconds: frames may take minutes, and the time left is told from those of the last ones
 
@@ -147,18 +150,44 @@ def terminal_width() -> int | None:
     return console.width if console.is_terminal else None
 
 
-def left_out(
-    least_wanted: Sequence[str], made: Callable[[Sequence[str]], Sequence[Table]], width: int | None
-) -> Sequence[str]:
-    """Return the fewest columns to leave out so that all tables, as `made` without these, fit in a terminal so wide.
+def listed(
+    columns: Sequence[Column[Row]],
+    rows: Sequence[Row],
+    title: str = "",
+    caption: str = "",
+    section: Callable[[Row], object] = lambda row: None,
+) -> Table:
+    """Make a table with a line for each row, and a rule wherever the section is another."""
+    table = titled(title, caption)
+    lines = [[column.cell(row) for column in columns] for row in rows]
+    for number, column in enumerate(columns):
+        in_one = not column.text or not any(" " in line[number] for line in lines)
+        side: Literal["left", "right"] = "left" if column.text else "right"
+        table.add_column(column.heading.replace(" ", "\n"), justify=side, no_wrap=in_one)
+    for number, line in enumerate(lines):
+        after = rows[number + 1] if number + 1 < len(rows) else rows[number]
+        table.add_row(*line, end_section=section(after) != section(rows[number]))
+    return table
 
-    That is all of them where even that does not help, and none where `width` is None."""
-    for count in range(len(least_wanted)):
-        if width is None or all(width_of(table) <= width for table in made(least_wanted[:count])):
-            return least_wanted[:count]
-    return least_wanted
+
+def fitted(
+    columns: Sequence[Column[Row]],
+    made: Callable[[Sequence[Column[Row]]], Sequence[Table]],
+    width: int | None,
+    least: int = 3,
+) -> Sequence[Table]:
+    """Return the tables that are made of the columns, without the last of these where a terminal so wide has no room,
+    but for the `least`; the last caption names what is left out.  None is any width."""
+    count, tables = len(columns), made(columns)
+    while width is not None and count > least and any(width_of(table) > width for table in tables):
+        count -= 1
+        tables = made(columns[:count])
+    if left := ", ".join(column.heading for column in columns[count:]):
+        tables[-1].caption = f"{tables[-1].caption or ''}\na wider terminal shows {left}, too".strip()
+    return tables
 
 
-def named(headings: Sequence[str]) -> str:
-    """Return headings, which may stand in several lines, as a list in words; "" of none."""
-    return ", ".join(" ".join(heading.split()) for heading in headings)
+def columns_help(columns: Sequence[Column[Row]]) -> str:
+    """Say in a line for each column of a table what it means."""
+    width = max(len(column.heading) for column in columns)
+    return "columns:\n" + "".join(f"  {column.heading:{width}}  {column.meaning.strip()}\n" for column in columns)

@@ -17,6 +17,7 @@ from viewer.cli import options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import print_table, titled, working
 from viewer.output.light_cube import EMPTY, FEW, MANY, ONE, described, picture_of, seen
+from viewer.util.files import check_writable
 from viewer.util.messages import printable
 from viewer.views.legend import lights_in_words
 
@@ -52,6 +53,7 @@ def run(given: Namespace) -> int:
     """Save the unfolded cube of a light, and print what its cells have; raises SceneError and ValueError in one line,
     or Cancelled."""
     check_scene_file(given.path)
+    check_writable(given.output)
     settings = options.tracing_settings(given, method="lightbuffer", light_buffer_side=given.side)
     with working() as work:
         scene = options.read_scene(given.path, given, work)
@@ -67,7 +69,6 @@ def run(given: Namespace) -> int:
     if found is None:
         why = method.why_not(given.light) or "there is nothing static"
         raise ValueError(f"--light {given.light} has no light buffer, and its shadow rays are traced: {why}")
-    given.output.parent.mkdir(parents=True, exist_ok=True)
     light = named_light(scene.lights, given.light)
     Image.fromarray(picture_of(found) if given.no_legend else described(found, light)).save(given.output)
     counts = seen(found).counts

@@ -8,20 +8,17 @@ from __future__ import annotations
 from argparse import Namespace
 from pathlib import Path
 
-from rich.table import Table
-
-from tracer.experiments import counterexample, hunt
+from tracer.experiments import hunt
 from tracer.experiments.hunt import Hunt, Search
-from tracer.frame import Settings
 from tracer.geometry.world import World
-from tracer.scene.lights import number_of
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
-from viewer.cli.console import Work, print_table, titled, working
+from viewer.cli.console import Work, listed, print_table, working
 from viewer.output import commands
-from viewer.services import comparison, counterexamples
+from viewer.output.reports import findings
+from viewer.services import comparison, hunts
 from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
 from viewer.util.messages import printable
@@ -74,73 +71,44 @@ def run(given: Namespace) -> int:
     settings = options.tracing_settings(given, verify=True)
     with working() as work:
         scene = options.read_scene(given.path, given, work)
-        search = _search(scene, settings, given)
+        first, last = given.frames or (0, scene.frames - 1)
+        times = [take.time for take in navigation.along_path(scene, first, last)][:: given.step]
+        search = Search(settings, times, given.camera, given.around, given.radius, given.seed, given.keep)
         if given.output is not None:
-            counterexamples.check_folder(given.output)
+            hunts.check_folder(given.output)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method, NO_CULLING)
-        world = World(scene, search.times[0], settings.accelerator, work.progress)
-        search_run = Hunt(scene, search)
-        found = work.perform(search_run, world)
-        whole = not work.stopped
-        if not whole:
-            work.note(f"cancelled after {search_run.traced} of {search.frames} pictures; the table is of these")
+        world = World(scene, times[0], settings.accelerator, work.progress)
+        hunt_run = Hunt(scene, search)
+        found = work.perform(hunt_run, world)
+        if work.stopped:
+            work.note(f"cancelled after {hunt_run.traced} of {search.frames} pictures; the table is of these")
         written = _write(found, scene, search, world, given, work) if given.output is not None else []
     if found.finds:
-        print_table(_table(found, scene))
+        size = f"{found.size[0]} × {found.size[1]}"
+        title = f"{Path(found.scene).name}, {size}, method {found.method}: the worst wrong pixels"
+        columns = findings(scene, {id(find): rank for rank, find in enumerate(found.finds, 1)})
+        print_table(listed(columns, found.finds, title, "off by: of the colour, of 1; light: (+ others)"))
     print(printable(found.summary))
     for file in written:
         print(printable(file))
-    return 0 if whole else INTERRUPTED
-
-
-def _search(scene: Scene, settings: Settings, given: Namespace) -> Search:
-    first, last = given.frames or (0, scene.frames - 1)
-    takes = navigation.along_path(scene, first, last)[:: given.step]
-    times = [take.time for take in takes]
-    return Search(settings, times, given.camera, given.around, given.radius, given.seed, given.keep)
+    return INTERRUPTED if work.stopped else 0  # also where figures were not drawn
 
 
 def _write(found: hunt.Results, scene: Scene, search: Search, world: World, given: Namespace, work: Work) -> list[Path]:
-    """Write the files of all findings; of a hunt that was stopped the JSON alone, as figures take long."""
+    """Write the files of all findings; once it was stopped the JSON alone, as figures take long."""
     written, meshes = [], options.mesh_options(given)
     for rank, find in enumerate(found.finds, 1):
         stem = given.output / f"find-{rank}"
-        counterexamples.save_json(find, found, scene, stem.with_suffix(".json"), commands.mesh_options(meshes))
+        hunts.save_json(find, found, scene, stem.with_suffix(".json"), commands.mesh_options(meshes))
         if not work.stopped:
             work.count(f"figure {rank} of {len(found.finds)}", rank - 1, len(found.finds))
-            of_file = meshes.of_file(Path(scene.path))
-            wanted = counterexamples.comparison_of(find, found, scene, search.settings, of_file)
+            state, figure = hunts.comparison_of(find, found, scene, search.settings, meshes.of_file(Path(scene.path)))
             try:
-                shown = comparison.trace(scene, *wanted, world, cancelled=work.cancelled)
+                shown = comparison.trace(scene, state, figure, world, cancelled=work.cancelled)
                 comparison.save(shown, stem.with_suffix(".png"))
                 written.append(stem.with_suffix(".png"))
             except Cancelled:
                 work.note("cancelled: the figures from here on are not drawn")
         written.append(stem.with_suffix(".json"))
-    counterexamples.save_all(found, scene, given.output)
-    return [*written, given.output / counterexamples.ALL]
-
-
-def _table(found: hunt.Results, scene: Scene) -> Table:
-    size = f"{found.size[0]} × {found.size[1]}"
-    title = f"{Path(found.scene).name}, {size}, method {found.method}: the worst wrong pixels"
-    table = titled(title, "difference: of the colour, of 1; wrong pixels: of the picture; light: (+ others)")
-    for heading in ("", "difference", "pixel", "wrong pixels"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("frame", no_wrap=True)
-    for heading in ("primitive", "light", "culled by", "truly", "learnt"):
-        table.add_column(heading, overflow="fold")
-    for rank, find in enumerate(found.finds, 1):
-        table.add_row(
-            str(rank),
-            f"{find.difference:.3f}",
-            f"{find.x},{find.y}",
-            f"{find.pixels:,}",
-            counterexample.frame_of(find, scene),
-            printable(counterexample.primitive_of(find, scene)),
-            f"{number_of(scene.lights, find.light)}" + (f" (+{find.more_lights})" if find.more_lights else ""),
-            counterexample.verdict_of(find),
-            "blocked" if find.lit else "lit",
-            counterexample.taught_by(find, scene),
-        )
-    return table
+    hunts.save_all(found, scene, given.output)
+    return [*written, given.output / hunts.ALL]

@@ -22,6 +22,7 @@ from viewer.services.scene_files import find_scene, is_capture
 from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
 from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
+from viewer.state.readings import MOST_RECORDED
 from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
 
@@ -134,10 +135,13 @@ def check_tree(settings: Settings, view: View, scene: Scene) -> None:
         raise ValueError(f"--view {view.value}: {why}")
 
 
-def check_lights(wanted: ViewState, scene: Scene) -> None:
-    """Raise ValueError, in one line, where memory has no room for what all lights send to each pixel."""
-    if not stills.lights_fit(wanted, scene):
-        raise ValueError(f"--view {wanted.draw.view.value}: too many lights for pictures of this size")
+def check_lights(wanted: ViewState, scene: Scene, everything: bool = False) -> None:
+    """Raise ValueError, in one line, where memory has no room for what all lights send to each pixel: for a view that
+    shows it, or `everything`, as buffers have it."""
+    if not stills.lights_fit(wanted, scene, everything):
+        what, lights = "all buffers" if everything else f"--view {wanted.draw.view.value}", len(scene.lights)
+        most = MOST_RECORDED // lights
+        raise ValueError(f"{what} of {lights:,} lights: too much for memory; give a --size of up to {most:,} pixels")
 
 
 # --- saved pictures and states ----------------------------------------------------------------------

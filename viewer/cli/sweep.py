@@ -5,10 +5,10 @@ Ctrl-C ends it at once: what is traced is kept, and the same command goes on fro
 
 from __future__ import annotations
 
+import math
 from argparse import Namespace
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,7 +22,8 @@ from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Cancelled, Scene
 from viewer.cli import options, processes
 from viewer.cli.arguments import INTERRUPTED, Parser
-from viewer.cli.console import Work, left_out, named, print_table, terminal_width, titled, width_of, working
+from viewer.cli.console import Work, columns_help, fitted, listed, print_table, terminal_width, working
+from viewer.output.reports import METHOD, Column
 from viewer.state import terms
 from viewer.util import numbers
 from viewer.util.files import check_writable
@@ -38,7 +39,30 @@ RESULTS = "-results"
 """What the folder of a study's results is called after it."""
 
 
-EPILOG = """\
+COLUMNS: tuple[Column[Line], ...] = (
+    Column("steps saved", "traversal steps of shadow rays saved against none, certificates included; ± over seeds",
+           lambda line: _saved(line, line.steps, line.spread)),
+    Column("speed-up", "processor time of all frames by none over that of the method",
+           lambda line: "" if math.isnan(line.speed_up) else f"{line.speed_up:.2f}"),
+    Column("median ms", "processor time of a frame, the median, in milliseconds of one thread",
+           lambda line: "" if math.isnan(line.seconds) else f"{1000 * line.seconds:,.1f}"),
+    Column("wrong", "wrong answers, where frames are verified",
+           lambda line: f"{line.wrong:,}" if line.verified else ""),
+    Column("tests saved", "intersection tests saved, in the same way", lambda line: _saved(line, line.tests)),
+    Column("rays saved", f"shadow rays {terms.MEANINGS[terms.SAVED]}",
+           lambda line: "" if line.method == REFERENCE else f"{line.known:.1%}"),
+    Column("frames", "frames that are traced", lambda line: f"{line.frames:,}"),
+)  # fmt: skip
+"""What a table says of a line."""
+
+
+def _saved(line: Line, value: float, spread: float = math.nan) -> str:
+    if line.method == REFERENCE or math.isnan(value):
+        return ""
+    return numbers.saved(value, None if math.isnan(spread) else spread)
+
+
+EPILOG = f"""\
 examples:
   shadowcull sweep study.toml
   shadowcull sweep study.toml --workers 8 --plot study.svg
@@ -66,7 +90,8 @@ Every frame is kept as soon as it is traced, as a row of Parquet in the folder o
 traces only what is missing. Methods that learn trace their whole path in one task unless there is a warmup; all other
 frames are tasks of their own, with one thread each. Times are processor times. Workers of a Dask scheduler need the
 same version of Shadowcull. Needs Dask and PyArrow: install shadowcull[sweep].
-"""
+
+{columns_help(COLUMNS)}"""
 
 
 def parser() -> Parser:
@@ -106,7 +131,9 @@ def run(given: Namespace) -> int:
     whole, report = True, sweeping.Report()
     with working() as work:
         scenes = _scenes(study, work)
-        if not given.table:
+        if given.table:
+            plan = sweeping.planned(study, scenes, store)
+        else:
             store.lock()
             try:
                 if given.anew:
@@ -115,12 +142,9 @@ def run(given: Namespace) -> int:
                 whole, report = _trace(plan, store, given, work)
             finally:
                 store.unlock()
-        else:
-            plan = sweeping.planned(study, scenes, store)
     lines = _summary(plan, store)
-    if lines:
-        for table in tables(study, lines, terminal_width()):
-            print_table(table)
+    for table in tables(study, lines, terminal_width()) if lines else ():
+        print_table(table)
     if given.plot is not None:
         _plot(study, lines, given.plot)
     if not given.table and store.results.exists():
@@ -192,8 +216,7 @@ def _summary(plan: Plan, store: Store) -> list[Line]:
 
 
 def _plot(study: Study, lines: list[Line], path: Path) -> None:
-    from viewer.output.figures import save
-    from viewer.output.run_figures import sweep_figure
+    from viewer.output.figures import save, sweep_figure
 
     try:
         figure = sweep_figure(study.title, lines)
@@ -217,84 +240,25 @@ def _check(report: Report) -> None:
         raise OSError(in_words(report.failures))
 
 
-# --- tables ----------------------------------------------------------------------------------------
-
-LEAST_WANTED = ("frames", "saved", "tests\nsaved", "wrong")
-"""Columns that are left out, one after another, where there is no room for all."""
-
-
-def _saved(value: float, spread: float = float("nan")) -> str:
-    return "" if value != value else numbers.saved(value, spread if spread == spread else None)
-
-
-COLUMNS: tuple[tuple[str, Callable[[Line], str]], ...] = (
-    ("frames", lambda line: f"{line.frames:,}"),
-    ("steps\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.steps, line.spread)),
-    ("tests\nsaved", lambda line: "" if line.method == REFERENCE else _saved(line.tests)),
-    (terms.SAVED, lambda line: "" if line.method == REFERENCE else f"{line.known:.1%}"),
-    ("wrong", lambda line: f"{line.wrong:,}" if line.verified else ""),
-    ("frame,\nmedian\nms", lambda line: "" if line.seconds != line.seconds else f"{1000 * line.seconds:,.1f}"),
-    ("speed-\nup, all\nframes", lambda line: "" if line.speed_up != line.speed_up else f"{line.speed_up:.2f}"),
-)
-"""What a table says of a line: headings, and the cells below them."""
-
-
-def tables(study: Study, lines: list[Line], width: int | None) -> Iterator[Table]:
-    """Yield one table where a terminal so wide has room for it, else one for each scene, size and combination of
-    settings; None is any width."""
-    whole = _table(study.title, lines, lines)
-    if width is None or width_of(whole) <= width:
-        yield whole
-        return
-    parts = [
-        list(part) for _, part in groupby(lines, lambda line: (line.scene, line.width, line.height, line.settings))
-    ]
-    left = left_out(LEAST_WANTED, lambda left: [_of_part(part, lines, left) for part in parts], width)
-    for number, part in enumerate(parts):
-        table = _of_part(part, lines, left)
-        first, last = number == 0, number == len(parts) - 1
-        table.title = f"{printable(study.title) if first else ''}\n{_where(part[0])}"
-        if not last:
-            table.caption = None
-        elif left:
-            table.caption = f"{table.caption}; a wider terminal shows {named(left)}, too"
-        yield table
-
-
-def _where(line: Line) -> str:
-    return ", ".join(filter(None, (printable(line.scene), f"{line.width}×{line.height}", line.settings)))
-
-
-def _of_part(part: list[Line], lines: list[Line], left: Sequence[str]) -> Table:
-    """The methods of one scene, size and combination of settings, without the columns that are left out."""
-    return _table("", [replace(line, settings="") for line in part], lines, left, where=False)
-
-
-def _table(title: str, shown: list[Line], lines: list[Line], left: Sequence[str] = (), where: bool = True) -> Table:
-    """A section for each scene, size and combination of settings, a row for each method."""
+def tables(study: Study, lines: list[Line], width: int | None) -> Sequence[Table]:
+    """Return a table for each scene and combination of settings, for a terminal so wide; None is any width."""
+    parts: dict[tuple[str, str], list[Line]] = {}
+    for line in lines:
+        parts.setdefault((line.scene, line.settings), []).append(line)
     verified = all(line.verified for line in lines)
-    saved = f"\n{terms.SAVED} are shadow rays {terms.MEANINGS[terms.SAVED]}" * (terms.SAVED not in left)
-    caption = (
-        f"saved against {REFERENCE}, certificates included; times are processor time of one thread"
-        + (", with verifying" if verified else "; verify = true counts wrong answers")
-        + saved
-    )
-    table = titled(printable(title), caption)
-    settings = where and any(line.settings for line in lines)
-    for heading in (*(("scene", "size") if where else ()), *(["settings"] if settings else []), "method"):
-        table.add_column(heading, no_wrap=heading != "settings")
-    columns = [(heading, cell) for heading, cell in COLUMNS if heading not in left and (verified or heading != "wrong")]
-    for heading, _ in columns:
-        table.add_column(heading, justify="right", no_wrap=True)
-    before: tuple[str, ...] = ("", "", "")
-    for number, line in enumerate(shown):
-        place = (printable(line.scene), f"{line.width}×{line.height}", line.settings)
-        names = 3 if settings else 2 if where else 0
-        cells = ["" if place[: i + 1] == before[: i + 1] else place[i] for i in range(names)]
-        next_ = shown[number + 1] if number + 1 < len(shown) else None
-        ends = next_ is not None and (next_.scene, next_.width, next_.height, next_.settings) != (
-            line.scene, line.width, line.height, line.settings,
-        )  # fmt: skip
-        table.add_row(*cells, line.method, *(cell(line) for _, cell in columns), end_section=ends)
-        before = place
-    return table
+    caption = "saved against none; verify = true counts wrong answers; sweep --help says what the columns mean"
+
+    def made(columns: Sequence[Column[Line]]) -> list[Table]:
+        found = [listed([*names, *columns], some, _title(*part), "", _size) for part, some in parts.items()]
+        found[-1].caption = caption
+        return found
+
+    def _title(scene: str, settings: str) -> str:
+        return printable(": ".join(filter(None, (study.title, ", ".join(filter(None, (scene, settings)))))))
+
+    names = [Column("size", "", _size), METHOD]
+    return fitted([column for column in COLUMNS if verified or column.heading != "wrong"], made, width)
+
+
+def _size(line: Line) -> str:
+    return f"{line.width}×{line.height}"

@@ -9,29 +9,16 @@ from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
 
-from rich.table import Table
-
 from tracer.experiments import zoom
-from tracer.experiments.zoom import Aim, Approach, Results, ZoomTest
-from tracer.frame import Settings
+from tracer.experiments.zoom import ZoomTest
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
-from tracer.scene.model import Scene
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
-from viewer.cli.console import Work, print_table, titled, working
+from viewer.cli.console import columns_help, listed, print_table, working
 from viewer.output import exports
-from viewer.output.reports import (
-    NEVER_WHOLE,
-    SUMMARY,
-    WRONG_PIXELS,
-    happenings,
-    modes_in_words,
-    never_whole,
-    summary,
-    zoom_title,
-)
+from viewer.output.reports import APPROACHES, NEVER_WHOLE, STEPS, happenings, never_whole, zoom_title
 from viewer.state.methods import NO_CULLING
 from viewer.state.plans import parse_factors
 from viewer.util.messages import say
@@ -40,7 +27,7 @@ WHICH = (
     "zoom: towards which primitive? give --pixel X,Y, for what a pixel of the picture shows, or --primitive N; the "
     "viewer's inspector shows its number, and so does the array 'primitive' of render --buffers"
 )
-EPILOG = """\
+EPILOG = f"""\
 examples:
   shadowcull zoom figure4 --primitive 0 --size 128x128 --factors 4,64 --plot figure4.png
   shadowcull zoom kitchen.aff --frame 100 --primitive 15548 --size 256x256 --ratio 0.9 --factors 4,64
@@ -48,10 +35,11 @@ examples:
 
 The camera moves straight towards the primitive; the first frames stay in place until the modes settle. The primitive
 is culled by what its few pixels met from afar, until it covers more pixels than the zoom factor times its highest
-pixel count. Every culled shadow ray is verified, and a pixel with a wrong answer is a wrong pixel: wrong_of_primitive
-counts those of the primitive, wrong those of the whole picture. Ctrl-C keeps the finished frames; the exit code is
-then 130.
-"""
+pixel count. Every culled shadow ray is verified, and a pixel with a wrong answer is a wrong pixel: in the files
+wrong_of_primitive counts those of the primitive, wrong those of the whole picture. Ctrl-C keeps the finished frames;
+the exit code is then 130.
+
+{columns_help(STEPS)}"""
 
 
 def parser() -> Parser:
@@ -97,48 +85,21 @@ def run(given: Namespace) -> int:
             zoom.check_primitive(scene, given.primitive)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, zoom.METHOD)
         world = World(scene, time, settings.accelerator, work.progress)
-        start = _aim(scene, settings, world, time, given, work)
+        rays = replace(settings, method=NO_CULLING, depth=0, verify=False)  # the primary ones alone
+        frame = Renderer(scene, rays, world=world).render(time, given.camera, work.cancelled)
+        primitive = zoom.primitive_at(frame, *given.pixel) if given.pixel is not None else given.primitive
+        start = zoom.aim(frame, primitive)
         test = ZoomTest(scene, settings, start, given.factors, given.steps, given.ratio)
         results = work.perform(test, world)
         if not test.whole:
             work.note(f"cancelled after {test.traced} of {test.frames} frames; the tables are of these")
         failures = exports.write_files(results, wanted)
     for approach in results.approaches:
-        print_table(_steps_table(approach))
-    print_table(_summary_table(results))
+        print_table(listed(STEPS, happenings(approach), f"zoom factor {approach.factor:g}"))
+    caption = "wrong pixels: those of this primitive\nculled, dynamic only: shares of the shadow rays due"
+    print_table(listed(APPROACHES, results.approaches, zoom_title(results), caption))
     if never_whole(results):
         say(f"primitive {results.primitive}: {NEVER_WHOLE}")
     if failures:
         raise OSError("; ".join(failures))
     return 0 if test.whole else INTERRUPTED
-
-
-def _aim(scene: Scene, settings: Settings, world: World, time: float, given: Namespace, work: Work) -> Aim:
-    """Where to start from, seen in a picture of the primary rays alone."""
-    look = replace(settings, method=NO_CULLING, depth=0, verify=False)
-    frame = Renderer(scene, look, world=world).render(time, given.camera, work.cancelled)
-    if given.pixel is not None:
-        return zoom.aim(frame, zoom.primitive_at(frame, *given.pixel))
-    return zoom.aim(frame, given.primitive)
-
-
-def _steps_table(approach: Approach) -> Table:
-    table = titled(f"zoom factor {approach.factor:g}", f"wrong: {WRONG_PIXELS}; in picture: those of the whole picture")
-    for heading in ("step", "distance", "pixels", "highest", "wrong", "in picture"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("modes from there on")
-    for step in happenings(approach):
-        numbers = (step.pixels, step.highest, step.wrong_of_primitive, step.wrong)
-        modes = modes_in_words(step.changes)
-        table.add_row(str(step.number), f"{step.distance:.4g}", *(f"{number:,}" for number in numbers), modes)
-    return table
-
-
-def _summary_table(results: Results) -> Table:
-    caption = "wrong pixels: those of this primitive\nculled, dynamic only: shares of the shadow rays due"
-    table = titled(zoom_title(results), caption)
-    for heading in SUMMARY:
-        table.add_column(heading)
-    for approach in results.approaches:
-        table.add_row(*summary(approach))
-    return table

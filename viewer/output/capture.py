@@ -129,22 +129,21 @@ def save(pixels: NDArray[np.uint8], text: str, folder: Path, name: str) -> Path:
 
 
 def read(path: Path) -> ViewState:
-    """Return the state that a capture carries; raises CaptureError."""
-    return state_of(read_data(path), path)
+    """Return the state that a picture carries; raises CaptureError."""
+    return _restored(path, read_data(path))
 
 
 def read_camera(path: Path) -> tuple[float, Camera]:
-    """Return the time and the camera of a capture; raises CaptureError."""
+    """Return the time and the camera of a picture; raises CaptureError."""
     data = read_data(path)
-    state = state_of(data, path)
+    state = _restored(path, data)
     try:
         return state.time, state.camera or Camera.from_json(data.get("camera") or data["state"]["camera"])
     except (ValueError, KeyError, TypeError) as error:
         raise CaptureError(f"{path}: cannot be restored: {error}") from None
 
 
-def state_of(data: Mapping[str, Any], path: Path) -> ViewState:
-    """Return the state in what a capture carries; raises CaptureError."""
+def _restored(path: Path, data: Mapping[str, Any]) -> ViewState:
     try:
         return codec.picture_from_json(data)
     except ValueError as error:
@@ -170,8 +169,8 @@ def read_data(path: Path) -> dict[str, Any]:
         raise CaptureError(f"{path}: a picture, but not one saved by Shadowcull")
     try:
         data = json.loads(text)
+        if not isinstance(data, dict):
+            raise ValueError("no saved state in it")
     except (ValueError, RecursionError) as error:
         raise CaptureError(f"{path}: cannot be restored: {error}") from None
-    if not isinstance(data, dict):
-        raise CaptureError(f"{path}: cannot be restored: no saved state in it")
     return data

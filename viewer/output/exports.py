@@ -9,12 +9,13 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import threading
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ from tracer.experiments import experiment, lamp_experiment, zoom
 from tracer.version import program_version
 from viewer.output import reports
 from viewer.state.scene_rows import COLUMNS, Table, Values
-from viewer.util.files import check_outputs, write_each, write_new, write_text, write_whole
+from viewer.util.files import check_writable, whole_file, write_new, write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -59,22 +60,18 @@ def write_json(path: Path, figures: Mapping[str, Any]) -> None:
 
 def write_film(film: Filmstrip, results: zoom.Results, path: Path) -> None:
     """Write the filmstrip of a zoom test, as a picture; raises as `write`."""
+    from viewer.output import figures
 
-    def draw() -> Figure:
-        from viewer.output.run_figures import film_figure
-
-        return film_figure(film, results)
-
-    _plot(draw, path)
+    _plot(lambda: figures.film_figure(film, results), path)
 
 
 def _figure(results: Results) -> Figure:
-    from viewer.output import run_figures  # loads matplotlib
+    from viewer.output import figures  # loads matplotlib
 
     if isinstance(results, zoom.Results):
-        return run_figures.zoom_figure(results)
+        return figures.zoom_figure(results)
     if isinstance(results, experiment.Results):
-        return run_figures.savings_figure(results, bool(results.settings.get("verify")))
+        return figures.savings_figure(results, bool(results.settings.get("verify")))
     raise ValueError("there is no plot of several kinds of lamps")
 
 
@@ -88,27 +85,35 @@ def _plot(draw: Callable[[], Figure], path: Path) -> None:
 def wanted_files(options: Namespace) -> dict[str, Path]:
     """Return the files of a command's options, by kind; raises ValueError or OSError where they cannot all be
     written."""
-    wanted = {kind: getattr(options, kind) for kind in ENDINGS.values()}
-    if wanted["plot"] is not None:
+    wanted = {kind: path for kind in ENDINGS.values() if (path := getattr(options, kind)) is not None}
+    if "plot" in wanted:
         from viewer.output import figures
 
         figures.check_ending(wanted["plot"])
-    check_outputs({f"--{kind}": path for kind, path in wanted.items()})
-    return {kind: path for kind, path in wanted.items() if path is not None}
+    for path in wanted.values():
+        check_writable(path)
+    if len({os.path.realpath(path) for path in wanted.values()}) < len(wanted):
+        raise ValueError(f"{', '.join(f'--{kind}' for kind in wanted)}: give each a file of its own")
+    return wanted
 
 
 def write_files(results: Results, wanted: Mapping[str, Path]) -> list[str]:
-    """Write each kind of file that is wanted; returns why some could not be."""
-    return write_each(lambda kind=kind, path=path: write(results, path, kind) for kind, path in wanted.items())  # type: ignore[misc]
+    """Write each kind of file that is wanted; returns why some could not be, which take no others along."""
+    failures = []
+    for kind, path in wanted.items():
+        try:
+            write(results, path, kind)
+        except (OSError, ValueError) as error:
+            failures.append(str(error))
+    return failures
 
 
 def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], now: datetime | None = None) -> Path:
     """Let `write` make a new file, `name` with date, time and ending, in a folder that is made if need be; its path.
 
     A name that is taken gets a number.  Raises OSError in one line, and what `write` raises; then no file is left."""
-    stem = f"{name}-{now or datetime.now():%Y-%m-%d-%H-%M-%S}"
     try:
-        return write_new(folder, stem, ending, write)
+        return write_new(folder, f"{name}-{now or datetime.now():%Y-%m-%d-%H-%M-%S}", ending, write)
     except OSError as error:
         raise OSError(f"nothing saved: {error}") from None
 
@@ -118,30 +123,27 @@ def save(folder: Path, name: str, ending: str, write: Callable[[Path], None], no
 
 def write_csv(path: Path, headings: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """Write a table, row by row, as there may be millions; raises OSError in one line."""
-
-    def write(file: BinaryIO) -> None:
+    with whole_file(path) as (_, file):
         text = io.TextIOWrapper(file, "utf-8", newline="")
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(headings)
         writer.writerows(rows)
         text.detach()
 
-    write_whole(path, write)
-
 
 def write_rows(table: Table, rows: NDArray[np.int32], path: Path) -> None:
     """Write these rows of a table of the scene, in their order, under its columns' titles; what is not known is empty.
 
     Raises OSError in one line."""
-    columns = [(column.title, table.columns.get(column.name)) for column in COLUMNS[table.level]]
-    known = [(title, values) for title, values in columns if values is not None]
+    columns = ((column.title, table.columns.get(column.name)) for column in COLUMNS[table.level])
+    known = {title: values for title, values in columns if values is not None}
 
     def cells() -> Iterator[tuple[str, ...]]:
         for start in range(0, len(rows), _AT_ONCE):
             some = rows[start : start + _AT_ONCE]
-            yield from zip(*(_cells(values, some) for _, values in known), strict=True)
+            yield from zip(*(_cells(values, some) for values in known.values()), strict=True)
 
-    write_csv(path, [title for title, _ in known], cells())
+    write_csv(path, list(known), cells())
 
 
 def _cells(values: Values, rows: NDArray[np.int32]) -> list[str]:

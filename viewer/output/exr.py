@@ -20,7 +20,6 @@ MISS = np.uint32(0xFFFFFFFF)
 """In a channel of whole numbers: nothing is there."""
 _AXES = {"color": "RGB", "reference": "RGB", "normal": "XYZ"}
 _NAMES = {"color": "", "normal": "N.", "depth": "Z"}
-_HALVES = ("color", "reference", "normal")
 
 
 def check() -> None:
@@ -32,21 +31,19 @@ def check() -> None:
 
 
 def channels(frame: Frame, half: bool = False) -> dict[str, NDArray[Any]]:
-    """(h, w) arrays by the names of channels, float32, float16 where `half`, or uint32."""
+    """Return (h, w) arrays by the names of channels, float32, float16 where `half`, or uint32."""
     found: dict[str, NDArray[Any]] = {}
+    kind = np.float16 if half else np.float32
     for name, array in (buffers(frame) | {"normal": frame.normal}).items():
-        kind = np.float16 if half and name in _HALVES else np.float32
         if name in _AXES:
             for axis, letter in enumerate(_AXES[name]):
                 found[f"{_NAMES.get(name, name + '.')}{letter}"] = array[..., axis].astype(kind)
         elif array.ndim == 3:
-            for light in range(min(array.shape[-1], MOST_LIGHTS)):
-                found[f"{name}.{light}"] = _whole(array[..., light])
-        elif array.dtype.kind == "f":
-            found[_NAMES.get(name, name)] = array.astype(np.float32)
+            found |= {f"{name}.{light}": array[..., light] for light in range(min(array.shape[-1], MOST_LIGHTS))}
         else:
-            found[name] = _whole(array)
-    return {name: np.ascontiguousarray(array) for name, array in found.items()}
+            found[_NAMES.get(name, name)] = array
+    whole = {name: _whole(array) for name, array in found.items() if array.dtype.kind != "f"}
+    return {name: np.ascontiguousarray(array) for name, array in (found | whole).items()}
 
 
 def _whole(array: NDArray[Any]) -> NDArray[np.uint32]:
@@ -93,26 +90,15 @@ def read(path: Path) -> tuple[NDArray[Any], dict[str, Any]]:
     return color, data
 
 
-def buffers(frame: Frame) -> dict[str, np.ndarray]:
-    """The arrays of `--buffers`, by name: `lit` and `due` of a frame that was rendered with `record_lights`.
+def buffers(frame: Frame) -> dict[str, NDArray[Any]]:
+    """Return the arrays of `--buffers`, by name: those that the frame has recorded.
 
-    A verified frame has `reference` and `wrong` as well, one with certificates `certificate`, and one that recorded
-    its work `saved`, `cost` and `due_rays`."""
-    arrays: dict[str, np.ndarray] = {
-        "color": frame.color,
-        "depth": frame.depth,
-        "primitive": frame.primitive,
-        "cell": frame.cell,
-        "occlusion_mode": frame.occlusion_mode,
-        "shadow_mode": frame.shadow_mode,
-    }
-    if frame.lit is not None and frame.due is not None:
-        arrays |= {"lit": frame.lit, "due": frame.due}
-    if frame.reference is not None and frame.wrong is not None:
-        arrays |= {"reference": frame.reference, "wrong": frame.wrong}
+    A verified frame has `reference` and `wrong`, one with certificates `certificate`, and one that recorded its work
+    `saved`, `cost` and `due_rays`."""
+    names = ("color", "depth", "primitive", "cell", "occlusion_mode", "shadow_mode", "lit", "due", "reference", "wrong",
+             "saved", "cost", "due_rays")  # fmt: skip
+    arrays = {name: array for name in names if (array := getattr(frame, name)) is not None}
     if frame.certificates is not None:
         planes = [modes.shadow_mode(frame.certificates, light) for light in range(frame.lights)]
         arrays["certificate"] = np.stack(planes, axis=-1) if planes else np.empty((*frame.primitive.shape, 0), np.uint8)
-    work = {"saved": frame.saved, "cost": frame.cost, "due_rays": frame.due_rays}
-    arrays |= {name: array for name, array in work.items() if array is not None}
     return arrays

@@ -1,22 +1,31 @@
-"""What all figures for slides and papers have in common: style, title, curves and labels, and files.
+"""Figures for slides and papers: of experiments, zoom tests and sweeps, and what all figures have in common.
 
-Importing this loads matplotlib, which takes a second: import it where a figure is wanted.  Nothing
-of a user's own matplotlib settings shows, and the same data give the same file.
+Importing this loads matplotlib, which takes a second: import it where a figure is wanted.  Nothing of a user's own
+matplotlib settings shows, and the same data give the same file.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator, PercentFormatter
 
+from tracer.experiments import zoom
+from tracer.experiments.experiment import REFERENCE, Results, Row, table
+from viewer.output.filmstrip import Filmstrip, Shot
+from viewer.output.reports import NEVER_WHOLE, WRONG_PIXELS, experiment_title, happenings, never_whole, zoom_title
 from viewer.util.files import write_whole
+from viewer.util.numbers import saved
+
+if TYPE_CHECKING:  # this needs pyarrow
+    from tracer.experiments.sweep_summary import Line
 
 ENDINGS = (".png", ".svg", ".pdf")
 # Okabe and Ito's colours, those that read well as letters first; in greys, dashes and marks distinguish methods.
@@ -86,32 +95,221 @@ def look(number: int, mark: bool = True) -> dict[str, Any]:
     return found | ({"marker": MARKS[number % len(MARKS)]} if mark else {})
 
 
-def label_right(panel: Axes, labels: Sequence[tuple[float, str, str]], room: float) -> None:
-    """Write labels (height, text, colour) beside a panel, at their heights where that leaves each other room.
-
-    `room` is the part of the panel's height that a label takes."""
-    low, high = panel.get_ylim()
-    heights = spread([height for height, _, _ in labels], room * (high - low), low, high)
-    beside = panel.get_yaxis_transform()
-    for (_, text, color), height in zip(labels, heights):
-        panel.annotate(text, (1.0, height), (8, 0), beside, "offset points", va="center", color=color)
+def _beside(panel: Axes) -> None:
+    """Name a panel's curves at its right."""
+    panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), borderaxespad=0.0, labelspacing=0.8)
 
 
-def spread(heights: Sequence[float], gap: float, low: float, high: float) -> list[float]:
-    """Move heights as little as need be to lie `gap` apart, in their order, and half a gap inside the range.
+# --- experiments -----------------------------------------------------------------------------------
 
-    Where so many do not fit, they divide the range evenly.
-    """
-    order = np.argsort(heights, kind="stable")
-    gap = min(gap, (high - low) / max(len(heights), 1))
-    # From below each at least a gap above the last, then from above each at most a gap below the next.
-    moved = np.maximum(np.array(heights, np.float64)[order], low + gap / 2)
-    for i in range(1, len(moved)):
-        moved[i] = max(moved[i], moved[i - 1] + gap)
-    limit = high - gap / 2
-    for i in reversed(range(len(moved))):
-        moved[i] = limit = min(moved[i], limit)
-        limit -= gap
-    placed = np.empty(len(moved))
-    placed[order] = moved
-    return [float(height) for height in placed]
+_WORKS = (("steps", "Traversal steps\nsaved"), ("tests", "Intersection tests\nsaved"))
+_FEW = 40  # frames up to which each has a dot
+
+
+@styled
+def savings_figure(results: Results, verified: bool) -> Figure:
+    """Draw the part of the shadow rays' work that each method saves against the reference, frame by frame.
+
+    One curve per method for traversal steps and one for intersection tests, each with its average and its maximum;
+    where `verified`, the wrong answers of each frame below them, or that there are none.  Raises ValueError where there
+    is no frame, or no method beside the reference."""
+    rows = [row for row in table(results) if row.method != REFERENCE]
+    if not rows:
+        raise ValueError("there is nothing to plot: no frame, or no method to compare with the reference")
+    any_wrong = any(row.wrong for row in rows)
+    checked = ("" if any_wrong else ", no wrong answer") if verified else ", answers not verified"
+    figure = page(f"Work of shadow rays saved by culling\n{experiment_title(results)}{checked}")
+    heights = [3.0, 3.0, 1.6] if verified and any_wrong else [1.0, 1.0]
+    panels: Sequence[Axes] = figure.subplots(len(heights), sharex=True, gridspec_kw={"height_ratios": heights})
+    for panel, (work, label) in zip(panels, _WORKS):
+        for number, row in enumerate(rows):
+            _draw_savings(panel, results, row, work, number)
+        panel.set_ylim(min(0.0, panel.get_ylim()[0]), max(0.05, panel.get_ylim()[1]))
+        panel.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
+        panel.set_ylabel(label)
+    for panel in panels[2:]:
+        for number, row in enumerate(rows):
+            _draw_curve(panel, results, results.methods[row.method]["wrong"], number,
+                        f"{row.method}, {row.wrong:,} ({row.wrong_part:.3%})")  # fmt: skip
+        panel.set_ylim(bottom=0.0)
+        panel.yaxis.set_major_locator(MaxNLocator(3, integer=True))
+        panel.yaxis.set_major_formatter("{x:,.0f}")
+        panel.set_ylabel("Wrong\nanswers")
+    for panel in panels:
+        _beside(panel)
+    panels[-1].set_xlabel("Frame")
+    panels[-1].xaxis.set_major_locator(MaxNLocator(steps=[1, 2, 5, 10], integer=True, min_n_ticks=1))
+    figure.align_ylabels(panels)
+    return figure
+
+
+def _draw_savings(panel: Axes, results: Results, row: Row, work: str, number: int) -> None:
+    """A curve, with its average and its maximum, which are those of the table."""
+    average, most, frame = (getattr(row, name.format(work)) for name in ("average_{}", "most_{}", "most_{}_frame"))
+    label = f"{row.method}, average {saved(average)}\nmost {saved(most)}, frame {frame}"
+    color = _draw_curve(panel, results, results.reductions(row.method, work), number, label)
+    panel.axhline(average, linewidth=1.0, color=color, linestyle=DASHES[number % len(DASHES)])
+    panel.plot([frame], [most], MARKS[number % len(MARKS)], color=color, markersize=11, mec="white", zorder=4)
+
+
+def _draw_curve(panel: Axes, results: Results, values: Sequence[float] | np.ndarray, number: int, label: str) -> str:
+    """One value per frame, in the look of the method of this number; returns its colour."""
+    dot = "." if len(results.frames) <= _FEW else ""
+    (drawn,) = panel.plot(results.frames, values, marker=dot, markersize=9, label=label, **look(number, mark=False))
+    return str(drawn.get_color())
+
+
+# --- zoom tests ------------------------------------------------------------------------------------
+
+
+@styled
+def zoom_figure(results: zoom.Results) -> Figure:
+    """Draw a zoom test over its steps: the primitive's pixels on a logarithmic scale, and for each factor the count
+    past which it is examined again, marks where its modes change, and below its pixels with wrong shadows.
+
+    Raises ValueError where there is no step."""
+    approaches = [approach for approach in results.approaches if approach.steps]
+    if not approaches:
+        raise ValueError("there is nothing to plot: no step")
+    never = f"\n{NEVER_WHOLE.capitalize()}" * never_whole(results)
+    figure = page(f"A primitive approached step by step, and its shadows\n{zoom_title(results)}{never}")
+    counts, wrong = figure.subplots(2, sharex=True, gridspec_kw={"height_ratios": [3.0, 1.6]})
+    longest = max(approaches, key=lambda approach: len(approach.steps))
+    pixels = [max(step.pixels, 0.5) for step in longest.steps]  # none is a half: a logarithmic scale has no 0
+    counts.plot([step.number for step in longest.steps], pixels, ".-", color="black", label="the primitive's pixels")
+    for place, approach in enumerate(approaches):
+        numbers, factor = [step.number for step in approach.steps], f"{approach.factor:g}"
+        limits = [approach.factor * step.highest or np.nan for step in approach.steps]
+        looks = look(place, mark=False)
+        counts.step(numbers, limits, where="post", label=f"{factor} × highest count", **looks)
+        changed = [step.number for step in approach.steps if step.changes]
+        marks = [max(approach.steps[number].pixels, 0.5) for number in changed]
+        mark = {"marker": MARKS[place % len(MARKS)], "color": looks["color"], "linestyle": "", "mec": "white"}
+        counts.plot(changed, marks, markersize=11, label=f"modes change, factor {factor}", **mark)
+        wrong.step(
+            numbers, [s.wrong_of_primitive for s in approach.steps], where="mid", label=f"factor {factor}", **looks
+        )
+    counts.set_yscale("log")
+    counts.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    counts.yaxis.set_major_formatter("{x:,.12g}")
+    counts.yaxis.set_minor_formatter(NullFormatter())
+    counts.set_ylabel("Pixels")
+    wrong.set_ylabel(WRONG_PIXELS.replace(" of", "\nof").capitalize())
+    wrong.set_ylim(bottom=0.0, top=1.08 * max(1, *(approach.most_wrong for approach in approaches)))
+    for axis in (wrong.xaxis, wrong.yaxis):
+        axis.set_major_locator(MaxNLocator(9 if axis is wrong.xaxis else 3, integer=True))
+    wrong.set_xlabel("Step")
+    for panel in (counts, wrong):
+        _beside(panel)
+    figure.align_ylabels((counts, wrong))
+    return figure
+
+
+COLUMNS = 8
+
+
+@styled
+def film_figure(film: Filmstrip, results: zoom.Results) -> Figure:
+    """Draw up to COLUMNS recorded pictures of each factor's way, as the paper's Figure 4.
+
+    The steps are the same for all: those where something happens first.
+
+    Raises ValueError where no picture was kept."""
+    approaches = [approach for approach in results.approaches if film.of(approach.factor)]
+    numbers = chosen_steps(results, sorted({shot.number for a in approaches for shot in film.of(a.factor)}))
+    if not numbers:
+        raise ValueError("there is nothing to draw: no step")
+    figure = page(zoom_title(results), (SIZE[0], 1.1 + 2.25 * len(approaches)))
+    panels = figure.subplots(len(approaches), len(numbers), squeeze=False)
+    for row, approach in zip(panels, approaches):
+        shots: dict[int, Shot] = {shot.number: shot for shot in film.of(approach.factor)}
+        steps = {step.number: step for step in approach.steps}
+        for panel, number in zip(row, numbers):
+            bare(panel)
+            if number not in shots or number not in steps:
+                panel.axis("off")
+                continue
+            panel.imshow(shots[number].pixels(), interpolation="nearest")
+            step = steps[number]
+            panel.set_title(f"step {number}", fontsize=12.0)
+            wrong = f"{step.wrong_of_primitive:,} wrong"
+            panel.set_xlabel(f"{step.pixels:,} px\n{wrong}", fontsize=11.0, color=COLORS[1] if step.wrong else "black")
+        row[0].set_ylabel(f"zoom factor {approach.factor:g}", fontsize=13.0)
+    return figure
+
+
+def chosen_steps(results: zoom.Results, kept: list[int]) -> list[int]:
+    """Return up to COLUMNS of the kept steps: first and last, where something happens, and between."""
+    if len(kept) <= COLUMNS:
+        return kept
+    happened = sorted({step.number for approach in results.approaches for step in happenings(approach)} & set(kept))
+    wanted = [kept[0], kept[-1], *happened]
+    even = [kept[round(i * (len(kept) - 1) / (COLUMNS - 1))] for i in range(COLUMNS)]
+    return sorted(list(dict.fromkeys([*wanted, *even]))[:COLUMNS])
+
+
+# --- sweeps ----------------------------------------------------------------------------------------
+
+MOST_PANELS = 6
+_ROWS: tuple[tuple[str, Callable[[Line], float]], ...] = (
+    (_WORKS[0][1], lambda line: line.steps),
+    (_WORKS[1][1], lambda line: line.tests),
+    ("Speed-up over none\n(processor time)", lambda line: line.speed_up),
+)
+
+
+@styled
+def sweep_figure(title: str, lines: Sequence[Line]) -> Figure:
+    """Draw a column of panels for each scene and combination of settings, with a curve for each method over sizes.
+
+    Raises ValueError where there is nothing to compare, or too much for one figure."""
+    drawn = [line for line in lines if line.method != REFERENCE and line.steps == line.steps]
+    if not drawn:
+        raise ValueError(f"there is nothing to plot: no frame by {REFERENCE} and by another method")
+    columns = list(dict.fromkeys((line.scene, line.settings) for line in drawn))
+    if len(columns) > MOST_PANELS:
+        raise ValueError(
+            f"{len(columns)} scenes and combinations of settings, more than the {MOST_PANELS} of one plot; "
+            "plot studies of fewer, or draw results.parquet by other means"
+        )
+    methods = list(dict.fromkeys(line.method for line in drawn))
+    frames = sum(line.frames for line in lines)
+    figure = page(f"{title}\n{frames:,} frames", (max(SIZE[0], 3.6 * len(columns) + 2.4), 9.0))
+    panels = figure.subplots(len(_ROWS), len(columns), squeeze=False, sharex="col", sharey="row")
+    for column, (scene, settings) in enumerate(columns):
+        mine = [line for line in drawn if (line.scene, line.settings) == (scene, settings)]
+        panels[0][column].set_title("\n".join(filter(None, (scene, settings))), fontsize=15.0)
+        for row, (_, value) in enumerate(_ROWS):
+            _draw_sizes(panels[row][column], mine, methods, value)
+        _name_sizes(panels[-1][column], mine)
+    for row, (label, _) in enumerate(_ROWS):
+        panels[row][0].set_ylabel(label)
+        if row < 2:
+            panels[row][0].yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
+    for panel in panels[-1]:
+        panel.axhline(1.0, color="black", linewidth=1.0)
+    handles, names = panels[0][0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside right upper")
+    figure.align_ylabels()
+    return figure
+
+
+def _draw_sizes(panel: Axes, lines: Sequence[Line], methods: Sequence[str], value: Callable[[Line], float]) -> None:
+    for number, method in enumerate(methods):
+        of_method = sorted((line for line in lines if line.method == method), key=_pixels)
+        sizes, values = [_pixels(line) for line in of_method], [value(line) for line in of_method]
+        panel.plot(sizes, values, label=method, markersize=8, **look(number))
+
+
+def _name_sizes(panel: Axes, lines: Sequence[Line]) -> None:
+    """Sizes on a scale of pixels, on which each step of a pyramid is as wide as the others."""
+    sizes = {_pixels(line): f"{line.width}×{line.height}" for line in lines}
+    panel.set_xscale("log", base=2)
+    panel.xaxis.set_minor_locator(NullLocator())
+    panel.set_xticks(list(sizes))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: sizes.get(round(x), "")))
+    panel.tick_params(axis="x", labelsize=12.0, labelrotation=30.0 if len(sizes) > 2 else 0.0)
+
+
+def _pixels(line: Line) -> int:
+    return line.width * line.height

@@ -32,14 +32,14 @@ class Shot:
     png: bytes
 
     def pixels(self) -> NDArray[np.uint8]:
-        """(height, width, 3), row 0 at the top."""
-        with Image.open(io.BytesIO(self.png), formats=("PNG",)) as image:
-            return np.asarray(image.convert("RGB"))
+        """Return (height, width, 3), row 0 at the top."""
+        return self.thumbnail(self.height)
 
     def thumbnail(self, height: int) -> NDArray[np.uint8]:
-        """The same, so many pixels high at most."""
+        """Return the same, so many pixels high at most."""
         with Image.open(io.BytesIO(self.png), formats=("PNG",)) as image:
-            image.thumbnail((4 * height, height), Image.Resampling.BOX)
+            if height < self.height:
+                image.thumbnail((4 * height, height), Image.Resampling.BOX)
             return np.asarray(image.convert("RGB"))
 
 
@@ -47,10 +47,9 @@ class Filmstrip:
     """Recorded on one thread while others look."""
 
     def __init__(self, most_bytes: int = MOST_BYTES, most_shots: int = MOST_SHOTS) -> None:
-        self._most = most_bytes, most_shots
+        self._most_bytes, self._most_shots = most_bytes, most_shots
         self._lock = threading.Lock()
-        self._shots: dict[tuple[float, int], Shot] = {}
-        self._bytes = 0
+        self._shots: list[Shot] = []
         self._every = 1
 
     def record(self, factor: float, number: int, frame: Frame) -> None:
@@ -59,22 +58,20 @@ class Filmstrip:
             return
         file = io.BytesIO()
         Image.fromarray(ringed(frame)).save(file, "PNG", compress_level=1)
-        shot = Shot(factor, number, frame.width, frame.height, file.getvalue())
         with self._lock:
-            self._shots[factor, number] = shot
-            self._bytes += len(shot.png)
-            while len(self._shots) > 1 and (self._bytes > self._most[0] or len(self._shots) > self._most[1]):
+            self._shots.append(Shot(factor, number, frame.width, frame.height, file.getvalue()))
+            while self._too_much() and any(shot.number for shot in self._shots):
                 self._every *= 2
-                self._shots = {at: kept for at, kept in self._shots.items() if at[1] % self._every == 0}
-                self._bytes = sum(len(kept.png) for kept in self._shots.values())
-                if self._every > 1 << 20:
-                    break
+                self._shots = [shot for shot in self._shots if shot.number % self._every == 0]
+
+    def _too_much(self) -> bool:
+        return len(self._shots) > self._most_shots or sum(len(shot.png) for shot in self._shots) > self._most_bytes
 
     def of(self, factor: float) -> list[Shot]:
-        """The pictures that are kept of the way with a zoom factor, in their order."""
+        """Return the pictures that are kept of the way with a zoom factor, in their order."""
         with self._lock:
-            return sorted((s for s in self._shots.values() if s.factor == factor), key=lambda shot: shot.number)
+            return sorted((s for s in self._shots if s.factor == factor), key=lambda shot: shot.number)
 
     def nearest(self, factor: float, number: int) -> Shot | None:
-        """The picture of a step, or else that of the nearest one that is kept."""
+        """Return the picture of a step, or else that of the nearest one that is kept."""
         return min(self.of(factor), key=lambda shot: abs(shot.number - number), default=None)

@@ -1,19 +1,41 @@
-"""Results of experiments and zoom tests in words and as rows, for tables, panels, plots and files alike."""
+"""Results of experiments, zoom tests and hunts as columns and in words, for panels, commands and files alike."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import astuple, fields
+from dataclasses import astuple, dataclass, fields
 from pathlib import Path
+from typing import Any, Generic, TypeVar
 
-from tracer.experiments import experiment, lamp_experiment, zoom
+from tracer.experiments import counterexample, experiment, lamp_experiment, zoom
+from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.experiment import REFERENCE, Row
-from tracer.experiments.lamp_experiment import LampResults, LampRow
+from tracer.experiments.lamp_experiment import CEILING, LampResults, LampRow
 from tracer.experiments.zoom import Approach, Change, Step
 from tracer.method import Method
+from tracer.scene.lights import number_of
+from tracer.scene.model import Scene
 from viewer.state import terms
+from viewer.util.messages import printable
 from viewer.util.numbers import memory, saved
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Column(Generic[T]):
+    """A column of a table: its heading, what that means, and what it says of a row; `wrong` says of which rows that is
+    bad, and `text` that it holds words.
+
+    Columns stand in the order in which they matter: where there is no room for all, the last are left out."""
+
+    heading: str
+    meaning: str
+    cell: Callable[[T], str]
+    wrong: Callable[[T], bool] = lambda row: False
+    text: bool = False
+
 
 # --- experiments -----------------------------------------------------------------------------------
 
@@ -28,33 +50,55 @@ def _speed_up(row: Row) -> str:
     return f"{row.speed_up:.2f}" + (f" ± {spread:.2f}" if math.isfinite(spread) else "")
 
 
-WRONG = "wrong answers (of rays due)"
-SPEED_UP = "speed-up over none, all frames"
-LINES: tuple[tuple[str, Callable[[Row], str]], ...] = (
-    ("shadow rays saved (of rays due)", _compared(lambda row: saved(row.saved_part))),
-    ("traversal steps saved, average", _compared(lambda row: saved(row.average_steps))),
-    ("  most (frame)", _compared(lambda row: f"{saved(row.most_steps)} ({row.most_steps_frame})")),
-    ("intersection tests saved, average", _compared(lambda row: saved(row.average_tests))),
-    ("  most (frame)", _compared(lambda row: f"{saved(row.most_tests)} ({row.most_tests_frame})")),
-    ("extra occlusion tests per pixel", lambda row: f"{row.extra_tests_per_pixel:.3f}"),
-    (WRONG, lambda row: f"{row.wrong:,} ({row.wrong_part:.3%})"),
-    ("time of a frame, median", lambda row: f"{1000.0 * row.frame_seconds:,.0f} ms"),
-    ("time of all frames", lambda row: f"{row.path_seconds:,.2f} s"),
-    ("  of it preparing", lambda row: f"{row.build_seconds:,.2f} s" if row.build_seconds >= 0.005 else ""),
-    (SPEED_UP, _compared(_speed_up)),
-    ("memory of the method", lambda row: memory(row.memory_bytes) if row.memory_bytes else ""),
-)
-"""The table's lines: what each is called, and what it says of a method."""
+METHOD: Column[Any] = Column("method", "which shadow rays are not traced", lambda row: row.method, text=True)
+SPEED_UP = Column("speed-up", "speed-up over none, all frames", _compared(_speed_up))
+WRONG: Column[Row] = Column(
+    "wrong", "wrong answers (of rays due)", lambda row: f"{row.wrong:,} ({row.wrong_part:.3%})",
+    wrong=lambda row: row.wrong > 0,
+)  # fmt: skip
+TABLE_1: tuple[Column[Row], ...] = (
+    SPEED_UP,
+    Column("rays saved", "shadow rays saved (of rays due)", _compared(lambda row: saved(row.saved_part))),
+    Column("steps saved", "traversal steps saved, average", _compared(lambda row: saved(row.average_steps))),
+    Column("tests saved", "intersection tests saved, average", _compared(lambda row: saved(row.average_tests))),
+    WRONG,
+    Column("most steps (frame)", "most traversal steps saved (frame)",
+           _compared(lambda row: f"{saved(row.most_steps)} ({row.most_steps_frame})")),
+    Column("most tests (frame)", "most intersection tests saved (frame)",
+           _compared(lambda row: f"{saved(row.most_tests)} ({row.most_tests_frame})")),
+    Column("extra / pixel", "extra occlusion tests per pixel", lambda row: f"{row.extra_tests_per_pixel:.3f}"),
+    Column("median frame", "time of a frame, median", lambda row: f"{1000.0 * row.frame_seconds:,.0f} ms"),
+    Column("all frames", "time of all frames", lambda row: f"{row.path_seconds:,.2f} s"),
+    Column("preparing", "  of it preparing",
+           lambda row: f"{row.build_seconds:,.2f} s" if row.build_seconds >= 0.005 else ""),
+    Column("memory", "memory of the method", lambda row: memory(row.memory_bytes) if row.memory_bytes else ""),
+)  # fmt: skip
+"""What the paper's Table 1 says of a method."""
 
 
-def lines(verified: bool) -> list[tuple[str, Callable[[Row], str]]]:
-    """Those that mean anything: wrong answers are counted only where frames were `verified`, and then traced rays that
-    are culled are in the times."""
-    return [line for line in LINES if line[0] != (SPEED_UP if verified else WRONG)]
+def table_1(verified: bool) -> list[Column[Row]]:
+    """Return the columns that mean anything: wrong answers are counted only where frames were `verified`, and then
+    traced rays that are culled are in the times."""
+    return [column for column in TABLE_1 if column is not (SPEED_UP if verified else WRONG)]
+
+
+LAMPS: tuple[Column[LampRow], ...] = (
+    METHOD,
+    Column("frame, median", "time of a frame", lambda row: f"{1000.0 * row.frame_seconds:,.1f} ms"),
+    Column("speed-up", f"over {REFERENCE}, all frames", lambda row: f"{row.speed_up:.2f}"),
+    Column("of free", f"of the speed-up of {CEILING}, for which shadow rays cost nothing",
+           lambda row: f"{row.share_of_free:.1%}"),
+    Column("saved", f"shadow rays {terms.MEANINGS[terms.SAVED]}",
+           lambda row: "" if row.method in (REFERENCE, CEILING) else f"{row.known:.1%}"),
+    Column("shadow rays", "due per frame", lambda row: f"{row.shadow_rays:,.0f}"),
+)  # fmt: skip
+
+PREPARING = 0.05
+"""The part of a method's time from which on it is worth a word that this was preparing."""
 
 
 def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
-    """What else the times depend on, in half sentences; `in_window` says that they were measured beside one."""
+    """Return what else the times depend on, in half sentences; `in_window` says that they were measured beside one."""
     settings = results.settings
     if settings.get("verify"):
         return ["times include verifying, which traces culled rays, too: no speed-up is told"]
@@ -70,52 +114,33 @@ def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
     return said
 
 
-PREPARING = 0.05
-"""The part of a method's time from which on it is worth a word that this was preparing."""
-
-QUICKER = 1.03
-"""Speed-up over the reference from which on a method is called quicker: less is within what clocks differ by."""
-SAVING = 0.0005  # part of the work that is worth a word: less is shown as 0.0%
-
-
 def leaders(rows: Sequence[Row], timed: bool = True) -> list[str]:
-    """Which exact method is the best of several in each respect, a line for each, or that none is better than the
-    reference; no lines where there is nothing to choose from.
+    """Return a line for each respect in which one of several exact methods is the best; the reference is among them.
 
-    Nothing is said of time unless frames were `timed` for what they are: one that is verified traces all rays."""
-    others = [row for row in rows if Method.parse(row.method).exact and not _measures_only(row.method)]
-    others = [row for row in others if row.method != REFERENCE]
-    if len(others) < 2:
+    Nothing is said of time unless frames were `timed` for what they are: one that is verified traces all rays.  Of time
+    a method is the best only by more than chance."""
+    exact = [row for row in rows if Method.parse(row.method).exact and not _only_measures(row.method)]
+    if len(exact) < 3:
         return []
-    culling = [row for row in others if row.average_steps or row.average_tests]  # else it is only chance
-    steps = _best(others, lambda row: row.average_steps, SAVING)
-    tests = _best(others, lambda row: row.average_tests, SAVING)
-    beyond_chance = [row for row in culling if row.speed_up - row.speed_up_spread > 1.0]
-    time = _best(beyond_chance, lambda row: row.speed_up, QUICKER)
-    none = f"{REFERENCE}; no other"
-    lines = [
-        "fewest steps, of exact methods: "
-        + (f"{steps.method} ({saved(steps.average_steps)} saved)" if steps else f"{none} saves any"),
-        "fewest tests, of exact methods: "
-        + (f"{tests.method} ({saved(tests.average_tests)} saved)" if tests else f"{none} saves any"),
-        "least time, of exact methods: "
-        + (f"{time.method} ({time.speed_up:.2f} times as fast as {REFERENCE})" if time else f"{none} is quicker"),
-    ]
-    return lines if timed else lines[:2]
+    # Of equals the first, which is the reference.
+    steps, tests, time = (
+        max(exact, key=lambda row: round(row.average_steps, 3)),
+        max(exact, key=lambda row: round(row.average_tests, 3)),
+        max(exact, key=lambda row: round(row.speed_up - row.speed_up_spread, 2)),
+    )
+    return [
+        f"fewest steps, of exact methods: {steps.method} ({saved(steps.average_steps)} saved)",
+        f"fewest tests, of exact methods: {tests.method} ({saved(tests.average_tests)} saved)",
+        f"least time, of exact methods: {time.method} ({time.speed_up:.2f} times as fast as {REFERENCE})",
+    ][: 3 if timed else 2]
 
 
-def _best(rows: Sequence[Row], figure: Callable[[Row], float], least: float) -> Row | None:
-    """The row with the largest figure; None where that is not worth naming."""
-    best = max(rows, key=figure, default=None)
-    return best if best is not None and figure(best) >= least else None
-
-
-def _measures_only(method: str) -> bool:
+def _only_measures(method: str) -> bool:
     return any(kind.measures for kind in Method.parse(method).kinds)
 
 
 def frames_in_words(results: experiment.Results) -> str:
-    """Which frames of which path there are, e.g. "frames 0 to 19 of 200" or "70 of 100 frames, stopped"."""
+    """Return which frames of which path there are, e.g. "frames 0 to 19 of 200" or "70 of 100 frames, stopped"."""
     done, path = len(results.frames), results.path_frames
     if results.planned < path:
         first, last = results.frames[0], results.frames[-1]
@@ -127,22 +152,42 @@ def frames_in_words(results: experiment.Results) -> str:
     return text + ", stopped" * results.stopped
 
 
+def experiment_title(results: experiment.Results) -> str:
+    """Return which experiment this is, in one line."""
+    width, height = results.size
+    return f"{printable(Path(results.scene).name)}, {width} × {height}, {frames_in_words(results)}"
+
+
 # --- zoom tests ------------------------------------------------------------------------------------
+
+WRONG_PIXELS = "wrong pixels of this primitive"
+NEVER_WHOLE = "never fully rendered, so it is never culled, and the zoom factor does not matter"
+
+
+def never_whole(results: zoom.Results) -> bool:
+    """Return whether NEVER_WHOLE applies to the primitive: nothing was tested then."""
+    return any(a.steps for a in results.approaches) and not any(a.seen_whole for a in results.approaches)
+
+
+def zoom_title(results: zoom.Results) -> str:
+    """Return which test this is, in one line."""
+    name, (width, height) = Path(results.scene).name, results.size
+    return f"{name}, {results.time:.3f} s, towards primitive {results.primitive}, {width} × {height}"
 
 
 def happenings(approach: Approach) -> list[Step]:
-    """The steps where something happens: a mode changes, or the primitive's wrong pixels become more or fewer."""
+    """Return the steps where a mode changes, or the primitive's wrong pixels become more or fewer."""
     wrong_before = [0, *(step.wrong_of_primitive for step in approach.steps)]
     return [s for s, wrong in zip(approach.steps, wrong_before) if s.changes or s.wrong_of_primitive != wrong]
 
 
 def changes_in_words(changes: Sequence[Change]) -> list[str]:
-    """What changes in a step, e.g. "lights 0, 2: init → non shadow"; lights that change alike are named together."""
+    """Say what changes, e.g. "lights 0, 2: init → non shadow"; lights that change alike are named together."""
     return [f"{who}{_spoken(before)} → {_spoken(after)}" for who, before, after in _gathered(changes)]
 
 
 def modes_in_words(changes: Sequence[Change]) -> str:
-    """The modes that are new in a step, shorter: "fully rendered, lights 0, 2: non shadow"."""
+    """Say which modes are new in a step, shorter: "fully rendered, lights 0, 2: non shadow"."""
     return ", ".join(f"{who}{_spoken(after)}" for who, _, after in _gathered(changes))
 
 
@@ -160,38 +205,60 @@ def _spoken(mode: str) -> str:
     return mode.replace("_", " ").lower()
 
 
-def zoom_title(results: zoom.Results) -> str:
-    """Which test this is, in one line."""
-    name, (width, height) = Path(results.scene).name, results.size
-    return f"{name}, {results.time:.3f} s, towards primitive {results.primitive}, {width} × {height}"
+STEPS: tuple[Column[Step], ...] = (
+    Column("step", "number of the step; the camera first stays where it is", lambda step: f"{step.number}"),
+    Column("pixels", "pixels that the primitive covers", lambda step: f"{step.pixels:,}"),
+    Column(
+        "wrong", WRONG_PIXELS, lambda step: f"{step.wrong_of_primitive:,}", lambda step: step.wrong_of_primitive > 0
+    ),
+    Column("modes from there on", "modes that change there", lambda step: modes_in_words(step.changes), text=True),
+    Column("in picture", "wrong pixels of the whole picture", lambda step: f"{step.wrong:,}"),
+    Column("highest", "highest pixel count so far", lambda step: f"{step.highest:,}"),
+    Column("distance", "from the camera to the primitive", lambda step: f"{step.distance:.4g}"),
+)
 
 
-NEVER_WHOLE = "never fully rendered, so it is never culled, and the zoom factor does not matter"
+def _share(approach: Approach, name: str) -> str:
+    return f"{sum(getattr(s, name) for s in approach.steps) / max(1, sum(s.due for s in approach.steps)):.1%}"
 
 
-def never_whole(results: zoom.Results) -> bool:
-    """Whether NEVER_WHOLE applies to the primitive: nothing was tested then."""
-    return any(a.steps for a in results.approaches) and not any(a.seen_whole for a in results.approaches)
+APPROACHES: tuple[Column[Approach], ...] = (
+    Column("factor", "zoom factor", lambda a: f"{a.factor:g}"),
+    Column("re-examined", "when the primitive is examined anew",
+           lambda a: f"step {', '.join(map(str, a.examined_anew))}" if a.examined_anew else "never", text=True),
+    Column("wrong pixels", WRONG_PIXELS,
+           lambda a: f"step {a.wrong_steps[0]} to {a.wrong_steps[-1]}" if a.wrong_steps else "none", text=True),
+    Column("most", f"most {WRONG_PIXELS}", lambda a: f"{a.most_wrong:,}"),
+    Column("at the end", f"{WRONG_PIXELS} in the last step",
+           lambda a: f"{a.steps[-1].wrong_of_primitive:,}" if a.steps else ""),
+    Column(terms.CULLED, "share of the shadow rays due", lambda a: _share(a, "culled")),
+    Column(terms.DYNAMIC_ONLY, "share of the shadow rays due", lambda a: _share(a, "dynamic_only")),
+)  # fmt: skip
 
 
-WRONG_PIXELS = "wrong pixels of this primitive"
-SUMMARY = ("factor", "re-examined", "wrong pixels", "most", "at the end", terms.CULLED, terms.DYNAMIC_ONLY)
+# --- hunts -----------------------------------------------------------------------------------------
 
 
-def summary(approach: Approach) -> tuple[str, ...]:
-    """What came of one factor, a cell for each heading of SUMMARY."""
-    anew, wrong = approach.examined_anew, approach.wrong_steps
-    due = max(1, sum(step.due for step in approach.steps))
-    culled, alone = (sum(getattr(step, name) for step in approach.steps) / due for name in ("culled", "dynamic_only"))
+def findings(scene: Scene, ranks: dict[int, int]) -> tuple[Column[Counterexample], ...]:
+    """Return the columns of findings in a scene; `ranks` by their `id`."""
+
+    def light(find: Counterexample) -> str:
+        return f"{number_of(scene.lights, find.light)}" + (f" (+{find.more_lights})" if find.more_lights else "")
+
     return (
-        f"{approach.factor:g}",
-        f"step {', '.join(map(str, anew))}" if anew else "never",
-        f"step {wrong[0]} to {wrong[-1]}" if wrong else "none",
-        f"{approach.most_wrong:,}",
-        f"{approach.steps[-1].wrong_of_primitive:,}" if approach.steps else "",
-        f"{culled:.1%}",
-        f"{alone:.1%}",
-    )
+        Column("#", "the worst first", lambda find: f"{ranks[id(find)]}"),
+        Column("off by", "difference of the colour from the right one, of 1", lambda find: f"{find.difference:.3f}"),
+        Column("pixel", "column and row, from the upper left", lambda find: f"{find.x}, {find.y}"),
+        Column("frame", "frame of the path, or the one that it is near",
+               lambda find: counterexample.frame_of(find, scene)),
+        Column("light", "light whose answer is wrong (+ others that are wrong in the same way)", light),
+        Column("primitive", "primitive at which the light is wrong: number and object",
+               lambda find: printable(counterexample.primitive_of(find, scene)), text=True),
+        Column("culled by", "mode that culling goes by", counterexample.verdict_of, text=True),
+        Column("truly", "what tracing the shadow ray says", lambda find: "blocked" if find.lit else "lit", text=True),
+        Column("learnt", "what taught the mode", lambda find: counterexample.taught_by(find, scene), text=True),
+        Column("wrong pixels", "wrong pixels of its picture", lambda find: f"{find.pixels:,}"),
+    )  # fmt: skip
 
 
 # --- tables for files -------------------------------------------------------------------------------

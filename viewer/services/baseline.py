@@ -14,10 +14,11 @@ from dataclasses import dataclass, replace
 
 from tracer.frame import Settings
 from tracer.geometry.accelerators import LAZY
+from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Cancelled
 from tracer.statistics import FrameStatistics
 from viewer.services import refinement
-from viewer.services.render_request import Traced, Traces
+from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
 from viewer.state.in_turn import InTurn, Spread
 from viewer.state.methods import NO_CULLING
@@ -75,11 +76,11 @@ class Rounds:
         self.subject = subject
         self.so_far = so_far or InTurn(subject.methods)
         self.why_not = ""
-        self._renderers: dict[str, Traces] = {}
+        self._renderers: dict[str, Renderer] = {}
         self._prepared: dict[str, int] = {}
         self._round: dict[str, FrameStatistics] = {}
 
-    def step(self, renderer: Traces, cancelled: Callable[[], bool]) -> bool:
+    def step(self, renderer: Renderer, cancelled: Callable[[], bool]) -> bool:
         """Trace one more frame, in the world of this renderer; returns whether more are to come.
 
         Raises Cancelled, and then the frame is traced again by the next step; all else that goes wrong ends it."""
@@ -98,7 +99,7 @@ class Rounds:
         """Whether no more is measured."""
         return self.so_far.settled or bool(self.why_not)
 
-    def _step(self, renderer: Traces, cancelled: Callable[[], bool]) -> bool:
+    def _step(self, renderer: Renderer, cancelled: Callable[[], bool]) -> bool:
         waiting = [method for method in self.subject.methods if self._prepared.get(method, 0) >= 0]
         if waiting:
             self._prepare(renderer, waiting[0], cancelled)
@@ -115,7 +116,7 @@ class Rounds:
         methods = self.subject.methods
         return methods if self.so_far.count % 2 == 0 else methods[::-1]
 
-    def _prepare(self, renderer: Traces, method: str, cancelled: Callable[[], bool]) -> None:
+    def _prepare(self, renderer: Renderer, method: str, cancelled: Callable[[], bool]) -> None:
         """A frame that does not count: until nothing is left to be made for the picture."""
         made = self._trace(renderer, method, cancelled, proves=True).certificates
         done = self._prepared.get(method, 0) + 1
@@ -123,7 +124,7 @@ class Rounds:
         self._prepared[method] = -1 if ready else done
 
     def _trace(
-        self, renderer: Traces, method: str, cancelled: Callable[[], bool], proves: bool = False
+        self, renderer: Renderer, method: str, cancelled: Callable[[], bool], proves: bool = False
     ) -> FrameStatistics:
         subject = self.subject
         if method not in self._renderers:

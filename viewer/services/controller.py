@@ -58,7 +58,7 @@ class Controller:
         self.session = session = Session(state=codec.recalled(preferences.state))
         self.notices = notices = Notices(wake)
         self.renderer = renderer = RenderThread(wake)
-        self.scheduler = scheduler = FrameScheduler(session, preferences, renderer, wake)
+        self.scheduler = scheduler = FrameScheduler(renderer, wake)
         self.history = FrameHistory(session)
         self.selection = selection = Selection(session, lambda: self.frame)
         self.captures = captures = CaptureService(session, preferences, notices, wake)
@@ -180,54 +180,30 @@ class Controller:
         cuts = traced is not None and traced.whole and self.scheduler.drawn_view is View.CUTS
         self.inspector.update(frame, not self.motion.is_animating, cuts)
 
-    def list_scene(self) -> None:
-        """Fill the table of what is in the scene, while it is seen."""
-        self.table.update(self.own_traced)
-
-    def record_light(self) -> None:
-        """Have the chosen light recorded where the view needs it, unless a run has the render thread."""
-        if self.runs.current is None:
-            self.scheduler.record_light()
-
-    def compile_method(self) -> None:
-        """Compile what the chosen method has of its own, the first time that it is chosen."""
-        settings, scene = self.session.settings, self.session.scene
-        if scene is not None:
-            self.loader.prepare(settings.method, len(scene.lights), settings.accelerator)
-
     def frame_inputs(self, size: tuple[int, int]) -> FrameInputs:
         """Return what decides how the next frame is traced, in a window that has room for so many pixels."""
+        session = self.session
         return FrameInputs(
-            size,
-            moving=self.motion.under_way,
-            run=self.runs.current,
-            edited=self.editing.at_work,
-            ready=self.loader.ready,
-            second=self.comparing.second_method,
+            session.state, session.scene, session.camera, size,
+            moving=self.motion.under_way, playing=session.playing, counting=session.counting, run=self.runs.current,
+            edited=self.editing.at_work, ready=self.loader.ready, second=self.comparing.second_method,
             focus=self.selection.hovered,
-        )
+        )  # fmt: skip
 
     def measure(self) -> None:
         """Measure in spare time how fast the picture is traced by the method and by none, while that is to be seen."""
-        scheduler, second = self.scheduler, self.comparing.second_method
+        second = self.comparing.second_method
         wanted = self.preferences.savings or bool(second)
-        busy = self.renderer.busy or scheduler.awaits or scheduler.adds_samples or scheduler.refines_lamps
-        busy = busy or self.loader.busy or self.runs.current is not None or self.editing.at_work or not wanted
+        busy = self.renderer.busy or self.loader.busy or self.runs.current is not None or self.editing.at_work
+        busy = busy or not self.scheduler.rests or self.scheduler.refines_lamps or not wanted
         self.baseline.update(self.traced, second, self.motion.is_animating, busy)
-
-    def keep_preferences(self) -> None:
-        """Save them soon after a change, while nothing moves."""
-        self.settings.note_method()
-        if not self.motion.is_animating:
-            self.settings.save_when_rested()
 
     def _fit_view(self) -> str:
         """Show the picture where the view has nothing to show in the scene that has just been opened; returns what is
         to be said of it, and of the method there."""
         session = self.session
         view, said = fitting_view(session.draw.view, session.settings, session.scene.lights if session.scene else ())
-        if view is not session.draw.view:
-            self.session.set_draw(view=view)
+        session.set_draw(view=view)
         return said
 
     def _show_again(self, arrival: Arrival) -> None:
@@ -299,7 +275,7 @@ class Controller:
             self.undo.begin_step(f"going to {self.bookmarks.all[index].name}")
             self.restore(state)
             if state.camera is not None:
-                self.motion.fly_to(state.camera, start)
+                self.motion.glide(state.camera, start)
 
     def next_bookmark(self, step: int) -> None:
         """Go to the next bookmark of the list, or with -1 to the one before; past the last comes the first."""

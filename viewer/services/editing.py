@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from dataclasses import replace
-from typing import cast
 
 from tracer.carry_modes import carry_modes
 from tracer.frame import Settings
@@ -19,7 +18,6 @@ from tracer.renderer import Renderer
 from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.model import Cancelled, Scene
 from tracer.scene.things import things
-from viewer.services.render_request import Traces
 from viewer.services.render_thread import RenderThread
 from viewer.state.comparison import Side
 from viewer.state.notices import Notices
@@ -77,9 +75,9 @@ class EditTask:
         self.found: tuple[Edited, Renderer] | None = None
         self.problem: Failure | None = None
 
-    def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
+    def work(self, renderer: Renderer, cancelled: Callable[[], bool]) -> None:
         try:
-            self.found = self._made(cast(Renderer, renderer), cancelled)
+            self.found = self._made(renderer, cancelled)
         except Cancelled:
             pass
         except Exception as problem:

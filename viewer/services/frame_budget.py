@@ -36,10 +36,6 @@ WEIGHT_OF_SPLIT = 0.05
 SMOOTHING = 0.4
 LAMP_SAMPLE_COST = 0.6
 """Of a pixel's cost by points, that each further sample of lamps adds until it has been observed."""
-MOVING_SAMPLES, FEWEST_SAMPLES = 4, 1
-"""Samples of lamps in motion, where there is time and where there is none."""
-LEAST_PART = 4
-"""Sixteenths of the pixels that there must be time for with the former."""
 STALLED = 10.0
 """Times what a frame should take, after which one alone is not believed."""
 PRIMARY, UNSHADED, SHADING = ("primary",), ("surfaces", "filling"), ("shading",)
@@ -75,15 +71,13 @@ class Cost:
         self._seen = [*self._seen[1 - MOST_OBSERVED :], (number, seconds)]
         numbers, taken = np.array(self._seen).T
         weights = WEIGHT_OF_OLDER ** np.arange(len(taken))[::-1]
-        before = self.fixed + self.each * numbers
+        before = self(numbers)
         scale = float((weights * taken * before).sum() / max((weights * before * before).sum(), 1e-30))
-        parts = scale * self.fixed, scale * self.each
         unit = max(float(numbers.mean()), 1.0)  # so that both unknowns are seconds
         rows = np.stack([np.ones_like(numbers), numbers / unit], axis=1)
-        weighted = rows * weights[:, None]
-        system = weighted.T @ rows + WEIGHT_OF_SPLIT * weights.sum() * np.eye(2)
-        known = weighted.T @ taken + WEIGHT_OF_SPLIT * weights.sum() * np.array([parts[0], parts[1] * unit])
-        fixed, each = np.maximum(np.linalg.solve(system, known), 0.0)
+        weighted, pull = rows * weights[:, None], WEIGHT_OF_SPLIT * weights.sum()
+        known = weighted.T @ taken + pull * scale * np.array([self.fixed, self.each * unit])
+        fixed, each = np.maximum(np.linalg.solve(weighted.T @ rows + pull * np.eye(2), known), 0.0)
         self.fixed, self.each = float(fixed), float(each) / unit
 
 
@@ -97,7 +91,6 @@ class FrameBudget:
         """Begin anew: another scene costs something else."""
         self._primary, self._unshaded = Cost(3e-3, 3e-8), Cost(1e-3, 3e-8)
         self._shading = {1: Cost(5e-3, 6e-7)}  # by samples of lamps
-        self._moving_samples = MOVING_SAMPLES
         self._other_phases = 0.0
         self._finest = 0.0  # pixels that the last plan shaded
         self._known, self._stalled, self._last_divisor = False, False, 1
@@ -139,14 +132,6 @@ class FrameBudget:
         more = (1.0 + LAMP_SAMPLE_COST * (lamp_samples - 1)) / (1.0 + LAMP_SAMPLE_COST * (near - 1))
         return Cost(self._shading[near].fixed, more * self._shading[near].each)
 
-    def moving_samples(self, width: int, height: int, seconds: float) -> int:
-        """Return the samples of lamps in motion, where a picture is to be shown so many seconds later.  The answer
-        changes only with some time to spare, as modes are lost with it."""
-        limit = LOWER_RESOLUTION_ABOVE if self._moving_samples == MOVING_SAMPLES else FINER_BELOW
-        fits = self.seconds(width * height, LEAST_PART, MOVING_SAMPLES) <= limit * seconds
-        self._moving_samples = MOVING_SAMPLES if fits else FEWEST_SAMPLES
-        return self._moving_samples
-
     def plan(
         self,
         width: int,
@@ -158,9 +143,9 @@ class FrameBudget:
     ) -> Plan:
         """Return how to begin a picture that is to be shown so many seconds later, and how to go on; at full resolution
         unless it may be a `coarse` one, and at once where nothing moves and the whole does not take long."""
-        divisor = self._divisor(width, height, seconds) if coarse else 1
         if not coarse and not playing and self.seconds(width * height, TURNS, lamp_samples) <= WHOLE_AT_ONCE_SECONDS:
             return AT_ONCE
+        divisor = self._divisor(width, height, seconds) if coarse else 1
         w, h = divided(width, height, divisor)
         for part in PARTS:
             shaded = w * h * part / TURNS
@@ -172,13 +157,11 @@ class FrameBudget:
 
     def _divisor(self, width: int, height: int, seconds: float) -> int:
         """Return the finest resolution whose primary rays fit into so many seconds."""
-        for divisor in range(1, LARGEST_DIVISOR):
+        for divisor in range(1, LARGEST_DIVISOR + 1):
             w, h = divided(width, height, divisor)
             limit = LOWER_RESOLUTION_ABOVE if divisor >= self._last_divisor else RAISE_RESOLUTION_BELOW
             if self._before_shading(w * h) <= limit * seconds:
                 break
-        else:
-            divisor = LARGEST_DIVISOR
         self._last_divisor = divisor
         return divisor
 

@@ -226,7 +226,7 @@ class FrameNavigator:
             width, height = target.size
             if target.size != self._scheduler.full_size:
                 self._session.set_pace(fixed_size=True, width=width, height=height)
-            self._scheduler.freeze(target.warmup)
+            self._scheduler.freeze(self._session.state, target.warmup)
         camera = self._session.camera
         self._wanted = (self._session.time, camera, target.point) if target.point is not None else None
 

@@ -1,30 +1,119 @@
-"""Hunts for counterexamples in the window: what to search next, and the way to what was found."""
+"""Hunts for counterexamples: what to search next in the window, the way to what was found, and what is kept of it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import json
+import shlex
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from tracer.experiments import hunt
+from tracer.experiments import counterexample, hunt
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.hunt import Hunt, Search
 from tracer.frame import Settings
 from tracer.geometry.world import World
 from tracer.scene.edits import NO_EDITS, Edits
-from tracer.scene.mesh_options import MeshOptions
+from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Scene
+from tracer.setting import settings_of
+from tracer.version import program_version
 from viewer.output import exports
-from viewer.services import comparison, counterexamples
+from viewer.output.commands import scene_word
+from viewer.output.comparison import Comparison, Crop
+from viewer.services import comparison
 from viewer.services.frame_history import FrameNavigator, JumpTarget
 from viewer.services.runs import FileRun, Runs, check_size
 from viewer.state import navigation
 from viewer.state.changes import as_options
+from viewer.state.methods import NO_CULLING
 from viewer.state.notices import Notices
 from viewer.state.pixels import around
 from viewer.state.plans import HuntPlan, frames_within
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
+from viewer.state.view_state import ViewState, Warmup
+from viewer.util.files import write_text
+
+# --- what is kept: a figure and a JSON for each counterexample, and one JSON with all --------------------
+
+ALL = "hunt.json"
+
+
+def check_folder(folder: Path) -> None:
+    """Make the folder; raises OSError, in one line, where that cannot be, or where a hunt has written to it already."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        taken = next((path.name for path in folder.iterdir() if path.name == ALL or path.match("find-*.*")), None)
+    except OSError as error:
+        raise OSError(f"{folder}: cannot write counterexamples there: {error.strerror or error}") from None
+    if taken is not None:
+        raise OSError(f"{folder}: has counterexamples already ({taken}); give another folder")
+
+
+def crop_of(find: Counterexample, size: tuple[int, int]) -> Crop:
+    """Return the surroundings of the pixel, inside the picture."""
+    width, height = (min(max(least, side // 8), side) for least, side in zip((24, 18), size, strict=True))
+    x = min(max(find.x - width // 2, 0), size[0] - width)
+    y = min(max(find.y - height // 2, 0), size[1] - height)
+    return Crop(x, y, width, height)
+
+
+def comparison_of(
+    find: Counterexample,
+    found: hunt.Results,
+    scene: Scene,
+    settings: Settings,
+    meshes: MeshOptions = AS_IN_FILE,
+    edits: Edits = NO_EDITS,
+) -> tuple[ViewState, Comparison]:
+    """Return the figure of a counterexample: the right picture and the method's, with the pixel's surroundings
+    enlarged."""
+    state = ViewState(
+        scene=str(Path(scene.path).absolute()),
+        time=find.time,
+        camera=find.seen_camera,
+        settings=replace(settings, method=found.method, verify=False, samples=1, modes=False),
+        warmup=Warmup(find.before),
+        meshes=meshes,
+        edits=edits,
+    )
+    methods, words = (NO_CULLING, found.method), " ".join(counterexample.in_words(find, scene))
+    shown = Comparison(methods, (crop_of(find, found.size),), ((find.x, find.y),), words)
+    return state, shown.checked(state.size)
+
+
+def save_json(
+    find: Counterexample, found: hunt.Results, scene: Scene, path: Path, of_scene: Sequence[str] = ()
+) -> None:
+    """Write all about a counterexample, with the command that explains it; `of_scene` are that command's options on how
+    the scene is read.  Raises OSError in one line."""
+    told = counterexample.to_json(find, scene) | {"size": list(found.size), "method": found.method}
+    told |= {"scene": found.scene, "settings": found.settings, "version": program_version()}
+    told["words"] = counterexample.in_words(find, scene)
+    told["explain"] = shlex.join([*_explaining(find, found, path.name), *of_scene])
+    write_text(path, json.dumps(told, indent=1))
+
+
+def save_all(found: hunt.Results, scene: Scene, folder: Path) -> None:
+    """Write one JSON with all counterexamples; raises OSError in one line."""
+    exports.write_json(folder / ALL, found.to_dict(scene))
+
+
+def _explaining(find: Counterexample, found: hunt.Results, before: str) -> list[str]:
+    """The words of the command that explains a counterexample; `before` is the file of the frames before it."""
+    width, height = found.size
+    words = ["shadowcull", "explain", scene_word(Path(found.scene)), f"--time={find.time!r}"]
+    words += ["--size", f"{width}x{height}", "--method", found.method, "--pixel", f"{find.x},{find.y}"]
+    if not find.own_camera:
+        words += ["--camera", json.dumps(find.camera.to_json())]
+    for one in settings_of(Settings):
+        if one.name in ("depth", "zoom_factor", "lamp_radius", "lamp_samples", "symmetric"):
+            words += one.words(found.settings.get(one.name, one.default))
+    return [*words, "--before", before, "--only", "wrong"]
+
+
+# --- in the window ------------------------------------------------------------------------------------
 
 
 class FigureRun(FileRun):
@@ -32,12 +121,13 @@ class FigureRun(FileRun):
 
     name = "figure"
 
-    def __init__(
-        self, scene: Scene, found: hunt.Results, find: Counterexample, settings: Settings, folder: Path,
-        meshes: MeshOptions, edits: Edits,
-    ) -> None:  # fmt: skip
-        self._found, self._find, self._folder = found, find, folder
-        self._figure = counterexamples.comparison_of(find, found, scene, settings, meshes, edits)
+    def __init__(self, find: Counterexample, hunt: Hunt, scene: Scene, session: Session, folder: Path) -> None:
+        assert hunt.results is not None
+        self._find, self._found, self._folder = find, hunt.results, folder
+        edits = session.edited.edits if session.edited is not None else NO_EDITS
+        self._state, self._figure = comparison_of(
+            find, self._found, scene, hunt.search.settings, session.meshes, edits
+        )  # fmt: skip
         super().__init__(scene, len(find.before) + 2)
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
@@ -48,12 +138,13 @@ class FigureRun(FileRun):
                 self.progressed(f"{method}, frame {done + 1} of {total}")
 
         def write(path: Path) -> None:
-            comparison.save(comparison.trace(scene, *self._figure, world, tell, cancel), path)
+            comparison.save(comparison.trace(scene, self._state, self._figure, world, tell, cancel), path)
 
         name = f"{Path(scene.path).stem}-find-{self._find.primitive}-{self._find.light}"
         self.output = exports.save(self._folder, name, ".png", write)
-        options = as_options(self._figure[0].edits)
-        counterexamples.save_json(self._find, self._found, scene, self.output.with_suffix(".json"), options)
+        save_json(
+            self._find, self._found, scene, self.output.with_suffix(".json"), as_options(self._state.edits)
+        )  # fmt: skip
         self.traced = self.frames
         yield self.output
 
@@ -63,12 +154,7 @@ class Hunts:
     that is looked at, by its place in the list."""
 
     def __init__(
-        self,
-        session: Session,
-        preferences: Preferences,
-        runs: Runs,
-        navigator: FrameNavigator,
-        notices: Notices,
+        self, session: Session, preferences: Preferences, runs: Runs, navigator: FrameNavigator, notices: Notices
     ) -> None:
         self._session, self._preferences, self._runs, self._navigator = session, preferences, runs, navigator
         self._notices = notices
@@ -91,23 +177,21 @@ class Hunts:
         """Begin to search what is planned, with the settings that are chosen now."""
 
         def make(scene: Scene) -> Hunt:
-            self.hunt, self.chosen = Hunt(scene, self._search(scene)), None
+            plan, (first, last) = self.plan, self.frames
+            check_size(plan.size)
+            times = [take.time for take in navigation.along_path(scene, first, last)][:: plan.step]
+            settings = replace(
+                self._session.settings, method=plan.method, width=plan.size[0], height=plan.size[1], samples=1,
+                certificate_seconds=float("inf"), verify=True,
+            ).validated()  # fmt: skip
+            search = Search(settings, times, None, plan.around, plan.radius, plan.seed, plan.keep)
+            self.hunt, self.chosen = Hunt(scene, search), None
             return self.hunt
 
         self._runs.start(make)
 
-    def _search(self, scene: Scene) -> Search:
-        plan, (first, last) = self.plan, self.frames
-        check_size(plan.size)
-        times = [take.time for take in navigation.along_path(scene, first, last)][:: plan.step]
-        settings = replace(
-            self._session.settings, method=plan.method, width=plan.size[0], height=plan.size[1], samples=1,
-            certificate_seconds=float("inf"), verify=True,
-        ).validated()  # fmt: skip
-        return Search(settings, times, None, plan.around, plan.radius, plan.seed, plan.keep)
-
     def find(self, number: int) -> Counterexample | None:
-        """A counterexample by its place in the list, if its scene is still open; else one line."""
+        """Return a counterexample by its place in the list, if its scene is still open; else one line is said."""
         hunt, found = self.hunt, self.found
         if hunt is None or found is None or not 0 <= number < len(found.finds) or self._runs.refuses():
             return None
@@ -126,18 +210,15 @@ class Hunts:
         settings, size = hunt.settings, (hunt.settings.width, hunt.settings.height)
         wanted = replace(settings, samples=self._session.settings.samples)
         state = replace(
-            self._session.state, time=find.time, camera=None if find.own_camera else find.camera, settings=wanted
-        ).with_draw(light=find.light)
+            self._session.state, time=find.time, camera=find.seen_camera, settings=wanted
+        ).with_draw(light=find.light)  # fmt: skip
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
         warmup = tuple((one.time, one.camera or scene.camera_at(one.time)) for one in find.before)
-        zoom = around(*point, size[0] / counterexamples.crop_of(find, size).width)
+        zoom = around(*point, size[0] / crop_of(find, size).width)
         self._navigator.go_to(JumpTarget(state, f"counterexample {number + 1}", size, point, zoom, warmup))
 
     def save_figure(self, number: int) -> None:
         """Trace and draw the figure of a counterexample, into the folder of the pictures."""
-        find, hunt, found = self.find(number), self.hunt, self.found
-        if find is None or hunt is None or found is None:
-            return
-        folder, meshes, edited = self._preferences.picture_folder, self._session.meshes, self._session.edited
-        edits = edited.edits if edited is not None else NO_EDITS
-        self._runs.start(lambda scene: FigureRun(scene, found, find, hunt.search.settings, folder, meshes, edits))
+        find, hunt, folder = self.find(number), self.hunt, self._preferences.picture_folder
+        if find is not None and hunt is not None:
+            self._runs.start(lambda scene: FigureRun(find, hunt, scene, self._session, folder))

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,15 +22,13 @@ from viewer.state.session import Session
 
 IDLE_AFTER = 0.25
 """Seconds after a movement by hand until nothing moves."""
-GLIDE_SECONDS = 0.35
 LONGEST_STEP = 0.25
 """Seconds, at most, by which time and a flown camera go on between two frames, however long the window slept."""
 
 Corner = Sequence[float]
 
 
-@dataclass(frozen=True)
-class _Glide:
+class _Glide(NamedTuple):
     """A camera on its way to another place, in so many seconds."""
 
     start: Camera
@@ -89,22 +87,16 @@ class Motion:
         """Bring time and camera to where they should be now; `shown` is the time of the newest whole picture."""
         now = time.monotonic()
         step, self._last = min(now - self._last, LONGEST_STEP), now
-        self._play(step, shown)
+        session, preferences = self._session, self._preferences
+        if session.playing and not session.pace.every_frame:
+            session.advance(step * preferences.playback_rate, preferences.loop)
+        elif session.playing and shown == session.time:  # this frame has been traced
+            session.advance_frame(preferences.loop)
         if self._glide is not None:
             t = (now - self._glide.began) / self._glide.seconds
-            self._session.change(camera=navigation.blend(self._glide.start, self._glide.end, t))
+            session.change(camera=navigation.blend(self._glide.start, self._glide.end, t))
             if t >= 1.0:
                 self._glide = None
-
-    def _play(self, step: float, shown: float | None) -> None:
-        """Go on in real time, or to the next frame once this one has been traced."""
-        session, preferences = self._session, self._preferences
-        if not session.playing:
-            return
-        if not session.pace.every_frame:
-            session.advance(step * preferences.playback_rate, preferences.loop)
-        elif shown == session.time:
-            session.advance_frame(preferences.loop)
 
     # --- the camera -------------------------------------------------------------------------------
 
@@ -127,15 +119,13 @@ class Motion:
         self._session.change(camera=camera)
         self.by_hand()
 
-    def glide(self, camera: Camera, start: Camera | None = None, seconds: float = GLIDE_SECONDS) -> None:
-        """Move the camera there in a moment's time, from where it is or from `start`."""
+    def glide(self, camera: Camera, start: Camera | None = None) -> None:
+        """Move the camera there from where it is or from `start`, for as long as the way is, so that the eye can
+        follow."""
         if not self._locked():
-            self._glide = _Glide(start or self._session.camera, camera, time.monotonic(), seconds)
-
-    def fly_to(self, camera: Camera, start: Camera | None = None) -> None:
-        """The same, for as long as the way is: a flight that the eye can follow."""
-        start = start or self._session.camera
-        self.glide(camera, start, navigation.flight_seconds(start, camera, self.pace))
+            start = start or self._session.camera
+            seconds = navigation.flight_seconds(start, camera, self.pace)
+            self._glide = _Glide(start, camera, time.monotonic(), seconds)
 
     def halt(self) -> None:
         """Leave the camera where it is."""

@@ -10,17 +10,18 @@ from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
 
-from viewer.services.render_request import Parts, RenderRequest, Traces
+from tracer.renderer import Renderer
+from viewer.services.render_request import Parts, RenderRequest
 
 
 class Pair:
     """A renderer and another beside it, which lives as long as the pair."""
 
-    def __init__(self, first: Traces) -> None:
+    def __init__(self, first: Renderer) -> None:
         self._first, self._second = first, first.beside()
         self._world = getattr(first, "world", None)
 
-    def is_of(self, renderer: Traces) -> bool:
+    def is_of(self, renderer: Renderer) -> bool:
         """Return whether it is the pair of this renderer, in the world that this one has now."""
         return renderer is self._first and getattr(renderer, "world", None) is self._world
 

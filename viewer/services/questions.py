@@ -21,13 +21,14 @@ _WRITTEN = "They are written already, and stay."
 @dataclass(frozen=True)
 class Question:
     """`answers` are names and what they do; the first changes nothing, and Escape chooses it.  `options` may be
-    ticked beside, which puts their names into `ticked`."""
+    ticked beside, which puts their names into `ticked`.  It is asked as long as `run`, if there is one, goes on."""
 
     title: str
     text: str
     answers: tuple[tuple[str, Callable[[], None]], ...]
     options: tuple[str, ...] = ()
     ticked: set[str] = field(default_factory=set)
+    run: Run | None = None
 
 
 class Questions:
@@ -65,6 +66,7 @@ class Questions:
             f"Stop the {run.name} and open {name}?",
             f"{_so_far(run)} {_KEPT if self._runs.exports_of(run) else _WRITTEN}",
             (("Keep running", _nothing), ("Stop and open", stop)),
+            run=run,
         )
         self._wake()
 
@@ -84,6 +86,7 @@ class Questions:
             f"Stop the {run.name} and quit?",
             f"{_so_far(run)} {_SAVED if saving else _WRITTEN}",
             (("Keep running", _nothing), *saving, ("Quit", leave)),
+            run=run,
         )
         self._wake()
 
@@ -110,7 +113,11 @@ class Questions:
         )
 
     def leave_when_saved(self) -> None:
-        """Quit when the results have been written that were to be saved; stay if they could not be."""
+        """Quit when the results have been written that were to be saved; stay if they could not be.
+
+        A question about a run that has ended meanwhile is none any more."""
+        if self.question is not None and self.question.run is not None and self.question.run.done:
+            self.drop()
         run = self._run
         if self._leave is None or run is None or not run.done:
             return

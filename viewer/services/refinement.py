@@ -6,8 +6,7 @@ has chosen them, as the method or as the view, more frames follow, until none ar
 into samples.
 
 Shadow modes are those of a lamp as it is sampled, and are dropped when the number of its samples changes.  So all
-frames of a motion have the same number, with which the frame that follows at rest begins as well; and each step takes
-four times as many samples as the one before, so that there are few of them.
+frames of a motion have the same number, which the first frame at rest has as well, and the next has all of them.
 """
 
 from __future__ import annotations
@@ -18,9 +17,7 @@ from tracer.frame import Settings
 from tracer.method import Method
 from tracer.scene.lights import Light, as_lamps
 from tracer.statistics import FrameStatistics
-from viewer.services.frame_budget import FrameBudget
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.state.session import Session
 from viewer.state.views import View
 
 MOST_LEARNING = 4
@@ -29,9 +26,7 @@ MOST_FRAMES = 40
 """Frames at idle, at most, in which certificates are made."""
 SECONDS = 0.4
 """That each of these may spend on certificates: the picture is there already, and a movement ends them at once."""
-FEWEST_LAMP_SAMPLES = 4
-"""Samples of a lamp in the first frame at rest, and in motion where there is time for them."""
-LAMP_SAMPLES_GROWTH = 4
+FIRST_LAMP_SAMPLES = 4
 MOST_RADII = 16
 """Radii of lamps whose samples are known at once."""
 OFFERED = (1, 4, 16, 64, 256)
@@ -39,52 +34,40 @@ OFFERED = (1, 4, 16, 64, 256)
 
 
 class Refinement:
-    """Decides, each time a whole picture has come, whether one more of the same view is worth tracing.  `ended_early`
-    says that none is to come though more certificates could be made."""
+    """Decides, each time a whole picture has come, whether one more of the same view is worth tracing.  `proves` says
+    that they follow to make certificates, and not only to learn modes, and `ended_early` that none is to come though
+    more certificates could be made."""
 
     def __init__(self) -> None:
-        self._considered: RenderRequest | None = None  # the last picture that was decided about
-        self._settled: RenderRequest | None = None  # the view that `_left` speaks of
-        self._left = 0  # frames of it that may still follow
-        self._proves = False  # whether they follow to make certificates, or else to learn modes
-        self._certificates_shown = False
-        self.ended_early = False
+        self.forget()
 
     def forget(self) -> None:
         """Start again: modes or certificates were lost, or the scene is another."""
-        self._considered = self._settled = None
-        self.ended_early = False
+        self._considered: tuple[RenderRequest, bool] | None = None  # what was decided about last
+        self._settled: RenderRequest | None = None  # the view that `_left` speaks of
+        self._left = 0  # frames of it that may still follow
+        self.proves = self.ended_early = False
 
     def wants_another(self, newest: Traced | None, view: View, keep_tracing: bool) -> bool:
         """Whether one more frame should follow the newest; true once for each."""
-        if newest is None:
+        if newest is None or not newest.whole:
             return False
-        shows, self._certificates_shown = self._certificates_shown, view is View.CERTIFICATE
-        chosen = _is_about_certificates(newest.request, View.COLOR)
-        if self._certificates_shown and not shows and newest.frame.statistics.certificates and not chosen:
-            self.forget()  # more can be made for this view to show
-        if not newest.whole or newest.request is self._considered:
+        request, statistics = newest.request, newest.frame.statistics
+        proves = _is_about_certificates(request, view)
+        if self._considered is not None and self._considered[0] is request and self._considered[1] >= proves:
             return False
-        self._considered = newest.request
-        refines = newest.request.divisor == 1
-        if refines and _view_of(newest.request) != self._settled:
-            self._settled = _view_of(newest.request)
-            self._proves = _is_about_certificates(newest.request, view)
-            self._left = MOST_FRAMES if self._proves else MOST_LEARNING
-        elif not _has_learnt(newest.frame.statistics, self._proves):
+        self._considered = request, proves
+        if request.divisor > 1:
+            return keep_tracing
+        if _view_of(request) != self._settled or proves > self.proves:
+            self._settled, self.proves = _view_of(request), proves
+            self._left = MOST_FRAMES if proves else MOST_LEARNING
+        elif not _has_learnt(statistics, self.proves):
             self._left = 0
-        makes = newest.frame.statistics.certificates > 0 and _is_about_certificates(newest.request, view)
-        another = keep_tracing or (refines and self._left > 0)
-        self.ended_early = makes and refines and not another
-        if not another:
-            return False
-        self._left -= 1
-        return True
-
-    @property
-    def proves(self) -> bool:
-        """Whether frames follow to make certificates, and not only to learn modes."""
-        return self._settled is not None and self._proves
+        another = keep_tracing or self._left > 0
+        self.ended_early = statistics.certificates > 0 and proves and not another
+        self._left -= another
+        return another
 
     @property
     def progress(self) -> tuple[int, int]:
@@ -117,62 +100,34 @@ def has_lamps(lights: tuple[Light, ...], settings: Settings) -> bool:
     return any(light.kind != "point" for light in as_lamps(lights, settings.lamp_radius, None))
 
 
-def first(most: int) -> int:
-    """Return the samples of the first frame at rest, of so many in the end."""
-    return most if most < 2 * FEWEST_LAMP_SAMPLES else FEWEST_LAMP_SAMPLES
-
-
-def after(samples: int, most: int) -> int:
-    """Return the samples of the frame after one with so many: the last step is skipped where it adds little."""
-    more = FEWEST_LAMP_SAMPLES
-    while more <= samples:
-        more *= LAMP_SAMPLES_GROWTH
-    return most if 2 * more > most else more
-
-
 class LampSamples:
-    """How many samples the lamps of the session's scene have in the next frame, and in the last at rest."""
+    """How many samples the lamps of a scene have.  `wanted` are those that there should be at rest, and `any` says
+    whether any light is no point."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self) -> None:
         self._lights: tuple[Light, ...] = ()
         self._by_scene: dict[float | None, int] = {}  # samples that the scene says, by radius; 0 without lamps
-        self._moving: int | None = None  # samples while anything moves
+        self.wanted, self.any = 1, False
+
+    def update(self, lights: tuple[Light, ...], settings: Settings) -> None:
+        """Take up the lights that there are, and what the user has set."""
+        if lights is not self._lights:
+            self._lights, self._by_scene = lights, {}
+        self.wanted = self.most(settings)
+        self.any = self._by_scene[settings.lamp_radius] > 0
 
     def most(self, settings: Settings) -> int:
         """Return the samples of the lamp that has the most; 1 where all lights are points, or there are none."""
-        lights, radius = self._session.scene.lights if self._session.scene is not None else (), settings.lamp_radius
-        if lights is not self._lights or len(self._by_scene) > MOST_RADII:
-            self._lights, self._by_scene = lights, {}
+        radius = settings.lamp_radius
         if radius not in self._by_scene:  # there may be thousands of lights, and it is asked for many times a frame
-            lamps = (light for light in as_lamps(lights, radius, None) if light.kind != "point")
+            if len(self._by_scene) >= MOST_RADII:
+                self._by_scene.clear()
+            lamps = (light for light in as_lamps(self._lights, radius, None) if light.kind != "point")
             self._by_scene[radius] = max((lamp.samples for lamp in lamps), default=0)
         by_scene = self._by_scene[radius]
         return max(by_scene, 1) if settings.lamp_samples is None or by_scene == 0 else settings.lamp_samples
 
     @property
-    def wanted(self) -> int:
-        """How many there should be at rest."""
-        return self.most(self._session.settings)
-
-    @property
-    def any(self) -> bool:
-        """Whether any light is no point, by the settings."""
-        return self.most(self._session.settings) > 0 and self._by_scene[self._session.settings.lamp_radius] > 0
-
-    def in_motion(self, budget: FrameBudget, size: tuple[int, int], seconds: float) -> int:
-        """Return the samples of the next frame of this size, which there are so many seconds for; the same until
-        `at_rest`, so that modes are of use."""
-        if self._moving is None:
-            self._moving = budget.moving_samples(*size, seconds)
-        return min(self._moving, self.wanted)
-
-    def at_rest(self, last: Settings | None, come: bool) -> int:
-        """Return the samples of the next frame; `last` are the settings of the frame of the same view that was asked
-        for last, and `come` says whether it is there, whole."""
-        self._moving = None
-        most = self.wanted
-        if last is None:
-            return first(most)
-        has = self.most(last)
-        return min(max(first(most), after(has, most) if come else has), most)
+    def first(self) -> int:
+        """How many there are in motion, and in the first frame at rest."""
+        return min(FIRST_LAMP_SAMPLES, self.wanted)

@@ -2,49 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Protocol
 
-from tracer.renderer import Frame, Settings
+from tracer.frame import Frame, Settings
+from tracer.renderer import Renderer
 from tracer.scene.model import Camera
+from tracer.settings import RECORDS
 from tracer.statistics import FrameStatistics
 
 Warmup = tuple[tuple[float, Camera], ...]
 """Frames by time and camera."""
 Parts = Generator[tuple[Frame, Frame | None], None, None]
 """Frames of a picture, each with the same by a second method, if any."""
-
-
-class Traces(Protocol):
-    """The part of `tracer.Renderer` that is used here."""
-
-    settings: Settings
-
-    def reset_modes(self) -> None: ...
-
-    def render(
-        self, time: float = ..., camera: Camera | None = ..., cancel: Callable[[], bool] | None = ...
-    ) -> Frame: ...
-
-    def refine(
-        self,
-        time: float,
-        camera: Camera | None = None,
-        cancel: Callable[[], bool] | None = None,
-        parts: Sequence[float] = ...,
-        samples: int = ...,
-        focus: tuple[float, float] | None = None,
-    ) -> Generator[Frame, None, None]: ...
-
-    def beside(self) -> Traces: ...
-
-    def take_scene(self, other: Any) -> None: ...
-
-    def take_turn(self, time: float) -> None: ...
-
-    def take_modes(self, other: Any) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -54,9 +26,9 @@ class RenderRequest:
     `second` is the method that traces the same once more, if any, after each part of the picture.
     `divisor` is how much coarser than the window it is; `serial` tells requests apart that are otherwise alike;
     `refinement_seconds` is how long, at least, certificates may be made for it where nobody waits for the picture.  How
-    the picture comes about does not tell requests apart: `parts` of it, in sixteenths, around a `focus`.  A `quick`
-    request is not cut short before some of it has been shown, except by one that is `final`: nothing moves any more.
-    With `warmup` frames, all modes are forgotten and these are traced before it."""
+    the picture comes about does not tell requests apart: `parts` of it, in sixteenths, around a `focus`, and that a
+    `quick` one is not cut short before some of it has been shown.  With `warmup` frames, all modes are forgotten and
+    these are traced before it."""
 
     time: float
     camera: Camera
@@ -68,11 +40,10 @@ class RenderRequest:
     second: str = ""
     parts: tuple[float, ...] = field(default=(16,), compare=False)
     quick: bool = field(default=False, compare=False)
-    final: bool = field(default=False, compare=False)
     focus: tuple[float, float] | None = field(default=None, compare=False)
     warmup: Warmup | None = None
 
-    def refine(self, renderer: Traces, cancel: Callable[[], bool]) -> Parts:
+    def refine(self, renderer: Renderer, cancel: Callable[[], bool]) -> Parts:
         """Yield its parts and samples, each of them a frame, by the renderer's settings."""
         refining = renderer.refine(self.time, self.camera, cancel, self.parts, self.samples, self.focus)
         with closing(refining):
@@ -85,7 +56,28 @@ class RenderRequest:
         if running == self:
             return False
         same_kind = replace(running.settings, width=1, height=1) == replace(self.settings, width=1, height=1)
-        return shown or not running.quick or not same_kind or (self.final and not running.final)
+        return shown or not running.quick or not same_kind
+
+    def covers(self, other: RenderRequest) -> bool:
+        """Whether what answers this answers another, as it holds the same or more."""
+        recorded = replace(other, settings=_recording(other.settings, self.settings))
+        return recorded == self and not missing_buffers(self.settings, other.settings)
+
+
+def _recording(settings: Settings, other: Settings) -> Settings:
+    """Return settings with as much recorded as others."""
+    return replace(settings, **{name: getattr(other, name) for name in RECORDS})
+
+
+def as_asked(settings: Settings, asked: Settings) -> Settings:
+    """Return settings at the size, with as much recorded and as much time for certificates, as others."""
+    same = ("width", "height", "modes", "patient", "samples", "lamp_samples", "certificate_seconds")
+    return replace(_recording(settings, asked), **{name: getattr(asked, name) for name in same})
+
+
+def missing_buffers(had: Settings, wanted: Settings) -> bool:
+    """Return whether something is to be recorded that was not."""
+    return any(getattr(wanted, name) and not getattr(had, name) for name in RECORDS)
 
 
 @dataclass(frozen=True)
@@ -113,7 +105,7 @@ class Traced:
 class Task(Protocol):
     """Long work with the renderer's world.  It ends soon after `cancelled()` turns true, and raises nothing."""
 
-    def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None: ...
+    def work(self, renderer: Renderer, cancelled: Callable[[], bool]) -> None: ...
 
 
 class Spare(Protocol):
@@ -121,4 +113,4 @@ class Spare(Protocol):
     frame, returns whether more are to come, and ends soon after `cancelled()` turns true, by raising Cancelled: the
     same step is then asked for again."""
 
-    def step(self, renderer: Traces, cancelled: Callable[[], bool]) -> bool: ...
+    def step(self, renderer: Renderer, cancelled: Callable[[], bool]) -> bool: ...

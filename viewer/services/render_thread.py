@@ -25,11 +25,12 @@ from functools import partial
 from typing import Any
 
 from tracer.frame import Frame
+from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
 from viewer.services.jobs import TRACER, step_back
 from viewer.services.pair import Pair
 from viewer.services.queries import Function, Queries, Query
-from viewer.services.render_request import Parts, RenderRequest, Spare, Task, Traced, Traces
+from viewer.services.render_request import Parts, RenderRequest, Spare, Task, Traced
 from viewer.util.messages import Failure, failure
 
 QUERY_SECONDS = 0.25
@@ -43,19 +44,16 @@ class RenderThread:
     def __init__(self, wake: Callable[[], None] = lambda: None) -> None:
         self._wake = wake
         self._changed = threading.Condition()
-        self._renderer: Traces | None = None
+        self._renderer: Renderer | None = None
         self._pair: Pair | None = None  # of the renderer, with a second one; the thread's own
         self._waiting: RenderRequest | None = None
         self._running: RenderRequest | None = None
         self._shown = self._whole = False  # whether a part of what is running, or all of it, has been
-        self._task: tuple[Traces, Task] | None = None
+        self._task: tuple[Renderer, Task] | None = None
         self._queries = Queries()
         self._spare: Spare | None = None
         self._placed_at: float | None = None  # the time of what was traced last
-        self._performing = False
-        self._cancel = False
-        self._reset = False
-        self._closing = False
+        self._performing = self._cancel = self._reset = self._closing = False
         self._finished: Traced | None = None
         self._learnt: list[Traced] = []  # frames that have set modes; the window takes them before it asks for the next
         self._fresh = True  # nothing is known of modes
@@ -64,50 +62,36 @@ class RenderThread:
         self._thread = threading.Thread(target=self._run, name="shadowcull render", daemon=True)
         self._thread.start()
 
-    def use(self, renderer: Traces | None, fresh: bool = True) -> None:
+    # --- what is wanted ---------------------------------------------------------------------------
+
+    def use(self, renderer: Renderer | None, fresh: bool = True) -> None:
         """Trace this renderer's scene from now on; whatever was asked of the old one is dropped, and a task ended.
 
         `fresh` says that it knows nothing of modes yet."""
         with self._changed:
-            self._renderer = renderer
-            self._waiting = self._finished = self._failure = self._placed_at = None
+            self._renderer, self._fresh, self._cancel = renderer, fresh, True
+            self._waiting = self._finished = self._failure = self._placed_at = self._spare = None
             self._learnt.clear()
-            self._fresh = fresh
             self._queries.cancel()
-            self._spare = None
-            self._cancel = True
             self._changed.notify_all()
 
     def submit(self, request: RenderRequest) -> None:
         """Ask for a frame; an older request that still waits is forgotten."""
         with self._changed:
-            if self._closing:
-                return
-            if request == self._running and not self._cancel:  # it is under way
-                self._waiting = None
-                return
-            self._waiting = request
-            if self._running is not None and request.supersedes(self._running, self._shown):
-                self._cancel = True
+            under_way = request == self._running and not self._cancel
+            self._waiting = None if under_way or self._closing else request
+            if self._waiting is not None and self._running is not None:
+                self._cancel = self._cancel or request.supersedes(self._running, self._shown)
             self._changed.notify_all()
-
-    def hurry(self, request: RenderRequest) -> None:
-        """If this is what waits, let it wait no longer than it must, and come about as it says now."""
-        with self._changed:
-            if self._waiting == request:
-                self.submit(request)
 
     def perform(self, task: Task) -> None:
         """Do this instead of frames, from now on until it is done; what is under way is cut short, or dropped.
 
         The task gets the renderer that is in use now.  Raises RuntimeError if none is."""
         with self._changed:
-            if self._closing:
-                return
             if self._renderer is None:
                 raise RuntimeError("there is no scene to work on")
-            self._task, self._waiting = (self._renderer, task), None
-            self._cancel = True
+            self._task, self._waiting, self._cancel = (self._renderer, task), None, True
             self._changed.notify_all()
 
     def query(self, function: Function, frame: Frame, *arguments: Hashable) -> Future[Any]:
@@ -128,6 +112,18 @@ class RenderThread:
         with self._changed:
             self._reset = True
             self._cancel = self._cancel or not self._performing  # a task has modes of its own
+
+    def close(self, timeout: float = 10.0) -> bool:
+        """Cancel and end the thread; false if it did not end in time (it is a daemon and dies with the program)."""
+        with self._changed:
+            self._closing = self._cancel = True
+            self._waiting = None
+            self._queries.cancel()
+            self._changed.notify_all()
+        self._thread.join(timeout)
+        return not self._thread.is_alive()
+
+    # --- what has come ----------------------------------------------------------------------------
 
     def take(self) -> Traced | None:
         """The newest finished frame, once."""
@@ -154,32 +150,15 @@ class RenderThread:
             told, self._complaints = self._complaints, []
             return told
 
-    def _complain(self, problem: Exception, what: str) -> None:
-        with self._changed:
-            self._complaints.append(failure(problem, what, _KNOWN))
-
     @property
     def busy(self) -> bool:
         """Whether anything is to come but more samples of a whole picture."""
         with self._changed:
-            if (self._running is not None and not self._whole) or self._performing:
+            if (self._running is not None and not self._whole) or self._performing or self._task is not None:
                 return True
-            return self._task is not None or (self._renderer is not None and self._waiting is not None)
+            return self._renderer is not None and self._waiting is not None
 
-    @property
-    def running(self) -> RenderRequest | None:
-        return self._running
-
-    def close(self, timeout: float = 10.0) -> bool:
-        """Cancel and end the thread; false if it did not end in time (it is a daemon and dies with the program)."""
-        with self._changed:
-            self._closing = True
-            self._cancel = True
-            self._waiting = None
-            self._queries.cancel()
-            self._changed.notify_all()
-        self._thread.join(timeout)
-        return not self._thread.is_alive()
+    # --- the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
         step_back(TRACER)
@@ -190,49 +169,50 @@ class RenderThread:
                 self._complain(problem, "work in the background failed")
                 self._wake()
 
+    def _complain(self, problem: Exception, what: str) -> None:
+        with self._changed:
+            self._complaints.append(failure(problem, what, _KNOWN))
+
     def _next(self) -> Callable[[], None] | None:
         """What to do now, once there is something: a task before all, then a query, then a frame."""
         with self._changed:
             while not self._closing:
+                renderer = self._renderer
                 if self._task is not None:
-                    (renderer, task), self._task = self._task, None
-                    self._performing, self._cancel = True, renderer is not self._renderer
+                    (of_task, task), self._task = self._task, None
+                    self._performing, self._cancel = True, of_task is not renderer
                     self._placed_at = None
-                    reset = self._reset and renderer is self._renderer
-                    self._reset = self._reset and not reset
-                    return partial(self._perform, renderer, task, reset)
-                if self._renderer is not None and self._placed_at is not None and (query := self._queries.take()):
+                    return partial(self._perform, of_task, task, of_task is renderer and self._take_reset())
+                if renderer is None:
+                    self._changed.wait()
+                elif self._placed_at is not None and (query := self._queries.take()):
                     moved = query.frame.time != self._placed_at  # a later frame has failed, or has not been taken yet
                     if not moved or self._waiting is None:
                         self._placed_at = query.frame.time
-                        return partial(self._answer, self._renderer, query, moved)
+                        return partial(self._answer, renderer, query, moved)
                     query.future.cancel()
-                elif self._renderer is not None and self._waiting is not None:
-                    request, reset = self._waiting, self._reset
-                    self._cancel = False
-                    self._running, self._waiting, self._reset = request, None, False
-                    self._shown = self._whole = False
-                    self._placed_at = request.time
-                    return partial(self._trace, self._renderer, request, reset)
-                elif self._renderer is not None and self._spares:
-                    assert self._spare is not None and self._placed_at is not None
-                    return partial(self._spend, self._renderer, self._spare, self._placed_at)
+                elif self._waiting is not None:
+                    request, self._waiting = self._waiting, None
+                    self._cancel = self._shown = self._whole = False
+                    self._running, self._placed_at = request, request.time
+                    return partial(self._trace, renderer, request, self._take_reset())
+                elif self._spare is not None and self._placed_at is not None and not self._reset:
+                    return partial(self._spend, renderer, self._spare, self._placed_at)
                 else:
                     self._changed.wait()
             return None
 
-    @property
-    def _spares(self) -> bool:
-        """Whether there is spare work, and the world stands in a frame's time, to which it can be put back."""
-        return self._spare is not None and self._placed_at is not None and not self._reset
+    def _take_reset(self) -> bool:
+        """Whether all modes are to be forgotten, once."""
+        reset, self._reset = self._reset, False
+        return reset
 
-    def _forget(self, renderer: Traces) -> None:
+    def _forget(self, renderer: Renderer) -> None:
         """Forget all modes, as was asked."""
         renderer.reset_modes()
-        self._fresh = True
-        self._pair = None
+        self._fresh, self._pair = True, None
 
-    def _perform(self, renderer: Traces, task: Task, reset: bool) -> None:
+    def _perform(self, renderer: Renderer, task: Task, reset: bool) -> None:
         try:
             if reset:
                 self._forget(renderer)
@@ -242,12 +222,12 @@ class RenderThread:
                 self._performing = False
             self._wake()
 
-    def _spend(self, renderer: Traces, work: Spare, moment: float) -> None:
+    def _spend(self, renderer: Renderer, work: Spare, moment: float) -> None:
         """One step of spare work; the world stands as it did before when it ends."""
 
         def wanted() -> bool:
-            others = self._task, self._waiting, self._queries or None
-            return self._closing or self._reset or self._spare is not work or any(one is not None for one in others)
+            others = self._task is not None or self._waiting is not None or bool(self._queries)
+            return self._closing or self._reset or self._spare is not work or others
 
         more = False
         try:
@@ -263,7 +243,7 @@ class RenderThread:
                 self._spare = None if self._spare is work else self._spare
             self._wake()
 
-    def _answer(self, renderer: Traces, query: Query, moved: bool = False) -> None:
+    def _answer(self, renderer: Renderer, query: Query, moved: bool = False) -> None:
         """Answer a query; `moved` says that the world stands as in another frame than the query's."""
         began = time.monotonic()
 
@@ -279,19 +259,19 @@ class RenderThread:
             self._complain(problem, "no answer")
         self._wake()
 
-    def _answer_meanwhile(self, renderer: Traces, moment: float) -> None:
+    def _answer_meanwhile(self, renderer: Renderer, moment: float) -> None:
         """Answer what was asked about the picture that is being refined."""
         with self._changed:
-            if renderer is not self._renderer:
-                return
-            queries = list(iter(self._queries.take, None))
+            queries = list(iter(self._queries.take, None)) if renderer is self._renderer else []
         for query in queries:
             if query.frame.time == moment:
                 self._answer(renderer, query)
             else:
                 query.future.cancel()
 
-    def _trace(self, renderer: Traces, request: RenderRequest, reset: bool) -> None:
+    # --- a frame ----------------------------------------------------------------------------------
+
+    def _trace(self, renderer: Renderer, request: RenderRequest, reset: bool) -> None:
         failed = first = shown = None
         try:
             if reset or request.warmup is not None:
@@ -317,21 +297,20 @@ class RenderThread:
             if renderer is self._renderer:
                 self._failure = failed or self._failure
                 if shown is not None and not shown.whole:
-                    self._learnt.append(self._first_to_learn(shown))
+                    self._note_learnt(shown)
         self._wake()
 
-    def _warm_up(self, renderer: Traces, request: RenderRequest) -> None:
+    def _warm_up(self, renderer: Renderer, request: RenderRequest) -> None:
         """Trace the frames that set the modes of a picture."""
         as_wanted = renderer.settings
         renderer.settings = replace(as_wanted, verify=False)
         for moment, camera in request.warmup or ():
             frame = renderer.render(moment, camera, lambda: self._cancel)
-            traced = Traced(RenderRequest(moment, camera, frame.settings), frame, frame.statistics)
             with self._changed:
-                self._learnt.append(self._first_to_learn(traced))
+                self._note_learnt(Traced(RenderRequest(moment, camera, frame.settings), frame, frame.statistics))
         renderer.settings = as_wanted
 
-    def _parts_of(self, renderer: Traces, request: RenderRequest) -> Parts:
+    def _parts_of(self, renderer: Renderer, request: RenderRequest) -> Parts:
         """Return the parts and samples of a picture, each with that by the second method where there is one."""
         if not request.second:
             self._pair = None  # nor is what it has learnt kept in memory
@@ -340,20 +319,19 @@ class RenderThread:
             self._pair = Pair(renderer)
         return self._pair.refine(request, lambda: self._cancel)
 
-    def _first_to_learn(self, traced: Traced) -> Traced:
-        """The frame, which has set modes, and whether it is the first since these were forgotten."""
+    def _note_learnt(self, traced: Traced) -> Traced:
+        """Note a frame that has set modes; returns it, with whether it is the first since these were forgotten."""
         fresh, self._fresh = self._fresh, False
-        return replace(traced, fresh=fresh)
+        self._learnt.append(replace(traced, fresh=fresh))
+        return self._learnt[-1]
 
-    def _deliver(self, renderer: Traces, traced: Traced) -> bool:
+    def _deliver(self, renderer: Renderer, traced: Traced) -> bool:
         """Hand out a frame, unless it is of a scene that was left meanwhile; whether more of it is wanted."""
         with self._changed:
             if renderer is self._renderer:
-                self._finished = traced
+                learns = traced.whole and traced.frame.settings.samples == 1
+                self._finished = self._note_learnt(traced) if learns else traced
                 self._shown, self._whole = True, traced.whole
-                if traced.whole and traced.frame.settings.samples == 1:
-                    traced = self._finished = self._first_to_learn(traced)
-                    self._learnt.append(traced)
             newer = self._waiting is not None and self._waiting.supersedes(traced.request, shown=True)
             on = not (self._cancel or newer)
         self._wake()

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from datetime import date
 from functools import partial
 from pathlib import Path
-from typing import Protocol, cast
+from typing import NamedTuple, Protocol
 
 from tracer.experiments import experiment, zoom
 from tracer.experiments.experiment import Experiment
@@ -28,7 +28,7 @@ from tracer.settings import Settings
 from viewer.output import exports
 from viewer.output.filmstrip import Filmstrip, Shot
 from viewer.services.capture_service import CaptureService
-from viewer.services.render_request import RenderRequest, Task, Traced, Traces
+from viewer.services.render_request import RenderRequest, Task, Traced
 from viewer.services.selection import Selection
 from viewer.state.methods import BY_MODES, CERTIFIED
 from viewer.state.notices import Notices
@@ -67,12 +67,16 @@ class FramePreview:
 
     def step(self) -> Step | None:
         """The step that it is of; None of a test whose results are not there."""
-        return next((s for a in approaches_of(self.test) if a.factor == self.shot.factor for s in a.steps
-                     if s.number == self.shot.number), None)  # fmt: skip
+        steps = (step for a in approaches_of(self.test) if a.factor == self.shot.factor for step in a.steps)
+        return next((step for step in steps if step.number == self.shot.number), None)
 
 
 def approaches_of(test: RecordedZoomTest) -> list[Approach]:
+    """Return the ways that a test has gone so far."""
     return test.results.approaches if test.results is not None else []
+
+
+# --- in words -----------------------------------------------------------------------------------------
 
 
 def missing_in(run: Run, view: View) -> str:
@@ -118,6 +122,9 @@ def duration(seconds: float) -> str:
     return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d} h"
 
 
+# --- one at a time ------------------------------------------------------------------------------------
+
+
 def check_size(size: tuple[int, int]) -> None:
     """Raise ValueError, in one line, for pictures that are too large for a run."""
     if max(size) > LONGEST_SIDE:
@@ -137,15 +144,14 @@ class _Task:
     run: Run
     wake: Callable[[], None]
 
-    def work(self, renderer: Traces, cancelled: Callable[[], bool]) -> None:
-        world = getattr(cast(Renderer, renderer), "world", None)
+    def work(self, renderer: Renderer, cancelled: Callable[[], bool]) -> None:
+        world = getattr(renderer, "world", None)
         with suppress(Exception):
             for _ in self.run.each(world, cancelled, self.wake):
                 pass
 
 
-@dataclass(frozen=True)
-class Progress:
+class Progress(NamedTuple):
     """What has become of the run since it was last asked: a frame that is to be the picture, and whether it ended."""
 
     picture: Traced | None = None
@@ -258,42 +264,27 @@ class Runs:
         self.start(make)
 
     def start_zoom_test(self) -> None:
-        """Go towards the selected primitive, from where the picture shows it or, so planned, from the last start."""
+        """Go towards the selected primitive, from where the picture shows it."""
 
         def make(scene: Scene) -> Run:
-            plan = self.zoom_plan
+            plan, frame, selected = self.zoom_plan, self._selection.frame, self._selection.picked
             check_size(plan.size)
             settings = replace(self._session.settings, width=plan.size[0], height=plan.size[1]).validated()
-            way = self._start_of_zoom_test(), parse_factors(plan.factors), plan.steps, plan.ratio
-            self.zoom_test = RecordedZoomTest(scene, settings, *way)
+            if frame is None:
+                raise ValueError("there is no picture yet")
+            if selected is None:
+                raise ValueError("click a primitive in the picture first: the zoom test goes towards it")
+            if selected.dynamic:
+                raise ValueError(f"primitive {selected.primitive} moves, and is never culled: choose one that does not")
+            start, factors = zoom.aim(frame, selected.primitive), parse_factors(plan.factors)
+            self.zoom_test = RecordedZoomTest(scene, settings, start, factors, plan.steps, plan.ratio)
             return self.zoom_test
 
         self.start(make)
 
-    def _start_of_zoom_test(self) -> zoom.Aim:
-        frame, selected = self._selection.frame, self._selection.picked
-        last = self.last_start if self.zoom_plan.same_start else None
-        if last is not None:
-            return last
-        if frame is None:
-            raise ValueError("there is no picture yet")
-        if selected is None:
-            raise ValueError("click a primitive in the picture first: the zoom test goes towards it")
-        if selected.dynamic:
-            raise ValueError(f"primitive {selected.primitive} moves, and is never culled: choose one that does not")
-        return zoom.aim(frame, selected.primitive)
-
-    @property
-    def last_start(self) -> zoom.Aim | None:
-        """Where the last zoom test began; None where that was in another scene, or another primitive is selected."""
-        test, selected = self.zoom_test, self._selection.picked
-        if test is None or not test.is_of(self._session.scene):
-            return None
-        return test.start if selected is None or selected.primitive == test.start.primitive else None
-
     def go_to(self, step: Step) -> Camera | None:
-        """Set the time of the zoom test, and return the camera of one of its steps; the next test starts where that one
-        did.  None, and one line, where that cannot be."""
+        """Set the time of the zoom test, and return the camera of one of its steps; None, and one line, where that
+        cannot be."""
         test, session = self.zoom_test, self._session
         if test is None or test.results is None or self.refuses():
             return None
@@ -302,37 +293,29 @@ class Runs:
             return None
         session.playing = False
         session.change(time=test.results.time)
-        self.zoom_plan.same_start = True
         return step.camera
 
     # --- results as files -------------------------------------------------------------------------
 
     def exports_of(self, run: Run) -> dict[str, Callable[[Path], None]]:
-        """What can be saved of a run now, by the endings of files."""
+        """What can be saved of a run now, by how the names of the files end."""
         results, scene = run.results, self._session.scene
-        if results is None:
-            return {}
         if isinstance(run, Hunt):
-            if scene is None or not run.is_of(scene):
+            if results is None or scene is None or not run.is_of(scene):
                 return {}
             return {".json": lambda path: exports.write_json(path, results.to_dict(scene))}
-        if isinstance(run, Experiment | ZoomTest):
-            return dict.fromkeys(exports.ENDINGS, partial(exports.write, results))
-        return {}
+        if results is None or not isinstance(run, Experiment | ZoomTest):
+            return {}
+        found: dict[str, Callable[[Path], None]] = dict.fromkeys(exports.ENDINGS, partial(exports.write, results))
+        if isinstance(run, RecordedZoomTest):
+            found["-film.png"] = partial(exports.write_film, run.filmstrip, results)
+        return found
 
     def export(self, run: Run, ending: str) -> None:
         """Write the results, as one of `exports_of`, into the folder of the pictures."""
-        self._export(run, ending, self.exports_of(run).get(ending))
-
-    def export_filmstrip(self, test: RecordedZoomTest) -> None:
-        """Write the filmstrip of a zoom test into that folder, as a picture."""
-        results = test.results
-        if results is not None:
-            self._export(test, ".png", lambda path: exports.write_film(test.filmstrip, results, path), "-film")
-
-    def _export(self, run: Run, ending: str, write: Callable[[Path], None] | None, what: str = "") -> None:
+        write = self.exports_of(run).get(ending)
         if write is None:
             self._notices.say("there is nothing to save yet")
             return
-        folder, name = self._preferences.picture_folder, f"{run.scene_path.stem}-{run.name.replace(' ', '-')}{what}"
+        folder, name = self._preferences.picture_folder, f"{run.scene_path.stem}-{run.name.replace(' ', '-')}"
         self._files.write(lambda: exports.save(folder, name, ending, write))

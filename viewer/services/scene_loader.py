@@ -127,14 +127,17 @@ class SceneLoader:
         if path is not None:
             self.open(path)
 
-    def prepare(self, method: str, lights: int, accelerator: str) -> None:
-        """Compile in the background what a method has of its own, the first time that it is chosen."""
+    def compile_method(self) -> None:
+        """Compile in the background what the chosen method has of its own, the first time that it is chosen."""
         if self.method_job is not None and self.method_job.done:
             job, self.method_job = self.method_job, None
             self._report(job, f"{job.title} failed: ")
-        if self.method_job is None and can_draw(lights, accelerator) and not ready_for(method, lights, accelerator):
-            compile_it = partial(make_ready, method, lights, accelerator)
-            self.method_job = Job(f"compiling the kernels of {method}", compile_it, self._wake)
+        scene, settings = self._session.scene, self._session.settings
+        if scene is None or self.method_job is not None or not can_draw(len(scene.lights), settings.accelerator):
+            return
+        what = settings.method, len(scene.lights), settings.accelerator
+        if not ready_for(*what):
+            self.method_job = Job(f"compiling the kernels of {what[0]}", partial(make_ready, *what), self._wake)
 
     def _report(self, job: Job[Any], before: str = "", after: str = "") -> None:
         """Say why a job has failed, if it has."""

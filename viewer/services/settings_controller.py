@@ -16,8 +16,8 @@ from viewer.state.preferences import Preferences, save_preferences
 from viewer.state.session import Session
 from viewer.util.files import BackgroundWriter
 
-REST_SECONDS = 2.0
-"""How long preferences are as they are before they are saved."""
+SAVED_EVERY = 2.0
+"""Seconds, where preferences have changed."""
 
 
 class SettingsController:
@@ -29,9 +29,6 @@ class SettingsController:
         self._session, self._preferences, self._notices, self._locked = session, preferences, notices, locked
         self._stored = self._tried = self._now()  # as others have seen them; what could not be stored, too
         self._looked = time.monotonic()
-        self._seen: dict[str, Any] = {}
-        self._problem: str | None = None
-        self._told: str | None = None
         self._writer = BackgroundWriter()
         self._writing: Future[None] | None = None
 
@@ -56,8 +53,8 @@ class SettingsController:
         except ValueError as error:
             self._notices.say(str(error), error=True)
             return
+        self._note_method()
         self._session.state = state
-        self.note_method()
 
     def set_light(self, light: int) -> None:
         """Choose the light of the views that show one; past the last comes the first."""
@@ -75,10 +72,10 @@ class SettingsController:
         now = Method.parse(self._session.settings.method)
         return "" if now.culls else with_additions(self._preferences.method, now.additions)
 
-    def note_method(self) -> None:
-        """Note the method that culls, to come back to; once in each frame of the window."""
+    def _note_method(self) -> None:
+        """Note the method that culls, to come back to."""
         method = self._session.settings.method
-        if method != self._preferences.method and Method.parse(method).culls:
+        if Method.parse(method).culls:
             self._preferences.method = method
 
     def reset(self, kept: Collection[str]) -> None:
@@ -98,45 +95,36 @@ class SettingsController:
         """Write the preferences to their file soon, beside what other windows have written.
 
         That is done on a thread, so that the window waits for neither the disk nor another window."""
-        mine = self._now()
-        self._writing = self._writer.write(lambda: self._write(mine))
+        self._tried = data = self._now()
+
+        def write() -> None:
+            problem = save_preferences(data, base=self._stored)
+            if problem is None:
+                self._stored = data
+            else:
+                self._notices.say(problem, error=True)
+
+        self._writing = self._writer.write(write)
 
     def finish(self) -> None:
         """Save, and wait until it is done."""
         self.save()
         if self._writing is not None:
             self._writing.result()
-        self._tell()
 
-    def save_when_rested(self) -> None:
-        """Save what was changed and has rested for a moment, so that little is lost with the program, and say once what
-        could not be saved."""
-        self._tell()
-        now = time.monotonic()
-        if now < self._looked + REST_SECONDS or (self._writing is not None and not self._writing.done()):
-            return
-        self._looked, before, self._seen = now, self._seen, self._now()
-        if self._seen == before and self._seen != self._tried:
-            self.save()
-
-    def _tell(self) -> None:
-        """Say once why the last save failed, in one line."""
-        problem = self._problem
-        if problem and problem != self._told:
-            self._notices.say(problem, error=True)
-        self._told = problem
+    def save_changes(self, moving: bool = False) -> None:
+        """Save what was changed, now and then, so that little is lost with the program; not while anything moves."""
+        now, writing = time.monotonic(), self._writing
+        if not moving and now >= self._looked + SAVED_EVERY and (writing is None or writing.done()):
+            self._looked = now
+            if self._now() != self._tried:
+                self.save()
 
     def _now(self) -> dict[str, Any]:
         """The preferences as they are stored, with the state that the next window starts with."""
         state = self._session.state
-        self.note_method()
+        self._note_method()
         self._preferences.state = codec.remembered(state)
         if self._preferences.start_where_left and self._session.scene is not None:
             self._preferences.last = codec.state_to_json(state)
         return codec.to_json(self._preferences)
-
-    def _write(self, data: dict[str, Any]) -> None:
-        self._tried = data
-        self._problem = save_preferences(data, base=self._stored)
-        if self._problem is None:
-            self._stored = data

@@ -1,15 +1,13 @@
 """Places of the picture, 0 to 1 from left and top, which mean the same at every resolution: what part of it is looked
-at closely, the pixels that are watched, and a region."""
+at closely, and a region of it."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 
 from tracer.frame import Frame
 
-MOST_WATCHED = 16
 MOST = 64.0
 """How much larger than it fits a picture can be shown."""
 STEP = 2.0**0.5
@@ -94,7 +92,7 @@ def pixels_shown(zoom: Zoom, width: int, height: int) -> tuple[range, range]:
     return columns, range(max(0, math.floor(top * height)), min(height, math.ceil(bottom * height)))
 
 
-# --- pixels that are watched, and a region of which values are counted ------------------------------
+# --- a region of which values are counted -------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -122,31 +120,3 @@ def region_between(start: Point, end: Point) -> Region:
         sorted(min(max(place, 0.0), 1.0) for place in pair) for pair in zip(start, end, strict=True)
     )
     return Region(left, top, right, bottom)
-
-
-@dataclass
-class Pixels:
-    """`watched` are the middles of pixels, in the order in which they were pinned; `region` is None for all of it;
-    both are of the scene at `path`."""
-
-    watched: list[Point] = field(default_factory=list)
-    region: Region | None = None
-    path: Path | None = None
-
-    def enter(self, path: Path) -> None:
-        """Clear the pixels and the region of another scene."""
-        if path != self.path:
-            self.watched.clear()
-            self.region, self.path = None, path
-
-    def pin(self, frame: Frame, point: Point) -> str:
-        """Watch the pixel at a point, or no longer if it is watched already; returns what was done."""
-        x, y = pixel_at(frame, *point)
-        for known in self.watched:
-            if pixel_at(frame, *known) == (x, y):
-                self.watched.remove(known)
-                return f"pixel {x}, {y} is no longer watched"
-        if len(self.watched) >= MOST_WATCHED:
-            return f"{MOST_WATCHED} pixels are watched, which is the most: stop watching one first"
-        self.watched.append(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
-        return f"watching pixel {x}, {y}"

@@ -32,8 +32,8 @@ class ExperimentPlan:
 
 @dataclass
 class ZoomPlan:
-    """Towards a primitive in `steps`, each to `ratio` of the distance, once with each of `factors`, as they were typed;
-    with `same_start` from where the last test began, if that is known."""
+    """Towards a primitive in `steps`, each to `ratio` of the distance, once with each of `factors`, as they were
+    typed."""
 
     factors: str = setting(
         "4, 16", "Factors",
@@ -48,7 +48,6 @@ class ZoomPlan:
         (256, 256), "Size", "Size of the pictures: it decides the pixel counts, and what can be seen from afar.",
         high=LONGEST_SIDE,
     )  # fmt: skip
-    same_start: bool = False
 
 
 def frames_within(first: int, last: int | None, count: int) -> tuple[int, int]:

@@ -12,16 +12,13 @@ import secrets
 import socket
 import stat
 import zlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
 
 T = TypeVar("T")
-
-MOST_NUMBERS = 100_000
-_OF_DEVICES = "/dev"
 
 
 def check_writable(path: Path) -> None:
@@ -32,53 +29,22 @@ def check_writable(path: Path) -> None:
     if str(path) == "-":
         raise OSError("-: results are not written to standard output; give the name of a file")
     target = _target(path)
-    if os.path.realpath(target.parent) == _OF_DEVICES:
-        raise OSError(f"{path}: a folder of devices; give a folder for files")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {path.parent if target == path else target.parent}")
     try:
         probe = part_name(target)
         probe.touch(exist_ok=False)
         probe.unlink(missing_ok=True)
-    except FileNotFoundError:  # of a folder that is there
-        raise OSError(f"{path}: no file can be made in the folder {target.parent}") from None
     except OSError as error:
         raise OSError(f"{path}: the folder {target.parent} cannot be written to: {error.strerror or error}") from None
 
 
-def check_outputs(outputs: dict[str, Path | None]) -> None:
-    """Raise ValueError or OSError where the files of these options cannot all be written; None is not wanted."""
-    wanted = {option: path for option, path in outputs.items() if path is not None}
-    for path in wanted.values():
-        check_writable(path)
-    if len({os.path.realpath(path) for path in wanted.values()}) < len(wanted):
-        raise ValueError(f"{', '.join(outputs)}: give each a file of its own")
-
-
-def write_each(writers: Iterable[Callable[[], None]]) -> list[str]:
-    """Write all files, and return why some could not be: no OSError or ValueError takes the other files along."""
-    failures = []
-    for write in writers:
-        try:
-            write()
-        except (OSError, ValueError) as error:
-            failures.append(str(error))
-    return failures
-
-
-def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Let `write` fill a file that takes its name once it is complete and on the disk; several may at once.
-
-    Links are followed.  Raises OSError in one line, also for what is there and no regular file, and what
-    `write` raises, leaving what was there before.
-    """
-    with whole_file(path) as (_, file):
-        write(file)
-
-
 @contextmanager
 def whole_file(path: Path) -> Iterator[tuple[Path, BinaryIO]]:
-    """The same, as a block: the name and the open file that take the name `path` at the end of it."""
+    """The name and the open file that take the name `path` at the end of the block, complete and on the disk.
+
+    Links are followed; several may write at once.  Raises OSError in one line, also for what is there and no regular
+    file, and what the block raises; then what was there before is left."""
     target = _target(path)
     try:
         with part_file(target) as (part, file):
@@ -92,14 +58,20 @@ def whole_file(path: Path) -> Iterator[tuple[Path, BinaryIO]]:
         raise OSError(f"{path}: not written: {error.strerror or error}") from None
 
 
-def write_text(path: Path, text: str) -> None:
-    """As `write_whole`, in UTF-8."""
-    write_whole(path, lambda file: file.write(text.encode()))
+def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Let `write` fill a file, as `whole_file`."""
+    with whole_file(path) as (_, file):
+        write(file)
 
 
 def write_bytes(path: Path, data: bytes) -> None:
-    """As `write_whole`."""
+    """Write a file, as `whole_file`."""
     write_whole(path, lambda file: file.write(data))
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file in UTF-8, as `whole_file`."""
+    write_bytes(path, text.encode())
 
 
 def write_new(folder: Path, stem: str, ending: str, write: Callable[[Path], None]) -> Path:
@@ -111,33 +83,32 @@ def write_new(folder: Path, stem: str, ending: str, write: Callable[[Path], None
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OSError(f"cannot write to {folder}: {error.strerror or error}") from None
-    wanted = folder / f"{stem}{ending}"
-    part = part_name(wanted, ending)
+    path, number = folder / f"{stem}{ending}", 1
+    part = part_name(path, ending)
     try:
         write(part)
-        for number in range(1, MOST_NUMBERS + 1):
-            path = folder / f"{stem}{f'-{number}' if number > 1 else ''}{ending}"
-            with suppress(FileExistsError):
-                _name(part, path)
-                return path
+        while not _name(part, path):
+            number += 1
+            path = folder / f"{stem}-{number}{ending}"
+        return path
     except OSError as error:
-        raise OSError(str(error).replace(str(part), str(wanted))) from None
+        raise OSError(str(error).replace(str(part), str(path))) from None
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)
-    raise OSError(f"{wanted} and {MOST_NUMBERS - 1} more exist already")
 
 
-def _name(part: Path, path: Path) -> None:
-    """Give a file a name that is free; raises FileExistsError for one that is taken, by whomever."""
+def _name(part: Path, path: Path) -> bool:
+    """Give a file a name if that is free."""
     try:
         os.link(part, path)
     except FileExistsError:
-        raise
+        return False
     except OSError:  # there are no links, as on some sticks and networks
         if os.path.lexists(path):
-            raise FileExistsError from None
+            return False
         os.rename(part, path)
+    return True
 
 
 @contextmanager
@@ -148,13 +119,10 @@ def file_lock(path: Path, patience: float) -> Iterator[bool]:
     from filelock import FileLock, Timeout  # takes a while to import
 
     lock = FileLock(path.with_name(f"{path.name}.lock"))
-    try:
+    with suppress(Timeout):
         lock.acquire(timeout=patience)
-    except Timeout:
-        yield False
-        return
     try:
-        yield True
+        yield lock.is_locked
     finally:
         lock.release()
 
@@ -179,7 +147,14 @@ class BackgroundWriter:
 
 _PART = re.compile(r"\..+\.([0-9a-f]{8})-(\d+)-[0-9a-f]{8}\.part(\..*)?", re.DOTALL)
 _LONGEST = 190  # bytes of a name that are kept; most systems allow 255 in all
+_MACHINE = f"{zlib.crc32(socket.gethostname().encode()):08x}"
 _cleared: set[str] = set()
+
+
+def part_name(target: Path, ending: str = "") -> Path:
+    """Return a hidden name beside `target` that tells who writes it, and ends as told."""
+    name = os.fsencode(target.name)[:_LONGEST].decode(errors="ignore")
+    return target.with_name(f".{name}.{_MACHINE}-{os.getpid()}-{secrets.token_hex(4)}.part{ending}")
 
 
 @contextmanager
@@ -199,16 +174,6 @@ def part_file(target: Path) -> Iterator[tuple[Path, BinaryIO]]:
                 path.unlink(missing_ok=True)
 
 
-def part_name(target: Path, ending: str = "") -> Path:
-    """Return a hidden name beside `target` that tells who writes it, and ends as told."""
-    name = os.fsencode(target.name)[:_LONGEST].decode(errors="ignore")
-    return target.with_name(f".{name}.{_machine()}-{os.getpid()}-{secrets.token_hex(4)}.part{ending}")
-
-
-def _machine() -> str:
-    return f"{zlib.crc32(socket.gethostname().encode()):08x}"
-
-
 def _clear(folder: Path) -> None:
     """Remove what killed writers of this machine have left; once for each folder, as it may be large."""
     if os.name == "nt" or str(folder) in _cleared:
@@ -217,7 +182,7 @@ def _clear(folder: Path) -> None:
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
             found = _PART.fullmatch(entry.name)
-            if found and found[1] == _machine() and not _lives(int(found[2])):
+            if found and found[1] == _MACHINE and not _lives(int(found[2])):
                 with suppress(OSError):
                     os.unlink(entry.path)
 
@@ -237,10 +202,10 @@ def _target(path: Path) -> Path:
 
     Taking the name of a device or a pipe would destroy it.
     """
+    kind = stat.S_IFREG
     try:
-        kind = path.stat().st_mode
-    except (FileNotFoundError, NotADirectoryError):
-        kind = stat.S_IFREG
+        with suppress(FileNotFoundError, NotADirectoryError):
+            kind = path.stat().st_mode
     except OSError as error:
         raise OSError(f"{path}: cannot be written: {error.strerror or error}") from None
     if stat.S_ISDIR(kind):

@@ -20,12 +20,21 @@ def has_display() -> bool:
     """True where a window can be opened: an X or a Wayland server that listens (elsewhere than Linux: always)."""
     if not sys.platform.startswith(("linux", "freebsd")):
         return True
-    return has_x_display() or _wayland_listens(os.environ.get("WAYLAND_DISPLAY", ""))
+    wayland = os.environ.get("WAYLAND_DISPLAY", "")
+    runtime = Path(os.environ.get("XDG_RUNTIME_DIR", "/"))
+    return has_x_display() or (bool(wayland) and _listens(socket.AF_UNIX, str(runtime / wayland)))
 
 
 def has_x_display() -> bool:
     """True where `DISPLAY` names an X server that listens."""
-    return _x_listens(os.environ.get("DISPLAY", ""))
+    match = re.fullmatch(r"(?:(?P<host>[^/]*?)(?:/\w+)?):(?P<number>\d+)(?:\.\d+)?", os.environ.get("DISPLAY", ""))
+    if not match:
+        return False
+    host, number = match["host"], int(match["number"])
+    if host not in ("", "unix"):
+        return _listens(socket.AF_INET, (host, 6000 + number))
+    path = f"/tmp/.X11-unix/X{number}"
+    return _listens(socket.AF_UNIX, path) or _listens(socket.AF_UNIX, "\0" + path)
 
 
 def no_display_reason() -> str:
@@ -34,28 +43,7 @@ def no_display_reason() -> str:
     return f"no display ({' and '.join(named)} does not answer)" if named else "no display"
 
 
-def _x_listens(display: str) -> bool:
-    match = re.fullmatch(r"(?:(?P<host>[^/]*?)(?:/\w+)?):(?P<number>\d+)(?:\.\d+)?", display)
-    if not match:
-        return False
-    host, number = match["host"], int(match["number"])
-    if host in ("", "unix"):
-        path = f"/tmp/.X11-unix/X{number}"
-        return _connects(socket.AF_UNIX, path) or _connects(socket.AF_UNIX, "\0" + path)
-    try:
-        with socket.create_connection((host, 6000 + number), _TIMEOUT):
-            return True
-    except OSError:
-        return False
-
-
-def _wayland_listens(display: str) -> bool:
-    if not display:
-        return False
-    return _connects(socket.AF_UNIX, str(Path(os.environ.get("XDG_RUNTIME_DIR", "/")) / display))
-
-
-def _connects(family: int, address: str) -> bool:
+def _listens(family: int, address: str | tuple[str, int]) -> bool:
     try:
         with socket.socket(family, socket.SOCK_STREAM) as connection:
             connection.settimeout(_TIMEOUT)

@@ -34,7 +34,7 @@ from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout, show_strip
 from viewer.window.layout_file import LayoutFile
-from viewer.window.panels import dialogs, loading, log, named_states, picture, status, tour
+from viewer.window.panels import dialogs, log, named_states, picture, status, tour
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -73,14 +73,14 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Comparing", c.comparing.end_beside_wipe)
     # The scheduler: queries about the newest frame are answered before the next.
     step("Inspecting the pixel", c.inspect_pixel)
-    step("Listing the scene", c.list_scene)
-    step("Compiling the method", c.compile_method)
+    step("Listing the scene", lambda: c.table.update(c.own_traced))
+    step("Compiling the method", c.loader.compile_method)
     step("Asking for the next frame", lambda: c.scheduler.request(c.frame_inputs(size)))
-    step("Recording the light", c.record_light)
+    step("Recording the light", c.scheduler.record_light)
     # What the newest frame is kept for.
     step("Selecting where one went", lambda: c.navigator.select_when_shown(c.traced))
     step("Measuring speed", c.measure)
-    step("Saving preferences", c.keep_preferences)
+    step("Saving preferences", lambda: c.settings.save_changes(c.motion.is_animating))
 
 
 class App:
@@ -199,7 +199,6 @@ class App:
         step("Reading the keys", lambda: menus.handle_keys(ui))
         step("Flying", lambda: picture.fly(ui))
         step("Comparing", lambda: comparing.read_key(ui))
-        overlay("The progress of loading", lambda: loading.show(ui))
         dialogs.show(ui)
         overlay("The tour", lambda: tour.show(ui), ui.tour.end)
         overlay("The notice", lambda: log.show_fault(ui), self.controller.notices.dismiss_faults)

@@ -97,7 +97,7 @@ def fly_to_selected(ui: Ui) -> None:
     x, y, z = (0.5 * (low + high)).tolist()
     ui.picture.pivot = x, y, z
     radius = 0.5 * math.dist(low, high)
-    c.motion.fly_to(navigation.focus(c.session.camera, ui.picture.pivot, radius, c.motion.world_up))
+    c.motion.glide(navigation.focus(c.session.camera, ui.picture.pivot, radius, c.motion.world_up))
 
 
 def _copy(ui: Ui) -> None:
@@ -110,7 +110,7 @@ def _paste(ui: Ui) -> None:
     c = ui.controller
     try:
         data = c.session.camera.to_json() | {"position": None} | json.loads(ui.desktop.paste() or "")
-        c.motion.fly_to(Camera.from_json(data))
+        c.motion.glide(Camera.from_json(data))
     except (TypeError, ValueError, RecursionError):
         c.notices.say("no camera pasted: the clipboard holds no camera as JSON", error=True)
     else:

@@ -58,22 +58,17 @@ def comparing(ui: Ui) -> list[Command]:
 
 def looking(ui: Ui) -> list[Command]:
     """The menu Picture: zoom and values of pixels, exposure and what is clipped."""
-    session, p, watched = ui.controller.session, ui.controller.preferences, ui.pixels.watched
+    session, p = ui.controller.session, ui.controller.preferences
 
     def expose(stops: float) -> Callable[[], None]:
         def change() -> None:
             session.set_draw(tone=brighter(session.draw.tone, stops))
-            ui.controller.notices.say(f"exposure {session.draw.tone.exposure:+.3g} stops")
+            ui.controller.notices.say(f"exposure {session.draw.tone.exposure:+.3g} EV")
 
         return change
 
-    def clear_region() -> None:
-        ui.pixels.region = None
-
     larger = Condition(lambda: session.draw.zoom.scale < MOST, f"{MOST:.0f} times is the largest zoom")
     enlarged = Condition(lambda: not session.draw.zoom.fits, "the whole picture is shown")
-    watching = Condition(lambda: bool(watched), "no pixel is watched")
-    chosen = Condition(lambda: ui.pixels.region is not None, "no region is chosen")
     toned = Condition(lambda: not session.draw.tone.neutral, "colours are shown as traced")
     return [
         Command("Zoom in", "Picture", lambda: zoom_by(ui, STEP, _at(ui)), "Equal", repeats=True,
@@ -82,9 +77,6 @@ def looking(ui: Ui) -> list[Command]:
                 enabled=enlarged, other_keys=("KeypadSubtract",)),
         Command("Fit picture", "Picture", lambda: fit(ui), "Shift+F", enabled=enlarged),
         switch("Values in pixels", "Picture", p, "pixel_values", separated=True),
-        Command("Watch pixel", "Picture", lambda: pin_what_is_pointed_at(ui), "Shift+P"),
-        Command("Unwatch all pixels", "Picture", watched.clear, enabled=watching),
-        Command("Clear region", "Picture", clear_region, enabled=chosen),
         Command("Brighter", "Picture", expose(_STOPS), "RightBracket", repeats=True, separated=True),
         Command("Darker", "Picture", expose(-_STOPS), "LeftBracket", repeats=True),
         Command("Colours as traced", "Picture", lambda: session.set_draw(tone=NEUTRAL),
@@ -111,26 +103,6 @@ def offer(ui: Ui, panel: str) -> None:
     """Bring a panel to the eye, unless panels are hidden or it would cover the picture that is looked at."""
     if not ui.fold.away:
         ui.show_panel(panel)
-
-
-def pin(ui: Ui, point: Point | None) -> None:
-    """Watch the pixel at a point, or no longer; says so."""
-    c = ui.controller
-    if c.frame is None or point is None:
-        c.notices.say("point at a pixel, or click one, to watch it")
-        return
-    c.notices.say(ui.pixels.pin(c.frame, point))
-    if ui.pixels.watched:
-        offer(ui, "Pixels")
-
-
-def pin_what_is_pointed_at(ui: Ui) -> None:
-    """Watch the pixel under the pointer, or else what was clicked."""
-    c = ui.controller
-    point, clicked = c.selection.hovered, c.selection.pixel
-    if point is None and clicked is not None and c.frame is not None:
-        point = (clicked[0] + 0.5) / c.frame.width, (clicked[1] + 0.5) / c.frame.height
-    pin(ui, point)
 
 
 def fit(ui: Ui) -> None:

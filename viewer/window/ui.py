@@ -19,7 +19,6 @@ from viewer.services.controller import Controller
 from viewer.services.runs import FramePreview
 from viewer.services.tour import Tour
 from viewer.state.keymap import Keymap
-from viewer.state.pixels import Pixels
 from viewer.state.preferences import default_screenshot_folder
 from viewer.state.views import View
 from viewer.window.command import Command
@@ -147,7 +146,6 @@ class Ui:
     keymap: Keymap = field(init=False)
     tour: Tour = field(init=False)
     frame_preview: FramePreview | None = None
-    pixels: Pixels = field(default_factory=Pixels)
     picture: Picture = field(default_factory=Picture)
     _states: dict[type, Any] = field(default_factory=dict)
     _cache: dict[str, tuple[object, object, Any]] = field(default_factory=dict)

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from tests.commands import CAMERA, ROOM, complaint, render, run
-from tests.platforms import posix_only
 
 
 @pytest.fixture
@@ -38,11 +37,6 @@ def test_names_send_no_commands_to_the_terminal(capfd: pytest.CaptureFixture[str
     code, out, err = render(capfd, named, "-o", tmp_path / "\x1b[31mred.png")
     assert code == 0
     assert "\x1b" not in out + err
-
-
-@posix_only
-def test_a_folder_of_devices_is_no_place_for_pictures(capfd: pytest.CaptureFixture[str], room: Path) -> None:
-    assert "a folder of devices" in complaint(render(capfd, room, "-o", "/dev/full.png"))
 
 
 def test_a_folder_that_a_scene_may_read_from(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from tests.commands import complaint, run
 from tests.viewer.marbles import write_marbles
+from viewer.cli.console import Work
 
 SEARCH = ("--frames", "0-24", "--step", 6, "--size", "96x96", "--depth", 2, "--threads", 1)
 
@@ -42,6 +43,18 @@ def test_finds_are_written_checked_and_explained(capfd: pytest.CaptureFixture[st
 
     again = run(capfd, "hunt", "marbles.aff", *SEARCH, "-o", "wrong")
     assert "has counterexamples already" in complaint(again)
+
+
+def test_ctrl_c_while_figures_are_drawn_keeps_the_findings(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        Work, "count", lambda work, label, *_: setattr(work, "stopped", work.stopped or label.startswith("figure"))
+    )
+    code, _, err = run(capfd, "hunt", "marbles.aff", *SEARCH, "--keep", 2, "-o", "wrong")
+    assert code == 130 and "the figures from here on are not drawn" in err
+    names = {path.name for path in Path("wrong").iterdir()}
+    assert {"find-1.json", "hunt.json"} <= names and not any(name.endswith(".png") for name in names)
 
 
 def test_frames_before_are_part_of_a_picture(capfd: pytest.CaptureFixture[str]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import combinations
 from pathlib import Path
 
 import matplotlib
@@ -17,12 +16,11 @@ from tracer.experiments import experiment
 from tracer.experiments.zoom import Approach, Change, Results, Step
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
-from viewer.output import figures, run_figures
+from viewer.output import figures
 from viewer.output.comparison import Comparison, Crop, Shown
 from viewer.output.comparison_figure import figure
+from viewer.output.figures import COLUMNS, chosen_steps, film_figure
 from viewer.output.filmstrip import Filmstrip
-from viewer.output.reports import frames_in_words
-from viewer.output.run_figures import COLUMNS, chosen_steps, film_figure
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import WRONG
 from viewer.state.tone import Tone
@@ -53,15 +51,15 @@ def results(wrong=(0, 0, 0, 0), **methods: dict[str, list[float]]) -> experiment
     return made
 
 
-def texts(panel) -> list[str]:
-    return [text.get_text() for text in panel.texts]
+def named(panel) -> list[str]:
+    return [text.get_text() for text in panel.get_legend().get_texts()]
 
 
 def test_each_panel_shows_savings_their_average_and_their_maximum() -> None:
-    steps, tests = run_figures.savings_figure(results(), verified=False).axes
-    for panel, work, average, most in (
-        (steps, "steps", "average 25.0%", "most 60.0%, frame 6"),
-        (tests, "tests", "average 16.2%", "most 50.0%, frame 8"),
+    steps, tests = figures.savings_figure(results(), verified=False).axes
+    for panel, work, told in (
+        (steps, "steps", "paper, average 25.0%\nmost 60.0%, frame 6"),
+        (tests, "tests", "paper, average 16.2%\nmost 50.0%, frame 8"),
     ):
         saved = 1.0 - np.array(PAPER[work])
         curve, mean, mark = panel.lines
@@ -69,16 +67,16 @@ def test_each_panel_shows_savings_their_average_and_their_maximum() -> None:
         np.testing.assert_allclose(curve.get_ydata(), saved)
         np.testing.assert_allclose(mean.get_ydata(), saved.mean())
         assert (list(mark.get_xdata()), list(mark.get_ydata())) == ([FRAMES[saved.argmax()]], [saved.max()])
-        assert texts(panel) == [most, f"paper, {average}"]
+        assert named(panel) == [told]
         assert panel.get_ylim()[0] <= 0.0 and panel.get_ylim()[1] > saved.max()
         assert panel.yaxis.get_major_formatter()(0.25) == "25%"
 
 
 def test_wrong_answers_have_a_panel_where_there_are_any() -> None:
-    *_, wrong = run_figures.savings_figure(results(wrong=(0, 3, 1, 0)), verified=True).axes
+    *_, wrong = figures.savings_figure(results(wrong=(0, 3, 1, 0)), verified=True).axes
     np.testing.assert_array_equal(wrong.lines[0].get_ydata(), [0, 3, 1, 0])
-    assert texts(wrong) == ["paper, 4 (0.100%)"]
-    assert len(run_figures.savings_figure(results(), verified=True).axes) == 2
+    assert named(wrong) == ["paper, 4 (0.100%)"]
+    assert len(figures.savings_figure(results(), verified=True).axes) == 2
 
 
 @pytest.mark.parametrize(
@@ -90,51 +88,26 @@ def test_wrong_answers_have_a_panel_where_there_are_any() -> None:
     ],
 )
 def test_the_title_tells_scene_size_frames_and_whether_it_was_verified(verified: bool, wrong: int, said: str) -> None:
-    figure = run_figures.savings_figure(results(wrong=(wrong, 0, 0, 0)), verified)
-    assert figure.get_suptitle().endswith(f"\nhall.aff, 320 × 200 pixels, {said}")
+    figure = figures.savings_figure(results(wrong=(wrong, 0, 0, 0)), verified)
+    assert figure.get_suptitle().endswith(f"\nhall.aff, 320 × 200, {said}")
 
 
-@pytest.mark.parametrize(
-    ("frames", "path", "planned", "stopped", "said"),
-    [
-        ([0, 1, 2], 3, 3, False, "3 frames over the whole path"),
-        ([0, 1, 2], 200, 3, False, "frames 0 to 2 of 200"),
-        ([0, 1, 2], 200, 200, True, "3 of 200 frames, stopped"),
-        ([0, 1, 2], 200, 200, False, "3 of 200 frames"),  # one has not stopped it, but looks meanwhile
-        ([7, 8], 200, 20, True, "frames 7 to 8 of 200, stopped"),
-        ([7], 200, 1, False, "frame 7 of 200"),
-        ([0], 1, 1, False, "1 frame"),
-    ],
-)
-def test_frames_are_told_by_their_path(frames, path: int, planned: int, stopped: bool, said: str) -> None:
-    made = experiment.Results("s", (1, 1), frames, path_times=range(path), planned=planned, stopped=stopped)
-    assert frames_in_words(made) == said
-
-
-def test_methods_differ_in_colour_and_dashes_and_their_labels_do_not_meet() -> None:
-    """Also where their values do: here the maxima are of one frame, and the averages within a percent."""
-    near = {"steps": [1.0, 0.39, 0.75, 0.85], "tests": [1.0, 0.95, 0.9, 0.49]}
-    nearer = {"steps": [1.0, 0.405, 0.75, 0.85], "tests": [1.0, 0.95, 0.9, 0.5]}
-    figure = run_figures.savings_figure(results((1, 0, 0, 0), symmetric=near, other=nearer), verified=True)
+def test_methods_differ_in_colour_and_dashes_and_their_names_are_on_the_page() -> None:
+    figure = figures.savings_figure(results((1, 0, 0, 0), symmetric=PAPER, other=PAPER), verified=True)
     figure.draw_without_rendering()
     for panel in figure.axes:
         curves = [line for line in panel.lines if len(line.get_xdata()) == len(FRAMES)]
-        assert len({line.get_color() for line in curves}) == 3
-        assert len({str(line._unscaled_dash_pattern) for line in curves}) == 3
-        boxes = [text.get_window_extent() for text in panel.texts]
-        assert len(boxes) == 3
-        assert panel is figure.axes[-1] or all("\nmost " in text and ", frame " in text for text in texts(panel))
-        assert not [pair for pair in combinations(boxes, 2) if pair[0].overlaps(pair[1])]
-        assert all(b.x0 >= 0.0 and b.x1 <= figure.bbox.x1 for b in boxes)
-        assert all(b.y0 >= 0.0 and b.y1 <= figure.bbox.y1 for b in boxes)
+        assert len({line.get_color() for line in curves}) == len({str(c._unscaled_dash_pattern) for c in curves}) == 3
+        box = panel.get_legend().get_window_extent()
+        assert box.x0 > panel.bbox.x1 - 1.0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0.0
 
 
 def test_one_frame_that_saves_nothing_can_be_drawn() -> None:
     one = results()
     one.frames = [5]
     one.methods = {m: {key: values[:1] for key, values in of.items()} for m, of in one.methods.items()}
-    for panel in run_figures.savings_figure(one, verified=True).axes:
-        assert texts(panel) == ["most 0.0%, frame 5", "paper, average 0.0%"]
+    for panel in figures.savings_figure(one, verified=True).axes:
+        assert named(panel) == ["paper, average 0.0%\nmost 0.0%, frame 5"]
         low, high = panel.get_ylim()
         assert low <= 0.0 < high
 
@@ -144,15 +117,15 @@ def test_nothing_to_compare_is_said() -> None:
     del alone.methods["paper"]
     for nothing in (alone, experiment.Results("s", (1, 1), methods={"none": {}, "paper": {}})):
         with pytest.raises(ValueError, match="nothing to plot"):
-            run_figures.savings_figure(nothing, verified=False)
+            figures.savings_figure(nothing, verified=False)
 
 
 @pytest.mark.parametrize("ending", [".png", ".svg", ".PDF"])
 def test_files_are_the_same_each_time_and_for_any_settings_of_a_user(tmp_path: Path, ending: str) -> None:
     paths = [tmp_path / f"{name}{ending}" for name in ("a", "b")]
-    figures.save(run_figures.savings_figure(results(), verified=True), paths[0])
+    figures.save(figures.savings_figure(results(), verified=True), paths[0])
     with matplotlib.rc_context({"lines.linewidth": 9, "savefig.facecolor": "red", "pdf.fonttype": 3, "font.size": 30}):
-        figures.save(run_figures.savings_figure(results(), verified=True), paths[1])
+        figures.save(figures.savings_figure(results(), verified=True), paths[1])
         assert matplotlib.rcParams["font.size"] == 30
     assert paths[0].read_bytes() == paths[1].read_bytes()
     start = {".png": b"\x89PNG", ".svg": b"<?xml", ".PDF": b"%PDF"}[ending]
@@ -180,6 +153,29 @@ def step(number: int, wrong: int = 0, changes: tuple[Change, ...] = ()) -> Step:
 
 def zoom_results(*approaches: Approach) -> Results:
     return Results("room.aff", (64, 48), 3, 0.0, (0.0, 0.0, 0.0), 0.9, approaches=list(approaches))
+
+
+def test_a_zoom_test_is_drawn_with_counts_limits_marks_and_wrong_pixels() -> None:
+    change = Change(None, "FULLY_RENDERED", "INIT")
+    four = [step(0), step(1, wrong=2), step(2, wrong=3, changes=(change,)), step(3)]
+    four = [replace(s, pixels=10 + s.number, highest=[5, 5, 12, 12][s.number]) for s in four]
+    approaches = [Approach(4.0, four), Approach(64.0, four[:2])]
+    figure = figures.zoom_figure(zoom_results(*approaches))
+    counts, wrong = figure.axes
+    drawn = {line.get_label(): list(zip(line.get_xdata(), line.get_ydata())) for line in counts.get_lines()}
+    assert drawn["the primitive's pixels"] == [(0, 10), (1, 11), (2, 12), (3, 13)]
+    assert drawn["4 × highest count"] == [(0, 20), (1, 20), (2, 48), (3, 48)]
+    assert drawn["64 × highest count"] == [(0, 320), (1, 320)]
+    assert drawn["modes change, factor 4"] == [(2, 12)]
+    assert list(wrong.get_lines()[0].get_ydata()) == [0, 2, 3, 0] and counts.get_yscale() == "log"
+    figure.draw_without_rendering()
+    said = {tick.get_text() for tick in counts.yaxis.get_majorticklabels()} - {""}
+    assert "10" in said and all(text.replace(",", "").isdigit() for text in said)
+    assert "Never fully rendered" not in figure.get_suptitle()
+    never = [Approach(4.0, [replace(s, highest=0) for s in four])]
+    assert "Never fully rendered, so it" in figures.zoom_figure(zoom_results(*never)).get_suptitle()
+    with pytest.raises(ValueError, match="nothing to plot"):
+        figures.zoom_figure(zoom_results(Approach(4.0)))
 
 
 def test_a_shot_is_the_picture_with_rings_around_what_is_wrong(frame: Frame):

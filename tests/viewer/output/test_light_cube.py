@@ -104,10 +104,11 @@ def test_the_cube_of_a_light_is_drawn_and_told_cell_by_cell():
 
 
 def test_the_command_saves_the_cube_and_says_what_is_wrong(capfd: pytest.CaptureFixture[str], tmp_path: Path):
-    path = tmp_path / "new" / "cube.png"
+    path = tmp_path / "cube.png"
     code, out, _ = run(capfd, "cube", "figure3", "--side", 16, "--threads", 1, "-o", path, "--no-legend")
     assert code == 0 and "covered" in out and str(path) in out.replace("\n", "")
     with Image.open(path) as picture:
         assert picture.size == (2 * 64 + 1, 48)
+    assert "there is no folder" in complaint(run(capfd, "cube", "figure3", "-o", tmp_path / "new" / "cube.png"))
     assert "lights are" in complaint(run(capfd, "cube", "figure3", "--light", 99, "-o", path))
     assert "17 is not one of 16, 32" in complaint(run(capfd, "cube", "figure3", "--side", 17, "-o", path))

@@ -1,60 +1,55 @@
-"""What is said of the results of experiments."""
+"""What is said of the results of experiments and zoom tests."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import pytest
 
 from tracer.experiments.experiment import Results, Row
-from viewer.output.reports import LINES, SPEED_UP, WRONG, caveats, leaders, lines
+from tracer.experiments.zoom import Approach, Change, Step
+from tracer.scene.model import Camera
+from viewer.output.reports import (
+    SPEED_UP,
+    WRONG,
+    caveats,
+    changes_in_words,
+    frames_in_words,
+    happenings,
+    leaders,
+    modes_in_words,
+    table_1,
+)
 
 
 def row(method: str, steps: float = 0.0, tests: float = 0.0, speed_up: float = 1.0, spread: float = 0.01) -> Row:
+    spread = spread if method != "none" else 0.0
     return Row(
         method, steps, steps, 3, tests, tests, 3, 0.0, 0, 0.0, 0.1, 1.0 / speed_up, 0.0, 0, speed_up, spread, 0.3
     )
 
 
-def test_the_best_is_worth_naming():
+def test_the_best_of_several_exact_methods_is_named_and_chance_is_not_called_speed():
     rows = [row("none"), row("certified", 0.9, 0.2, 1.5), row("auto", 0.1, 0.1, 1.2), row("paper", 0.95, 0.9, 3.0)]
     assert leaders(rows) == [
         "fewest steps, of exact methods: certified (90.0% saved)",
         "fewest tests, of exact methods: certified (20.0% saved)",
         "least time, of exact methods: certified (1.50 times as fast as none)",
     ]
+    assert leaders(rows, timed=False) == leaders(rows)[:2], "verified frames trace all rays"
+    rows = [row("none"), row("certified", -1193.6, -0.2, 1.2, spread=0.3), row("auto", 0.0, 0.0, 1.1, spread=0.2)]
+    assert all(": none (" in line for line in leaders(rows))
+    assert leaders(rows[:2]) == [], "nothing to choose from"
 
 
-def test_none_is_best_where_the_others_cost_more():
-    rows = [row("none"), row("certified", -1193.6, -0.2, 0.4), row("auto", 0.0, 0.0, 1.1), row("voxels", 0.0003, 0.0)]
-    assert leaders(rows) == [
-        "fewest steps, of exact methods: none; no other saves any",
-        "fewest tests, of exact methods: none; no other saves any",
-        "least time, of exact methods: none; no other is quicker",
-    ], "auto has culled nothing: that it was quicker is chance"
-    noisy = [row("none"), row("certified", 0.5, 0.5, 1.2, spread=0.3), row("auto", 0.4, 0.4, 1.1, spread=0.2)]
-    assert leaders(noisy)[2] == "least time, of exact methods: none; no other is quicker"
-    close = [row("none"), row("certified", 0.5, 0.5, 1.02), row("auto", 0.4, 0.4, 1.01)]
-    assert leaders(close)[2] == "least time, of exact methods: none; no other is quicker"
-
-
-def test_nothing_is_said_where_there_is_nothing_to_choose_from():
-    assert leaders([row("none"), row("certified", 0.5)]) == []
-    assert leaders([row("none"), row("certified", 0.5), row("paper", 0.5)]) == []
-
-
-def test_savings_and_speed_up_are_in_the_table():
-    cells = {heading.strip(): cell(row("certified", -1193.6, 0.25, 1.5)) for heading, cell in LINES}
+def test_table_1_of_a_verified_run_tells_what_is_wrong_and_no_speed_up() -> None:
+    verified, timed = table_1(True), table_1(False)
+    assert WRONG in verified and SPEED_UP not in verified and SPEED_UP in timed and WRONG not in timed
+    cells = {column.meaning: column.cell(row("certified", -1193.6, 0.25, 1.5)) for column in timed}
     assert cells["traversal steps saved, average"] == "1,195 × as many"
     assert cells["intersection tests saved, average"] == "25.0%"
-    assert (
-        cells["speed-up over none, all frames"] == "1.50 ± 0.01" and cells["shadow rays saved (of rays due)"] == "30.0%"
-    )
-    none = {heading.strip(): cell(replace(row("none"))) for heading, cell in LINES}
+    assert cells["speed-up over none, all frames"] == "1.50 ± 0.01"
+    assert cells["shadow rays saved (of rays due)"] == "30.0%"
+    none = {column.meaning: column.cell(row("none")) for column in timed}
     assert none["speed-up over none, all frames"] == none["traversal steps saved, average"] == ""
-
-
-def test_nothing_is_said_of_time_where_frames_were_verified() -> None:
-    rows = [row("none"), row("certified", 0.5), row("paper", 0.5), row("certified+cache", 0.6)]
-    assert leaders(rows, timed=False) == leaders(rows)[:2]
 
 
 def test_what_times_depend_on_is_said_alike_in_the_window_and_by_bench() -> None:
@@ -63,15 +58,46 @@ def test_what_times_depend_on_is_said_alike_in_the_window_and_by_bench() -> None
     found.build_seconds = {"none": [0.0, 0.0], "certified": [1.5, 0.5]}
     said = caveats(found)
     assert "bvh8" in said[0] and "50% of the time of certified is preparing" in said
-    assert not any("window" in one for one in said)
     beside = caveats(found, in_window=True)
-    assert beside[1:] == said and "window" in beside[0]
+    assert beside[1:] == said and "window" in beside[0] and not any("window" in one for one in said)
     found.settings["verify"] = True
     for one in (caveats(found), caveats(found, in_window=True)):
         assert one == ["times include verifying, which traces culled rays, too: no speed-up is told"]
 
 
-def test_a_verified_run_tells_what_is_wrong_and_no_speed_up() -> None:
-    verified, timed = ([heading for heading, _ in lines(one)] for one in (True, False))
-    assert WRONG in verified and SPEED_UP not in verified
-    assert SPEED_UP in timed and WRONG not in timed
+@pytest.mark.parametrize(
+    ("frames", "path", "planned", "stopped", "said"),
+    [
+        ([0, 1, 2], 3, 3, False, "3 frames over the whole path"),
+        ([0, 1, 2], 200, 3, False, "frames 0 to 2 of 200"),
+        ([0, 1, 2], 200, 200, True, "3 of 200 frames, stopped"),
+        ([0, 1, 2], 200, 200, False, "3 of 200 frames"),  # one has not stopped it, but looks meanwhile
+        ([7, 8], 200, 20, True, "frames 7 to 8 of 200, stopped"),
+        ([7], 200, 1, False, "frame 7 of 200"),
+        ([0], 1, 1, False, "1 frame"),
+    ],
+)
+def test_frames_are_told_by_their_path(frames, path: int, planned: int, stopped: bool, said: str) -> None:
+    made = Results("s", (1, 1), frames, path_times=range(path), planned=planned, stopped=stopped)
+    assert frames_in_words(made) == said
+
+
+def test_steps_where_something_happens_are_told_and_lights_that_change_alike_together() -> None:
+    changes = [
+        Change(None, "INIT", "FULLY_RENDERED"),
+        Change(0, "INIT", "NON_SHADOW"),
+        Change(1, "INIT", "FULL_SHADOW"),
+        Change(3, "INIT", "NON_SHADOW"),
+    ]
+    assert changes_in_words(changes) == [
+        "init → fully rendered",
+        "lights 0, 3: init → non shadow",
+        "light 1: init → full shadow",
+    ]
+    assert modes_in_words(changes) == "fully rendered, lights 0, 3: non shadow, light 1: full shadow"
+    camera = Camera((0, 0, 5), (0, 0, -1))
+    steps = [
+        Step(n, 5.0, camera, 10, 10, "INIT", ["INIT"], changes if n == 6 else [], wrong, wrong, 10, 0, 0)
+        for n, wrong in enumerate([0, 2, 2, 3, 0, 0, 0])
+    ]
+    assert [step.number for step in happenings(Approach(4.0, steps))] == [1, 3, 4, 6]

@@ -1,4 +1,4 @@
-"""Looking closely at the picture: zoom, exact pixels, watched ones, and the values of a region."""
+"""Looking closely at the picture: zoom, exact pixels, and the values of a region."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from viewer.state.views import View
+from viewer.window.panels import pixels
 
 KEY = imgui.Key
 CTRL, SHIFT = int(KEY.mod_ctrl), int(KEY.mod_shift)
@@ -49,7 +50,6 @@ def closeup(d: Driver) -> None:
     d.press(KEY.minus, 3)
     assert d.c.session.draw.zoom.fits
     _numbers(d)
-    _watched(d)
     _region(d)
     _exposed(d)
     d.settle()
@@ -136,29 +136,6 @@ def _numbers(d: Driver) -> None:
     d.settle()
 
 
-def _watched(d: Driver) -> None:
-    """Pinned by key and by the menu over the picture; the list goes along with new frames."""
-    x, y = _point_at(d, 0.4, 0.6)
-    d.press(int(KEY.p) | SHIFT)
-    assert d.ui.pixels.watched == [((x + 0.5) / d.c.frame.width, (y + 0.5) / d.c.frame.height)]
-    camera = d.c.session.camera
-    _point_at(d, 0.6, 0.4)
-    d.context.mouse_click(1)
-    d.frames(3)
-    d.context.item_click("//$FOCUSED/Watch this pixel, or no longer")
-    d.frames(3)
-    assert len(d.ui.pixels.watched) == 2 and d.c.session.camera == camera and d.c.selection.picked is None
-    for view in (View.COLOR, View.COST):
-        d.c.session.set_draw(view=view)
-        d.settle()
-        assert d.context.item_exists("//Pixels/**/1"), "the first pixel is not in the list"
-    d.c.session.set_draw(view=View.COLOR)
-    d.settle()
-    d.context.menu_click("//##MainMenuBar/Picture/Unwatch all pixels")
-    d.frames(2)
-    assert not d.ui.pixels.watched
-
-
 def _region(d: Driver) -> None:
     """A drag with Shift chooses a region, of which the panel shows a histogram."""
     camera, (left, top, right, bottom) = d.c.session.camera, d.picture_edges()
@@ -167,7 +144,7 @@ def _region(d: Driver) -> None:
     d.drag(start, (0.5 * (right - left), 0.4 * (bottom - top)))
     d.context.key_up(KEY.mod_shift)
     d.frames(3)
-    region = d.ui.pixels.region
+    region = pixels.region(d.ui)
     assert region is not None and d.c.session.camera == camera
     assert np.allclose((region.left, region.top, region.right, region.bottom), (0.25, 0.3, 0.75, 0.7), atol=0.01)
     d.c.session.set_draw(view=View.DEPTH)
@@ -182,7 +159,8 @@ def _region(d: Driver) -> None:
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.c.session.set_draw(spans=())
     d.c.session.set_draw(view=View.COLOR)
-    d.ui.pixels.region = None
+    d.context.item_click("//Pixels/\uf00d##region")
+    assert pixels.region(d.ui) is None
     d.settle()
 
 

@@ -11,7 +11,7 @@ def closing_while_tracing(d: Driver) -> None:
     """The window goes at once, whatever is being traced."""
     d.settle()
     d.c.settings.change(samples=4000)
-    d.wait(lambda: d.c.renderer.running is not None and d.c.renderer.running.samples == 4000, "a long trace")
+    d.wait(lambda: d.c.scheduler.adds_samples, "a long trace")
     _close(d)
 
 

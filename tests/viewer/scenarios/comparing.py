@@ -60,13 +60,11 @@ def comparing(d: Driver) -> None:
             assert np.array_equal(saved, composed(a, b, way, 0.5, shows_a=False))
         if way is CompareMode.SIDE:
             assert saved.shape[1] == 2 * b.shape[1] + GAP
-            _watches_from_a(d)
+            _inspects_from_a(d)
             for panel in ("Pixels", "Compare"):
-                d.ui.pixels.watched[:] = [(0.2, 0.3), (0.9, 0.6)]
                 d.ui.show_panel(panel)
                 d.frames(4)
                 check_fit(d, f"{panel}, comparing")
-            d.ui.pixels.watched.clear()
     d.context.key_down(KEY.z)
     d.frames(3)
     assert seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.graphics.compared.a
@@ -110,7 +108,7 @@ def _saved(d: Driver, name: str) -> np.ndarray:
         return np.asarray(image)
 
 
-def _watches_from_a(d: Driver) -> None:
+def _inspects_from_a(d: Driver) -> None:
     """A click on A inspects the pixel at the same place of B."""
     area = d.context.item_info("//Picture/picture of A").rect_full
     d.context.mouse_move_to_pos((0.25 * area.min.x + 0.75 * area.max.x, 0.4 * area.min.y + 0.6 * area.max.y))

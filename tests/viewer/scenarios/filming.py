@@ -23,8 +23,11 @@ def filming(d: Driver) -> None:
     films.plan.last, films.plan.size, films.plan.legend = 4, (160, 120), True
     assert films.count == 5
     d.context.item_click(start)
+    d.wait(lambda: runs.current is not None, "the film to begin")
+    d.c.questions.before_opening("another scene", lambda: None)
     d.wait(lambda: films.film is not None and runs.current is None, "the film")
     d.settle()
+    assert d.c.questions.question is None, "whether to stop it is asked although it is done"
     assert films.film.whole and "film done: 5 frames" in d.c.notices.message.text
     folder = films.film.script.folder
     assert folder.parent == pictures and len(list(folder.iterdir())) == 5

@@ -103,7 +103,7 @@ def finding(d: Driver) -> None:
     listing = _known(d)
     part = int(listing.rows[0])
     row = d.context.item_info(f"//Find/**/{_id(part)}/##row").rect_full
-    d.context.mouse_move_to_pos((row.min.x + 60.0, 0.5 * (row.min.y + row.max.y)))  # on its name, at no column's edge
+    d.context.mouse_move_to_pos((row.min.x + 35.0, 0.5 * (row.min.y + row.max.y)))  # on its name, at no column's edge
     d.context.mouse_click(0)
     d.frames(3)
     assert c.selection.part == part

@@ -93,7 +93,7 @@ def _to_a_find(d: Driver) -> None:
     assert c.hunts.hunt.whole and found.finds and found.frames == LAST // STEP + 5
     c.settings.change(samples=4)
     d.settle()
-    d.context.item_click("//Hunt/**/1##find 1")
+    d.context.item_click("//Hunt/**/1##0")
     find = found.finds[0]
     d.wait(lambda: c.runs.current is None and c.selection.picked is not None, "the find", 60.0)
     d.settle()

@@ -17,7 +17,6 @@ from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Progress
 from viewer.services import scene_files, scene_loader
 from viewer.window import graphics
-from viewer.window.panels.loading import words
 
 KEY = imgui.Key
 _compiled = threading.Event()
@@ -63,10 +62,6 @@ def previewing(d: Driver) -> None:
     d.wait(lambda: not d.c.motion.under_way, "rest", 10.0)
     d.frames(2)
     assert np.abs(_read(d).astype(int) - first).max() > 50, "another picture"
-    said = words(d.c.loader.warm_up_job)
-    assert "no shadows" in said[0] and "Compiling" in said[1]
-    box = imgui.internal.find_window_by_name("##progress")
-    assert box is None or not box.active, "nothing lies over the preview"
     _tour_fits(d)
     _compiled.set()
     d.settle()

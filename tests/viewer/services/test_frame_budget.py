@@ -16,7 +16,6 @@ from viewer.services.frame_budget import PARTS, Cost, FrameBudget
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.refinement import LampSamples, has_lamps
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.state.preferences import Preferences
 from viewer.state.readings import MOST_RECORDED
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
@@ -126,10 +125,6 @@ def test_a_frame_that_was_slept_through_changes_nothing_but_slow_ones_do():
     assert budget.plan(800, 500, 0.32).divisor > before.divisor
 
 
-HERE = FrameInputs(size=(16, 8))
-MOVING = replace(HERE, moving=True)
-
-
 @pytest.mark.parametrize("radius", [None, 0.0, 0.5])
 @pytest.mark.parametrize("samples", [None, 1, 9, 64])
 @pytest.mark.parametrize("kinds", ["", "p", "ps", "prd"])
@@ -140,19 +135,15 @@ def test_samples_are_those_of_the_lamp_that_has_the_most(kinds: str, radius: flo
         "r": Light("c", (0, 0, 0), kind="rectangle", edges=((1, 0, 0), (0, 1, 0)), samples=16),
         "d": Light("d", (0, 0, 0), kind="dome", radius=1.0, edges=((0, 1, 0),), samples=25),
     }
-    lights, session = (
-        tuple(known[kind] for kind in kinds),
-        Session(state=ViewState(settings=Settings(lamp_radius=radius))),
-    )
-    lamps, table = as_lamps(lights, radius, samples), LampSamples(session)
-    session.open(replace(make_scene(), lights=lights))
-    settings = Settings(lamp_radius=radius, lamp_samples=samples)
-    session.change(settings=settings)
+    lights = tuple(known[kind] for kind in kinds)
+    lamps, table, settings = as_lamps(lights, radius, samples), LampSamples(), Settings(lamp_radius=radius)
+    settings = replace(settings, lamp_samples=samples)
     for _ in range(2):
-        assert table.most(settings) == max((len(lamp.offsets()) for lamp in lamps), default=1)
+        table.update(lights, settings)
+        assert table.most(settings) == table.wanted == max((len(lamp.offsets()) for lamp in lamps), default=1)
         assert table.any == has_lamps(lights, settings) == any(lamp.kind != "point" for lamp in lamps)
-    session.open(replace(make_scene(), lights=()))
-    assert table.most(settings) == 1, "the lights of another scene"
+    table.update((), settings)
+    assert table.wanted == 1, "the lights of another scene"
 
 
 class Renders:
@@ -169,9 +160,6 @@ class Renders:
         frame = make_frame(replace(request.settings, samples=request.samples))
         self._made = Traced(request, frame, FrameStatistics())
 
-    def hurry(self, request: RenderRequest) -> None:
-        """Nothing ever waits here."""
-
     def take(self) -> Traced | None:
         made, self._made = self._made, None
         return made
@@ -186,14 +174,18 @@ class Window:
         state = ViewState(settings=Settings(method="none", samples=2, **settings))
         self.session, self.renders = Session(state=state), Renders()
         self.session.open(scene or make_scene())
-        self.scheduler = FrameScheduler(self.session, Preferences(), self.renders)
+        self.scheduler = FrameScheduler(self.renders)
 
-    def rest(self, now: FrameInputs = HERE, frames: int = 12) -> list[tuple[int | None, int]]:
+    def request(self, moving: bool = False) -> None:
+        session = self.session
+        self.scheduler.request(FrameInputs(session.state, session.scene, session.camera, (16, 8), moving))
+
+    def rest(self, frames: int = 12, moving: bool = False) -> list[tuple[int | None, int]]:
         """Samples of lamps, and of pixels, that are asked for in so many frames of the window."""
         before = len(self.renders.asked)
         for _ in range(frames):
             self.scheduler.take()
-            self.scheduler.request(now)
+            self.request(moving)
         return [(one.settings.lamp_samples, one.samples) for one in self.renders.asked[before:]]
 
     def move(self) -> None:
@@ -204,12 +196,12 @@ class Window:
 
 def test_at_idle_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_for_twice():
     window = Window(lamp_radius=0.5, lamp_samples=64)
-    assert window.rest() == [(4, 1), (16, 1), (64, 2), (64, 2)], "the last knows more about shadows"
+    assert window.rest() == [(4, 1), (64, 2), (64, 2)], "the last knows more about shadows"
     assert window.rest() == []
     assert not window.scheduler.refines_lamps and window.scheduler.lamp_samples_shown == 64
     window.session.change(settings=replace(window.session.settings, lamp_samples=256))
-    assert window.scheduler.refines_lamps
-    assert window.rest() == [(256, 2), (256, 2)], "what there is goes on"
+    assert window.rest(1) == [(256, 2)] and window.scheduler.refines_lamps
+    assert window.rest() == [(256, 2)], "what there is goes on"
     window.session.change(settings=replace(window.session.settings, lamp_samples=1))
     assert window.rest() == [(1, 2), (1, 2)]
     window.session.change(settings=replace(window.session.settings, lamp_samples=16, lamp_radius=0.25))
@@ -222,39 +214,21 @@ def test_all_pictures_of_a_motion_have_as_many_samples():
     asked = []
     for _ in range(5):
         window.move()
-        asked += window.rest(MOVING, 1)
+        asked += window.rest(1, moving=True)
     assert asked == [(4, 1)] * 5
-    assert window.rest() == [(16, 1), (64, 2), (64, 2)], "the last of them is the first at idle"
-
-
-def test_a_motion_that_has_no_time_takes_one_sample_to_its_end():
-    window = Window(lamp_radius=0.5, lamp_samples=64)
-    window.rest()
-    slow = FrameStatistics(phases={"primary": 1e-3, "shading": 1.0})
-    budget = window.scheduler.budget
-    for _ in range(5):
-        budget.observe(slow, 128, 4)
-    window.move()
-    assert window.rest(MOVING, 2)[0] == (1, 1)
-    for _ in range(40):
-        budget.observe(FrameStatistics(phases={"primary": 1e-4, "shading": 1e-4}), 128, 4)
-    window.move()
-    assert window.rest(MOVING, 2) == [(1, 1)], "modes would be lost"
-    assert window.rest()[:3] == [(4, 1), (16, 1), (64, 2)]
-    window.move()
-    assert window.rest(MOVING, 2) == [(4, 1)]
+    assert window.rest() == [(64, 2), (64, 2)], "the last of them is the first at idle"
 
 
 def test_points_have_one_sample_and_whole_pictures_all_of_them():
     window = Window(lamp_samples=64)
-    assert window.scheduler.lamps.wanted == 1 and not window.scheduler.lamps.any
     assert set(window.rest()) == {(64, 2)}, "which changes nothing"
+    assert window.scheduler.lamps.wanted == 1 and not window.scheduler.lamps.any
     sphere = Light("lamp", (0.0, 5.0, 0.0), kind="sphere", radius=1.0, samples=16)
     window = Window(replace(make_scene(), lights=(sphere,)))
     assert window.rest() == [(4, 1), (None, 2), (None, 2)], "as the scene says"
     window.session.set_pace(progressive=False)
     window.move()
-    assert set(window.rest(MOVING, 3)) == {(None, 2)}
+    assert set(window.rest(3, moving=True)) == {(None, 2)}
 
 
 def test_pixels_cost_by_the_samples_of_lamps():
@@ -270,11 +244,6 @@ def test_pixels_cost_by_the_samples_of_lamps():
     assert budget.seconds(pixels, 16, 4) == pytest.approx(0.15, rel=0.1)
     assert budget.seconds(pixels, 16, 1) == pytest.approx(costs[0], rel=0.1), "each number for itself"
     assert budget.plan(800, 500, 0.05, lamp_samples=64).parts[0] < budget.plan(800, 500, 0.05).parts[0]
-    assert budget.moving_samples(800, 500, 0.1) == 4
-    assert budget.moving_samples(800, 500, 0.03) == 4, "there is little time, and a change loses modes"
-    assert budget.moving_samples(800, 500, 0.02) == 1
-    assert budget.moving_samples(800, 500, 0.035) == 1
-    assert budget.moving_samples(800, 500, 0.1) == 4
 
 
 def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it():
@@ -304,13 +273,13 @@ def test_between_steps_it_is_known_that_more_is_to_come():
     scheduler, seen = window.scheduler, []
     assert not scheduler.awaits and not scheduler.adds_samples
     for _ in range(12):
-        scheduler.request(HERE)
+        window.request()
         seen.append((scheduler.lamp_samples_shown, scheduler.awaits, scheduler.refines_lamps))
         scheduler.take()
-    assert seen[:4] == [(0, True, False), (4, True, True), (16, True, True), (64, True, False)], "the last knows more"
+    assert seen[:3] == [(0, True, False), (4, True, True), (64, True, False)], "the last knows more"
     assert seen[-1] == (64, False, False)
     window.move()
-    scheduler.request(HERE)
+    window.request()
     assert scheduler.awaits
     scheduler.give_up()
     assert not scheduler.awaits and not scheduler.adds_samples, "it has failed"

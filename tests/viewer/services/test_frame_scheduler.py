@@ -46,8 +46,6 @@ class Pictures:
     def submit(self, request: RenderRequest) -> None:
         self.asked.append(request)
 
-    hurry = submit
-
     def take(self) -> Traced | None:
         return self.next
 
@@ -60,8 +58,8 @@ def test_pictures_are_asked_for_once_and_again_after_a_run():
     pictures, session = Pictures(), Session(state=ViewState(settings=Settings(method="none", samples=1)))
     session.set_pace(progressive=False)
     session.open(make_scene())
-    scheduler = FrameScheduler(session, Preferences(), pictures)
-    here = FrameInputs(size=(16, 8))
+    scheduler = FrameScheduler(pictures)
+    here = FrameInputs(session.state, session.scene, session.camera, (16, 8))
     for _ in range(3):
         scheduler.request(here)
     (request,) = pictures.asked[1:] if len(pictures.asked) > 1 else pictures.asked
@@ -74,14 +72,13 @@ def test_pictures_are_asked_for_once_and_again_after_a_run():
     assert len(pictures.asked) == count + 1 and pictures.asked[-1] == request
 
 
-def test_until_certificates_can_be_made_pictures_come_without():
-    session = Session(state=ViewState(settings=Settings(method="certified+rest")))
-    scheduler = FrameScheduler(session, Preferences(), Pictures())
-    assert scheduler.settings.method == "certified+rest"
-    scheduler.request(FrameInputs(ready=False))
-    assert scheduler.settings.method == "none+rest"
-    session.change(settings=replace(session.settings, method="paper"))
-    assert scheduler.settings.method == "paper"
+@pytest.mark.parametrize(("ready", "method", "traced"), [
+    (True, "certified+rest", "certified+rest"), (False, "certified+rest", "none+rest"), (False, "paper", "paper"),
+])  # fmt: skip
+def test_until_certificates_can_be_made_pictures_come_without(ready: bool, method: str, traced: str):
+    scheduler = FrameScheduler(Pictures())
+    scheduler.request(FrameInputs(ViewState(settings=Settings(method=method)), ready=ready))
+    assert scheduler.settings.method == traced
 
 
 def test_a_window_stays_until_nobody_is_just_waking_it():
@@ -154,6 +151,7 @@ def test_what_a_view_needs_is_traced_once_and_for_such_views_alone(
 ):
     verifies = doing == "verifying"
     desk.c.session.set_draw(view=view)
+    advance(desk.c, SIZE)
     assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "it is not there yet"
     assert doing in desk.c.scheduler.title
     assert desk.rest() == [verifies]
@@ -161,8 +159,8 @@ def test_what_a_view_needs_is_traced_once_and_for_such_views_alone(
     assert desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
     for other in others:
         desk.c.session.set_draw(view=other)
-        assert not desk.c.scheduler.outdated
         assert desk.rest() == []
+        assert not desk.c.scheduler.outdated
     for shown, wanted in ((view, True), (View.COLOR, False)):
         desk.c.session.set_draw(view=shown)
         desk.rest()
@@ -179,8 +177,7 @@ def test_the_users_own_setting_counts_in_every_view(desk: Desk):
     desk.c.settings.change(verify=False)
     assert desk.rest() == [], "verified it is already"
     desk.c.session.set_draw(view=View.COLOR)
-    desk.c.settings.change(verify=True)
-    desk.c.settings.change(verify=False)
+    assert desk.rest() == [], "that is more than is asked for"
     desk.c.scheduler.trace_again()
     assert desk.rest() == [False]
 

@@ -15,8 +15,9 @@ from tracer.scene.load import load_scene
 from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO, MeshOptions
 from tracer.scene.model import Camera, Scene
 from viewer.services import preview, scene_files
-from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
+from viewer.services.motion import IDLE_AFTER, Motion
 from viewer.services.preview import Preview
+from viewer.state.navigation import LONGEST_FLIGHT, SHORTEST_FLIGHT
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -57,11 +58,11 @@ def test_a_glide_ends_where_it_goes_and_a_hand_ends_it(moving: Moving):
     for halt in (False, True):
         moving.session.change(camera=start)
         moving.motion.glide(ELSEWHERE)
-        moving.after(0.5 * GLIDE_SECONDS)
+        moving.after(0.5 * SHORTEST_FLIGHT)
         assert moving.session.camera not in (start, ELSEWHERE) and moving.motion.under_way
         if halt:
             moving.motion.move(start)
-        moving.after(GLIDE_SECONDS)
+        moving.after(LONGEST_FLIGHT)
         assert moving.session.camera == (start if halt else ELSEWHERE)
 
 
@@ -115,7 +116,7 @@ def test_the_pace_is_that_of_the_first_frame_until_another_scene(moving: Moving)
 def test_a_window_that_slept_on_the_way_has_arrived(moving: Moving):
     start = moving.session.camera
     far = Camera((400.0, 2.0, 3.0), start.direction, start.up, start.angle)
-    moving.motion.fly_to(far)
+    moving.motion.glide(far)
     for _ in range(3):
         moving.after(0.05)
     assert moving.motion.under_way

@@ -88,20 +88,6 @@ def test_a_coarse_frame_in_motion_is_let_finish(thread):
     assert [at for at, _ in renderer.asked] == [0.0, 1.0]
 
 
-def test_where_a_motion_ended_comes_before_what_is_under_way_and_once(thread):
-    renderer = held_at(thread, request(0.0, quick=True))
-    thread.submit(request(1.0, quick=True))
-    thread.hurry(request(2.0, final=True))
-    assert renderer.cancelled == [], "it is not what waits"
-    thread.hurry(request(1.0, final=True))
-    until(lambda: renderer.cancelled)
-    renderer.go.set()
-    assert taken(thread).frame.time == 1.0
-    thread.hurry(request(1.0, final=True))
-    idle(thread)
-    assert [at for at, _ in renderer.asked] == [0.0, 1.0]
-
-
 def test_what_has_set_modes_is_handed_out_once_and_in_order(thread):
     """A picture that was left, as it was shown last, and one that became whole; one that nothing was shown of is not
     among them."""
@@ -127,9 +113,6 @@ def test_the_same_request_again_does_not_cancel_itself():
     running = request(0.0)
     assert not request(0.0).supersedes(running)
     coarse = request(0.0, quick=True)
-    assert request(1.0, quick=True, final=True).supersedes(coarse), "what was before the end of a motion"
-    assert not request(1.0, quick=True).supersedes(replace(coarse, final=True))
-    assert not request(1.0, quick=True, final=True).supersedes(replace(coarse, final=True)), "one of them is shown"
     assert not replace(coarse, settings=Settings(width=4, height=4)).supersedes(coarse)
     assert replace(coarse, settings=replace(coarse.settings, method="none")).supersedes(coarse)
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import gc
+import json
 import threading
 import time
 import weakref
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import datetime
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -53,6 +55,11 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
     *_, expected = experiment.run(scene, run.settings, ["paper"], times)
     assert same_figures(run.results, expected)
     assert len(experiment.table(run.results)) == 2
+    desk.runs.export(run, ".json")
+    desk.until(lambda: not desk.c.captures.busy)
+    (file,) = desk.c.preferences.picture_folder.glob("*.json")
+    kept = json.loads(file.read_text())
+    assert kept.pop("version") and kept == json.loads(json.dumps(run.results.to_dict())), "not what is shown"
 
     shown = [frame for frame in desk.came if frame.settings == replace(run.settings, method="paper")]
     assert shown and shown == desk.came[: len(shown)], "they are not the picture while it is under way"
@@ -71,15 +78,6 @@ def test_a_view_of_what_is_wrong_says_whether_the_run_verifies(desk: Desk, verif
     assert desk.runs.current.verifies is verify
     assert ("this run does not verify" in desk.c.scheduler.title) is not verify
     assert desk.c.scheduler.drawn_view is (View.WIPE if verify else View.COLOR)
-
-
-def test_the_frames_of_the_chosen_method_are_shown(desk: Desk) -> None:
-    desk.came.clear()
-    desk.runs.start_experiment()
-    desk.runs.experiment.shown = "none"
-    desk.run_to_its_end()
-    small = [frame.settings.method for frame in desk.came if (frame.width, frame.height) == (32, 24)]
-    assert small and set(small) == {"none"}
 
 
 def test_the_last_frame_of_a_run_is_shown_though_the_window_was_late(desk: Desk) -> None:
@@ -249,3 +247,46 @@ def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> N
     gc.collect()
     assert scene() is None and not any(frame() for frame in frames)
     assert desk.runs.experiment.scene_path.name == "tiny.aff"
+
+
+def test_a_run_that_is_overtaken_by_another_scene_ends_and_keeps_what_it_has(desk: Desk, tmp_path: Path) -> None:
+    desk.runs.experiment_plan.frames = 5000
+    desk.runs.start_experiment()
+    run = desk.runs.experiment
+    desk.until(lambda: run.results is not None and len(run.results.frames) > 3)
+    desk.runs.export(run, ".json")
+    desk.until(lambda: not desk.c.captures.busy)
+    (file,) = (tmp_path / "pictures").iterdir()
+    kept = json.loads(file.read_text())
+    assert 3 < len(kept["frames"]) < 5000 and desk.runs.current is run and not run.stopping, "saving has disturbed it"
+    desk.open(embedded_scenes()["figure4"])
+    desk.run_to_its_end()
+    assert run.done and run.error is None and 3 < len(run.results.frames) < 5000
+    assert desk.c.session.scene.path.name == "figure4.aff"
+    assert "not figure4.aff, which is open" in described(run, desk.c.session.scene)[0]
+
+
+def test_a_frame_of_an_experiment_can_be_gone_to(desk: Desk) -> None:
+    c = desk.c
+    desk.runs.start_experiment()
+    run = desk.runs.experiment
+    desk.run_to_its_end()
+    c.navigator.go_to_experiment(run, 3)
+    desk.rest()
+    assert c.session.time == run.times[3] and c.session.settings.method == "paper" and c.session.settings.depth == 1
+
+
+def test_what_cannot_be_written_is_one_line(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    desk.c.preferences.screenshot_folder = str(tmp_path / "file")
+    desk.runs.experiment_plan.methods = set()
+    desk.runs.start_experiment()
+    desk.run_to_its_end()
+    desk.runs.export(desk.runs.experiment, ".json")
+    desk.rest()
+    assert desk.c.notices.message.error and "nothing saved: cannot write to" in desk.said
+    desk.c.preferences.screenshot_folder = str(tmp_path / "pictures")
+    desk.runs.export(desk.runs.experiment, ".png")  # the reference alone
+    desk.rest()
+    assert desk.c.notices.message.error and "nothing to plot" in desk.said
+    assert not list((tmp_path / "pictures").iterdir())

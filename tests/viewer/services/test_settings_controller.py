@@ -9,7 +9,7 @@ import pytest
 
 from tests.viewer.fakes import make_scene
 from viewer.services.named_states import Bookmarks
-from viewer.services.settings_controller import REST_SECONDS, SettingsController
+from viewer.services.settings_controller import SAVED_EVERY, SettingsController
 from viewer.state import codec
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -27,12 +27,8 @@ class Parts:
         self.settings = SettingsController(self.session, self.preferences, self.notices, lambda: self.locked)
         self.bookmarks = Bookmarks(self.session, self.preferences, self.notices, self.settings.save)
 
-    def change(self, **changes: object) -> None:
-        self.settings.change(**changes)
-        self.settings.note_method()  # as in each frame of the window
-
     def follow_settings(self) -> None:
-        self.settings.save_when_rested()
+        self.settings.save_changes()
         if self.settings._writing is not None:
             self.settings._writing.result(30.0)
 
@@ -56,10 +52,9 @@ def test_a_setting_is_changed_and_remembered_unless_it_is_no_good_or_locked():
 )
 def test_culling_is_turned_off_and_on_as_it_was_with_what_was_added_meanwhile(chosen: str, toggled: list[str]):
     parts = Parts()
-    parts.change(method=chosen)
+    parts.settings.change(method=chosen)
     for method in toggled:
         parts.settings.toggle_culling()
-        parts.settings.note_method()
         assert parts.session.settings.method == method
 
 
@@ -101,19 +96,17 @@ def test_a_change_that_rests_is_saved_and_other_windows_changes_stay(own_setting
     saved = own_settings / "settings.json"
 
     def pass_time() -> None:
-        now[0] += REST_SECONDS
+        now[0] += SAVED_EVERY
         for parts in (one, other):
             parts.follow_settings()
 
     pass_time()
-    pass_time()
     assert not saved.exists(), "nothing was changed"
     one.preferences.theme = "light"
-    pass_time()
+    one.settings.save_changes()
     assert not saved.exists(), "it may change on"
     pass_time()
     other.settings.change(depth=3)
-    pass_time()
     pass_time()
     read = json.loads(saved.read_text())
     assert (read["theme"], read["state"]["settings"]["depth"]) == ("light", 3)
@@ -137,7 +130,7 @@ def test_preferences_that_cannot_be_saved_are_said_once(own_settings: Path, monk
     for depth in (3, 4):
         parts.settings.change(depth=depth)
         for _ in range(4):
-            now[0] += REST_SECONDS
+            now[0] += SAVED_EVERY
             parts.follow_settings()
     said = [entry.text for entry in parts.notices.entries()]
     assert len(said) == 1 and said[0].startswith("settings not saved: ") and parts.notices.current.error, said

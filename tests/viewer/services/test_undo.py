@@ -10,11 +10,12 @@ import pytest
 from tests.viewer.fakes import make_scene
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Camera
-from viewer.services.motion import GLIDE_SECONDS, IDLE_AFTER, Motion
+from viewer.services.motion import IDLE_AFTER, Motion
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import MOST_STEPS, Undo
 from viewer.state import codec
 from viewer.state.comparison import CompareMode
+from viewer.state.navigation import LONGEST_FLIGHT, SHORTEST_FLIGHT
 from viewer.state.notices import Notices
 from viewer.state.pixels import Zoom
 from viewer.state.preferences import Preferences
@@ -55,7 +56,7 @@ class Desk:
         self.undo.note_changes()
 
     def rest(self) -> None:
-        self.frame(IDLE_AFTER + GLIDE_SECONDS)
+        self.frame(IDLE_AFTER + LONGEST_FLIGHT)
         self.frame()
 
     def arrive(self, meshes: MeshOptions) -> None:
@@ -140,7 +141,7 @@ def test_a_flight_is_one_step_and_glides_back(desk: Desk):
     desk.undo.undo()
     assert desk.session.on_path and desk.session.camera == home and desk.undo.undoes == ""
     desk.undo.redo()
-    desk.frame(0.5 * GLIDE_SECONDS)
+    desk.frame(0.5 * SHORTEST_FLIGHT)
     assert desk.session.camera not in (home, far)
     desk.rest()
     assert desk.session.camera == far and desk.undo.redoes == "" and desk.undo.undoes == "camera"

@@ -1,9 +1,8 @@
-"""The exact value of a pixel, as a number and in words; regions, watched pixels, and zooming into the picture."""
+"""The exact value of a pixel, as a number and in words; regions, and zooming into the picture."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,8 +23,6 @@ from viewer.state.pixels import (
     ALL,
     FIT,
     MOST,
-    MOST_WATCHED,
-    Pixels,
     Region,
     Zoom,
     panned,
@@ -119,16 +116,6 @@ def test_whole_numbers_have_a_bin_each_and_misses_none():
     assert histogram(values_in(FRAME, View.DEPTH), slice(0, 8), slice(14, 16)) is None
 
 
-def test_pixels_are_pinned_once_and_let_go():
-    pixels = Pixels()
-    assert pixels.pin(FRAME, (0.5, 0.5)) == "watching pixel 8, 4"
-    assert pixels.watched == [(8.5 / 16, 4.5 / 8)]
-    assert "no longer" in pixels.pin(FRAME, (0.52, 0.51)) and pixels.watched == []
-    for x in range(MOST_WATCHED):
-        pixels.pin(FRAME, ((x + 0.5) / 16, 0.1))
-    assert "which is the most" in pixels.pin(FRAME, (0.5, 0.9)) and len(pixels.watched) == MOST_WATCHED
-
-
 def test_what_is_under_the_pointer_stays_there():
     lots = np.random.default_rng(5)
     zoom = FIT
@@ -164,12 +151,6 @@ def test_the_pixels_that_are_seen():
     assert pixels_shown(Zoom(4.0, 0.53, 0.5), 16, 8)[0] == range(6, 11), "those seen in part count too"
 
 
-def test_another_scene_is_not_watched_where_the_last_one_was() -> None:
-    pixels = Pixels()
-    pixels.enter(Path("kitchen.aff"))
-    pixels.watched.append((0.25, 0.5))
-    pixels.region = Region(0.0, 0.0, 0.5, 0.5)
-    pixels.enter(Path("kitchen.aff"))  # as when its file has changed
-    assert pixels.watched and pixels.region is not None
-    pixels.enter(Path("robot.aff"))
-    assert not pixels.watched and pixels.region is None
+def test_minus_zero_of_a_normal_is_zero():
+    frame = replace(FRAME, normal=np.full_like(FRAME.normal, -0.0))
+    assert words_in(frame, View.NORMAL, 0, 0, 0) == ("+0.000",) * 3

@@ -64,7 +64,7 @@ def test_without_a_picture_it_is_said_what_goes_on() -> None:
     assert first_picture(_idle(session=SimpleNamespace(scene=None))) == "No scene is open"
     job = SimpleNamespace(title="Opening office.aff", label="reading", fraction=0.5)
     loader = SimpleNamespace(warm_up_job=None, load_job=job, method_job=None)
-    assert first_picture(_idle(loader=loader)) == "Opening office.aff: reading"
+    assert first_picture(_idle(loader=loader)) == "Opening office.aff: reading   (Escape cancels)"
 
 
 def test_what_was_asked_says_what_it_waits_for() -> None:

@@ -70,6 +70,12 @@ def write_lines(lines: Sequence[str], at: ImVec2, color: ImVec4 = _FRONT) -> Non
         draw.add_text(ImVec2(at.x + pad, at.y + pad + below), imgui.get_color_u32(color), text)
 
 
+def pointer() -> ImVec2:
+    """The middle of the pixel of the screen that the pointer is on."""
+    mouse = imgui.get_io().mouse_pos
+    return ImVec2(mouse.x + 0.5, mouse.y + 0.5)
+
+
 def write_beside(lines: Sequence[str], at: ImVec2, room: Rect, taken: Rect | None) -> None:
     """Write a few lines beside a point, inside the room and not over what is taken, if that can be."""
     corner = beside((at.x, at.y), size_of(lines), (em(_GAPS[0]), em(_GAPS[1])), room, taken)

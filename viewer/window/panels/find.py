@@ -12,6 +12,7 @@ from viewer.services.scene_table import Listing, SceneTable
 from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.state.row_filter import HELP, HINT
 from viewer.state.scene_rows import COLUMNS, Column, Level
+from viewer.util.numbers import several
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.view_commands import FindState
@@ -112,8 +113,12 @@ def _said(ui: Ui, table: SceneTable, listing: Listing) -> None:
         paragraph(listing.problem, ERROR)
         return
     found, rows = len(listing.rows), listing.table.rows
-    noun, row, edits = listing.table.level.value.lower(), table.selected, ui.controller.session.edits
-    said = f"{count(rows)} {noun}" if found == rows else f"{count(found)} of {count(rows)} {noun}"
+    said, row, edits = (
+        several(rows, listing.table.level.value.lower()[:-1]),
+        table.selected,
+        ui.controller.session.edits,
+    )
+    said = said if found == rows else f"{count(found)} of {said}"
     if row >= 0 and _place_of(ui, listing, row) is None:
         said += "; the selection is not among them"
     paragraph(said, QUIET)

@@ -19,12 +19,11 @@ from viewer.state.picking import point_at
 from viewer.util.numbers import whole_percent
 from viewer.window import comparing
 from viewer.window.panels import (
-    closeup,
     filmstrip,
     legend,
-    loading,
     missing,
     overlays,
+    pixels,
     savings,
     sides,
     slicing,
@@ -33,11 +32,11 @@ from viewer.window.panels import (
     tour,
     what_if,
 )
-from viewer.window.panels.area import Area, size_of, write_lines
+from viewer.window.panels.area import Area, pointer, size_of, write_lines
 from viewer.window.panels.legend import LegendState
 from viewer.window.style import ON_PICTURE_ERROR
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, em, paragraph
+from viewer.window.widgets import QUIET, clipped, em
 
 CLICK_SLACK = 4.0
 BUTTONS = LEFT, RIGHT, MIDDLE = tuple(
@@ -80,12 +79,11 @@ def _picture(ui: Ui, room: ImVec2) -> None:
             left, top, size = _fitted(ui.picture.shape, room)
             imgui.set_cursor_pos(ImVec2(left, top))
             imgui.image(imgui.ImTextureRef(texture), size)
-        elif loading.show_preview(ui, room):
+        elif _preview(ui, room):
             _turn(ui, room.y, 0.0)
         else:
             _placeholder(ui, room)
     elif texture is not None and c.session.scene is not None:
-        ui.pixels.enter(c.session.scene.path)
         ui.picture.shape = c.traced.full_size
         _newest(ui, room, texture)
 
@@ -99,7 +97,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
         area = _area(ui, "picture of A", left, top, size)
         sides.draw_picture(ui, comparing.OF_A, compared.a.texture_id or 0, area)
         _pointer(ui, area, takes_edits=False)
-        closeup.show(ui, area, seen[0])
+        pixels.draw(ui, area, seen[0])
         left += size.x + gap
     else:
         left, top, size = _fitted(ui.picture.shape, room)
@@ -110,7 +108,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     with _inside(area):
         overlays.show(ui, area)
     _pointer(ui, area)
-    closeup.show(ui, area)
+    pixels.draw(ui, area)
     if seen is not None:
         overlays.show_worst_pixels(ui, area, seen[1].frame)
     sides.show(ui, area)
@@ -122,7 +120,6 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     legend.show(ui, area.corner, area.end)
     missing.show(ui, area.corner, area.end)
     slicing.show(ui, area)
-    closeup.menu(ui)
 
 
 def _fitted(shape: tuple[int, int], room: ImVec2, count: int = 1, gap: float = 0.0) -> tuple[float, float, ImVec2]:
@@ -156,17 +153,32 @@ def _inside(area: Area) -> Iterator[None]:
 
 
 def _placeholder(ui: Ui, room: ImVec2) -> None:
-    """What stands there before the first picture."""
+    """What stands there before the first picture: what goes on, and how far it is."""
     c = ui.controller
-    if c.loader.load_job is not None or c.loader.warm_up_job is not None:
-        return  # the progress window speaks
-    text = status.first_picture(c)
-    if c.session.scene is None:
+    job, text = c.loader.warm_up_job or c.loader.load_job, status.first_picture(c)
+    if c.session.scene is None and job is None:
         text = f"Open a scene{ui.key('Open...')}, or drop one on this window"
-    at = imgui.get_cursor_pos()
-    left = at.x + max(0.0, (room.x - imgui.calc_text_size(text).x) / 2.0)
+    at, width = imgui.get_cursor_pos(), min(room.x, max(imgui.calc_text_size(text).x, em(16.0)))
+    left = at.x + (room.x - width) / 2.0
     imgui.set_cursor_pos(ImVec2(left, at.y + room.y / 2.0))
-    paragraph(text, QUIET)
+    clipped(text, QUIET)
+    if job is not None:
+        imgui.set_cursor_pos_x(left)
+        imgui.progress_bar(job.fraction, ImVec2(width, 0.0))
+
+
+def _preview(ui: Ui, room: ImVec2) -> bool:
+    """The preview, if there is any, as an item that takes the pointer, and what it is."""
+    texture = ui.graphics.preview.texture_id if ui.graphics.preview is not None else None
+    if texture is None:
+        return False
+    corner = imgui.get_cursor_screen_pos()
+    imgui.set_next_item_allow_overlap()
+    imgui.invisible_button("preview", room, int(imgui.ButtonFlags_.mouse_button_mask_))
+    end = ImVec2(corner.x + room.x, corner.y + room.y)
+    imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
+    write_lines(["Preview: no shadows, no reflections, no textures", status.first_picture(ui.controller)], corner)
+    return True
 
 
 def _title(ui: Ui, area: Area) -> float:
@@ -204,22 +216,19 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
     c, io = ui.controller, imgui.get_io()
     if ui.picture.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.picture.pivot, ui.picture.pivot_scene = None, c.session.scene
-    u, v = area.to_picture(io.mouse_pos.x + 0.5, io.mouse_pos.y + 0.5)  # the middle of the screen's pixel
+    u, v = area.to_picture(*pointer())
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.selection.hovered = (u, v)
-        if not closeup.wheel(ui, area):
+        if not pixels.wheel(ui, area):
             _wheel(ui, io.mouse_wheel)
     if takes_edits and what_if.handle(ui, area.whole, area.whole_size):
         return
-    if sides.handle(ui, area) or closeup.drag(ui, area):
+    if sides.handle(ui, area) or pixels.drag(ui, area):
         return
     if imgui.is_item_activated():
         _take_pivot(ui, (u, v))
-    if _turn(ui, area.size.y, CLICK_SLACK) and not ui.picture.dragged:
-        if ui.picture.pressed == RIGHT:
-            closeup.open_menu(ui, (u, v))
-        else:
-            c.selection.select((u, v))
+    if _turn(ui, area.size.y, CLICK_SLACK) and not ui.picture.dragged and ui.picture.pressed != RIGHT:
+        c.selection.select((u, v))
 
 
 def _turn(ui: Ui, height: float, slack: float) -> bool:

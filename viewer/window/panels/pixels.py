@@ -1,138 +1,97 @@
-"""Exact values: how closely the picture is looked at, the pixels that are watched, and how values of a region lie."""
+"""Exact values: the picture itself is looked at closely, with the values of its pixels in them, and the panel says how
+the values of a region lie.
+
+The wheel with Ctrl zooms around the pointer, a drag with Ctrl pans, and a drag with Shift chooses a region.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.frame import Frame
 from viewer.state.comparison import Side
-from viewer.state.picking import pixel_at
-from viewer.state.pixels import ALL
+from viewer.state.keymap import HELD
+from viewer.state.pixels import ALL, GRID_FROM, STEP, Point, Region, panned, pixels_shown, region_between
 from viewer.state.readings import can_draw
-from viewer.state.views import View
-from viewer.views import values_of, words_at
+from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
 from viewer.window import comparing, picture_commands
+from viewer.window.panels.area import Area, pointer
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
 
-_WIDE = 44.0  # ems of a panel that has room for the list and the histogram beside each other
+_FLYING = tuple(name for name in HELD if name.startswith("Fly"))
 _PLOT = 5.4  # ems, the least height of the histogram
 _OF_CHANNELS = (ImVec4(0.92, 0.33, 0.31, 1.0), ImVec4(0.25, 0.70, 0.35, 1.0), ImVec4(0.35, 0.58, 0.96, 1.0))
 _OF_VALUES = (ImVec4(0.42, 0.65, 0.93, 1.0),)
+_GRID, _BACK = ImVec4(0.5, 0.5, 0.5, 0.45), ImVec4(0.03, 0.04, 0.05, 0.66)
+_FRONT, _DARK = ImVec4(0.97, 0.97, 0.98, 1.0), ImVec4(0.03, 0.04, 0.05, 0.9)
+_REGION = ImVec4(0.42, 0.70, 0.96, 1.0)
+_SMALLEST = 0.62  # of the usual size of letters, for the numbers in pixels
+_MOST_NUMBERS = 1500  # pixels whose values are written at once
+
+
+@dataclass
+class PixelsState:
+    """The region whose values are counted, None for the whole picture, and the scene that it is of; what a drag does
+    that moves no camera, and where in the picture it began."""
+
+    region: Region | None = None
+    path: object = None
+    gesture: str = ""
+    gesture_at: Point = (0.0, 0.0)
+
+
+def region(ui: Ui) -> Region | None:
+    """The chosen region of the scene that is open."""
+    state, scene = ui.state(PixelsState), ui.controller.session.scene
+    if scene is not None and state.path != scene.path:
+        state.region, state.path = None, scene.path
+    return state.region
+
+
+# --- the panel ----------------------------------------------------------------------------------------
 
 
 def show(ui: Ui) -> None:
-    """The panel."""
-    room = imgui.get_content_region_avail()
-    if room.x > em(_WIDE):
-        imgui.begin_child("watched", ImVec2(0.52 * room.x - em(0.5), 0.0))
-        _watched(ui)
-        imgui.end_child()
-        imgui.same_line(0.0, em(1.0))
-        imgui.begin_child("histogram", ImVec2(0.0, 0.0))
-        _histogram(ui)
-        imgui.end_child()
-    else:
-        _watched(ui)
-        _histogram(ui)
-
-
-def _watched(ui: Ui) -> None:
-    """The list of watched pixels, each with its values in the newest frame."""
-    c, p = ui.controller, ui.controller.preferences
+    """How closely the picture is looked at, how the values of the region lie, and the range of colours from them."""
+    p, zoom = ui.controller.preferences, ui.controller.session.draw.zoom
     tip = "numbers in the pixels, and a grid, where the picture is enlarged enough"
     checkbox("Values in pixels", p.pixel_values, lambda on: setattr(p, "pixel_values", on), tip)
     imgui.same_line(0.0, em(1.0))
-    if not c.session.draw.zoom.fits:
+    if zoom.fits:
+        clipped("Ctrl+wheel zooms into the picture, Ctrl+drag moves it", QUIET)
+    else:
         if imgui.small_button("Fit"):
             picture_commands.fit(ui)
         imgui.same_line()
-    zoom = c.session.draw.zoom
-    clipped("the whole picture" if zoom.fits else f"enlarged {zoom.scale:.3g} times", QUIET)
-    frame = c.frame
-    if frame is None or not ui.pixels.watched:
-        text = "Ctrl+wheel zooms into the picture, Ctrl+drag moves it. Watch the pixel under the pointer"
-        paragraph(f"{text}{ui.key('Watch pixel')}.", QUIET)
-        return
-    sides = c.comparing.sides
-    of_view = c.scheduler.drawn_view not in (View.COLOR, View.WIPE)  # else the value is the colour
-    columns = [("", 1.2), ("pixel", 4.0), ("primitive", 3.6), ("colour", 8.4)]
-    columns += [(c.scheduler.drawn_view.label.lower(), 5.0)] if of_view else []
-    columns += [("the same in A", 8.4 if not of_view else 5.0)] if sides is not None else []
-    flags = int(imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.row_bg)
-    if imgui.begin_table(f"watched pixels {len(columns)}", len(columns), flags):
-        for name, width in columns:
-            imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
-        imgui.table_headers_row()
-        gone = None
-        for number, point in enumerate(ui.pixels.watched):
-            imgui.push_id(number)
-            if _pixel(ui, frame, number, point, sides[0] if sides is not None else None):
-                gone = number
-            imgui.pop_id()
-        if gone is not None:
-            del ui.pixels.watched[gone]
-        imgui.end_table()
-
-
-def _pixel(ui: Ui, frame: Frame, number: int, point: tuple[float, float], a: Side | None) -> bool:
-    """A row; whether the pixel is to be watched no longer."""
-    c = ui.controller
-    x, y = pixel_at(frame, *point)
-    imgui.table_next_row()
-    imgui.table_next_column()
-    gone = imgui.small_button(f"{number + 1}")
-    tooltip("stop watching this pixel")
-    imgui.table_next_column()
-    if imgui.selectable(f"{x}, {y}##look", False)[0]:
-        c.selection.select(point)
-    tooltip("inspect this pixel")
-    imgui.table_next_column()
-    primitive = int(frame.primitive[y, x])
-    clipped(str(primitive) if primitive >= 0 else "miss")
-    imgui.table_next_column()
-    digits = 4 if a is None else 3  # to fit beside those of A
-    clipped(" ".join(f"{channel:.{digits}f}" for channel in frame.color[y, x]))
-    if c.scheduler.drawn_view not in (View.COLOR, View.WIPE):
-        imgui.table_next_column()
-        clipped(_value(ui, frame, c.scheduler.drawn_view, c.session.draw.light, x, y))
-    if a is not None:
-        imgui.table_next_column()
-        there = pixel_at(a.frame, *point)
-        clipped(_value(ui, a.frame, a.view, a.light, *there))
-    return bool(gone)
-
-
-def _value(ui: Ui, frame: Frame, view: View, light: int, x: int, y: int) -> str:
-    return " ".join(words_at(frame, replace(comparing.draw_options(ui), view=view, light=light), x, y)) or "-"
+        clipped(f"enlarged {zoom.scale:.3g} times", QUIET)
+    _histogram(ui)
 
 
 def _histogram(ui: Ui) -> None:
-    """How the values of the region lie, and the range of the colour map from them."""
-    c, frame, region = ui.controller, ui.controller.frame, ui.pixels.region
-    options = comparing.draw_options(ui)
-    view, light = options.view, options.light
-    difference = comparing.difference(ui)
-    if frame is None or not can_draw(frame, view, light):
+    c, frame, chosen = ui.controller, ui.controller.frame, region(ui)
+    options, difference = comparing.draw_options(ui), comparing.difference(ui)
+    view = options.view
+    if frame is None or not can_draw(frame, view, options.light):
         return
     if difference is not None and difference.pixels.shape != frame.primitive.shape:
         return  # it is drawn of the frame before
-    rows, columns = (region or ALL).pixels(frame)
-    wide, high = columns.stop - columns.start, rows.stop - rows.start
-    where = f"{wide} x {high} pixels from {columns.start}, {rows.start}" if region is not None else "the whole picture"
-    if region is not None:
+    rows, columns = (chosen or ALL).pixels(frame)
+    where = "the whole picture; Shift+drag for a part of it"
+    if chosen is not None:
+        wide, high = columns.stop - columns.start, rows.stop - rows.start
+        where = f"{wide} x {high} pixels from {columns.start}, {rows.start}"
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##region"):
-            ui.pixels.region = None
+            ui.state(PixelsState).region = None
         tooltip("count the whole picture again")
         imgui.same_line()
-    what = view.label if difference is None else f"B - A, {view.label.lower()}"
-    clipped(f"{what}: {where}{'' if region is not None else '; Shift+drag for a part of it'}")
+    paragraph(f"{view.label if difference is None else f'B - A, {view.label.lower()}'}: {where}")
     if difference is not None:
         values = ui.cached("differing", difference, None, lambda: difference.differing)
     else:
@@ -140,32 +99,27 @@ def _histogram(ui: Ui) -> None:
     if values.classes:
         paragraph("Modes and numbers of primitives have no histogram; the legend counts them.", QUIET)
         return
-    found: Histogram | None = ui.cached("histogram", values, region, lambda: histogram(values, rows, columns))
+    found: Histogram | None = ui.cached("histogram", values, chosen, lambda: histogram(values, rows, columns))
     if found is None:
         paragraph("No pixel here has a value." if difference is None else "No pixel differs here.", QUIET)
         return
-    if difference is not None:
-        paragraph(f"{count(found.pixels)} of {count(found.of)} pixels differ; these are counted here", QUIET)
-    elif found.pixels < found.of:
-        paragraph(f"{count(found.pixels)} of {count(found.of)} pixels have a value", QUIET)
+    if found.pixels < found.of or difference is not None:
+        what = "have a value" if difference is None else "differ"
+        paragraph(f"{count(found.pixels)} of {count(found.of)} pixels {what}; these are counted here", QUIET)
     _figures(found, values.names)
-    if difference is not None:
-        if imgui.small_button("Use as the range of colours"):
+    ranged = view.has_range and not (view.needs_work and c.session.draw.shares)
+    if (difference is not None or ranged) and imgui.small_button("Use as the range of colours"):
+        if difference is not None:
             c.comparing.change(limit=max(-found.least[0], found.largest[0]))
-        tooltip("the colours go as far to both sides of 0 as the difference does here")
-    elif view.has_range and not (view.needs_work and c.session.draw.shares):
-        if imgui.small_button("Use as the range of colours"):
+        else:
             span = min(found.least), max(max(found.largest), min(found.least) + 1e-6)
             c.session.change(draw=c.session.draw.with_span(span, view))
-        tooltip("the first and the last colour of the map stand for the least and the largest value here")
     _plot(found, values.names)
 
 
 def _figures(found: Histogram, names: tuple[str, ...]) -> None:
     width = imgui.get_content_region_avail().x - em(0.3)  # columns of figures at the right are a little wider by parts
-    if imgui.begin_table("figures", 4, int(imgui.TableFlags_.sizing_stretch_prop), ImVec2(width, 0.0)):
-        for column in ("name", "least", "mean", "largest"):
-            imgui.table_setup_column(column, int(imgui.TableColumnFlags_.width_stretch), 1.0)
+    if imgui.begin_table("figures", 4, int(imgui.TableFlags_.sizing_stretch_same), ImVec2(width, 0.0)):
         for text in ("", "least", "mean", "largest"):
             imgui.table_next_column()
             right(text, QUIET)
@@ -180,19 +134,17 @@ def _figures(found: Histogram, names: tuple[str, ...]) -> None:
 
 def _plot(found: Histogram, names: tuple[str, ...]) -> None:
     room = imgui.get_content_region_avail()
-    size = ImVec2(room.x, max(room.y, em(_PLOT)))
     flags = implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text
     if len(names) == 1:
         flags |= implot.Flags_.no_legend
-    if not implot.begin_plot("##histogram", size, int(flags)):
+    if not implot.begin_plot("##histogram", ImVec2(room.x, max(room.y, em(_PLOT))), int(flags)):
         return
     axis = int(implot.AxisFlags_.no_highlight)
     implot.setup_axes("", "", axis, axis | int(implot.AxisFlags_.no_tick_labels))
     top = float(found.counts.max())
     implot.setup_axes_limits(found.low, found.high, 0.0, 1.08 * top, int(imgui.Cond_.always))
     implot.setup_legend(implot.Location_.north_east)
-    bins = found.counts.shape[1]
-    edges = np.linspace(found.low, found.high, bins + 1)
+    edges = np.linspace(found.low, found.high, found.counts.shape[1] + 1)
     colors = _OF_CHANNELS if names == CHANNELS or len(names) == 3 else _OF_VALUES
     for name, counts, color in zip(names, found.counts, colors, strict=True):
         steps = np.append(counts, counts[-1]).astype(np.float64)
@@ -200,3 +152,107 @@ def _plot(found: Histogram, names: tuple[str, ...]) -> None:
         look.flags = int(implot.StairsFlags_.shaded)
         implot.plot_stairs(name, edges, steps, look)
     implot.end_plot()
+
+
+# --- the pointer on the picture -----------------------------------------------------------------------
+
+
+def wheel(ui: Ui, area: Area) -> bool:
+    """Zoom around the pointer, with Ctrl; whether the wheel was for that."""
+    io = imgui.get_io()
+    if not io.key_ctrl:
+        return False
+    if io.mouse_wheel:
+        mouse = pointer()
+        at = (mouse.x - area.corner.x) / area.size.x, (mouse.y - area.corner.y) / area.size.y
+        picture_commands.zoom_by(ui, STEP**io.mouse_wheel, at)
+    return True
+
+
+def drag(ui: Ui, area: Area) -> bool:
+    """Pan with Ctrl, choose a region with Shift; whether the pointer, on ImGui's last item, does either."""
+    state, io = ui.state(PixelsState), imgui.get_io()
+    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
+        flying = any(ui.keyboard.is_down(ui.keymap.of(name)) for name in _FLYING)  # then Shift flies faster
+        state.gesture = "pan" if io.key_ctrl else "region" if io.key_shift and not flying else ""
+        state.gesture_at = area.to_picture(*pointer())
+    released = imgui.is_item_deactivated()
+    if not state.gesture or not (imgui.is_item_active() or released):
+        return False
+    if state.gesture == "pan":
+        session, by = ui.controller.session, io.mouse_delta
+        session.set_draw(zoom=panned(session.draw.zoom, by.x / area.size.x, by.y / area.size.y))
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+    else:
+        start, here, frame = state.gesture_at, area.to_picture(*pointer()), ui.controller.frame
+        moved = frame is not None and (abs(start[0] - here[0]) * frame.width, abs(start[1] - here[1]) * frame.height)
+        state.region = region_between(start, here) if moved and max(moved) >= 0.5 else None
+        if released and state.region is not None:
+            picture_commands.offer(ui, "Pixels")
+    if released:
+        state.gesture = ""
+    return True
+
+
+# --- over the picture ---------------------------------------------------------------------------------
+
+
+def draw(ui: Ui, area: Area, side: Side | None = None) -> None:
+    """Over the picture of a side, or what else is seen: a grid of pixels with their values, and the region."""
+    found = comparing.words(ui, comparing.draw_options(ui), side)
+    if found is None:
+        return
+    frame, words = found
+    made, chosen = imgui.get_window_draw_list(), region(ui)
+    made.push_clip_rect(area.corner, area.end, True)
+    if ui.controller.preferences.pixel_values:
+        _grid(made, area, frame.width, frame.height)
+        _numbers(made, area, frame.width, frame.height, words)
+    if chosen is not None:
+        rows, columns = chosen.pixels(frame)
+        start = area.to_screen(columns.start / frame.width, rows.start / frame.height)
+        end = area.to_screen(columns.stop / frame.width, rows.stop / frame.height)
+        made.add_rect(start, end, imgui.get_color_u32(_DARK), 0.0, max(3.0, em(0.22)))
+        made.add_rect(start, end, imgui.get_color_u32(_REGION), 0.0, max(1.0, em(0.1)))
+    made.pop_clip_rect()
+
+
+def _grid(made: imgui.ImDrawList, area: Area, width: int, height: int) -> None:
+    """Lines between the picture's pixels, where these are large."""
+    across, down = area.whole_size.x / width, area.whole_size.y / height
+    if min(across, down) < GRID_FROM:
+        return
+    color, (columns, rows) = imgui.get_color_u32(_GRID), pixels_shown(area.zoom, width, height)
+    for x in columns:
+        at = round(area.whole.x + x * across)
+        made.add_line(ImVec2(at, area.corner.y), ImVec2(at, area.end.y), color)
+    for y in rows:
+        at = round(area.whole.y + y * down)
+        made.add_line(ImVec2(area.corner.x, at), ImVec2(area.end.x, at), color)
+
+
+def _numbers(
+    made: imgui.ImDrawList, area: Area, width: int, height: int, words: Callable[[int, int], tuple[str, ...]]
+) -> None:
+    """The value of each pixel in it, as large as fits, where all fit."""
+    across, down = area.whole_size.x / width, area.whole_size.y / height
+    columns, rows = pixels_shown(area.zoom, width, height)
+    letters = imgui.get_font_size()
+    if down < _SMALLEST * letters or across < 2.0 * _SMALLEST * letters or len(columns) * len(rows) > _MOST_NUMBERS:
+        return
+    texts = {(x, y): words(x, y) for x in columns for y in rows}
+    widest = max((imgui.calc_text_size(line).x for lines in texts.values() for line in lines), default=0.0)
+    tallest = max((len(lines) for lines in texts.values()), default=0) * letters
+    part = min(0.9 * across / widest, 0.9 * down / tallest, 1.0) if widest and tallest else 0.0
+    if part < _SMALLEST:
+        return
+    font, size = imgui.get_font(), part * letters
+    back, front = imgui.get_color_u32(_BACK), imgui.get_color_u32(_FRONT)
+    for (x, y), lines in texts.items():
+        middle = area.to_screen((x + 0.5) / width, (y + 0.5) / height)
+        halves = [0.5 * part * imgui.calc_text_size(line).x for line in lines]
+        half, top, pad = max(halves, default=0.0), middle.y - 0.5 * size * len(lines), 0.12 * size
+        end = ImVec2(middle.x + half + pad, top + size * len(lines))
+        made.add_rect_filled(ImVec2(middle.x - half - pad, top), end, back, 2.0 * pad)
+        for number, line in enumerate(lines):
+            made.add_text(font, size, ImVec2(middle.x - halves[number], top + number * size), front, line)

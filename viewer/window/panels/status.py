@@ -74,7 +74,7 @@ def doing(c: Controller) -> str:
     if preparing is not None and c.frame is None:
         return f"{preparing.title}: {100.0 * preparing.fraction:.0f} %"
     if loading is not None:
-        return f"{loading.title}: {loading.label}" if loading.label else loading.title
+        return f"{loading.title}{f': {loading.label}' if loading.label else ''}   (Escape cancels)"
     if c.runs.current is not None:
         run = c.runs.current
         return f"{run.name}{f', traced: {run.label}' if run.traced else ' is starting'}   (Escape stops it)"
