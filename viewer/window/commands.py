@@ -60,8 +60,7 @@ def _file(ui: Ui) -> list[Command]:
                 tip="the command that makes this picture, to the clipboard"),
         Command("Send to tev", "File", lambda: c.pictures.to_tev(c.frame), enabled=there,
                 tip="the frame and its buffers, to tev or HDRView; the panel Saving says where it listens"),
-        switch("Start where I left off", "File", p, "start_where_left", separated=True),
-        Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset)),
+        Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset), separated=True),
         Command("Quit", "File", lambda: ui.desktop.exit(), "Ctrl+Q", separated=True),
     ]  # fmt: skip
 
