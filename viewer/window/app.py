@@ -284,7 +284,7 @@ class App:
         opener.start(self.scene_path, self.given_settings, self.folders, self.meshes)
         if self.scene is not None:
             opener.take(self.scene)
-        elif self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
+        elif self.scene_path is None:
             opener.open(default_scene())
 
     def _close_wanted(self, window: Any) -> None:

@@ -53,8 +53,7 @@ def _file(ui: Ui) -> list[Command]:
                 tip="the command that makes this picture, to the clipboard"),
         Command("Send to tev", "File", lambda: c.pictures.to_tev(c.frame), enabled=there,
                 tip="the frame and its buffers, to tev or HDRView; the panel Saving says where it listens"),
-        switch("Start where I left off", "File", p, "start_where_left", separated=True),
-        Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset)),
+        Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset), separated=True),
         Command("Quit", "File", lambda: ui.desktop.exit(), "Ctrl+Q", separated=True),
     ]  # fmt: skip
 
@@ -174,9 +173,10 @@ def _slice(ui: Ui) -> list[Command]:
 
     def step(layers: int) -> Callable[[], None]:
         def go() -> None:
-            layer = view_of(s.draw.view).layer(c.frame, s.draw.slice) if c.frame is not None else None
-            if layer is not None:
-                s.set_draw(slice=layer.goes_to(s.draw.slice, layer.number + layers))
+            cut = s.draw.slice
+            many = view_of(s.draw.view).layers(c.frame, cut.axis) if c.frame is not None else 0
+            if many:
+                s.set_draw(slice=cut.in_layer(cut.layer(many) + layers, many))
 
         return go
 
