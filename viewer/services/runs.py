@@ -11,10 +11,9 @@ import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from datetime import date
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from tracer.experiments import experiment, zoom
 from tracer.experiments.experiment import Experiment
@@ -26,7 +25,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output import exports
-from viewer.output.filmstrip import Filmstrip, Shot
+from viewer.output.filmstrip import Filmstrip
 from viewer.services.capture_service import CaptureService
 from viewer.services.render_request import RenderRequest, Task, Traced
 from viewer.services.selection import Selection
@@ -55,20 +54,6 @@ class RecordedZoomTest(ZoomTest):
     ) -> None:
         self.filmstrip = Filmstrip()
         super().__init__(scene, settings, start, factors, steps, ratio, self.filmstrip.record)
-
-
-@dataclass(frozen=True)
-class FramePreview:
-    """A recorded picture that is shown where the traced one is, until something changes that."""
-
-    test: RecordedZoomTest
-    shot: Shot
-    beside: object
-
-    def step(self) -> Step | None:
-        """The step that it is of; None of a test whose results are not there."""
-        steps = (step for a in approaches_of(self.test) if a.factor == self.shot.factor for step in a.steps)
-        return next((step for step in steps if step.number == self.shot.number), None)
 
 
 def approaches_of(test: RecordedZoomTest) -> list[Approach]:
@@ -100,18 +85,18 @@ def shown_of(run: Run) -> str:
 
 
 def described(run: Experiment | ZoomTest, scene: Scene | None) -> tuple[str, bool]:
-    """Scene, size, what was done, and when it began, of a run's results; and whether they are of another scene than the
-    one that is open, or of what that was before: this is said first."""
+    """Scene, size, and what was done of a run's results; and whether they are of another scene than the one that is
+    open, or of what that was before: this is said first."""
     name, elsewhere = run.scene_path.name, not run.is_of(scene)
     if elsewhere and scene is not None:
         same = Path(scene.path) == run.scene_path
         name += " before it was edited or reloaded" if same else f" (not {Path(scene.path).name}, which is open)"
-    done, of = run.done_of
-    frames = several(of, "frame") if done == of else f"{done} of {several(of, 'frame')}"
-    what = f"towards primitive {run.start.primitive}" if isinstance(run, ZoomTest) else frames
-    what += "" if isinstance(run, ZoomTest) else f", {run.settings.accelerator}"
-    when = f"{run.began:%H:%M}" if run.began.date() == date.today() else f"{run.began:%Y-%m-%d %H:%M}"
-    return f"{name}, {run.settings.width} x {run.settings.height}, {what}, begun {when}", elsewhere
+    if isinstance(run, ZoomTest):
+        what = f"towards primitive {run.start.primitive}"
+    else:
+        done, of = run.done_of
+        what = f"{'' if done == of else f'{done} of '}{several(of, 'frame')}, {run.settings.accelerator}"
+    return f"{name}, {run.settings.width} x {run.settings.height}, {what}", elsewhere
 
 
 def duration(seconds: float) -> str:
@@ -129,12 +114,6 @@ def check_size(size: tuple[int, int]) -> None:
     """Raise ValueError, in one line, for pictures that are too large for a run."""
     if max(size) > LONGEST_SIDE:
         raise ValueError(f"{size[0]} x {size[1]} is too large for a run; {LONGEST_SIDE} pixels a side at most")
-
-
-class Performs(Protocol):
-    """The part of `RenderThread` that is used here."""
-
-    def perform(self, task: Task) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -165,7 +144,7 @@ class Runs:
         self,
         session: Session,
         selection: Selection,
-        renderer: Performs,
+        perform: Callable[[Task], None],
         preferences: Preferences,
         notices: Notices,
         files: CaptureService,
@@ -174,7 +153,7 @@ class Runs:
     ) -> None:
         """Nothing begins while `edited()`: the scene is being edited, and the next picture is of another."""
         self._edited = edited
-        self._session, self._selection, self._renderer = session, selection, renderer
+        self._session, self._selection, self._perform = session, selection, perform
         self._preferences, self._notices, self._files, self._wake = preferences, notices, files, wake
         self.experiment_plan = ExperimentPlan({BY_MODES, CERTIFIED})
         self.zoom_plan = ZoomPlan()
@@ -209,7 +188,7 @@ class Runs:
             run.watches = True
             self.current = run
             self._session.playing = False
-            self._renderer.perform(_Task(run, self._wake))
+            self._perform(_Task(run, self._wake))
             return True
         return False
 

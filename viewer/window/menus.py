@@ -48,8 +48,6 @@ def close_newest(ui: Ui) -> bool:
         _close_list()
     elif ui.dialogs:
         ui.dialogs.pop()
-    elif ui.frame_preview is not None:
-        ui.frame_preview = None
     elif ui.controller.notices.newest_fault is not None:
         ui.controller.notices.dismiss_faults()
     else:

@@ -16,7 +16,6 @@ from tracer.scene.lights import named_light
 from viewer.output.capture import FIELDS
 from viewer.output.ray_rows import Filter, Key, Row
 from viewer.services.controller import Controller
-from viewer.services.runs import FramePreview
 from viewer.services.tour import Tour
 from viewer.state.preferences import default_screenshot_folder
 from viewer.state.views import View
@@ -112,7 +111,7 @@ State = TypeVar("State")
 @dataclass(slots=True)
 class Ui:
     """See the module.  `dialogs` are those that are open, the newest last, `fate_shown` is the fate of shadow rays
-    whose pixels are to stand out, and `frame_preview` the recorded picture that is shown in the picture's place."""
+    whose pixels are to stand out."""
 
     controller: Controller
     commands: list[Command] = field(default_factory=list)
@@ -129,7 +128,6 @@ class Ui:
     guard: Guard = field(init=False)
     keymap: Keymap = field(init=False)
     tour: Tour = field(init=False)
-    frame_preview: FramePreview | None = None
     picture: Picture = field(default_factory=Picture)
     _states: dict[type, Any] = field(default_factory=dict)
     _cache: dict[str, tuple[object, object, Any]] = field(default_factory=dict)

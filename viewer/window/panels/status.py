@@ -8,7 +8,6 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
 from viewer.state import terms, verified
-from viewer.state.history import rate_in_words
 from viewer.state.notices import Entry, Level
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, paragraph, tooltip
@@ -82,8 +81,8 @@ def _summary(c: Controller) -> str:
     if frame is not None:
         parts += [verified.in_short(frame.statistics), f"{frame.width} x {frame.height}"]
         parts.append(f"{1e3 * frame.statistics.seconds:.0f} ms")
-    if rate is not None and c.active:
-        parts.append(rate_in_words(rate))
+    if rate is not None and rate >= 0.05 and c.active:
+        parts.append(f"{rate:.0f} frames/s" if rate >= 9.5 else f"{rate:.1f} frames/s")
     return "   ".join(filter(None, parts))
 
 
