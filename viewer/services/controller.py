@@ -33,7 +33,7 @@ from viewer.services.questions import Questions
 from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import Runs
-from viewer.services.scene_loader import Arrival, SceneLoader
+from viewer.services.scene_loader import SceneLoader
 from viewer.services.scene_table import SceneTable
 from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
@@ -63,7 +63,7 @@ class Controller:
         self.selection = selection = Selection(session, lambda: self.frame)
         self.captures = captures = CaptureService(session, preferences, notices, wake)
         self.runs = runs = Runs(
-            session, selection, renderer, preferences, notices, captures, wake, lambda: self.editing.under_way
+            session, selection, renderer.perform, preferences, notices, captures, wake, lambda: self.editing.under_way
         )
         self.baseline = Baseline(renderer)
         self.settings = settings = SettingsController(session, preferences, notices, runs.refuses)
@@ -90,7 +90,7 @@ class Controller:
             session, preferences, scheduler, self.history, loader, runs, captures, notices
         )
         self.films = Films(session, preferences, runs, pictures, bookmarks)
-        self.hunts = Hunts(session, preferences, runs, navigator, notices)
+        self.hunts = Hunts(session, runs, navigator, notices)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}
@@ -121,21 +121,24 @@ class Controller:
 
     def take_scene(self) -> None:
         """Show the scene that has been read, if one has."""
-        arrival, flown = self.loader.take_finished(), self.preview.flown
+        session, arrival, flown = self.session, self.loader.take_finished(), self.preview.flown
         if arrival is None:
             return
-        said = ""
+        place, playing, said = arrival.place, arrival.again and session.playing, arrival.text
         if arrival.again:
-            self._show_again(arrival)
-        elif arrival.opened is not None:
+            place = session.state  # it is seen as it is now, from where we are
+        if arrival.opened is not None:
             self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
-            said = self._fit_view() if arrival.place is None else ""
         if arrival.place is not None:
             self.undo.begin_step("the place of a saved picture")
-            self.restore(arrival.place)
+        if place is not None:
+            self.restore(place)
+        else:
+            said = f"{said}. {self._fit_view()}".removesuffix(". ")
         if flown is not None:  # while the scene was waiting for its kernels
-            self.session.change(camera=flown)
-        self.notices.say(f"{arrival.text}. {said}" if said else arrival.text)
+            session.change(camera=flown)
+        session.playing, self.reloaded = playing and session.animated, arrival.again
+        self.notices.say(said)
 
     def take_frame(self) -> None:
         """Take the newest frame, of a run that is under way or else as it was asked for."""
@@ -204,17 +207,6 @@ class Controller:
         view, said = fitting_view(session.draw.view, session.settings, session.scene.lights if session.scene else ())
         session.set_draw(view=view)
         return said
-
-    def _show_again(self, arrival: Arrival) -> None:
-        """Show the scene that was open as it is now, from where we are."""
-        session, opened = self.session, arrival.opened
-        if opened is None or session.scene is None:
-            return
-        here, playing = session.state, session.playing
-        self.show(opened.scene, opened.renderer, opened.info)
-        session.restore(here)
-        session.playing = playing and session.animated
-        self.reloaded = True
 
     # --- going elsewhere -------------------------------------------------------------------------
 
@@ -299,7 +291,5 @@ class Controller:
         stopped = self.renderer.close(timeout)
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
-        if self.session.scene is not None:
-            self.preferences.last = codec.state_to_json(self.session.state)
         self.settings.finish()
         return stopped

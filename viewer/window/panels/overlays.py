@@ -16,7 +16,6 @@ from viewer.services.inspector import MOST_CLUSTERS, Inspection, drawn_primitive
 from viewer.state.palette import FATE_COLORS, SHADOW_COLORS, color_map
 from viewer.state.picking import outline_of, part_points, primitive_points
 from viewer.state.projection import Stroke, place, strokes
-from viewer.window import comparing
 from viewer.window.panels import rays, slicing
 from viewer.window.panels.area import Area, write_beside
 from viewer.window.panels.legend import LegendState
@@ -213,12 +212,3 @@ def _clusters(ui: Ui, made: Pen, frame: Frame) -> None:
         made.ring(where)
         corner, end = made.area.whole, made.area.whole_end
         write_beside(waits, made.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place)
-
-
-def show_worst_pixels(ui: Ui, area: Area, frame: Frame) -> None:
-    """Over a signed difference: rings around the pixels that are furthest apart, where marks are wanted."""
-    spots = comparing.marked(ui)
-    if spots:
-        with pen(area, frame) as made:
-            for x, y in spots:
-                made.ring(((x + 0.5) / frame.width, (y + 0.5) / frame.height), max(0.65, made.radius))
