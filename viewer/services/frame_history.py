@@ -20,9 +20,9 @@ from tracer.mode_origins import ModeOrigins, Origins
 from tracer.scene.model import Camera
 from viewer.output.commands import BUILT
 from viewer.services.frame_scheduler import FrameScheduler
+from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.runs import Experiment, Runs
-from viewer.services.selection import Selection
 from viewer.services.undo import Undo
 from viewer.state.history import FrameRate, FrameRecord, FrameRecords, History
 from viewer.state.notices import Notices

@@ -58,10 +58,6 @@ def _question(ui: Ui) -> None:
     if not shown:
         return
     paragraph(question.text)
-    for option in question.options:
-        changed, _ = imgui.checkbox(option, option in question.ticked)
-        if changed:
-            question.ticked.symmetric_difference_update({option})
     imgui.spacing()
     chosen = question.answers[0][0] if not stays or imgui.is_key_pressed(imgui.Key.escape) else ""
     for number, (answer, _) in enumerate(question.answers):

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import numpy as np
 from imgui_bundle import imgui
 
 from tracer.culling.voxels.tell import STATE_NAMES
-from tracer.light_cut import LightCut
-from viewer.services.controller import Controller
-from viewer.services.inspector import MOST_CLUSTERS
 from viewer.state.draw_options import AXES
 from viewer.state.pixels import pixel_at
 from viewer.state.views import View
-from viewer.util.numbers import several
 from viewer.views import cell_lights, view_of
 from viewer.views.slices import part_seen, part_words, slice_seen, voxel_seen
 from viewer.views.tree import tree_of
 from viewer.views.voxels import voxels_of
 from viewer.window.panels.area import Area, write_beside
 from viewer.window.panels.legend import LegendState
-from viewer.window.panels.status import traced_before_an_answer
 from viewer.window.ui import Ui
-from viewer.window.widgets import count, em, percent, row
+from viewer.window.widgets import count, em, row
 
 
 def rows(ui: Ui) -> None:
@@ -66,37 +60,10 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
         tree, cut = tree_of(frame), c.session.draw.slice
         part = part_seen(frame, tree, cut, x, y)
         return [] if part is None else list(part_words(part, tree.owner))
-    lit = c.inspector.cut
-    if view is View.CUTS and lit is not None and (lit.x, lit.y) == (x, y):
-        return cut_lines(lit)
-    if view is View.CUTS and c.selection.picked is None and c.inspector.awaits_cut == (x, y):
-        return awaited(c)
     if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:
         asked = int(cell_lights.VIEW.found(frame)[y, x])
         return ["not known yet"] if asked < 0 else [f"its cell asks {count(asked)} of {count(frame.lights)} lights"]
     return []
-
-
-def awaited(c: Controller) -> list[str]:
-    """That the clusters of a pixel are to come, where they do not come at once."""
-    before = traced_before_an_answer(c)
-    return [f"its clusters are drawn after {before}"] if before else []
-
-
-def cut_lines(cut: LightCut) -> list[str]:
-    """What shades a pixel, in a few lines."""
-    many, single, frame = len(cut.nodes), int((cut.lights == 1).sum()), cut.frame
-    shade = f"{several(many, 'cluster')} {'shades' if many == 1 else 'shade'} it"
-    cuts = frame.statistics.cuts
-    alone = several(single, "single light" if cuts is None or cuts.lights == frame.lights else "single sample")
-    lines = [f"{shade}, {alone} among them"]
-    total = float(cut.sent.sum())
-    if total > 0.0:
-        top = np.sort(cut.sent)[::-1]
-        lines.append(f"the brightest sends {percent(float(top[0]), total)} of their light")
-    if many > MOST_CLUSTERS:
-        lines.append(f"drawn are the {MOST_CLUSTERS} that send most")
-    return lines
 
 
 def show(ui: Ui, area: Area) -> None:
