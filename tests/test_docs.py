@@ -30,7 +30,7 @@ from viewer.state.preferences import Preferences
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 from viewer.window import commands
-from viewer.window.keyboard import key_label
+from viewer.window.keyboard import Keyboard
 from viewer.window.ui import Ui
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -193,9 +193,9 @@ def test_keys_of_the_window_are_told() -> None:
     told |= {f"Alt+{n}" for n in range(2, 9)}
     shown = {"RightArrow": "→", "LeftArrow": "←", "Ctrl+Equal": "+", "Ctrl+Minus": "-", "Ctrl+0": "0"}
     shown |= {"Period": ".", "Comma": ",", "Shift+Period": "Shift+."}
-    ui = Ui(Controller(Preferences()))
+    ui, keyboard = Ui(Controller(Preferences())), Keyboard()
     try:
-        keys = {shown.get(command.key) or key_label(command.key) for command in commands.build(ui) if command.key}
+        keys = {shown.get(command.key) or keyboard.label(command.key) for command in commands.build(ui) if command.key}
     finally:
         ui.controller.close()
     assert len(keys) > 30

@@ -11,7 +11,7 @@ from tests.fuzz.written import WRITTEN
 from tests.platforms import linux_only
 from tests.sweeps import cases
 
-QUICK = ("settings, bookmarks, presets", "layout of the panels", "captures", "pictures as JPEG", "tables as CSV")
+QUICK = ("settings, bookmarks, presets", "captures", "pictures as JPEG", "tables as CSV")
 
 pytestmark = linux_only
 

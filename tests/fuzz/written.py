@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -19,8 +18,6 @@ from viewer.output import capture, exports, exr, figures
 from viewer.services.film import video
 from viewer.state.preferences import SETTINGS_FILE, NamedState, Preferences, save_preferences
 from viewer.util.files import write_new, write_text, write_whole
-from viewer.window import layout_file
-from viewer.window.layout_file import LayoutFile
 
 SIZE = (96, 128)
 
@@ -50,18 +47,6 @@ def _settings(folder: Path, number: int) -> None:
 def _check_settings(folder: Path) -> None:
     data = json.loads((folder / SETTINGS_FILE).read_text())
     assert data["bookmarks"]["/scene"][-1]["name"].isdigit() and data["recent"]
-
-
-def _layout(folder: Path, number: int) -> None:
-    layout = LayoutFile(folder)
-    with suppress(OSError):  # as ImGui, which says nothing
-        layout.working_copy.write_text(f"[Layout]\nnumber={number}\n" * 500 + f"{layout_file.END}\n{{}}\n")
-    layout.keep()
-
-
-def _check_layout(folder: Path) -> None:
-    text = (folder / "layout.ini").read_text()
-    assert text.count("[Layout]") == text.count("number=") == 500
 
 
 def _capture(folder: Path, number: int) -> None:
@@ -160,7 +145,6 @@ def _check_video(folder: Path) -> None:
 
 WRITTEN = (
     Written("settings, bookmarks, presets", _settings, _check_settings),
-    Written("layout of the panels", _layout, _check_layout, tells=False),
     Written("captures", _capture, _check_images),
     Written("pictures of a film", _numbered, _check_images),
     Written("pictures as JPEG", _jpeg, _check_images),

@@ -4,9 +4,8 @@
 
 Reads lines of JSON, `{"name", "size", "scene", "folder", "settings"}`, and answers each by a line with the scenario's
 exit code.  ImGui's test engine drives the keyboard and the pointer; a scenario is a function of a `Driver` in
-`tests.viewer.scenarios`, and returns what is to be done next where another window takes the place of its own.  One
-process opens many windows, as most of the time that a window takes goes into starting Python, loading kernels and
-compiling shaders.  What is said meanwhile goes to standard error.
+`tests.viewer.scenarios`.  One process opens many windows, as most of the time that a window takes goes into starting
+Python, loading kernels and compiling shaders.  What is said meanwhile goes to standard error.
 """
 
 from __future__ import annotations
@@ -47,16 +46,16 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
     app.controller.preferences.savings = name in MEASURING
     app.controller.settings.change(samples=1)  # else idle pictures go on changing
     failed: list[BaseException] = []
-    parts = [SCENARIOS[name]]
+    played = False
 
     def test(context) -> None:
+        nonlocal played
         engine = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
         engine.config_watchdog_warning = engine.config_watchdog_kill_test = 2.0 * PATIENCE
         driver = Driver(app, context, Path(folder), dozes=name in DOZING)
         try:
-            following = parts.pop()(driver)
-            if following is not None:
-                parts.append(following)
+            played = True
+            SCENARIOS[name](driver)
         except BaseException as error:
             failed.append(error)
             traceback.print_exc()
@@ -70,9 +69,9 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
 
     with first_start() if name == "previewing" else nullcontext():
         code = app.run(runner)
-    if parts and not failed:
-        failed.append(AssertionError("no other window came"))
-        print("no other window came", file=sys.stderr)
+    if not played:
+        failed.append(AssertionError("no window came"))
+        print("no window came", file=sys.stderr)
     stuck = app.controller.renderer._thread.is_alive()
     if stuck:
         print("the render thread outlived the window", file=sys.stderr)

@@ -20,8 +20,8 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
 from viewer.services.editing import Editing
 from viewer.services.film import Films
-from viewer.services.frame_history import FrameHistory, FrameNavigator
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
+from viewer.services.history import FrameHistory, FrameNavigator
 from viewer.services.hunts import Hunts
 from viewer.services.inspector import Inspector, Selection
 from viewer.services.jobs import Wake
@@ -33,7 +33,7 @@ from viewer.services.questions import Questions
 from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import Runs
-from viewer.services.scene_loader import Arrival, SceneLoader
+from viewer.services.scene_loader import SceneLoader
 from viewer.services.scene_table import SceneTable
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import Undo
@@ -75,9 +75,8 @@ class Controller:
         self.presets = Presets(session, preferences, notices, settings.save, runs.refuses, undo.begin_step)
         self.inspector = Inspector(selection, renderer.query)
         self.navigator = navigator = FrameNavigator(
-            session, preferences, self.history, scheduler, runs, undo, selection, notices, self.restore,
-            self.reset_modes,
-        )  # fmt: skip
+            session, self.history, scheduler, runs, undo, selection, notices, self.restore, self.reset_modes
+        )
         self.editing = editing = Editing(
             session, renderer, notices, runs.refuses, self._show_edited, undo.without_undo, scheduler.trace_once_more
         )
@@ -120,21 +119,24 @@ class Controller:
 
     def take_scene(self) -> None:
         """Show the scene that has been read, if one has."""
-        arrival, flown = self.loader.take_finished(), self.preview.flown
+        session, arrival, flown = self.session, self.loader.take_finished(), self.preview.flown
         if arrival is None:
             return
-        said = ""
+        place, playing, said = arrival.place, arrival.again and session.playing, arrival.text
         if arrival.again:
-            self._show_again(arrival)
-        elif arrival.opened is not None:
+            place = session.state  # it is seen as it is now, from where we are
+        if arrival.opened is not None:
             self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
-            said = self._fit_view() if arrival.place is None else ""
         if arrival.place is not None:
             self.undo.begin_step("the place of a saved picture")
-            self.restore(arrival.place)
+        if place is not None:
+            self.restore(place)
+        else:
+            said = f"{said}. {self._fit_view()}".removesuffix(". ")
         if flown is not None:  # while the scene was waiting for its kernels
-            self.session.change(camera=flown)
-        self.notices.say(f"{arrival.text}. {said}" if said else arrival.text)
+            session.change(camera=flown)
+        session.playing, self.reloaded = playing and session.animated, arrival.again
+        self.notices.say(said)
 
     def take_frame(self) -> None:
         """Take the newest frame, of a run that is under way or else as it was asked for."""
@@ -201,17 +203,6 @@ class Controller:
         view, said = fitting_view(session.draw.view, session.settings, session.scene.lights if session.scene else ())
         session.set_draw(view=view)
         return said
-
-    def _show_again(self, arrival: Arrival) -> None:
-        """Show the scene that was open as it is now, from where we are."""
-        session, opened = self.session, arrival.opened
-        if opened is None or session.scene is None:
-            return
-        here, playing = session.state, session.playing
-        self.show(opened.scene, opened.renderer, opened.info)
-        session.restore(here)
-        session.playing = playing and session.animated
-        self.reloaded = True
 
     # --- going elsewhere -------------------------------------------------------------------------
 
@@ -296,7 +287,5 @@ class Controller:
         stopped = self.renderer.close(timeout)
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
-        if self.session.scene is not None:
-            self.preferences.last = codec.state_to_json(self.session.state)
         self.settings.finish()
         return stopped

@@ -22,7 +22,7 @@ from viewer.output import exports
 from viewer.output.commands import scene_word
 from viewer.output.comparison import Comparison, Crop
 from viewer.services import comparison
-from viewer.services.frame_history import FrameNavigator, JumpTarget
+from viewer.services.history import FrameNavigator
 from viewer.services.runs import FileRun, Runs, check_size
 from viewer.state import navigation
 from viewer.state.changes import as_options
@@ -215,7 +215,7 @@ class Hunts:
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
         warmup = tuple((one.time, one.camera or scene.camera_at(one.time)) for one in find.before)
         zoom = around(*point, size[0] / crop_of(find, size).width)
-        self._navigator.go_to(JumpTarget(state, f"counterexample {number + 1}", size, point, zoom, warmup))
+        self._navigator.go_to(state, f"counterexample {number + 1}", size, point, zoom, warmup)
 
     def save_figure(self, number: int) -> None:
         """Trace and draw the figure of a counterexample, into the folder of the pictures."""

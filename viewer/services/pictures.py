@@ -15,8 +15,8 @@ from viewer.output import capture, commands, exr, other_programs
 from viewer.output.commands import BUILT, cannot_come_back, needs_history
 from viewer.services import stills
 from viewer.services.capture_service import CaptureService
-from viewer.services.frame_history import FrameHistory
 from viewer.services.frame_scheduler import FrameScheduler
+from viewer.services.history import FrameHistory
 from viewer.services.runs import FileRun, Runs
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices

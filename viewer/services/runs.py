@@ -26,7 +26,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output import exports
-from viewer.output.filmstrip import Filmstrip, Shot
+from viewer.output.filmstrip import Filmstrip
 from viewer.services.capture_service import CaptureService
 from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Task, Traced
@@ -55,20 +55,6 @@ class RecordedZoomTest(ZoomTest):
     ) -> None:
         self.filmstrip = Filmstrip()
         super().__init__(scene, settings, start, factors, steps, ratio, self.filmstrip.record)
-
-
-@dataclass(frozen=True)
-class FramePreview:
-    """A recorded picture that is shown where the traced one is, until something changes that."""
-
-    test: RecordedZoomTest
-    shot: Shot
-    beside: object
-
-    def step(self) -> Step | None:
-        """The step that it is of; None of a test whose results are not there."""
-        steps = (step for a in approaches_of(self.test) if a.factor == self.shot.factor for step in a.steps)
-        return next((step for step in steps if step.number == self.shot.number), None)
 
 
 def approaches_of(test: RecordedZoomTest) -> list[Approach]:

@@ -12,7 +12,6 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -27,14 +26,12 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.messages import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, graphics, menus, style
-from viewer.window.full_screen import Rect
-from viewer.window.gl_window import PATIENCE, ContextLoss, closing_by_signals, open_window
+from viewer.window import commands, comparing, graphics, layout, menus, style
+from viewer.window.gl_window import NO_OPENGL, closing_by_signals
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
-from viewer.window.layout import Layout, show_strip
-from viewer.window.layout_file import LayoutFile
-from viewer.window.panels import dialogs, log, named_states, picture, status, tour
+from viewer.window.layout import Layout
+from viewer.window.panels import dialogs, named_states, picture, status, tour
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -50,7 +47,6 @@ FASTEST_BY_PROCESSOR, SLOWEST_BY_PROCESSOR = 30.0, 12.0
 IDLE = 8.0  # frames a second while nothing happens
 SETTLED = 4  # frames of a new window until it and its panels have taken their places
 ACTIVE = 0.25  # seconds after an event until nothing happens
-TOO_MANY_LOSSES = "the window is closed, as {cause}, again and again; settings are saved"
 DRAWN_BY_PROCESSOR = ("llvmpipe", "softpipe", "swrast", "software")
 
 
@@ -100,28 +96,24 @@ class App:
         preferences, problem = load_preferences()
         self.controller = Controller(preferences)
         self.ui = Ui(self.controller)
-        self.ui.guard = Guard(self.controller.notices, lambda name, fault: log.instead_of_part(self.ui, name, fault))
+        self.ui.guard = Guard(self.controller.notices, lambda name, fault: status.instead_of_part(self.ui, name, fault))
         self.ui.take_commands(commands.build(self.ui))
         self.ui.desktop.paste, self.ui.desktop.copy = imgui.get_clipboard_text, imgui.set_clipboard_text
+        self.ui.desktop.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
         self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
-        self.meshes = meshes
-        self.scene, self.on_frame = scene, on_frame
+        self.meshes, self.scene, self.on_frame = meshes, scene, on_frame
         self._told: Frame | None = None  # what the script has seen
-        self.layout_file = LayoutFile(config_folder())
+        self.layout_file = layout.ready_file(config_folder())
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
-        self.ui.desktop.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
-        self.ui.desktop.restart_graphics = lambda: setattr(self.context_loss, "cause", "graphics were restarted")
-        if preferences.tour:
-            preferences.tour = False  # on the first start only; the menu Help has it again
-            self.ui.tour.start()
         self._frame_began = time.perf_counter()
         self._capture_this_frame = False
         self._dropped_files: list[Path] = []
-        self.drawn_by_processor = self.iconified = self.was_open = self._opened = self._ended = False
-        self.context_loss = ContextLoss()
+        self.drawn_by_processor = self.iconified = self.was_open = False
         self._room = (0, 0)
-        self._place: Rect | None = None
+        if preferences.tour:
+            preferences.tour = False  # on the first start only; the menu Help has it again
+            self.ui.tour.start()
         if problem:
             self.controller.notices.say(problem, error=True)
 
@@ -131,35 +123,17 @@ class App:
         hook, threading.excepthook = threading.excepthook, self._thread_failed
         try:
             with closing_by_signals(self._exit):
-                self._open(runner)
-                while self.context_loss.cause and not self._ended:
-                    self._open_again(runner)
+                runner(self.params, immapp.AddOnsParams(with_implot=True))
+        except RuntimeError as error:
+            if self.was_open:
+                raise
+            raise OSError(NO_OPENGL) from error
         finally:
             threading.excepthook = hook
             self.controller.close()
-            self.layout_file.keep()
+            if self.ui.full_screen.place is not None:
+                layout.put_window(self.layout_file, self.ui.full_screen.place)
         return 0
-
-    def _open(self, runner: Runner, patience: float = 0.0) -> None:
-        """One window, until it is closed or what it is drawn with is lost."""
-        self.was_open, self.context_loss.cause = False, ""
-        add_ons = immapp.AddOnsParams(with_implot=True)
-        try:
-            open_window(lambda: runner(self.params, add_ons), lambda: self.was_open, patience)
-        finally:
-            self.layout_file.put_window(self._place)
-
-    def _open_again(self, runner: Runner) -> None:
-        """Another window in the place of the one whose graphics are lost, with all that the user did."""
-        cause = self.context_loss.cause
-        if self.context_loss.too_many:
-            raise OSError(TOO_MANY_LOSSES.format(cause=cause))
-        style.forget()
-        self.params = self._params()
-        before, self.layout = self.layout, Layout(self.ui, self.params)
-        self.layout.go_on_from(before)
-        self.controller.notices.say(f"{cause}: the window was made anew, and nothing is lost")
-        self._open(runner, PATIENCE)
 
     def _thread_failed(self, of: threading.ExceptHookArgs) -> None:
         """A thread ended by an exception that nobody caught."""
@@ -172,22 +146,16 @@ class App:
     def before_widgets(self) -> None:
         """Bring the state forward by the input of the last frame, ask for frames, and draw the newest."""
         self._frame_began = time.perf_counter()
-        if self.context_loss.is_lost():
-            self.params.app_shall_exit = True  # another window is opened then
-            return
-        ui, step, draws = self.ui, self.ui.guard.step, self._draws
+        ui, step = self.ui, self.ui.guard.step
         step("Setting the theme", self._set_theme)
         step("Full screen", ui.full_screen.apply)
         step("Opening dropped files", self._open_dropped)
         advance(self.controller, self._room_for_picture(), step)
         step("The script's function", self._call_script)
-        draws("Drawing the picture", lambda: graphics.draw(ui))
-        draws("Drawing the preview", lambda: graphics.draw_preview(ui))
-        draws(
-            "Drawing recorded pictures",
-            lambda: ui.graphics.textures.update() if ui.graphics.textures is not None else None,
-        )
-        draws("Saving the picture", self._capture_picture)
+        step("Drawing the picture", lambda: graphics.draw(ui))
+        step("Drawing the preview", lambda: graphics.draw_preview(ui))
+        step("Drawing recorded pictures", lambda: graphics.draw_recorded(ui))
+        step("Saving the picture", self._capture_picture)
         self._set_frame_rate()
 
     def widgets(self) -> None:
@@ -195,17 +163,16 @@ class App:
         ui, step, overlay = self.ui, self.ui.guard.step, self.ui.guard.overlay
         style.fill_windows(True)
         step("The layout", self.layout.update)
-        overlay("The strip of folded panels", lambda: show_strip(ui), lambda: setattr(ui.fold, "drawer", ""))
         step("Reading the keys", lambda: menus.handle_keys(ui))
         step("Flying", lambda: picture.fly(ui))
         step("Comparing", lambda: comparing.read_key(ui))
         dialogs.show(ui)
         overlay("The tour", lambda: tour.show(ui), ui.tour.end)
-        overlay("The notice", lambda: log.show_fault(ui), self.controller.notices.dismiss_faults)
+        overlay("The notice", lambda: status.show_fault(ui), self.controller.notices.dismiss_faults)
 
     def after_widgets(self) -> None:
         """Finish a frame that is drawn but not yet shown."""
-        self._draws("Saving the window", self._capture_window)
+        self.ui.guard.step("Saving the window", self._capture_window)
         self.controller.undo.held = imgui.is_any_item_active()
         self.controller.drawn_seconds = time.perf_counter() - self._frame_began
 
@@ -231,18 +198,6 @@ class App:
         if imgui.get_frame_count() >= SETTLED:
             self._room = self.ui.picture.area
         return self._room
-
-    def _draws(self, name: str, work: Callable[[], None]) -> None:
-        """Do a step that uses GL: what fails as the context is lost is no fault, as another window comes."""
-
-        def unless_lost() -> None:
-            try:
-                work()
-            except Exception:
-                if not self.context_loss.is_lost():
-                    raise
-
-        self.ui.guard.step(name, unless_lost)
 
     def _call_script(self) -> None:
         """Hand a whole picture to the script that opened the window, once; it closes the window by returning False."""
@@ -292,7 +247,7 @@ class App:
             anti_aliasing_samples=0,  # text and widgets are smooth by themselves
         )  # fmt: skip
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
-        params.ini_filename = str(self.layout_file.working_copy)
+        params.ini_filename = str(self.layout_file)
         params.fps_idling.fps_idle = IDLE
         params.fps_idling.fps_max = FASTEST
         params.fps_idling.time_active_after_last_event = ACTIVE
@@ -309,16 +264,11 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(
-            self.ui,
-            {menus.PANELS_MENU: self.layout.menu},
-            {"Edit/Presets": partial(named_states.presets_menu, self.ui)},
-        )
+        menus.show(self.ui, {"Panels": self.layout.menu}, {"Edit/Presets": lambda: named_states.presets_menu(self.ui)})
 
     def _ready(self) -> None:
         """The window and its GL context exist."""
-        self.was_open, self.iconified = True, False
-        self.context_loss.watch()
+        self.was_open = True
         graphics.make(self.ui)
         self.drawn_by_processor = any(name in self.ui.graphics.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
@@ -330,18 +280,11 @@ class App:
         glfw.set_window_close_callback(window, self._close_wanted)
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
-        self.ui.full_screen.begin()
-        if not self._opened:
-            self._opened = True
-            self._open_first()
-
-    def _open_first(self) -> None:
-        """Begin with what is to be seen first."""
         opener = self.controller.loader
         opener.start(self.scene_path, self.given_settings, self.folders, self.meshes)
         if self.scene is not None:
             opener.take(self.scene)
-        elif self.scene_path is None and not (self.controller.preferences.start_where_left and opener.go_on()):
+        elif self.scene_path is None:
             opener.open(default_scene())
 
     def _close_wanted(self, window: Any) -> None:
@@ -357,12 +300,10 @@ class App:
         hello_imgui.request_refresh()
 
     def _release(self) -> None:
-        self._place = self.ui.full_screen.end()
         self.controller.wake.connect(None)  # threads may still be at work when the window is gone
         graphics.release(self.ui)
 
     def _exit(self) -> None:
-        self._ended = True
         self.params.app_shall_exit = True
 
 

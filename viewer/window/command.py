@@ -1,8 +1,7 @@
-"""One action of the window: its name, its menu, its key, and what it does.
+"""Commands: what the menus, the keys, the list of keys and the palette are made of.
 
-Keys that are held down to fly are no commands: `viewer.state.keymap` lists them, and `viewer.window.panels.picture`
-reads them.
-"""
+Keys that are held down to fly are no commands: `viewer.window.keyboard` lists them, and `viewer.window.panels.picture`
+reads them."""
 
 from __future__ import annotations
 
@@ -20,14 +19,13 @@ class Condition:
     """When a command can be run, and why not where it cannot."""
 
     holds: Callable[[], bool]
-    reason: str
+    reason: str = ""
 
     def __call__(self) -> bool:
         return self.holds()
 
 
-def _always() -> bool:
-    return True
+ALWAYS = Condition(lambda: True)
 
 
 @dataclass(frozen=True)
@@ -36,21 +34,20 @@ class Command:
     the user gives it others, written as it is shown, e.g. "Ctrl+O"; `other_keys` do the same on other keyboards, and
     are not shown; `also` holds words by which the palette finds it, too; `checked` makes it a tick in its menu, where
     `tip` says more about it; `title` is what it is called now, where that changes, and "" where it is not to be
-    seen; its keys work `while_typing` into a field."""
+    seen."""
 
     name: str
     menu: str
     run: Callable[[], None]
     key: str = ""
     checked: Callable[[], bool] | None = None
-    enabled: Callable[[], bool] = _always
+    enabled: Callable[[], bool] = ALWAYS
     separated: bool = False
     repeats: bool = False
     tip: str = ""
     also: str = ""
     other_keys: tuple[str, ...] = ()
     title: Callable[[], str] | None = None
-    while_typing: bool = False
 
     @property
     def label(self) -> str:
@@ -69,7 +66,7 @@ class Command:
 
 
 def switch(name: str, menu: str, holder: Any, attribute: str, key: str = "", **more: Any) -> Command:
-    """A command that turns an attribute of an object on and off."""
+    """Return a command that turns an attribute of an object on and off."""
     return Command(
         name, menu, lambda: setattr(holder, attribute, not getattr(holder, attribute)), key,
         checked=lambda: bool(getattr(holder, attribute)), **more,
@@ -77,5 +74,5 @@ def switch(name: str, menu: str, holder: Any, attribute: str, key: str = "", **m
 
 
 def scene_open(c: Controller) -> Condition:
-    """That there is a scene."""
+    """Return that there is a scene."""
     return Condition(lambda: c.session.scene is not None, "no scene is open")

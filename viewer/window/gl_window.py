@@ -1,136 +1,58 @@
-"""Opens windows by whatever OpenGL the display has, notices when a window's context is lost, and closes the window on
-the signals that end a program.
-
-A context is lost when a driver is reset, or a graphics processor hangs or is taken away.  Drivers tell those who ask.
-All that is lost is a copy of what is in memory, so another window takes its place."""
+"""The window itself: whether its display has OpenGL, the whole screen, and the signals that close it."""
 
 from __future__ import annotations
 
-import ctypes
 import signal
 import threading
-import time
-import warnings
-from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from imgui_bundle import glfw_utils  # noqa: F401  # brings the GLFW that is imported next  # isort: skip
-import glfw  # isort: skip
+from imgui_bundle import glfw_utils
 
-NEEDED = (3, 3)
+import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
+
 NO_OPENGL = (
     "no window can be opened, as this display gives no OpenGL 3.3; without one, use: shadowcull render SCENE -o out.png"
 )
-PATIENCE = 15.0
-"""Seconds for a driver that was reset to come back."""
-RETRY_SECONDS = 0.5
-MOST_LOSSES, LOSS_SECONDS = 4, 60.0
-"""So many losses in so many seconds are too many to go on."""
-_RESET = "the graphics driver was reset"
-_CAUSES = {  # by GL_KHR_robustness
-    0x8253: f"{_RESET}, as something that the window drew took too long",
-    0x8254: f"{_RESET}, as another program made it hang",
-}
-_STATUS_FUNCTIONS = ("glGetGraphicsResetStatus", "glGetGraphicsResetStatusKHR", "glGetGraphicsResetStatusARB")
 _SIGNALS = ("SIGTERM", "SIGHUP", "SIGINT")
+Rect = tuple[int, int, int, int]
+"""Left, top, width, height."""
 
 
-def open_window(run: Callable[[], None], is_open: Callable[[], bool], patience: float = 0.0) -> None:
-    """Run a window until it is closed, with a context that tells of its loss where the driver knows how; wait so many
-    seconds for OpenGL to be there.  Raises OSError, in one line, where the display has none for it."""
-    end = time.monotonic() + patience
-    while patience and not _gives_window(robust=True) and time.monotonic() < end:
-        time.sleep(RETRY_SECONDS)
-    _set_context_hints(robust=True)
-    try:
-        run()
-        return
-    except RuntimeError as error:
-        if is_open():
-            raise
-        if not _gives_window(robust=False):  # Hello ImGui would say on standard error, once more, that it failed
-            raise OSError(NO_OPENGL) from error
-    _set_context_hints(robust=False)
-    try:
-        run()
-    except RuntimeError as error:
-        if is_open():
-            raise
-        raise OSError(NO_OPENGL) from error
+class FullScreen:
+    """The window over the whole screen, and back at the size and place that it had.  `wanted` is what the user asked
+    for.  Hello ImGui knows full screen only from the start of a window on, so this asks GLFW."""
+
+    def __init__(self) -> None:
+        self.wanted = False
+        self.place: Rect | None = None
+        """Where the window was before it was full; None while it is not."""
+
+    def apply(self) -> None:
+        """Make the window what is wanted; to be called where no frame is under way."""
+        window = glfw_utils.glfw_window_hello_imgui()
+        full = glfw.get_window_monitor(window)
+        if self.wanted and not full:
+            place = (*glfw.get_window_pos(window), *glfw.get_window_size(window))
+            self.place = self.place or place  # where its screen has gone, it is in no place of its own
+            monitor = _monitor_of(place)
+            mode = glfw.get_video_mode(monitor)
+            glfw.set_window_monitor(window, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
+        elif full and not self.wanted:
+            place, self.place = self.place or (100, 100, 1280, 800), None
+            glfw.set_window_monitor(window, None, *place, glfw.DONT_CARE)  # type: ignore[arg-type]
 
 
-def _set_context_hints(robust: bool) -> bool:
-    """Set what the next window's context is asked for; returns whether there is a display.  Drivers without contexts
-    that tell of their loss give ordinary ones."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", glfw.GLFWError)
-        if not glfw.init():
-            return False
-        glfw.default_window_hints()
-        glfw.window_hint(glfw.CONTEXT_ROBUSTNESS, glfw.LOSE_CONTEXT_ON_RESET if robust else glfw.NO_ROBUSTNESS)
-    return True
+def _monitor_of(place: Rect) -> Any:
+    """Return the screen that holds the middle of a window, else the first."""
+    x, y = place[0] + place[2] // 2, place[1] + place[3] // 2
 
+    def holds(monitor: Any) -> bool:
+        (left, top), size = glfw.get_monitor_pos(monitor), glfw.get_video_mode(monitor).size
+        return left <= x < left + size.width and top <= y < top + size.height
 
-def _gives_window(robust: bool) -> bool:
-    """Return whether a window with the OpenGL that is needed can be made."""
-    if not _set_context_hints(robust):
-        return False
-    glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, NEEDED[0])
-    glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, NEEDED[1])
-    glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
-    glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
-    window = _hidden_window()
-    if window:
-        glfw.destroy_window(window)
-    return bool(window)
-
-
-def _hidden_window() -> Any:
-    glfw.window_hint(glfw.VISIBLE, False)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", glfw.GLFWError)
-        return glfw.create_window(64, 64, "", None, None) or None
-
-
-def _reset_status() -> Callable[[], int]:
-    """Return the function that says whether the current context is lost: 0 for no."""
-    for name in _STATUS_FUNCTIONS:
-        address = glfw.get_proc_address(name)
-        if address:
-            prototype: Any = getattr(ctypes, "WINFUNCTYPE", ctypes.CFUNCTYPE)(ctypes.c_uint)
-            status: Callable[[], int] = prototype(address)
-            return status
-    return lambda: 0
-
-
-class ContextLoss:
-    """Watches a context; `cause` says in words why it is lost, "" while it is not."""
-
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self.cause = ""
-        self.status: Callable[[], int] = lambda: 0
-        self._clock = clock
-        self._at: deque[float] = deque(maxlen=MOST_LOSSES)
-
-    def watch(self) -> None:
-        """Watch the context that is current now."""
-        self.cause, self.status = "", _reset_status()
-
-    def is_lost(self) -> bool:
-        """Ask the driver whether the context is lost."""
-        if not self.cause:
-            found = self.status()
-            if found:
-                self._at.append(self._clock())
-                self.cause = _CAUSES.get(found, _RESET)
-        return bool(self.cause)
-
-    @property
-    def too_many(self) -> bool:
-        """Whether the driver loses contexts again and again."""
-        return len(self._at) == MOST_LOSSES and self._at[-1] - self._at[0] < LOSS_SECONDS
+    return next(filter(holds, glfw.get_monitors()), glfw.get_primary_monitor())
 
 
 @contextmanager
@@ -140,7 +62,6 @@ def closing_by_signals(close: Callable[[], None]) -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():  # others may not say what signals do
         yield
         return
-    numbers = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]
     before: dict[int, Any] = {}
 
     def restore() -> None:
@@ -151,7 +72,8 @@ def closing_by_signals(close: Callable[[], None]) -> Iterator[None]:
         restore()
         close()
 
-    before |= {number: signal.signal(number, closing) for number in numbers}
+    for number in (getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)):
+        before[number] = signal.signal(number, closing)
     try:
         yield
     finally:

@@ -57,6 +57,12 @@ def draw(ui: Ui) -> None:
     comparing.magnify(ui, options, window.smooth)
 
 
+def draw_recorded(ui: Ui) -> None:
+    """Bring recorded pictures that are to be seen to the GPU."""
+    if ui.graphics.textures is not None:
+        ui.graphics.textures.update()
+
+
 def draw_preview(ui: Ui) -> None:
     """Draw what is seen while kernels compile from where the camera is; free what it took once there is none any more.
     The window's framebuffer stays bound.  A preview that failed to be drawn is not tried again."""

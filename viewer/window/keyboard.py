@@ -1,89 +1,157 @@
-"""Keys as ImGui counts them, on whatever keyboard there is.
+"""Which keys do what, and keys as ImGui counts them, on whatever keyboard there is.
 
-ImGui knows a letter by what is printed on its key.  A key without Ctrl, Alt or Super is meant as a place
-(`viewer.state.keymap`): GLFW says what is printed there, and ImGui is asked for that.
-"""
+A key is written as "Ctrl+Shift+P", "W" or "Keypad7".  Without Ctrl, Alt or Super it is a *place* on the keyboard,
+called by the letter that a US keyboard has there, so that W A S D lie together on every keyboard.  ImGui knows a letter
+by what is printed on its key: GLFW says what is printed at a place, and ImGui is asked for that."""
 
 from __future__ import annotations
 
 import re
 import time
-from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from imgui_bundle import glfw_utils, imgui
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
-from viewer.state.keymap import HELD, MODIFIERS, Keymap, is_place
+from viewer.state.preferences import Preferences
 
-EVERY = 1.0
-"""Seconds after which a keyboard may have got another layout."""
+HELD = {
+    "Fly forward": "W",
+    "Fly back": "S",
+    "Fly left": "A",
+    "Fly right": "D",
+    "Fly up": "E",
+    "Fly down": "Q",
+    "Show A": "Z",
+}
+"""What is done for as long as a key is held, and its key; Shift makes it faster."""
+_MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Alt": imgui.Key.mod_alt, "Super": imgui.Key.mod_super,
+              "Shift": imgui.Key.mod_shift}  # fmt: skip
+_OF_LETTERS = ("Ctrl", "Alt", "Super")  # with which a key means a letter, and no place
+_CHORD = sum(int(_MODIFIERS[name]) for name in _OF_LETTERS)
+_ALL_MODIFIERS = int(imgui.Key.mod_mask_)
 _SIGNS = {
     "GraveAccent": "`", "Minus": "-", "Equal": "=", "LeftBracket": "[", "RightBracket": "]", "Backslash": "\\",
     "Comma": ",", "Semicolon": ";", "Apostrophe": "'", "Period": ".", "Slash": "/",
 }  # fmt: skip
-_SPELLED = {sign: name for name, sign in _SIGNS.items()}
 PLACES = {
     **{letter: getattr(glfw, f"KEY_{letter}") for letter in "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"},
     **{name: ord(sign) for name, sign in _SIGNS.items()},
 }
 """GLFW's number of each place where something is printed."""
-_MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Alt": imgui.Key.mod_alt, "Super": imgui.Key.mod_super,
-              "Shift": imgui.Key.mod_shift}  # fmt: skip
-_CHORD = int(imgui.Key.mod_ctrl) | int(imgui.Key.mod_alt) | int(imgui.Key.mod_super)
+_EDITING = (
+    "Space", "Tab", "Enter", "Backspace", "Delete", "Insert", "Home", "End", "PageUp", "PageDown", "LeftArrow",
+    "RightArrow", "UpArrow", "DownArrow", "Oem102",
+)  # fmt: skip
 _OTHERS = (
     *(f"F{n}" for n in range(1, 25)), *(f"Keypad{n}" for n in range(10)), "KeypadAdd", "KeypadSubtract",
-    "KeypadMultiply", "KeypadDivide", "KeypadDecimal", "KeypadEnter", "Space", "Tab", "Enter", "Backspace", "Delete",
-    "Insert", "Home", "End", "PageUp", "PageDown", "LeftArrow", "RightArrow", "UpArrow", "DownArrow", "Oem102",
+    "KeypadMultiply", "KeypadDivide", "KeypadDecimal", "KeypadEnter", *_EDITING,
 )  # fmt: skip
+_SHOWN = _SIGNS | {
+    "RightArrow": "Right", "LeftArrow": "Left", "UpArrow": "Up", "DownArrow": "Down", "Equal": "+",
+    "PageUp": "Page up", "PageDown": "Page down", "KeypadAdd": "Keypad +", "KeypadSubtract": "Keypad -",
+    "KeypadMultiply": "Keypad *", "KeypadDivide": "Keypad /", "KeypadDecimal": "Keypad .", "Oem102": "<",
+}  # fmt: skip
+_EVERY = 1.0  # seconds after which a keyboard may have got another layout
 
 
 def chord(key: str) -> int:
-    """ImGui's number of a key as it is shown, e.g. "Shift+F12"; raises ValueError for an unknown one."""
+    """Return ImGui's number of a key, e.g. "Shift+F12"; raises ValueError for an unknown one."""
     *modifiers, name = key.split("+")
-    number = 0
-    for modifier in modifiers:
-        number |= int(getattr(imgui.Key, f"mod_{modifier.lower()}"))
     spelled = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
     found = getattr(imgui.Key, f"_{name}" if name.isdigit() else spelled, None)
-    if found is None:
+    if found is None or not set(modifiers) <= set(_MODIFIERS):
         raise ValueError(f"no key is called {key!r}")
-    return number | int(found)
+    return sum(int(_MODIFIERS[modifier]) for modifier in set(modifiers)) | int(found)
 
 
 def is_key(key: str) -> bool:
-    """Whether a key of this name exists, with modifiers that exist."""
-    *modifiers, name = key.split("+")
+    """Return whether a key of this name exists."""
     try:
-        chord(name)
-    except (ValueError, AttributeError, TypeError):
+        return bool(chord(key))
+    except (ValueError, TypeError):
         return False
-    return set(modifiers) <= set(MODIFIERS)
 
 
-def key_label(key: str) -> str:
-    """A key as the user reads it."""
+def tidy(key: str) -> str:
+    """Return a key with its modifiers in their usual order."""
     *modifiers, name = key.split("+")
-    return "+".join([*modifiers, _SHOWN.get(name) or re.sub(r"^Keypad", "Keypad ", name)])
+    return "+".join([*sorted(modifiers, key=list(_MODIFIERS).index), name])
 
 
-_SHOWN = {
-    "RightArrow": "Right", "LeftArrow": "Left", "UpArrow": "Up", "DownArrow": "Down", "Equal": "+", "Minus": "-",
-    "Comma": ",", "Period": ".", "Slash": "/", "Semicolon": ";", "Apostrophe": "'", "LeftBracket": "[",
-    "RightBracket": "]", "Backslash": "\\", "GraveAccent": "`", "PageUp": "Page up", "PageDown": "Page down",
-    "KeypadAdd": "Keypad +", "KeypadSubtract": "Keypad -", "KeypadMultiply": "Keypad *", "KeypadDivide": "Keypad /",
-    "KeypadDecimal": "Keypad .", "KeypadEnter": "Keypad Enter", "Oem102": "<",
-}  # fmt: skip
+def is_place(key: str) -> bool:
+    """Return whether a key is a place on the keyboard, and not a letter."""
+    return not any(modifier in _OF_LETTERS for modifier in key.split("+")[:-1])
+
+
+def works_while_typing(key: str) -> bool:
+    """Return whether a key means its command also while a field of text has the keyboard, which uses others itself."""
+    *modifiers, name = key.split("+")
+    if name in _EDITING or name in "ACVXYZ":
+        return False
+    return "Ctrl" in modifiers or "Super" in modifiers or re.fullmatch(r"F\d+", name) is not None
+
+
+class Keymap:
+    """The keys of all that can have some: `defaults` maps names of commands to their keys, first the one to be shown;
+    those of HELD come with them, and the user's own go before."""
+
+    def __init__(self, preferences: Preferences, defaults: Mapping[str, tuple[str, ...]]) -> None:
+        self._own = lambda: preferences.keys
+        self._defaults = {**{name: (key,) for name, key in HELD.items()}, **defaults}
+
+    @property
+    def names(self) -> Iterable[str]:
+        """All that can have keys."""
+        return self._defaults.keys()
+
+    def of(self, name: str) -> tuple[str, ...]:
+        """Return its keys as they are now; the first is to be shown."""
+        return tuple(self._own().get(name, self.usual(name)))
+
+    def usual(self, name: str) -> tuple[str, ...]:
+        """Return its keys unless the user chooses others."""
+        return self._defaults.get(name, ())
+
+    def shown(self, name: str) -> str:
+        """Return its first key, "" where it has none."""
+        return next(iter(self.of(name)), "")
+
+    def changed(self, name: str) -> bool:
+        """Return whether the user has chosen its keys."""
+        return name in self._own()
+
+    def choose(self, name: str, keys: Iterable[str]) -> None:
+        """Give it these keys; its usual ones are not remembered as chosen."""
+        chosen = [tidy(key) for key in keys]
+        if tuple(chosen) == self.usual(name):
+            self._own().pop(name, None)
+        else:
+            self._own()[name] = list(dict.fromkeys(chosen))
+
+    def reset(self, name: str | None = None) -> None:
+        """Give it its usual keys again, or everything."""
+        for each in [name] if name is not None else list(self._own()):
+            self._own().pop(each, None)
+
+    def conflicts(self) -> dict[str, list[str]]:
+        """Return all that share a key, each with what else has one of its keys."""
+        owners: dict[str, list[str]] = {}
+        for name in self._defaults:
+            for key in self.of(name):
+                owners.setdefault(key, []).append(name)
+        shared = {name: [o for key in self.of(name) for o in owners[key] if o != name] for name in self._defaults}
+        return {name: list(dict.fromkeys(others)) for name, others in shared.items() if others}
 
 
 def printed_there(key: int) -> str | None:
-    """What GLFW says is printed on a key; needs a window."""
+    """Return what GLFW says is printed on a key; needs a window."""
     return glfw.get_key_name(key, 0)
 
 
 def held_there(key: int) -> bool:
-    """Whether GLFW says that a key is down; needs a window."""
+    """Return whether GLFW says that a key is down; needs a window."""
     return bool(glfw.get_key(glfw_utils.glfw_window_hello_imgui(), key) == glfw.PRESS)
 
 
@@ -95,10 +163,9 @@ class Keyboard:
         self, printed: Callable[[int], str | None] = printed_there, held: Callable[[int], bool] = held_there
     ) -> None:
         self._printed, self._held = printed, held
-        self._looked = -EVERY
+        self._looked = -_EVERY
         self._letters: dict[str, str] = {}
         self._chords: dict[str, int] = {}
-        self._shared: set[int] = set()
         self.wanted_for = ""
         self.modifiers = 0
         self.chorded: set[str] = set()
@@ -106,60 +173,53 @@ class Keyboard:
     def update(self) -> None:
         """Look what is printed where, now and then."""
         now = time.monotonic()
-        if now - self._looked < EVERY:
-            return
-        self._looked = now
-        letters = {name: self._printed(key) or "" for name, key in PLACES.items()}
-        if letters != self._letters:
-            self._letters, self._chords = letters, {}
-            counts = Counter(self.chord(name) for name in PLACES)
-            self._shared = {number for number, count in counts.items() if count > 1}
+        if now - self._looked >= _EVERY:
+            self._looked = now
+            self._letters = {name: self._printed(key) or "" for name, key in PLACES.items()}
+            self._chords = {}
 
     def chord(self, key: str) -> int:
-        """ImGui's number of a key with its modifiers."""
-        known = self._chords.get(key)
-        if known is None:
+        """Return ImGui's number of a key with its modifiers."""
+        if key not in self._chords:
             *modifiers, name = key.split("+")
-            there = self._asked_for(name) if is_place(key) else name
-            known = self._chords[key] = chord("+".join([*modifiers, there]))
-        return known
+            self._chords[key] = chord("+".join([*modifiers, self._asked_for(name) if is_place(key) else name]))
+        return self._chords[key]
+
+    def is_pressed(self, key: str, modifiers: int, repeats: bool = False) -> bool:
+        """Return whether a key has just been pressed with its modifiers."""
+        number = self.chord(key)
+        if number & _ALL_MODIFIERS != modifiers:
+            return False
+        return imgui.is_key_pressed(imgui.Key(number & ~_ALL_MODIFIERS), repeats) and self.is_meant(key)
 
     def is_meant(self, key: str) -> bool:
-        """Whether ImGui's key is this one, where it takes two places for the same: French keyboards have a minus on the
-        6, and ImGui knows the key that has it elsewhere as a minus too."""
+        """Return whether ImGui's key is this one, where it takes two places for the same: French keyboards have a minus
+        on the 6, and ImGui knows the key that has it elsewhere as a minus too."""
         name = key.split("+")[-1]
-        if not is_place(key) or name not in PLACES or self.chord(name) not in self._shared:
-            return True
-        if self._held(PLACES[name]):
+        if not is_place(key) or name not in PLACES:
             return True
         others = [other for other in PLACES if other != name and self.chord(other) == self.chord(name)]
-        if any(self._held(PLACES[other]) for other in others):
-            return False
-        return self._asked_for(name) != name  # let go already: rather the one that has the sign printed on it
+        if not others or self._held(PLACES[name]):
+            return True
+        # Let go already, it is rather the one that has the sign printed on it.
+        return not any(self._held(PLACES[other]) for other in others) and self._asked_for(name) != name
 
     def label(self, key: str) -> str:
-        """A key as the user reads it on the keyboard."""
-        if not key:
-            return ""
+        """Return a key as the user reads it on the keyboard."""
         *modifiers, name = key.split("+")
-        letter = self._letters.get(name, "") if is_place(key) and name not in "0123456789" else ""
-        return "+".join([*modifiers, letter.upper() or key_label(name)])
+        letter = self._letters.get(name, "") if is_place(key) and not name.isdigit() else ""
+        return "+".join([*modifiers, letter.upper() or _SHOWN.get(name) or re.sub(r"^Keypad", "Keypad ", name)])
 
     def is_down(self, keys: Iterable[str]) -> bool:
-        """Whether one of these keys is held, whatever modifiers are held with it."""
-        mask = ~int(imgui.Key.mod_mask_)
-        return any(imgui.is_key_down(imgui.Key(self.chord(key) & mask)) and self.is_meant(key) for key in keys)
+        """Return whether one of these keys is held, whatever modifiers are held with it."""
+        numbers = {key: imgui.Key(self.chord(key) & ~_ALL_MODIFIERS) for key in keys}
+        return any(imgui.is_key_down(number) and self.is_meant(key) for key, number in numbers.items())
 
     def pressed(self) -> str | None:
-        """The key that has just been pressed, with its modifiers, as commands have it."""
+        """Return the key that has just been pressed, with its modifiers, as commands have it."""
         held = int(imgui.get_io().key_mods)
-        modifiers = [name for name, number in _MODIFIERS.items() if held & int(number)]
-        prefix = "".join(f"{name}+" for name in modifiers)
-        for name in (*PLACES, *_OTHERS):
-            number = self.chord(prefix + name) & ~int(imgui.Key.mod_mask_)
-            if imgui.is_key_pressed(imgui.Key(number), repeat=False) and self.is_meant(prefix + name):
-                return prefix + name
-        return None
+        prefix = "".join(f"{name}+" for name, number in _MODIFIERS.items() if held & int(number))
+        return next((prefix + name for name in (*PLACES, *_OTHERS) if self.is_pressed(prefix + name, held)), None)
 
     def update_modifiers(self, keymap: Keymap) -> int:
         """Take up which modifiers are held, once a frame; returns those that were held until now, or else are now.
@@ -174,8 +234,9 @@ class Keyboard:
         return held or before
 
     def _asked_for(self, name: str) -> str:
-        """The name under which ImGui knows the key at a place: by what is printed there, as its GLFW backend says."""
+        """Return the name under which ImGui knows the key at a place: by what is printed there, as its GLFW backend
+        says."""
         letter = self._letters.get(name, "").upper()
-        if len(letter) == 1 and (letter in PLACES and letter.isascii() and letter.isalnum()):
+        if letter in PLACES and letter.isascii():
             return letter
-        return _SPELLED.get(letter, name)
+        return next((sign for sign, printed in _SIGNS.items() if printed == letter), name)

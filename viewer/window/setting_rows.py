@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -16,7 +16,7 @@ from viewer.state.view_state import ViewState
 from viewer.window.command import Command
 from viewer.window.finder import Item, Kind
 from viewer.window.ui import Ui
-from viewer.window.widgets import checkbox, row, size_field, tooltip
+from viewer.window.widgets import checkbox, row, same_line_for, size_field, tooltip
 
 LONGEST_SLIDER = 200.0
 """The range past which a number is typed, and has no slider."""
@@ -42,9 +42,21 @@ def setting_switch(ui: Ui, one: Setting, note: str = "") -> None:
     checkbox(one.label, value_of(ui, one), lambda on: ui.controller.settings.set(one, on), tip)
 
 
-def setting_row(ui: Ui, one: Setting, note: str = "") -> None:
-    """Show a row of `properties`: a setting's name, and its value to be changed."""
-    _row(ui, one, value_of(ui, one), partial(ui.controller.settings.set, one), note)
+def setting_switches(ui: Ui, some: Sequence[Setting], note: Callable[[Setting], str] = lambda one: "") -> None:
+    """Show ticks beside each other, as many as a line has room for."""
+    for place, one in enumerate(some):
+        if place:
+            same_line_for(one.label)
+        setting_switch(ui, one, note(one))
+
+
+def setting_row(ui: Ui, one: Setting, note: str = "", room: float = 0.0) -> None:
+    """Show a row of `properties`: a setting's name, and its value to be changed; `room` in ems is left behind it."""
+    row(one.label, f"{one.help}{note}", room)
+    now = value_of(ui, one)
+    value = _value(ui, one, now)
+    if value != now:
+        ui.controller.settings.set(one, value)
 
 
 def plan_rows(ui: Ui, plan: Any, *names: str) -> None:
@@ -54,30 +66,24 @@ def plan_rows(ui: Ui, plan: Any, *names: str) -> None:
     declared = {one.name: one for one in (*settings_of(Settings), *settings_of(kind))}
     for name in names:
         one = declared[name]
+        row(one.label, one.help)
+        now = getattr(plan, name)
+        value = _value(ui, one, now)
+        if value != now:
+            setattr(plan, name, min(max(value, one.low), one.high) if one.kind in (int, float) else value)
 
-        def put(value: Any, one: Setting = one) -> None:
-            setattr(plan, one.name, min(max(value, one.low), one.high) if one.kind in (int, float) else value)
 
-        _row(ui, one, getattr(plan, name), put)
-
-
-def _row(ui: Ui, one: Setting, now: Any, change: Callable[[Any], None], note: str = "") -> None:
-    """The row of a value of any kind."""
-    row(one.label, f"{one.help}{note}")
+def _value(ui: Ui, one: Setting, now: Any) -> Any:
+    """Show a value of any kind; returns what it is now."""
     if one.kind is bool:
-        checkbox(f"##{one.name}", now, change)
-        return
-    value: Any = now
+        return checkbox(f"##{one.name}", now)
     if one.choices:
-        value = _choice(one, now)
-    elif one.kind in (int, float):
-        value = _number(one, now)
-    elif one.kind is str:
-        _, value = imgui.input_text_with_hint(f"##{one.name}", one.unset, now)
-    elif one.kind is tuple:
-        value = size_field(now, int(one.high), ui.controller.notices.say)
-    if value != now:
-        change(value)
+        return _choice(one, now)
+    if one.kind in (int, float):
+        return _number(one, now)
+    if one.kind is str:
+        return imgui.input_text_with_hint(f"##{one.name}", one.unset, now)[1]
+    return size_field(now, int(one.high), ui.controller.notices.say)
 
 
 def _choice(one: Setting, now: Any) -> Any:
@@ -131,37 +137,22 @@ def setting_command(ui: Ui, path: str, menu: str, key: str = "", **more: Any) ->
 def entries(ui: Ui) -> Iterator[Item]:
     """Return the settings that have a value, and switches that no menu has, for the palette."""
     c = ui.controller
-    refused = "a run is under way" if c.runs.current is not None else ""
     commands = {command.name for command in ui.commands}
     for one in ALL.values():
-        locked = refused if one.within == ("settings",) else ""
-        if not one.panel or one.label in commands:
-            continue
-        if one.choices:
-            yield from _choices(ui, one, locked)
-        elif one.kind is bool:
-            flip = partial(c.settings.set, one, not value_of(ui, one))
-            yield _entry(ui, one, locked, run=flip, checked=value_of(ui, one), also="on off switch")
-        else:
-            yield _typed(ui, one, value_of(ui, one), partial(c.settings.set, one), locked)
-    if c.session.animated and c.session.scene is not None:
-        frame = Setting("Frame", "", 0, c.session.scene.frames - 1, kind=int, panel="Time", name="frame")
-        yield _typed(ui, frame, c.session.frame, lambda number: c.motion.step(number - c.session.frame))
-    lights = len(c.session.scene.lights) if c.session.scene is not None else 0
-    if lights > 1:
-        light = replace(ALL["draw.light"], high=lights - 1, panel="View")
-        yield _typed(ui, light, c.session.draw.light, c.settings.set_light)
+        if one.panel and one.label not in commands:
+            yield from _entries(ui, one, value_of(ui, one), partial(c.settings.set, one))
+    scene = c.session.scene
+    if scene is not None and c.session.animated:
+        frame = Setting("Frame", "", 0, scene.frames - 1, kind=int, panel="Time", name="frame")
+        yield from _entries(ui, frame, c.session.frame, lambda number: c.motion.step(number - c.session.frame))
+    if scene is not None and len(scene.lights) > 1:
+        light = replace(ALL["draw.light"], high=len(scene.lights) - 1, panel="View")
+        yield from _entries(ui, light, c.session.draw.light, c.settings.set_light)
 
 
-def _entry(ui: Ui, one: Setting, refused: str, **more: Any) -> Item:
-    return Item(
-        f"setting {one.label}", more.pop("label", one.label), Kind.SETTING, more.pop("run", lambda: None), one.panel,
-        enabled=not refused, why_not=refused, hint=more.pop("hint", one.help), **more,
-    )  # fmt: skip
-
-
-def _typed(ui: Ui, one: Setting, now: Any, change: Callable[[Any], None], refused: str = "") -> Item:
-    """An entry whose value is typed."""
+def _entries(ui: Ui, one: Setting, now: Any, change: Callable[[Any], None]) -> Iterator[Item]:
+    """Return the entries of one setting: for each of its choices, to switch it, or to type its value."""
+    refused = "a run is under way" if ui.controller.runs.current is not None and one.within == ("settings",) else ""
 
     def take(typed: str) -> str:
         try:
@@ -170,15 +161,17 @@ def _typed(ui: Ui, one: Setting, now: Any, change: Callable[[Any], None], refuse
             return f"{one.label}: {error}"
         return ""
 
-    hint = f"{one.expected_shown}. {one.help}".strip()
-    return _entry(ui, one, refused, also="set value", value=one.text(now), take=take, hint=hint)
-
-
-def _choices(ui: Ui, one: Setting, refused: str) -> Iterator[Item]:
-    """An entry for each value of a setting."""
-    now, change = value_of(ui, one), ui.controller.settings.set
-    for choice, meaning in one.choices.items():
-        text, hint = one.text(choice), meaning or one.help
-        named = replace(one, label=f"{one.label} {text}")
-        yield _entry(ui, named, refused, label=f"{one.label}: {text}", run=partial(change, one, choice),
-                     checked=choice == now, hint=hint)  # fmt: skip
+    item = Item(
+        f"setting {one.label}", one.label, Kind.SETTING, lambda: None, one.panel, hint=one.help,
+        enabled=not refused, why_not=refused,
+    )  # fmt: skip
+    if one.choices:
+        for choice, meaning in one.choices.items():
+            text = one.text(choice)
+            yield replace(item, name=f"{item.name} {text}", label=f"{one.label}: {text}", hint=meaning or one.help,
+                          run=partial(change, choice), checked=choice == now)  # fmt: skip
+    elif one.kind is bool:
+        yield replace(item, run=partial(change, not now), checked=bool(now), also="on off switch")
+    else:
+        hint = f"{one.expected_shown}. {one.help}".strip()
+        yield replace(item, value=one.text(now), take=take, also="set value", hint=hint)

@@ -16,16 +16,14 @@ from tracer.scene.lights import named_light
 from viewer.output.capture import FIELDS
 from viewer.output.ray_rows import Filter, Key, Row
 from viewer.services.controller import Controller
-from viewer.services.runs import FramePreview
 from viewer.services.tour import Tour
-from viewer.state.keymap import Keymap
 from viewer.state.preferences import default_screenshot_folder
 from viewer.state.views import View
 from viewer.window.command import Command
 from viewer.window.display import Compared, Display
-from viewer.window.full_screen import FullScreen
+from viewer.window.gl_window import FullScreen
 from viewer.window.guard import Guard
-from viewer.window.keyboard import Keyboard, is_key
+from viewer.window.keyboard import Keyboard, Keymap, is_key
 from viewer.window.magnifier import Magnifier
 from viewer.window.preview import PreviewDisplay
 from viewer.window.texture_cache import TextureCache
@@ -51,20 +49,6 @@ class Dialog(Enum):
 
 
 @dataclass
-class Fold:
-    """What became of the panels: hidden all, or folded into a strip in a small window, with one of them open."""
-
-    hidden: bool = False
-    folded: bool = False
-    drawer: str = ""
-
-    @property
-    def away(self) -> bool:
-        """Whether no panel is docked beside the picture."""
-        return self.hidden or self.folded
-
-
-@dataclass
 class Picture:
     """The picture in the window: the size in framebuffer pixels that it may fill (`area`), the one that it fills, the
     newest frame's, what the camera orbits around and of which scene that is, and what the pointer did last."""
@@ -85,7 +69,6 @@ class Desktop:
 
     exit: Callable[[], None] = lambda: None
     reset_layout: Callable[[], None] = lambda: None
-    restart_graphics: Callable[[], None] = lambda: None
     paste: Callable[[], str] = lambda: ""
     copy: Callable[[str], None] = lambda text: None
 
@@ -128,11 +111,11 @@ State = TypeVar("State")
 @dataclass(slots=True)
 class Ui:
     """See the module.  `dialogs` are those that are open, the newest last, `fate_shown` is the fate of shadow rays
-    whose pixels are to stand out, and `frame_preview` the recorded picture that is shown in the picture's place."""
+    whose pixels are to stand out."""
 
     controller: Controller
     commands: list[Command] = field(default_factory=list)
-    fold: Fold = field(default_factory=Fold)
+    panels_hidden: bool = False
     full_screen: FullScreen = field(default_factory=FullScreen)
     capture_wanted: CaptureKind | None = None
     dialogs: list[Dialog] = field(default_factory=list)
@@ -145,7 +128,6 @@ class Ui:
     guard: Guard = field(init=False)
     keymap: Keymap = field(init=False)
     tour: Tour = field(init=False)
-    frame_preview: FramePreview | None = None
     picture: Picture = field(default_factory=Picture)
     _states: dict[type, Any] = field(default_factory=dict)
     _cache: dict[str, tuple[object, object, Any]] = field(default_factory=dict)
@@ -197,12 +179,8 @@ class Ui:
             kept[name] = [key for key in keys if is_key(key)]  # a file may hold anything
 
     def key(self, name: str) -> str:
-        """The key of a command as the user reads it on the keyboard, in brackets after a blank; "" without one."""
-        return self.keys(name)
-
-    def keys(self, *names: str) -> str:
-        """The keys of several, as in " (L and Shift+L)"; those that have one."""
-        shown = " and ".join(filter(None, map(self.key_label, names)))
+        """Return the key of a command as the user reads it, as in " (Shift+L)"; "" without one."""
+        shown = self.key_label(name)
         return f" ({shown})" if shown else ""
 
     def key_label(self, name: str) -> str:

@@ -47,17 +47,17 @@ def properties(name: str, label_width: float = 7.0) -> Iterator[bool]:
             imgui.end_table()
 
 
-def row(name: str, tip: str = "") -> None:
-    """Begin a row of `properties`: write its name and stand ready, full width, for its value."""
+def row(name: str, tip: str = "", room: float = 0.0) -> None:
+    """Begin a row of `properties`: write its name and stand ready for its value, which leaves `room` in ems."""
     imgui.table_next_row()
     imgui.table_next_column()
     imgui.align_text_to_frame_padding()
     _name(name, tip)
-    imgui.set_next_item_width(-1.0)
+    imgui.set_next_item_width(-em(room) if room else -1.0)
 
 
 def _name(name: str, tip: str) -> None:
-    """A row's name in the first column, to go on in the second."""
+    """Write a row's name in the first column, to go on in the second."""
     clipped(name, QUIET)
     if tip:
         tooltip(tip)
@@ -65,7 +65,7 @@ def _name(name: str, tip: str) -> None:
 
 
 def value(name: str, text: str, tip: str = "", wraps: bool = False) -> None:
-    """A row of text; long text wraps, or is cut with an ellipsis and shown in full on hovering."""
+    """Show a row of text; long text wraps, or is cut with an ellipsis and shown in full on hovering."""
     imgui.table_next_row()
     imgui.table_next_column()
     _name(name, tip)
@@ -103,13 +103,22 @@ def same_line_for(label: str) -> None:
 def clipped(text: str, color: ImVec4 | None = None) -> None:
     """One line of text that ends in an ellipsis where there is no room, with all of it as a tooltip."""
     shown = fitted(text, imgui.get_content_region_avail().x)
-    if color is not None:
-        imgui.push_style_color(imgui.Col_.text, color)
-    imgui.text_unformatted(shown)
-    if color is not None:
-        imgui.pop_style_color()
+    _text(shown, color)
     if shown != text:
         tooltip(text)
+
+
+def paragraph(text: str, color: ImVec4 | None = None) -> None:
+    """Text that wraps at the panel's edge."""
+    imgui.push_text_wrap_pos(0.0)
+    _text(text, color)
+    imgui.pop_text_wrap_pos()
+
+
+def _text(text: str, color: ImVec4 | None) -> None:
+    imgui.push_style_color(imgui.Col_.text, color or imgui.get_style_color_vec4(imgui.Col_.text))
+    imgui.text_unformatted(text)
+    imgui.pop_style_color()
 
 
 def tooltip(text: str) -> None:
@@ -118,10 +127,10 @@ def tooltip(text: str) -> None:
         tooltip_at(text)
 
 
-def tooltip_at(text: str) -> None:
-    """Explain what is under the pointer."""
+def tooltip_at(text: str, width: float = 24.0) -> None:
+    """Explain what is under the pointer, in lines of so many ems."""
     if imgui.begin_tooltip():
-        imgui.push_text_wrap_pos(em(24.0))
+        imgui.push_text_wrap_pos(em(width))
         imgui.text_unformatted(text)
         imgui.pop_text_wrap_pos()
         imgui.end_tooltip()
@@ -130,15 +139,10 @@ def tooltip_at(text: str) -> None:
 def tooltip_above(text: str) -> None:
     """The same above the item, after a longer rest, so that neither what lies beside nor what lies below is hidden."""
     flags = imgui.HoveredFlags_.stationary | imgui.HoveredFlags_.delay_normal | imgui.HoveredFlags_.allow_when_disabled
-    if not imgui.is_item_hovered(int(flags)):
-        return
-    corner = imgui.get_item_rect_min()
-    imgui.set_next_window_pos(ImVec2(corner.x, corner.y - em(0.3)), 0, ImVec2(0.0, 1.0))
-    if imgui.begin_tooltip():
-        imgui.push_text_wrap_pos(em(13.0))
-        imgui.text_unformatted(text)
-        imgui.pop_text_wrap_pos()
-        imgui.end_tooltip()
+    if imgui.is_item_hovered(int(flags)):
+        corner = imgui.get_item_rect_min()
+        imgui.set_next_window_pos(ImVec2(corner.x, corner.y - em(0.3)), 0, ImVec2(0.0, 1.0))
+        tooltip_at(text, 13.0)
 
 
 @contextmanager
@@ -151,8 +155,9 @@ def outlined() -> Iterator[None]:
     imgui.pop_style_var()
 
 
-def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str = "") -> None:
-    """A tick that calls `change` with its new state; a label that is too long for its line ends in an ellipsis."""
+def checkbox(label: str, state: bool, change: Callable[[bool], None] = lambda on: None, tip: str = "") -> bool:
+    """Show a tick that calls `change` with its new state; returns what it is now.  A label that is too long for its
+    line ends in an ellipsis."""
     room = imgui.get_content_region_avail().x - imgui.get_frame_height() - imgui.get_style().item_inner_spacing.x
     shown = label if label.startswith("##") else fitted(label, room)
     with outlined():
@@ -163,6 +168,7 @@ def checkbox(label: str, state: bool, change: Callable[[bool], None], tip: str =
         tooltip(tip)
     if changed:
         change(now)
+    return bool(now)
 
 
 def size_field(size: tuple[int, int], longest: int, say: Callable[[str], None]) -> tuple[int, int]:
@@ -224,17 +230,6 @@ def packed(color: tuple[float, float, float], alpha: float = 1.0) -> int:
 def heading(text: str) -> None:
     imgui.dummy(ImVec2(0.0, em(0.15)))
     imgui.separator_text(text)
-
-
-def paragraph(text: str, color: ImVec4 | None = None) -> None:
-    """Text that wraps at the panel's edge."""
-    imgui.push_text_wrap_pos(0.0)
-    if color is not None:
-        imgui.push_style_color(imgui.Col_.text, color)
-    imgui.text_unformatted(text)
-    if color is not None:
-        imgui.pop_style_color()
-    imgui.pop_text_wrap_pos()
 
 
 def short(number: float) -> str:

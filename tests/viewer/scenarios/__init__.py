@@ -19,10 +19,9 @@ from tests.viewer.scenarios.lamps import lamps
 from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, orbiting, playing, resizing
 from tests.viewer.scenarios.navigating import navigating
-from tests.viewer.scenarios.panels import closing_panels, folding, hiding, looks, panels
+from tests.viewer.scenarios.panels import closing_panels, hiding, looks, panels
 from tests.viewer.scenarios.previewing import previewing
 from tests.viewer.scenarios.rays import rays
-from tests.viewer.scenarios.reviving import reviving
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
 from tests.viewer.scenarios.savings import savings
 from tests.viewer.scenarios.taking import taking
@@ -36,8 +35,8 @@ SCENARIOS = {
     for scenario in (
         views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, fates, savings, certifying,
         explaining, rays, flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing,
-        experimenting, figure1, zooming, asking, finding, filmstrip, filming, hunting, taking, failing, reviving,
-        panels, closing_panels, looks, hiding, folding, touring, fitting, at_home, navigating, what_if, why,
+        experimenting, figure1, zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
+        panels, closing_panels, looks, hiding, touring, fitting, at_home, navigating, what_if, why,
         previewing,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )

@@ -16,7 +16,7 @@ from viewer.state.notices import QUIET_AFTER
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 from viewer.window import menus
-from viewer.window.panels import open_file, plots, statistics, status
+from viewer.window.panels import dialogs, plots, statistics, status
 
 KEY = imgui.Key
 
@@ -94,11 +94,11 @@ def failing(d: Driver) -> None:
         guard.again(part)
         d.frames(3)
         assert not guard.broken
-    good, open_file._names = open_file._names, fail
+    good, dialogs._names = dialogs._names, fail
     d.press(int(KEY.o) | int(KEY.mod_ctrl))
-    noticed(open_file.TITLE)
+    noticed(dialogs.OPEN)
     assert not d.ui.dialogs
-    open_file._names = good
+    dialogs._names = good
     d.ui.commands = [replace(c, run=fail) if c.name == "Depth" else c for c in d.ui.commands]
     d.press(KEY._5)
     noticed("The command Depth")

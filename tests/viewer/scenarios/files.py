@@ -16,8 +16,7 @@ from tests.viewer.scenarios.studios import standing
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 from viewer.window.keyboard import chord
-from viewer.window.panels import open_file
-from viewer.window.panels.open_file import OpenFileState
+from viewer.window.panels.dialogs import OPEN, OpenFileState
 
 KEY = imgui.Key
 
@@ -203,7 +202,7 @@ def browsing(d: Driver) -> None:
     d.frames(2)
 
     # A click on a file opens it.
-    d.context.set_ref(d.context.window_info(f"//{open_file.TITLE}/names").window)
+    d.context.set_ref(d.context.window_info(f"//{OPEN}/names").window)
     d.context.item_click("deep.aff##deep.aff")
     d.frames(3)
     assert not d.ui.dialogs

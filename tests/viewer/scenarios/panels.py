@@ -1,19 +1,21 @@
-"""Panels and menus: opened, closed, hidden, folded; themes and sizes."""
+"""Panels and menus: opened, closed, hidden; themes and sizes."""
 
 from __future__ import annotations
 
+from unittest import mock
+
 import glfw
+import numpy as np
 from imgui_bundle import glfw_utils, imgui
 
 from tests.sweeps import cases
 from tests.viewer.driver import Driver
-from viewer.state import codec
 from viewer.state.views import View
+from viewer.window import style as window_style
 from viewer.window.layout import PANELS, PICTURE
 from viewer.window.ui import Dialog
 
 KEY = imgui.Key
-SIDES = [label for label in PANELS if label != PICTURE]
 
 
 def panels(d: Driver) -> None:
@@ -104,24 +106,6 @@ def looks(d: Driver) -> None:
     assert p.ui_scale == 1.0 and d.c.session.draw.view is View.COLOR and brightness() < 60.0
     assert p.recent and d.c.bookmarks.all[0].name == "here" and d.c.presets.all
 
-    # What is open now is where the next start may begin; a scene that has gone since is told of.
-    d.context.menu_click("//##MainMenuBar/File/Start where I left off")
-    d.hold(KEY.d, 0.2)
-    d.settle()
-    camera, path = d.c.session.camera, d.c.session.scene.path
-    place = codec.state_to_json(d.c.session.state)
-    d.press(KEY.r)
-    d.settle()
-    assert p.start_where_left and d.c.session.camera != camera
-    p.last = place  # it follows the camera, so that it is there whenever the program ends
-    assert d.c.loader.go_on()
-    d.wait(lambda: d.c.session.camera == camera, "the place that was left")
-    assert d.c.session.scene.path == path
-    d.settle()
-    p.last = place | {"scene": str(d.folder / "gone.aff")}
-    assert not d.c.loader.go_on() and "the scene is gone" in d.c.notices.message.text
-    d.settle()
-
 
 def hiding(d: Driver) -> None:
     """Tab leaves the picture alone, and brings back what was there, where it was; F11 fills the screen, and back."""
@@ -144,9 +128,7 @@ def hiding(d: Driver) -> None:
     assert not d.c.session.on_path, "keys fly while the panels are hidden"
     d.press(KEY.tab)
     d.frames(5)
-    assert _places_of_panels() == before, (
-        f"the panels did not come back as they were: {_places_of_panels()} for {before}"
-    )
+    _came_back(before)
     assert not docking.dockable_window_of_name("Saving").is_visible
 
     d.press(KEY.tab)
@@ -154,7 +136,9 @@ def hiding(d: Driver) -> None:
     d.resize(1280, 800)
     d.press(KEY.tab)
     d.frames(5)
-    assert _places_of_panels() == before, "a hidden panel lost its share of the window"
+    _came_back(before)
+    _shares(d)
+    _denser_screen(d)
 
     window = glfw_utils.glfw_window_hello_imgui()
     place = (*glfw.get_window_pos(window), *glfw.get_window_size(window))
@@ -168,56 +152,43 @@ def hiding(d: Driver) -> None:
     assert not glfw.get_window_monitor(window)
     assert (*glfw.get_window_pos(window), *glfw.get_window_size(window)) == place
     d.settle()
-    assert _places_of_panels() == before
+    _came_back(before)
     d.press(KEY.f11)  # the window's own size is what is kept when it is closed like that
     d.frames(5)
 
 
-def folding(d: Driver) -> None:
-    """In a small window the panels fold into a strip, which opens one at a time, and the picture keeps most of it."""
-    d.resize(1440, 900)
-    d.settle()
+def _shares(d: Driver) -> None:
+    """Panels keep their shares of the window, whatever sizes it has meanwhile, and however often."""
     before = _places_of_panels()
-    for size in ((1280, 800), (1024, 700)):
+    for size in ((1024, 700), (900, 600), (1600, 1000), *((width, 800) for width in range(1280, 1000, cases(-56, -7)))):
         d.resize(*size)
         there = _places_of_panels()
-        assert set(there) == set(before), "panels are docked at this size"
-        for label, (x, y, width, height) in there.items():
-            most = 0.4 if PANELS[label].space.startswith(("Left", "Right")) else 0.9
-            assert 0.13 < width / size[0] < most and height > 0.12 * size[1], f"{label} at {size}: {width} x {height}"
-            assert x >= 0 and y >= 0 and x + width <= size[0] and y + height <= size[1]
-        assert there[PICTURE][2] > 0.45 * size[0]
-    for size in ((900, 600), (480, 360)):
-        d.resize(*size)
-        assert d.ui.fold.folded and set(_places_of_panels()) == {PICTURE} and _picture_share() > 0.7
-        for label in SIDES:
-            d.context.item_click(f"//##strip/{PANELS[label].icon}##{label}")
+        assert set(there) == set(before) and 0.4 < there[PICTURE][2] / size[0] < 0.6
+    d.resize(1280, 800)
+    _came_back(before)
+
+
+def _denser_screen(d: Driver) -> None:
+    """Letters and lengths follow the screen, and go back with it."""
+    style = imgui.get_style()
+
+    def lengths() -> tuple[float, ...]:
+        return style.frame_padding.x, style.item_spacing.x, style.scrollbar_size, style.indent_spacing
+
+    before = lengths()
+    for scale in (2.0, 1.5, 1.0):
+        with mock.patch.object(window_style, "content_scale", lambda scale=scale: scale):
             d.frames(3)
-            drawer = imgui.internal.find_window_by_name("##drawer")
-            assert d.ui.fold.drawer == label and drawer.active
-            assert drawer.pos.x >= 0.1 * size[0], "some of the picture stays to be seen"
-        d.press(KEY.escape)
-        assert not d.ui.fold.drawer
-        d.ui.show_panel("Statistics")
-        d.press(KEY.tab)
-        d.frames(3)
-        assert not imgui.internal.find_window_by_name("##strip").active, "Tab hides the strip too"
-        d.press(KEY.tab)
-        d.frames(3)
-        assert d.ui.fold.drawer == "Statistics"
-        d.context.menu_click(f"//##MainMenuBar/{'Menu/' if size[0] < 700 else ''}Panels/Statistics")
-        d.frames(2)
-        assert not d.ui.fold.drawer
-        d.settle()
-    d.resize(1440, 900)
+            assert style.font_scale_dpi == scale and np.allclose(lengths(), np.multiply(before, scale), atol=1.0)
+    assert lengths() == before
+    d.frames(3)
+
+
+def _came_back(before: dict[str, tuple[float, ...]]) -> None:
     there = _places_of_panels()
     assert set(there) == set(before)
     for label, place in there.items():
-        assert max(abs(a - b) for a, b in zip(place, before[label], strict=True)) <= 2.0, f"{label} moved"
-    for width in range(1440, 1200, cases(-28, -7)):  # as a hand drags the window's corner
-        d.resize(width, 900)
-    d.resize(1440, 900)
-    assert abs(_places_of_panels()["Statistics"][2] - before["Statistics"][2]) <= 2.0, "shares must not wear off"
+        assert np.allclose(place, before[label], atol=2.0), f"{label} is at {place}, and was at {before[label]}"
 
 
 def _places_of_panels() -> dict[str, tuple[float, ...]]:

@@ -95,10 +95,7 @@ def zooming(d: Driver) -> None:
     d.context.mouse_move_to_pos((row.x + 4.0, row.y + 4.0))
     d.context.mouse_click(0)
     d.frames(3)
-    assert d.ui.frame_preview.step() is step
-    d.context.item_click("//Picture/**/Fly there")
     d.settle()
-    assert d.ui.frame_preview is None
     assert np.allclose(d.c.frame.camera.position, step.camera.position)
     files = saved_results(d, "Zoom test")
     assert json.loads(files[".json"].read_text())["primitive"] == test.start.primitive

@@ -179,23 +179,18 @@ def write(path: Path, text: str) -> None:
     os.utime(path, ns=(before + 10**9, before + 10**9))
 
 
-@pytest.fixture
-def looks(tmp_path: Path) -> Callable[[], str]:
-    """A look at files taken by hand: what it tells."""
+def test_what_has_changed_is_told_once_and_when_it_rests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     for name in ("a.aff", "b.png"):
         (tmp_path / name).write_text(name)
     watch = FileWatch()
     watch.files = {path: stamp(path) for path in (tmp_path / "a.aff", tmp_path / "b.png", tmp_path / "later.png")}
-    watch.close()
+    monkeypatch.setattr("viewer.services.scene_loader.LOOK_SECONDS", 0.0)
 
-    def look() -> str:
-        watch.look()
-        return watch.take()
+    def looks() -> str:
+        assert watch.changed() == ""
+        watch._look.result()
+        return watch.changed()
 
-    return look
-
-
-def test_what_has_changed_is_told_once_and_when_it_rests(looks: Callable[[], str], tmp_path: Path):
     assert [looks(), looks()] == ["", ""]
     for text in ("x", "xy", "xyz"):
         write(tmp_path / "a.aff", text)

@@ -12,8 +12,8 @@ from tests.viewer.drawn import classes_in
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.culling.fate import Fate
 from tracer.frame import Settings
+from viewer.services.history import Plots, counters
 from viewer.state import palette
-from viewer.state.history import History, counters
 from viewer.state.tone import MOST_EXPOSURE, Curve, Tone, brighter, clipped, toned
 from viewer.state.views import View
 from viewer.views.difference import Mark, wrong_marks
@@ -106,7 +106,7 @@ def test_the_colour_map_grows_lighter_all_the_way():
 
 
 def test_history_keeps_the_newest_in_order_and_contiguous():
-    history, frame = History(capacity=5), make_frame()
+    history, frame = Plots(capacity=5), make_frame()
     for i in range(13):
         frame.statistics.shadow.due = i
         history.add(frame, 0.001)
@@ -119,7 +119,7 @@ def test_history_keeps_the_newest_in_order_and_contiguous():
 
 
 def test_fates_of_shadow_rays_add_up_to_those_due():
-    history, frame = History(), make_frame()
+    history, frame = Plots(), make_frame()
     shadow = frame.statistics.shadow
     shadow.due, shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits = 100, 40, 25, 20, 10
     frame.statistics.certificate_steps, frame.statistics.certificate_tests = 7, 3
@@ -132,7 +132,7 @@ def test_fates_of_shadow_rays_add_up_to_those_due():
 
 def test_a_picture_that_is_shaded_in_part_counts_for_each_pixel_as_a_whole_one():
     """Primary rays and proofs are of all pixels, all else is of those that are shaded."""
-    history, pixels = History(), make_frame().primitive.size
+    history, pixels = Plots(), make_frame().primitive.size
     for part in (0.25, 1.0):
         frame = make_frame()
         s = frame.statistics
@@ -148,7 +148,7 @@ def test_a_picture_that_is_shaded_in_part_counts_for_each_pixel_as_a_whole_one()
 
 
 def test_a_picture_that_becomes_whole_is_one_frame_of_the_history():
-    history = History()
+    history = Plots()
     for part, again in ((0.25, False), (0.5, True), (1.0, True), (0.25, False)):
         frame = make_frame()
         frame.statistics.shadow.due = round(100 * part)

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from viewer.window.panels import open_file
-from viewer.window.panels.open_file import OpenFileState
+from viewer.window.panels import dialogs
+from viewer.window.panels.dialogs import OpenFileState
 from viewer.window.ui import Dialog
 
 
@@ -41,7 +41,7 @@ def test_a_path_is_completed_as_far_as_names_agree(folder: Path, typed: str, nam
 
 def test_a_folder_is_read_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     read: list[Path] = []
-    monkeypatch.setattr(open_file, "names_in", lambda path: read.append(path) or ["a.aff", "b.aff"])
+    monkeypatch.setattr(dialogs, "names_in", lambda path: read.append(path) or ["a.aff", "b.aff"])
     state = OpenFileState(folder=folder)
     for typed in ("", "a", "", "b"):
         state.typed = typed
@@ -51,14 +51,14 @@ def test_a_folder_is_read_once(folder: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 def test_where_the_desktop_has_a_dialog_it_asks(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[Path] = []
-    state, dialogs, ready = OpenFileState(folder=folder), [Dialog.OPEN_FILE], [False, False, True]
+    state, wanted, ready = OpenFileState(folder=folder), [Dialog.OPEN_FILE], [False, False, True]
     ui = SimpleNamespace(
-        state=lambda kind: state, dialogs=dialogs, close=dialogs.remove,
+        state=lambda kind: state, dialogs=wanted, close=wanted.remove,
         controller=SimpleNamespace(loader=SimpleNamespace(open=opened.append)),
     )  # fmt: skip
     chosen = SimpleNamespace(ready=lambda wait: ready.pop(0), result=lambda: [str(folder / "deep/inner.obj")])
-    monkeypatch.setattr(open_file, "has_native_dialog", lambda: True)
-    monkeypatch.setattr(open_file.native, "open_file", lambda *given: chosen)
+    monkeypatch.setattr(dialogs, "has_native_dialog", lambda: True)
+    monkeypatch.setattr(dialogs.native, "open_file", lambda *given: chosen)
     while ready:
-        open_file.show(ui)
-    assert opened == [folder / "deep/inner.obj"] and state.folder == folder / "deep" and not dialogs
+        dialogs._open_file(ui)
+    assert opened == [folder / "deep/inner.obj"] and state.folder == folder / "deep" and not wanted

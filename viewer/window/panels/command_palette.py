@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -13,9 +12,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.state.preferences import RECENT_COMMANDS
 from viewer.util.resources import embedded_scenes
 from viewer.window import setting_rows
-from viewer.window.command import Command
 from viewer.window.finder import Finder, Item, Kind
-from viewer.window.menus import ANY_POPUP
+from viewer.window.menus import ANY_POPUP, run
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, fitted, paragraph, tooltip
 
@@ -50,12 +48,13 @@ def show(ui: Ui) -> None:
     imgui.set_next_window_size(ImVec2(width, 0.0))
     if not imgui.begin_popup(TITLE):
         return
-    finder.update(items(ui), ui.controller.preferences.used)
+    preferences = ui.controller.preferences
+    finder.update(items(ui), preferences.used)
     taken = finder.aimed
     entered = _line(finder)
     clicked = None
     if finder.setting is None:
-        clicked = _list(finder, viewport.work_size.y)
+        clicked = _list(finder)
     elif not finder.problem:
         paragraph(finder.setting.hint, QUIET)
     if finder.problem:
@@ -67,7 +66,8 @@ def show(ui: Ui) -> None:
         chosen = clicked or finder.aimed or finder.setting
         do = finder.enter(clicked or finder.aimed)
         if do is not None and chosen is not None:
-            _remember(ui, chosen)
+            names = [chosen.name, *(name for name in preferences.used if name != chosen.name)]
+            preferences.used = names[:RECENT_COMMANDS]
     if do is not None or imgui.is_key_pressed(imgui.Key.escape):
         imgui.close_current_popup()
     imgui.end_popup()
@@ -79,11 +79,6 @@ def close() -> None:
     """Take it away, whatever it is at."""
     if imgui.is_popup_open("", ANY_POPUP):
         imgui.internal.close_popup_to_level(0, True)
-
-
-def _remember(ui: Ui, item: Item) -> None:
-    p = ui.controller.preferences
-    p.used = [item.name, *(name for name in p.used if name != item.name)][:RECENT_COMMANDS]
 
 
 def _line(finder: Finder) -> bool:
@@ -114,124 +109,73 @@ def _line(finder: Finder) -> bool:
     return bool(entered)
 
 
-def _list(finder: Finder, room: float) -> Item | None:
-    """What was found; returns what was clicked."""
+def _list(finder: Finder) -> Item | None:
+    """Show what was found; returns what was clicked."""
     if not finder.found:
         imgui.text_colored(QUIET, "no matches")
         return None
-    height = math.ceil(imgui.get_text_line_height_with_spacing())
-    lines = min(len(finder.found), _LINES, max(3, int(0.7 * room / height)))
     clicked = None
-    style = imgui.get_style()
-    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(style.item_spacing.x, math.floor(style.item_spacing.y)))
-    if imgui.begin_child("found", ImVec2(0.0, lines * height)):
-        if finder.moved:
-            finder.moved = False
-            top, seen = imgui.get_scroll_y(), lines * height
-            at = finder.marked * height
-            if at < top:
-                imgui.set_scroll_y(at)
-            elif at + height > top + seen:
-                imgui.set_scroll_y(at + height - seen)
-        clipper = imgui.ListClipper()
-        clipper.begin(len(finder.found), height)
-        while clipper.step():
-            for number in range(clipper.display_start, clipper.display_end):
-                imgui.set_cursor_pos_y(number * height)
-                if _row(finder.found[number], number == finder.marked, height):
-                    finder.marked = number
-                    clicked = finder.found[number]
-        clipper.end()
+    height = min(len(finder.found), _LINES) * imgui.get_text_line_height_with_spacing()
+    if imgui.begin_child("found", ImVec2(0.0, min(height, 0.7 * imgui.get_main_viewport().work_size.y))):
+        for number, item in enumerate(finder.found):
+            if _row(item, number == finder.marked):
+                finder.marked, clicked = number, item
+            if number == finder.marked and finder.moved:
+                imgui.set_scroll_here_y()
+                finder.moved = False
     imgui.end_child()
-    imgui.pop_style_var()
     return clicked
 
 
-def _row(item: Item, marked: bool, height: float) -> bool:
+def _row(item: Item, marked: bool) -> bool:
     imgui.push_id(item.name)
-    clicked = imgui.selectable("##row", marked, _ROW, ImVec2(0.0, height - imgui.get_style().item_spacing.y))[0]
-    if item.why_not:
-        tooltip(item.why_not)
-    elif item.hint:
-        tooltip(item.hint)
+    clicked = imgui.selectable("##row", marked, _ROW)[0]
+    if item.why_not or item.hint:
+        tooltip(item.why_not or item.hint)
     imgui.same_line(em(0.3))
     imgui.text_colored(QUIET, icons.ICON_FA_CHECK if item.checked else _ICONS[item.kind])
     imgui.same_line(em(1.9))
-    left, edge = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
-    right = item.key or (item.value if item.value is not None else "")
-    key_room = imgui.calc_text_size(right).x + em(0.6) if right else 0.0
+    left, edge = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
+    shown = item.key or item.value or ""
+    key_room = imgui.calc_text_size(shown).x + em(0.3)
     clipped(item.label, None if item.enabled else imgui.get_style_color_vec4(imgui.Col_.text_disabled))
-    path_room = edge - key_room - (imgui.get_item_rect_max().x - left.x) - em(1.2)
+    path_room = edge - key_room - imgui.calc_text_size(item.label).x - em(1.8)
     if item.path and path_room > em(3.0):
         imgui.same_line(0.0, em(0.8))
         imgui.text_colored(QUIET, fitted(item.path, path_room))
-    if right:
-        imgui.same_line()
-        imgui.set_cursor_screen_pos(ImVec2(left.x + edge - key_room + em(0.3), left.y))
-        clipped(right, QUIET)
+    if shown:
+        imgui.same_line(left + edge - key_room)
+        clipped(shown, QUIET)
     imgui.pop_id()
-    return clicked
+    return bool(clicked)
 
 
 def items(ui: Ui) -> list[Item]:
-    """Everything, as it is now; commands first, in the order of the menus."""
-    return [*_commands(ui), *setting_rows.entries(ui), *_presets(ui), *_panels(ui), *_bookmarks(ui), *_scenes(ui)]
+    """Return everything, as it is now; commands first, in the order of the menus."""
+    return [*_commands(ui), *setting_rows.entries(ui), *_others(ui)]
 
 
 def _commands(ui: Ui) -> Iterator[Item]:
     for command in ui.commands:
-        label = command.label
-        if label and command.name != Dialog.PALETTE.value:
+        if command.label and command.name != Dialog.PALETTE.value:
             yield Item(
-                command.name,
-                label,
-                Kind.COMMAND,
-                _running(ui, command),
-                path=command.menu.replace("/", " > "),
-                key=ui.keyboard.label(ui.keymap.shown(command.name)),
-                checked=command.checked() if command.checked is not None else None,
-                enabled=command.enabled(),
-                why_not=command.why_not,
-                also=f"{command.name} {command.also}",
-            )
+                command.name, command.label, Kind.COMMAND, partial(run, ui, command), command.menu.replace("/", " > "),
+                key=ui.key_label(command.name), checked=command.checked() if command.checked is not None else None,
+                enabled=command.enabled(), why_not=command.why_not, also=f"{command.name} {command.also}",
+            )  # fmt: skip
 
 
-def _running(ui: Ui, command: Command) -> Callable[[], None]:
-    return lambda: ui.guard.step(f"The command {command.name}", command.run)
-
-
-def _presets(ui: Ui) -> Iterator[Item]:
-    presets = ui.controller.presets
-    for name in presets.names:
-        yield Item(f"preset {name}", name, Kind.PRESET, partial(presets.apply, name), "Edit > Presets",
-                   also="apply")  # fmt: skip
-
-
-def _panels(ui: Ui) -> Iterator[Item]:
+def _others(ui: Ui) -> Iterator[Item]:
+    """Return presets, panels, bookmarks and scenes."""
+    c, own = ui.controller, embedded_scenes()
+    for name in c.presets.names:
+        yield Item(f"preset {name}", name, Kind.PRESET, partial(c.presets.apply, name), "Edit > Presets", also="apply")
     for label in ui.panel_labels:
-        yield Item(f"panel {label}", f"Panel {label}", Kind.COMMAND, partial(ui.show_panel, label), "Panels",
-                   also="show open")  # fmt: skip
-
-
-def _bookmarks(ui: Ui) -> Iterator[Item]:
-    c = ui.controller
+        show = partial(ui.show_panel, label)
+        yield Item(f"panel {label}", f"Panel {label}", Kind.COMMAND, show, "Panels", also="show open")
     for number, mark in enumerate(c.bookmarks.all):
-        yield Item(
-            f"bookmark {number}",
-            mark.name,
-            Kind.BOOKMARK,
-            partial(c.go_to_bookmark, number),
-            "go there",
-        )
-
-
-def _scenes(ui: Ui) -> Iterator[Item]:
-    loader, own = ui.controller.loader, embedded_scenes()
-    for name, path in own.items():
-        yield Item(f"scene {path}", name, Kind.SCENE, partial(loader.open, path), "comes with Shadowcull",
-                   also="open")  # fmt: skip
-    for text in ui.controller.preferences.recent:
-        path = Path(text)
-        if path not in own.values():
-            yield Item(f"scene {path}", path.name, Kind.SCENE, partial(loader.open, path), str(path.parent),
-                       also="open recent")  # fmt: skip
+        yield Item(f"bookmark {number}", mark.name, Kind.BOOKMARK, partial(c.go_to_bookmark, number), "go there")
+    scenes = {path: (name, "comes with Shadowcull") for name, path in own.items()}
+    recent = {path: (path.name, str(path.parent)) for path in map(Path, c.preferences.recent)}
+    for path, (name, place) in (recent | scenes).items():
+        yield Item(f"scene {path}", name, Kind.SCENE, partial(c.loader.open, path), place, also="open recent")

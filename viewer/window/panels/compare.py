@@ -10,7 +10,7 @@ from viewer.state.columns import Row, rows
 from viewer.state.comparison import RATES, CompareMode, Side, Source, elided
 from viewer.state.in_turn import InTurn
 from viewer.state.palette import LESS, MORE
-from viewer.window.panels.method_choice import method_list
+from viewer.window.panels.culling import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,

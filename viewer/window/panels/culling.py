@@ -1,58 +1,51 @@
-"""The culling: its method and settings."""
+"""The panel Culling: the method, what it trusts, and its settings; and the list that methods are chosen from."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
 from imgui_bundle import ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.method import Method
+from tracer.fit import lamps_in, worth
+from tracer.method import Kind, Method, additions
 from tracer.setting import Setting
 from viewer.services.controller import Controller
 from viewer.state import verified
-from viewer.window.panels.method_choice import method_list
-from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch
+from viewer.state.methods import groups, toggled, with_base
+from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
 from viewer.window.ui import Ui
-from viewer.window.widgets import (
-    ERROR,
-    QUIET,
-    paragraph,
-    properties,
-    row,
-    same_line_for,
-    wide_button,
-)
+from viewer.window.widgets import ERROR, QUIET, em, fitted, outlined, paragraph, properties, row, tooltip, wide_button
 
-_PALE = 0.55
-"""How much is left of what does nothing to the pictures of the chosen method."""
 _OF_MODES = ("settings.symmetric", "settings.zoom_factor")
+_NAMES = 10.5  # ems of the names of methods; sentences begin behind them
+_SENTENCE = 12.0  # ems that are worth beginning one
 
 
 def show(ui: Ui) -> None:
     """Show the panel."""
     c = ui.controller
-    method = Method.parse(c.session.settings.method)
-    _method(ui)
+    name = c.session.settings.method
+    method = Method.parse(name)
+    with properties("method", 4.0) as shown:
+        if shown:
+            key = ui.key_label("Shadow culling")
+            switches = f"; {key} turns culling off and on" if key else ""
+            row("Method", f"which shadow rays are not traced, and what that trusts{switches}")
+            method_list(ui, "##method", name, lambda chosen: c.settings.change(method=chosen))
     paragraph(trust(c), QUIET)
 
     def note(one: Setting) -> str:
         if one.path in _OF_MODES and not method.uses_modes:
-            return f"\n{c.session.settings.method} does not cull by modes: it changes those kept for the views alone."
+            return f"\n{name} does not cull by modes: it changes those kept for the views alone."
         return ""
 
     settings = in_panel(ui, "Culling")
-    for place, one in enumerate(one for one in settings if one.kind is bool and one.within == ("settings",)):
-        if place:
-            same_line_for(one.label)
-        with _pale_if(bool(note(one))):
-            setting_switch(ui, one, note(one))
+    setting_switches(ui, [one for one in settings if one.kind is bool and one.within == ("settings",)], note)
     with properties("culling", 8.2 if method.has_certificates else 6.5) as shown:
         for one in settings if shown else ():
             if one.kind is not bool:
-                with _pale_if(bool(note(one))):
-                    setting_row(ui, one, note(one))
+                setting_row(ui, one, note(one))
     forget = f"Forget all modes and certificates{ui.key('Reset modes')}."
     if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", forget, 2):
         c.reset_modes()
@@ -66,25 +59,9 @@ def show(ui: Ui) -> None:
         paragraph(*said)
 
 
-@contextmanager
-def _pale_if(pale: bool) -> Iterator[None]:
-    imgui.push_style_var(imgui.StyleVar_.alpha, imgui.get_style().alpha * (_PALE if pale else 1.0))
-    yield
-    imgui.pop_style_var()
-
-
-def _method(ui: Ui) -> None:
-    """The base, and what is added to it."""
-    c = ui.controller
-    name = c.session.settings.method
-    with properties("method", 4.0) as shown:
-        if shown:
-            row("Method", "which shadow rays are not traced, and what that trusts; C turns culling off and on")
-            method_list(ui, "##method", name, lambda chosen: c.settings.change(method=chosen))
-
-
 def trust(c: Controller) -> str:
-    """What the chosen method trusts and whether it is exact, then what it does in the newest picture, and why."""
+    """Return what the chosen method trusts and whether it is exact, then what it does in the newest picture, and
+    why."""
     frame, name = c.frame, c.session.settings.method
     kinds = Method.parse(name).kinds
     said = [kind.summary if len(kinds) == 1 else f"{kind.name}: {kind.summary}" for kind in kinds]
@@ -94,8 +71,8 @@ def trust(c: Controller) -> str:
 
 
 def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
-    """What is wrong in the newest frame, and a colour; None where that is not known, or where the frame
-    was traced with another method than the panel shows.  A run has figures of its own, in its panel."""
+    """Return what is wrong in the newest frame, and a colour; None where that is not known, or where the frame was
+    traced with another method than the panel shows.  A run has figures of its own, in its panel."""
     if c.frame is None or not c.frame.settings.verify:
         return None
     if c.runs.current is not None:
@@ -106,3 +83,64 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
     if not c.scheduler.settings.verify or c.session.settings.verify:
         return said, color
     return f"{said} (verified for the view {c.session.draw.view.label})", color
+
+
+# --- the list of methods -----------------------------------------------------------------------------
+
+
+def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], combined: bool = True) -> None:
+    """Show a list to be opened, as wide as there is room for; `choose` is given the name of what is chosen.
+
+    Methods that have nothing to say of the scene are pale.  `combined`: additions are in it."""
+    fits = lights_to_fit(ui)
+    parsed = Method.parse(method)
+    room = imgui.calc_item_width() - imgui.get_frame_height() - 2.0 * imgui.get_style().frame_padding.x
+    if not imgui.begin_combo(name, fitted(method, room), int(imgui.ComboFlags_.height_largest)):
+        tooltip(parsed.kind.summary if method == parsed.base else method)
+        return
+    for heading, kinds in groups():
+        imgui.separator_text(heading)
+        for kind in kinds:
+            if imgui.selectable(kind.name, kind is parsed.kind)[0]:
+                choose(with_base(method, kind.name))
+            _sentence(kind, fits)
+    if combined:
+        imgui.separator_text("Added to it, any number of them")
+        for kind in additions(parsed.base):
+            with outlined():
+                changed, _ = imgui.checkbox(f"+{kind.name}", parsed.has(kind.name))
+            if changed:
+                choose(toggled(method, kind.name))
+            _sentence(kind, fits)
+    imgui.end_combo()
+
+
+def _sentence(kind: Kind, lights: tuple[int, int]) -> None:
+    """Show what the method of the last item does, behind its name, or as far as the window is wide enough for it."""
+    tooltip(said_of(kind, lights))
+    room = imgui.get_main_viewport().work_size.x - em(_NAMES + 3.0)
+    if room >= em(_SENTENCE):
+        imgui.same_line(em(_NAMES))
+        imgui.text_colored(QUIET if kind.fits(*lights) else pale(), fitted(kind.summary, room))
+
+
+def said_of(kind: Kind, lights: tuple[int, int]) -> str:
+    """Return what a method does, and why it has nothing to say of so many lights and samples of them where it has
+    not."""
+    return " ".join(filter(None, (kind.summary, worth(kind, *lights))))
+
+
+def lights_to_fit(ui: Ui) -> tuple[int, int]:
+    """Return how many lights the scene has, and how many samples these have together as they are set."""
+    scene, settings = ui.controller.session.scene, ui.controller.session.settings
+    if scene is None:
+        return 0, 0
+    chosen = settings.lamp_radius, settings.lamp_samples
+    return len(scene.lights), ui.cached(
+        "samples of the lights", scene, chosen, lambda: lamps_in(scene.lights, *chosen)[1]
+    )
+
+
+def pale() -> ImVec4:
+    """Return the colour of methods that have nothing to say of the scene."""
+    return imgui.get_style_color_vec4(imgui.Col_.text_disabled)

@@ -14,7 +14,7 @@ from viewer.output.reports import METHOD, caveats, table_1
 from viewer.state.methods import groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
-from viewer.window.panels.method_choice import lights_to_fit, pale, said_of
+from viewer.window.panels.culling import lights_to_fit, pale, said_of
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, go_to_experiment_frame, pointed_frame, wrong_axis
 from viewer.window.panels.runs import arrange, export_buttons, nothing_yet, results_table, start_or_progress, whose
 from viewer.window.setting_rows import plan_rows

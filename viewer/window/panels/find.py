@@ -13,9 +13,9 @@ from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.state.row_filter import HELP, HINT
 from viewer.state.scene_rows import COLUMNS, Column, Level
 from viewer.util.numbers import several
+from viewer.window.actions import FindState
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
-from viewer.window.view_commands import FindState
 from viewer.window.widgets import ERROR, QUIET, count, em, paragraph, swatch, tooltip
 
 _FIELD, _LIGHT, _NUMBER = 12.0, 10.0, 4.2  # ems of width: of the filter at least, of a light's name, and of a number

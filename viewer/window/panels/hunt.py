@@ -10,7 +10,7 @@ from tracer.experiments.counterexample import Counterexample
 from tracer.scene.model import Scene
 from viewer.output.reports import findings
 from viewer.services.hunts import Hunts
-from viewer.window.panels.method_choice import method_list
+from viewer.window.panels.culling import method_list
 from viewer.window.panels.runs import (
     arrange,
     export_buttons,

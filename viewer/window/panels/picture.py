@@ -19,7 +19,6 @@ from viewer.state.picking import point_at
 from viewer.util.numbers import whole_percent
 from viewer.window import comparing
 from viewer.window.panels import (
-    filmstrip,
     legend,
     missing,
     overlays,
@@ -62,7 +61,7 @@ def show(ui: Ui) -> None:
     scale = imgui.get_io().display_framebuffer_scale
     ui.picture.area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
     top = imgui.get_cursor_pos()
-    if room.x >= 1.0 and room.y >= 1.0 and not filmstrip.screen(ui, room):
+    if room.x >= 1.0 and room.y >= 1.0:
         _picture(ui, room)
     if c.session.animated:
         imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y + strip))

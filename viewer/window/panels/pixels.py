@@ -14,13 +14,13 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state.comparison import Side
-from viewer.state.keymap import HELD
 from viewer.state.pixels import ALL, GRID_FROM, STEP, Point, Region, panned, pixels_shown, region_between
 from viewer.state.readings import can_draw
 from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
-from viewer.window import comparing, picture_commands
+from viewer.window import actions, comparing
+from viewer.window.keyboard import HELD
 from viewer.window.panels.area import Area, pointer
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
@@ -68,7 +68,7 @@ def show(ui: Ui) -> None:
         clipped("Ctrl+wheel zooms into the picture, Ctrl+drag moves it", QUIET)
     else:
         if imgui.small_button("Fit"):
-            picture_commands.fit(ui)
+            actions.fit(ui)
         imgui.same_line()
         clipped(f"enlarged {zoom.scale:.3g} times", QUIET)
     _histogram(ui)
@@ -165,7 +165,7 @@ def wheel(ui: Ui, area: Area) -> bool:
     if io.mouse_wheel:
         mouse = pointer()
         at = (mouse.x - area.corner.x) / area.size.x, (mouse.y - area.corner.y) / area.size.y
-        picture_commands.zoom_by(ui, STEP**io.mouse_wheel, at)
+        actions.zoom_by(ui, STEP**io.mouse_wheel, at)
     return True
 
 
@@ -188,7 +188,7 @@ def drag(ui: Ui, area: Area) -> bool:
         moved = frame is not None and (abs(start[0] - here[0]) * frame.width, abs(start[1] - here[1]) * frame.height)
         state.region = region_between(start, here) if moved and max(moved) >= 0.5 else None
         if released and state.region is not None:
-            picture_commands.offer(ui, "Pixels")
+            actions.offer(ui, "Pixels")
     if released:
         state.gesture = ""
     return True

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.output import exr
-from viewer.window.picture_commands import copy_command
+from viewer.window.actions import copy_command
 from viewer.window.setting_rows import in_panel, plan_rows, setting_switch
 from viewer.window.ui import CaptureKind, Dialog, Ui
 from viewer.window.widgets import QUIET, centred, em, paragraph, properties, row, tooltip, wide_button

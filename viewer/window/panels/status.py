@@ -1,4 +1,5 @@
-"""The status bar: what the program does now, in plain words, and what the picture cost."""
+"""What the program says: the status bar, the log of all messages, and internal errors, over the window or in the place
+of a panel that failed."""
 
 from __future__ import annotations
 
@@ -7,28 +8,37 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
 from viewer.state import terms, verified
-from viewer.state.history import rate_in_words
-from viewer.state.notices import Level
+from viewer.state.notices import Entry, Level
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, tooltip
+from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, paragraph, tooltip
 
 IDLE, TRACING = "idle", "tracing"
+_ICONS = {
+    Level.NOTICE: (icons.ICON_FA_CIRCLE_INFO, QUIET),
+    Level.ERROR: (icons.ICON_FA_CIRCLE_EXCLAMATION, WARNING),
+    Level.FAULT: (icons.ICON_FA_TRIANGLE_EXCLAMATION, ERROR),
+}
+_SUMMARY = (
+    "the picture that is shown: its size, and the time of its first sample a pixel, with all that the view has counted "
+    "or verified beside it; above the picture are medians of many frames without that"
+)
+
+# --- the bar ---------------------------------------------------------------------------------------
 
 
 def show(ui: Ui) -> None:
-    """The bar."""
+    """Show the bar: what the program does now, or has to say, and what the picture cost."""
     c = ui.controller
     message = c.notices.current
     _badge(ui)
-    right = _summary(ui)
+    right = _summary(c)
     width = imgui.calc_text_size(right).x + em(1.0)
-    room = imgui.get_content_region_avail().x
-    left = imgui.get_cursor_pos_x()
+    room, left = imgui.get_content_region_avail().x, imgui.get_cursor_pos_x()
     if width > 0.6 * room:  # a narrow window: what happens comes first
         right, width = "", 0.0
     if imgui.begin_child("message", (max(em(4.0), room - width), imgui.get_text_line_height() + 2.0)):
         if message is not None:
-            icon = icons.ICON_FA_CIRCLE_EXCLAMATION if message.error else icons.ICON_FA_CIRCLE_INFO
+            icon, _ = _ICONS[Level.ERROR if message.error else Level.NOTICE]
             clipped(f"{icon}  {message.text}", ERROR if message.error else None)
             if message.error and imgui.is_item_clicked():
                 c.notices.message = None
@@ -39,21 +49,18 @@ def show(ui: Ui) -> None:
     if right:
         imgui.same_line(left + max(0.0, room - width + em(0.5)))
         imgui.text_colored(QUIET, right)
-        tooltip(
-            "the picture that is shown: its size, and the time of its first sample a pixel, with all that the view "
-            "has counted or verified beside it; above the picture are medians of many frames without that"
-        )
+        tooltip(_SUMMARY)
 
 
 def _hints(ui: Ui) -> str:
-    """Where to go on from, by the keys as they are."""
-    hints = [(ui.key("Keyboard and mouse"), "keys"), (ui.key("Command palette"), "find anything")]
-    told = [f"{key.strip(' ()')}: {what}" for key, what in hints if key]
-    return f"({', '.join(told)})" if told else ""
+    """Return where to go on from, by the keys as they are."""
+    hints = ((ui.key_label("Keyboard and mouse"), "keys"), (ui.key_label("Command palette"), "find anything"))
+    told = ", ".join(f"{key}: {what}" for key, what in hints if key)
+    return f"({told})" if told else ""
 
 
 def _badge(ui: Ui) -> None:
-    """How many errors and faults nobody has read yet; a click shows them."""
+    """Show how many errors and faults nobody has read yet; a click opens the log."""
     unread = ui.controller.notices.unread
     if not unread:
         return
@@ -68,15 +75,28 @@ def _badge(ui: Ui) -> None:
     imgui.same_line()
 
 
+def _summary(c: Controller) -> str:
+    """Return what is wrong in the picture, its size and cost, and how many pictures come while anything goes on."""
+    frame, rate, parts = c.frame, c.history.frames_per_second, [""]
+    if frame is not None:
+        parts += [verified.in_short(frame.statistics), f"{frame.width} x {frame.height}"]
+        parts.append(f"{1e3 * frame.statistics.seconds:.0f} ms")
+    if rate is not None and rate >= 0.05 and c.active:
+        parts.append(f"{rate:.0f} frames/s" if rate >= 9.5 else f"{rate:.1f} frames/s")
+    return "   ".join(filter(None, parts))
+
+
+# --- in words --------------------------------------------------------------------------------------
+
+
 def doing(c: Controller) -> str:
-    """What the program does now."""
-    preparing, loading = c.loader.warm_up_job, c.loader.load_job
+    """Return what the program does now."""
+    preparing, loading, run = c.loader.warm_up_job, c.loader.load_job, c.runs.current
     if preparing is not None and c.frame is None:
         return f"{preparing.title}: {100.0 * preparing.fraction:.0f} %"
     if loading is not None:
         return f"{loading.title}{f': {loading.label}' if loading.label else ''}   (Escape cancels)"
-    if c.runs.current is not None:
-        run = c.runs.current
+    if run is not None:
         return f"{run.name}{f', traced: {run.label}' if run.traced else ' is starting'}   (Escape stops it)"
     if preparing is not None:
         what = "compiling what makes certificates (first start only)"
@@ -95,33 +115,15 @@ def doing(c: Controller) -> str:
         makes, _ = terms.made(c.session.settings.method)
         return f"preparing{before}{f' ({makes} in the last picture: {count(made)})' if made else ''}"
     if c.renderer.busy or c.scheduler.awaits:
-        return "refining the picture" if c.scheduler.becoming_finer or _learns(c) else TRACING
+        is_there = c.frame is not None and not c.scheduler.outdated and c.frame.camera == c.session.camera
+        return "refining the picture" if c.scheduler.becoming_finer or is_there else TRACING
     if c.scheduler.adds_samples:
         return f"adding samples: {c.scheduler.samples_shown} of {c.scheduler.samples_wanted}"
     return IDLE
 
 
-def _learns(c: Controller) -> bool:
-    """Whether the picture is there, and whether it is being refined."""
-    return c.frame is not None and not c.scheduler.outdated and c.frame.camera == c.session.camera
-
-
-def _summary(ui: Ui) -> str:
-    """What is wrong in the picture, its size and cost, and how many pictures come while anything goes on."""
-    c = ui.controller
-    frame = c.frame
-    parts: list[str] = []
-    if frame is not None:
-        parts += filter(None, (verified.in_short(frame.statistics),))
-        parts += [f"{frame.width} x {frame.height}", f"{1e3 * frame.statistics.seconds:.0f} ms"]
-    rate = c.history.frames_per_second
-    if rate is not None and c.active:
-        parts.append(rate_in_words(rate))
-    return "   ".join(filter(None, parts))
-
-
 def traced_before_an_answer(c: Controller) -> str:
-    """What is traced before a question about the picture is answered; nothing where it is answered at once."""
+    """Return what is traced before a question about the picture is answered; "" where it is answered at once."""
     if c.scheduler.refines_lamps:
         return "the samples of lamps"
     if c.scheduler.adds_samples:
@@ -130,8 +132,108 @@ def traced_before_an_answer(c: Controller) -> str:
 
 
 def first_picture(c: Controller) -> str:
-    """What goes on while there is no picture, in a sentence."""
+    """Return what goes on while there is no picture, in a sentence."""
     now = doing(c)
     if now == IDLE:
         return "No picture has been traced yet."
     return "Tracing the first picture ..." if now == TRACING else f"{now[0].upper()}{now[1:]}"
+
+
+# --- the log, and internal errors --------------------------------------------------------------------
+
+
+def show_log(ui: Ui) -> None:
+    """Show the panel: every message there was, newest first."""
+    notices = ui.controller.notices
+    notices.mark_read()
+    entries = notices.entries()
+    if imgui.button(f"{icons.ICON_FA_COPY}  Copy all") and entries:
+        imgui.set_clipboard_text("".join(e.as_text for e in entries))
+    tooltip("Copy everything that is listed, oldest first.")
+    imgui.same_line()
+    if imgui.button("Clear"):
+        notices.clear()
+    if imgui.begin_child("entries", ImVec2(0.0, 0.0)):
+        if not entries:
+            imgui.text_colored(QUIET, "No messages yet.")
+        for number, entry in reversed(list(enumerate(entries))):
+            imgui.push_id(number)
+            _entry(ui, entry)
+            imgui.pop_id()
+    imgui.end_child()
+
+
+def _entry(ui: Ui, entry: Entry) -> None:
+    icon, color = _ICONS[entry.level]
+    imgui.text_colored(QUIET, f"{entry.at:%H:%M:%S}")
+    imgui.same_line(em(4.2))
+    imgui.text_colored(color, icon)
+    tooltip(entry.level.value)
+    imgui.same_line(em(5.8))
+    paragraph(entry.text + _times(entry))
+    if not entry.details:
+        return
+    imgui.indent(em(5.8))
+    if imgui.tree_node("Details"):
+        _copy_button(ui, entry)
+        imgui.text_unformatted(entry.details.rstrip())
+        imgui.tree_pop()
+    imgui.unindent(em(5.8))
+
+
+def show_fault(ui: Ui) -> None:
+    """Show the newest internal error at the window's lower right, until it is dismissed."""
+    notices = ui.controller.notices
+    entry = notices.newest_fault
+    if entry is None:
+        return
+    viewport = imgui.get_main_viewport()
+    x, y = viewport.work_pos.x + viewport.work_size.x, viewport.work_pos.y + viewport.work_size.y
+    imgui.set_next_window_pos(ImVec2(x - em(1.0), y - em(3.0)), int(imgui.Cond_.always), ImVec2(1.0, 1.0))
+    imgui.set_next_window_size(ImVec2(min(em(30.0), 0.9 * viewport.work_size.x), 0.0))
+    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings
+    flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_move
+    if imgui.begin("##fault", None, int(flags)):
+        others = f", and {len(notices.faults) - 1} more in the log" if len(notices.faults) > 1 else ""
+        icon, color = _ICONS[entry.level]
+        imgui.text_colored(color, f"{icon}  Internal error{_times(entry)}{others}")
+        paragraph(entry.text)
+        paragraph("Nothing was lost. The details help to fix it.", QUIET)
+        _copy_button(ui, entry)
+        imgui.same_line()
+        if imgui.button("Show log"):
+            ui.show_panel("Log")
+        imgui.same_line()
+        if imgui.button("Dismiss"):
+            notices.dismiss_faults()
+    imgui.end()
+
+
+def instead_of_part(ui: Ui, name: str, entry: Entry) -> None:
+    """Show what stands where a part of the window has failed: one line in a bar, which has no more room."""
+    icon, color = _ICONS[entry.level]
+    imgui.text_colored(color, icon)
+    imgui.same_line()
+    if name in ("The menus", "The status bar"):
+        imgui.text_colored(color, f"{name} failed")
+        tooltip(entry.text)
+        imgui.same_line()
+        again = imgui.small_button(f"Try again##{name}")
+    else:
+        clipped("This panel cannot be shown")
+        paragraph(entry.text, QUIET)
+        again = imgui.button(f"{icons.ICON_FA_ROTATE_RIGHT}  Try again")
+        imgui.same_line()
+        _copy_button(ui, entry)
+    if again:
+        ui.guard.again(name)
+
+
+def _times(entry: Entry) -> str:
+    return f"  ({entry.count} times)" if entry.count > 1 else ""
+
+
+def _copy_button(ui: Ui, entry: Entry) -> None:
+    if imgui.button(f"{icons.ICON_FA_COPY}  Copy details"):
+        imgui.set_clipboard_text(entry.as_text)
+        ui.controller.notices.say("details copied")

@@ -10,7 +10,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.tour import STEPS, Tour
 from viewer.window.ui import Ui
-from viewer.window.widgets import GOOD, QUIET, clipped, em, paragraph, tooltip_above
+from viewer.window.widgets import QUIET, clipped, em, paragraph, tooltip_above
 
 _LEAST = 9.0  # ems of height that the picture keeps: with less room the strip lies over its lower edge
 _PADDING = ImVec2(0.6, 0.45)  # ems
@@ -55,6 +55,7 @@ def show(ui: Ui) -> None:
         begun = ui.controller.frame is not None or ui.graphics.preview is not None
         text = tour.text(step) if begun else "You can begin as soon as there is a picture."
         last = tour.at == len(STEPS) - 1
+
         title = f"Step {STEPS.index(step) + 1} of {len(STEPS)}:  {step.title}"
         _head(
             tour, title, wrap,
@@ -79,7 +80,7 @@ def height(ui: Ui) -> float:
 
 
 def _head(tour: Tour, title: str, width: float, *buttons: tuple[str, Callable[[], None], str]) -> None:
-    """A line with a title, a dot for each step, and buttons: what each is called, does, and says of itself."""
+    """Show a line with a title and buttons: what each is called, does, and says of itself."""
     style, clicked = imgui.get_style(), []
     room = sum(
         imgui.calc_text_size(label, True).x + 2.0 * style.frame_padding.x + style.item_spacing.x
@@ -88,7 +89,6 @@ def _head(tour: Tour, title: str, width: float, *buttons: tuple[str, Callable[[]
     if imgui.begin_child("title", ImVec2(max(width - room, em(2.0)), imgui.get_frame_height())):
         imgui.align_text_to_frame_padding()
         clipped(title)
-        _marks(tour)
     imgui.end_child()
     for label, run, tip in buttons:
         imgui.same_line()
@@ -100,20 +100,3 @@ def _head(tour: Tour, title: str, width: float, *buttons: tuple[str, Callable[[]
             tooltip_above(tip)
     for run in clicked:  # when all is drawn of the step that it ends
         run()
-
-
-def _marks(tour: Tour) -> None:
-    """A dot for each step, full where it is done, where there is room for them."""
-    pitch, radius = em(0.75), em(0.22)
-    imgui.same_line(0.0, em(1.0))
-    if imgui.get_content_region_avail().x < pitch * len(STEPS):
-        return
-    corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
-    for number in range(len(STEPS)):
-        at = ImVec2(corner.x + (number + 0.5) * pitch, corner.y + 0.5 * imgui.get_frame_height())
-        if number in tour.done:
-            draw.add_circle_filled(at, radius, imgui.get_color_u32(GOOD))
-        else:
-            draw.add_circle(at, radius, imgui.get_color_u32(QUIET), 0, em(0.08))
-    imgui.dummy(ImVec2(pitch * len(STEPS), imgui.get_frame_height()))
-    tooltip_above(f"{len(tour.done)} of {len(STEPS)} steps are done")

@@ -17,7 +17,7 @@ from viewer.window.panels.runs import arrange, export_buttons, nothing_yet, resu
 from viewer.window.setting_rows import plan_rows
 from viewer.window.style import GREY, MARK
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, checkbox, clipped, em, paragraph, properties, row, tooltip, tooltip_at
+from viewer.window.widgets import QUIET, WARNING, checkbox, clipped, em, paragraph, properties, row, tooltip
 
 _PLOT, _TABLE = 14.0, 15.0  # ems of width
 _LOW = 7.0  # ems of height below which a plot has no legend
@@ -108,9 +108,9 @@ def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach], size: ImVe
     implot.plot_line("pixels", numbers, pixels, implot.Spec(line_color=GREY, line_weight=1.8))
     if implot.is_plot_hovered():
         number = min(max(round(implot.get_plot_mouse_pos().x), 0), len(steps) - 1)
-        tooltip_at("\n".join(filmstrip.in_words(steps[number])))
+        filmstrip.show_step(ui, test, approaches[0].factor, steps[number])
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
-            filmstrip.show_step(ui, test, approaches[0].factor, number)
+            ui.controller.go_to_step(steps[number])
     implot.end_plot()
 
 
@@ -163,8 +163,7 @@ def _table(ui: Ui, test: RecordedZoomTest, results: Results) -> None:
     ]
 
     def go(number: int) -> None:
-        approach, step = lines[number]
-        filmstrip.show_step(ui, test, approach.factor, step.number)
+        ui.controller.go_to_step(lines[number][1])
 
     results_table("steps", _COLUMNS, lines, go,
-                  tip=lambda line: "\n".join(["show its picture", *changes_in_words(line[1].changes)]))  # fmt: skip
+                  tip=lambda line: "\n".join(["fly there", *changes_in_words(line[1].changes)]))  # fmt: skip

@@ -14,15 +14,13 @@ from tracer.culling import modes
 from tracer.culling.modes import FULLY_RENDERED
 from tracer.experiments import warmup_frames
 from tracer.experiments.warmup_frames import WarmupFrame
-from tracer.frame import Frame, Settings
+from tracer.frame import Frame
 from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.model import Camera
-from viewer.services.frame_history import FrameHistory, JumpTarget
+from viewer.services.history import FrameHistory
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.state.history import FrameRate, FrameRecord, FrameRecords, rate_in_words
 from viewer.state.session import Session
-from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 
@@ -90,7 +88,7 @@ def test_a_frozen_picture_knows_what_its_warmup_frames_teach_and_no_more(desk: D
     scene, settings = c.session.scene, c.session.settings
     warmup = tuple((scene.frame_time(n), scene.camera_at(scene.frame_time(n))) for n in range(3))
     snapshot = replace(c.session.state, time=scene.frame_time(3))
-    c.navigator.go_to(JumpTarget(snapshot, "a find", (32, 24), warmup=warmup))
+    c.navigator.go_to(snapshot, "a find", (32, 24), warmup=warmup)
     desk.rest()
     own = tracer.Renderer(scene, replace(c.frame.settings, samples=1))
     for then, camera in (*warmup, (c.session.time, c.session.camera)):
@@ -160,7 +158,7 @@ def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
     assert not np.array_equal(whole, hidden)
     for to, picture, edits in ((number, whole, NO_EDITS), (other, hidden, without_ball)):
         record = c.history.records.get(to)
-        c.navigator.go_to(JumpTarget(record.state, "a picture", record.size, (0.5, 0.45)))
+        c.navigator.go_to(record.state, "a picture", record.size, (0.5, 0.45))
         desk.until(lambda: not c.editing.under_way)
         desk.rest()
         assert np.array_equal(c.frame.color, picture) and c.session.edits == edits
@@ -216,24 +214,6 @@ def test_memory_is_bounded() -> None:
     assert origins.of(7).lights[0] == (0, 1) and origins.of(-1) is None and origins.of(UNITS) is None
 
 
-def test_frames_are_kept_by_their_numbers() -> None:
-    records, camera = FrameRecords(5), Camera((0, 0, 0), (0, 0, 1))
-
-    def put(number: int, time: float = 0.0) -> None:
-        records.put(FrameRecord(number, ViewState(time=time), camera, Settings(), (8, 8), True))
-
-    for number in range(8):
-        put(number)
-    assert records.get(2) is None and records.get(8) is None
-    assert [records.get(number).number for number in range(3, 8)] == [3, 4, 5, 6, 7]
-    put(7, 1.5)
-    assert records.get(7).state.time == 1.5 and records.get(3).number == 3
-    put(9)
-    assert records.get(9).number == 9 and records.get(8) is None and records.get(7).number == 7
-    put(0)
-    assert records.get(0).number == 0 and records.get(7) is None
-
-
 def test_frames_before_a_picture_are_json() -> None:
     frames = (WarmupFrame(0.1), WarmupFrame(1 / 3, Camera((1, 2, 3), (0, 0, -1), angle=33.0)))
     data = warmup_frames.to_json(frames)
@@ -244,43 +224,37 @@ def test_frames_before_a_picture_are_json() -> None:
         assert "\n" not in str(raised.value)
 
 
-def test_as_many_as_came_within_the_last_second() -> None:
-    rate = FrameRate()
-    assert rate.per_second(0.0) is None
-    for n in range(50):
-        rate.count(5.0 + 0.04 * n)
-        assert n == 0 or rate.per_second(5.0 + 0.04 * n) == pytest.approx(25.0)
-    for n in range(20):
-        rate.count(7.0 + 0.1 * n)
-    assert rate.per_second(9.0) == pytest.approx(10.0), "what came before that second does not count"
+def took(history: FrameHistory, seconds: float = 0.0, parts: int = 1) -> None:
+    """One frame is traced, in parts."""
+    frame = make_frame(time=seconds)
+    request = RenderRequest(frame.time, frame.camera, frame.settings)
+    for _ in range(parts):
+        history.take([], Traced(request, frame, frame.statistics), 0.01)
 
 
-def test_a_picture_counts_once_however_often_more_of_it_comes() -> None:
-    now = iter(0.1 * n for n in range(1000))
-    history = FrameHistory(Session(make_scene()), clock=lambda: next(now))
-    for n in range(6):
-        frame = make_frame(time=float(n))
-        request = RenderRequest(frame.time, frame.camera, frame.settings)
-        for _ in range(3):
-            history.take([], Traced(request, frame, frame.statistics), 0.01)
-    assert history.frames_per_second == pytest.approx(10.0), "the clock ticks at each picture, not at its parts"
+def test_so_many_frames_come_in_a_second_and_each_counts_once() -> None:
+    now = 5.0
+    history = FrameHistory(Session(make_scene()), clock=lambda: now)
+    for apart, pause in ((0.04, 0.0), (0.1, 0.0), (4.0, 7.0)):
+        for _ in range(40):
+            now += apart
+            took(history, now, parts=3)
+        assert history.frames_per_second == pytest.approx(1.0 / apart), "what came long before does not count"
+        now += pause
+    assert history.frames == 120 and history.frames_per_second == pytest.approx(0.25)
+    now += 2.0
+    assert history.frames_per_second is None, "nothing comes any more"
+    assert [history.records[number].number for number in (0, 119)] == [0, 119]
+    history.clear()
+    took(history)
+    assert history.frames_per_second is None and list(history.records) == [0]
 
 
-def test_no_rate_reads_as_none_at_all() -> None:
-    assert [rate_in_words(rate) for rate in (27.4, 9.4, 0.06, 0.04)] == [
-        "27 frames/s",
-        "9.4 frames/s",
-        "0.1 frames/s",
-        "",
+def test_the_oldest_records_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("viewer.services.history.MOST_RECORDS", 5)
+    history = FrameHistory(Session(make_scene()))
+    for number in range(8):
+        took(history, float(number), parts=2)
+    assert [(number, record.state.time) for number, record in history.records.items()] == [
+        (number, float(number)) for number in range(3, 8)
     ]
-
-
-def test_slow_pictures_count_by_their_distance_and_none_that_have_ended() -> None:
-    rate = FrameRate()
-    for now in (0.0, 4.0, 8.0):
-        rate.count(now)
-    assert rate.per_second(12.0) == pytest.approx(0.25)
-    assert rate.per_second(16.5) is None, "nothing comes any more"
-    rate.count(17.0)
-    rate.clear()
-    assert rate.per_second(17.0) is None

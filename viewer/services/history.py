@@ -1,0 +1,392 @@
+"""The history of the frames that the window traces: their counters for the plots, which of them set each mode, and the
+way back to one of them.
+
+Going back brings back a frame's time, camera, settings and view.  Pictures of exact methods are then the same, bit for
+bit; others depend on the modes, which are learnt anew."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Hashable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.frame import Frame, Settings
+from tracer.method import Method
+from tracer.mode_origins import ModeOrigins, Origins
+from tracer.scene.model import Camera
+from tracer.statistics import SampleCounts
+from viewer.output.commands import BUILT
+from viewer.services.frame_scheduler import FrameScheduler
+from viewer.services.inspector import Selection
+from viewer.services.render_request import RenderRequest, Traced, Warmup
+from viewer.services.runs import Experiment, Runs
+from viewer.services.undo import Undo
+from viewer.state.notices import Notices
+from viewer.state.picking import Pick
+from viewer.state.pixels import Point, Zoom
+from viewer.state.readings import has_modes_of_cells
+from viewer.state.session import Session
+from viewer.state.view_state import ViewState
+from viewer.state.views import View
+
+CAPACITY = 600
+"""Frames in the plots."""
+MOST_RECORDS = 10_000
+"""Frames that can be gone back to, the newest."""
+RATE_SECONDS = 1.0
+"""Seconds back that frames count for their rate, or as far as the last two reach."""
+MOST_ORIGINS = 4
+"""Mode histories, of resolutions and lamps, whose origins are known."""
+Key = tuple[int, int, bool, float | None, int | None]
+
+_OF_ALL = {
+    "steps": "steps_of_all",
+    "tests": "tests_of_all",
+    "shadow_steps": "certificate_steps",
+    "shadow_tests": "certificate_tests",
+}
+"""What is part of a series, and done for all pixels, however many of them are shaded: primary rays and proofs."""
+
+
+def counters(frame: Frame, drawn_seconds: float) -> dict[str, float]:
+    """Return a frame's numbers by the names of their series; `drawn_seconds` is what the window needed for its last own
+    frame.
+
+    Steps and tests are all that were made for the frame, those of its certificates too.  Samples of lights are those of
+    primary hits, 0 where they were not recorded.  `pixels` are those that are shaded, of `all_pixels`.  `built` is the
+    part of the tree that is built, in per cent; 0 where that is not told."""
+    s = frame.statistics
+    shadow, samples = s.shadow, s.samples or SampleCounts()
+    return {
+        "due": shadow.due,
+        "culled": shadow.culled,
+        "dynamic_only": shadow.dynamic_only,
+        "candidates_only": shadow.candidates_only,
+        "cache_hits": shadow.cache_hits,
+        "traced": shadow.traced,
+        "steps": s.traversal_steps + s.certificate_steps,
+        "tests": s.intersection_tests + s.certificate_tests,
+        "shadow_steps": shadow.traversal_steps + s.certificate_steps,
+        "shadow_tests": shadow.intersection_tests + s.certificate_tests,
+        "samples_due": samples.due,
+        "samples_reached": samples.reached,
+        "penumbra": samples.penumbra,
+        "pixels": frame.width * frame.height * s.part,
+        "all_pixels": frame.width * frame.height,
+        "steps_of_all": s.primary.traversal_steps + s.certificate_steps,
+        "tests_of_all": s.primary.intersection_tests + s.certificate_tests,
+        "certificate_steps": s.certificate_steps,
+        "certificate_tests": s.certificate_tests,
+        "built": 100.0 * s.built.share if s.built is not None else 0.0,
+        "traced_ms": 1e3 * s.seconds,
+        "drawn_ms": 1e3 * drawn_seconds,
+    }
+
+
+@dataclass(frozen=True)
+class FrameRecord:
+    """What it takes to come back to a traced frame, by its `number` in the plots.
+
+    `camera` is where it was seen from; `state` has the settings that were chosen, `settings` are those that the frame
+    was traced with; `size` is that of the window's picture then, of which this may be a coarser version; `whole` says
+    that all of its pixels were shaded, so that it set modes."""
+
+    number: int
+    state: ViewState
+    camera: Camera
+    settings: Settings
+    size: tuple[int, int]
+    whole: bool
+
+
+class Plots:
+    """The `counters` of the last frames, as series; `frames` counts all that were ever added."""
+
+    def __init__(self, capacity: int = CAPACITY) -> None:
+        self.frames = 0
+        self._counters: deque[dict[str, float]] = deque(maxlen=capacity)
+        self._series: dict[str, NDArray[np.float64]] = {}  # as plots are drawn more often than frames come
+
+    def add(self, frame: Frame, drawn_seconds: float, again: bool = False) -> None:
+        """Append one traced frame's numbers, or put them in the place of the last where it is that frame `again`, with
+        more of its pixels shaded."""
+        if again and self._counters:
+            self._counters.pop()
+        self._counters.append(counters(frame, drawn_seconds))
+        self._series.clear()
+        self.frames += not again
+
+    def clear(self) -> None:
+        """Begin to count anew."""
+        self.hide()
+        self.frames = 0
+
+    def hide(self) -> None:
+        """Plot what comes from here on; frames keep their numbers."""
+        self._counters.clear()
+        self._series.clear()
+
+    def __len__(self) -> int:
+        return len(self._counters)
+
+    @property
+    def first(self) -> int:
+        """Number of the oldest frame that is plotted."""
+        return self.frames - len(self)
+
+    def values(self, name: str) -> NDArray[np.float64]:
+        """The values of a series, oldest first, contiguous."""
+        if name not in self._series:
+            self._series[name] = np.array([one[name] for one in self._counters], np.float64)
+        return self._series[name]
+
+    def per_pixel(self, name: str) -> NDArray[np.float64]:
+        """A series for each pixel, so that frames compare of which only a part is shaded yet: what is done for all
+        pixels is shared by all, the rest by those that are shaded."""
+        of_all = self.values(_OF_ALL[name]) if name in _OF_ALL else 0.0
+        shaded, every = (np.maximum(self.values(pixels), 1.0) for pixels in ("pixels", "all_pixels"))
+        return (self.values(name) - of_all) / shaded + of_all / every
+
+    def shaded(self) -> NDArray[np.float64]:
+        """The part of each frame's pixels that is shaded, 0 to 1."""
+        return self.values("pixels") / np.maximum(self.values("all_pixels"), 1.0)
+
+    def shaded_of(self, number: int) -> float:
+        """That part of one frame by its number; 1 for one that is no longer plotted."""
+        place = number - self.first
+        return float(self.shaded()[place]) if 0 <= place < len(self) else 1.0
+
+
+class FrameHistory(Plots):
+    """Counters of the last frames, `records` of those that can be gone back to by their numbers, and the origins of the
+    modes."""
+
+    def __init__(self, session: Session, clock: Callable[[], float] = time.monotonic) -> None:
+        super().__init__()
+        self._session, self._clock = session, clock
+        # Origins look at all units of each frame, for which the window need not wait.
+        self._worker = ThreadPoolExecutor(1, "shadowcull mode origins")
+        self.clear()
+
+    def clear(self) -> None:
+        """Begin anew: another scene is open."""
+        super().clear()
+        self.records: dict[int, FrameRecord] = {}
+        self._came: deque[float] = deque()  # when the newest frames came
+        self._request: RenderRequest | None = None
+        self._shown: Key | None = None
+        self._repeats: dict[tuple[int, int], tuple[Hashable, int]] = {}  # by size: what set the modes, and how often
+        self.forget_modes()
+
+    def forget_modes(self, blank: bool = True) -> None:
+        """Forget who set which mode; `blank` says that no modes are left from frames before."""
+        self._origins: dict[Key, ModeOrigins] = {}
+        self._lights: dict[Key, NDArray[np.float64]] = {}
+        self._dropped: set[Key] = set()
+        self._blank = blank
+        self._repeats = {} if blank else dict.fromkeys(self._repeats, (None, 0))
+
+    @property
+    def frames_per_second(self) -> float | None:
+        """How many frames come in a second; None while none are coming: before the second, and when the next is long
+        overdue."""
+        if len(self._came) < 2:
+            return None
+        first, last = self._came[0], self._came[-1]
+        apart = (last - first) / (len(self._came) - 1)
+        return 1.0 / apart if apart > 0.0 and self._clock() - last <= max(RATE_SECONDS, 2.0 * apart) else None
+
+    def take(self, learnt: Sequence[Traced], newest: Traced | None, drawn_seconds: float) -> None:
+        """Take up the frames that have set modes since the last time, in their order, and the newest that is shown,
+        which may be one of them or not be whole yet; `drawn_seconds` is what the window needed last."""
+        for traced in learnt:
+            self._note_origins(traced, self._count(traced, drawn_seconds))
+        last = learnt[-1].request if learnt else None
+        if newest is not None and newest.request is not last and newest.frame.settings.samples == 1:
+            self._count(newest, drawn_seconds)
+
+    def _count(self, traced: Traced, drawn_seconds: float) -> int:
+        """Put a frame into the plots and the records; returns its number."""
+        again, self._request, frame = traced.request is self._request, traced.request, traced.frame
+        self.add(frame, drawn_seconds, again)
+        if not again:
+            now = self._clock()
+            self._came.append(now)
+            while len(self._came) > 2 and self._came[0] < now - RATE_SECONDS:
+                self._came.popleft()
+        chosen, number = self._session.settings, self.frames - 1
+        state = self._session.state_of(frame).with_settings(  # of these the frame may have had others
+            samples=chosen.samples, lamp_samples=chosen.lamp_samples, verify=chosen.verify, method=chosen.method
+        )
+        self.records[number] = FrameRecord(number, state, frame.camera, frame.settings, traced.full_size, traced.whole)
+        if len(self.records) > MOST_RECORDS:
+            del self.records[next(iter(self.records))]
+        return number
+
+    # --- which frame set which mode ---------------------------------------------------------------
+
+    def _note_origins(self, traced: Traced, number: int) -> None:
+        frame, scene = traced.frame, self._session.scene
+        if traced.fresh:
+            self.forget_modes()
+        # A frame that was left before it was whole cannot be traced again as it was.
+        size, what = (frame.width, frame.height), _what_sets_modes(frame) if traced.whole else None
+        known, count = self._repeats.get(size, (what, 0))
+        self._repeats[size] = (what, count + 1) if known == what else (None, 0)
+        if scene is None or not frame.settings.keeps_modes:
+            return
+        key = _key(frame)
+        if traced.request.divisor == 1:
+            self._shown = key
+        blank = self._blank and key not in self._dropped
+        origins = self._origins.pop(key, None) or ModeOrigins(frame.lights, blank=blank)
+        self._origins[key] = origins  # the newest last
+        if len(self._origins) > MOST_ORIGINS:
+            oldest = next(iter(self._origins))
+            del self._origins[oldest]
+            self._dropped.add(oldest)
+        lights, before = scene.light_positions(frame.time), self._lights.get(key)
+        moved = None if before is None or len(before) != len(lights) else (lights != before).any(axis=1)
+        self._lights[key] = lights
+        self._worker.submit(origins.add, number, frame.modes, moved)
+
+    def origins_of(self, pick: Pick) -> Origins | None:
+        """Return which frames set what is known of the unit that was picked; None where that is not known."""
+        origins = self._origins.get(self._shown) if self._shown is not None else None
+        if origins is None or self._shown is None or self._shown[2] != pick.in_cells:
+            return None
+        return self._worker.submit(origins.of, pick.unit).result()
+
+    def repeats_of(self, frame: Frame) -> int | None:
+        """Return how often this very frame was traced since modes were forgotten, before it; None where others were as
+        well, at its resolution, which has modes of its own."""
+        what, count = self._repeats.get((frame.width, frame.height), (None, 0))
+        return count - 1 if what is not None and what == _what_sets_modes(frame) and count else None
+
+
+def _what_sets_modes(frame: Frame) -> Hashable:
+    s = frame.settings
+    of_settings = s.method, s.symmetric, s.zoom_factor, s.depth, s.lamp_radius, s.lamp_samples, s.accelerator
+    return frame.time, frame.camera, of_settings
+
+
+def _key(frame: Frame) -> Key:
+    """Return what tells mode histories apart."""
+    s = frame.settings
+    return s.width, s.height, has_modes_of_cells(frame), s.lamp_radius, s.lamp_samples
+
+
+class FrameNavigator:
+    """Goes back to frames of the history, to those of an experiment, and to other states."""
+
+    def __init__(
+        self,
+        session: Session,
+        history: FrameHistory,
+        scheduler: FrameScheduler,
+        runs: Runs,
+        undo: Undo,
+        selection: Selection,
+        notices: Notices,
+        restore: Callable[[ViewState], None],
+        reset_modes: Callable[[], None],
+    ) -> None:
+        self._session, self._history, self._scheduler = session, history, scheduler
+        self._runs, self._undo, self._selection, self._notices = runs, undo, selection, notices
+        self._restore, self._reset_modes = restore, reset_modes
+        self._wanted: tuple[float, Camera, Point] | None = None
+
+    def go(self, number: int) -> None:
+        """Go back to a frame by its number in the plots."""
+        record = self._history.records.get(number)
+        if self._session.scene is None or self._runs.refuses():
+            return
+        if record is None:
+            self._notices.say(f"picture {number} is no longer kept: only the last {MOST_RECORDS:,} are")
+            return
+        self.go_to(record.state, f"picture {number}", record.size)
+        said = ": modes are learnt anew" if self._depends_on_modes else ": the same picture, bit for bit"
+        if record.size != self._scheduler.full_size:
+            said = ", though its picture had {} x {} pixels".format(*record.size)
+        elif record.state.draw.view is View.TREE:
+            said = f", though {BUILT}"
+        self._notices.say(f"{self.name_of(number)}, again{said}")
+
+    def go_to_experiment(self, run: Experiment, number: int) -> None:
+        """Go to a frame of an experiment, traced by the method that it shows."""
+        scene, session = self._session.scene, self._session
+        if scene is None or self._runs.refuses():
+            return
+        if not run.is_of(scene):
+            self._notices.say(f"this was measured {run.made_in(scene)}")
+            return
+        settings = replace(run.settings, method=run.shown, samples=session.settings.samples)
+        state = replace(session.state, time=run.times[number], camera=None, settings=settings)
+        self.go_to(state, f"frame {number} of the experiment", (settings.width, settings.height))
+        self._notices.say(self.name_in_experiment(run, number))
+
+    def go_to(
+        self,
+        state: ViewState,
+        name: str,
+        size: tuple[int, int],
+        point: Point | None = None,
+        zoom: Zoom | None = None,
+        warmup: Warmup | None = None,
+    ) -> None:
+        """Restore a state, and select a point of the picture once that has come; `zoom` is how closely it is looked at
+        then.
+
+        With `warmup` frames, all modes are forgotten and these frames, by time and camera, are traced before the
+        picture, which then has one sample a pixel and is not refined: it stays as it was found until something is
+        done."""
+        self._undo.begin_step(f"going to {name}", with_time=True)
+        self._restore(state)
+        if zoom is not None:
+            self._session.set_draw(zoom=zoom)
+        self._selection.clear()
+        if warmup is not None or self._depends_on_modes:
+            self._reset_modes()
+        if warmup is not None:
+            if size != self._scheduler.full_size:
+                self._session.set_pace(fixed_size=True, width=size[0], height=size[1])
+            self._scheduler.freeze(self._session.state, warmup)
+        self._wanted = (self._session.time, self._session.camera, point) if point is not None else None
+
+    def select_when_shown(self, traced: Traced | None) -> None:
+        """Select the point that was gone to once its picture is shown, whole; once in each frame of the window."""
+        if self._wanted is None or self._runs.current is not None:
+            return
+        session, (then, camera, point) = self._session, self._wanted
+        edited = self._scheduler.shows_edits and session.edited is not None and session.edited.edits == session.edits
+        if (session.time, session.camera) != (then, camera):
+            self._wanted = None
+        elif edited and traced is not None and traced.whole and traced.request.divisor == 1:
+            if (traced.request.time, traced.request.camera) == (then, camera):
+                self._selection.select(point)
+                self._wanted = None
+
+    def name_of(self, number: int) -> str:
+        """Return what a frame is called: by its number in the plots, and in the scene's path, where it is another."""
+        record = self._history.records.get(number)
+        return f"picture {number}{self._of_path(record.state.time) if record is not None else ''}"
+
+    def name_in_experiment(self, run: Experiment, number: int) -> str:
+        """Return what a frame of an experiment is called, and in the scene's path where the experiment has others."""
+        scene = self._session.scene
+        if scene is None or not run.is_of(scene) or len(run.times) == scene.frames:
+            return f"frame {number} of the path, by {run.shown}"
+        return f"frame {number} of the experiment, by {run.shown}{self._of_path(run.times[number])}"
+
+    def _of_path(self, then: float) -> str:
+        return f", frame {self._session.frame_at(then)} of the path" if self._session.animated else ""
+
+    @property
+    def _depends_on_modes(self) -> bool:
+        """Whether the picture depends on what was seen before it."""
+        return not Method.parse(self._session.settings.method).exact or self._session.draw.view.of_modes
