@@ -180,9 +180,10 @@ def _slice(ui: Ui) -> list[Command]:
 
     def step(layers: int) -> Callable[[], None]:
         def go() -> None:
-            layer = view_of(s.draw.view).layer(c.frame, s.draw.slice) if c.frame is not None else None
-            if layer is not None:
-                s.set_draw(slice=layer.goes_to(s.draw.slice, layer.number + layers))
+            cut = s.draw.slice
+            many = view_of(s.draw.view).layers(c.frame, cut.axis) if c.frame is not None else 0
+            if many:
+                s.set_draw(slice=cut.in_layer(cut.layer(many) + layers, many))
 
         return go
 
