@@ -61,7 +61,7 @@ class Controller:
         self.selection = selection = Selection(session, lambda: self.frame)
         self.captures = captures = CaptureService(session, preferences, notices, wake)
         self.runs = runs = Runs(
-            session, selection, renderer, preferences, notices, captures, wake, lambda: self.editing.under_way
+            session, selection, renderer.perform, preferences, notices, captures, wake, lambda: self.editing.under_way
         )
         self.baseline = Baseline(renderer)
         self.settings = settings = SettingsController(session, preferences, notices, runs.refuses)
@@ -88,7 +88,7 @@ class Controller:
             session, preferences, scheduler, self.history, loader, runs, captures, notices
         )
         self.films = Films(session, preferences, runs, pictures, bookmarks)
-        self.hunts = Hunts(session, preferences, runs, navigator, notices)
+        self.hunts = Hunts(session, runs, navigator, notices)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}

@@ -13,7 +13,6 @@ from viewer.services.inspector import Inspection, drawn_primitives
 from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
 from viewer.state.picking import outline_of, part_points, primitive_points
 from viewer.state.projection import Stroke, place, strokes
-from viewer.window import comparing
 from viewer.window.panels import rays
 from viewer.window.panels.area import Area
 from viewer.window.panels.links import Pointed
@@ -164,12 +163,3 @@ def _occluded_selection(ui: Ui, made: Pen, frame: Frame) -> None:
         return _projected(frame, outline_of(points if part is None else part_points(now, part, frame.time)))
 
     made.strokes(ui.cached("occluded selection", frame, (picked.primitive, part), lines), _WHITE, 0.12, behind=0.75)
-
-
-def show_worst_pixels(ui: Ui, area: Area, frame: Frame) -> None:
-    """Over a signed difference: rings around the pixels that are furthest apart, where marks are wanted."""
-    spots = comparing.marked(ui)
-    if spots:
-        with pen(area, frame) as made:
-            for x, y in spots:
-                made.ring(((x + 0.5) / frame.width, (y + 0.5) / frame.height), max(0.65, made.radius))

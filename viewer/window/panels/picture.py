@@ -17,7 +17,6 @@ from viewer.state import navigation, verified
 from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
 from viewer.util.numbers import whole_percent
-from viewer.window import comparing
 from viewer.window.panels import (
     legend,
     missing,
@@ -71,7 +70,7 @@ def show(ui: Ui) -> None:
 def _picture(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
     c.selection.hovered = None
-    filling = comparing.filling(ui)
+    filling = sides.filling(ui)
     texture = filling.texture_id if filling is not None else None
     if c.traced is None:
         if texture is not None and c.reloaded:  # what was shown before stays until there is news: it would flash
@@ -89,33 +88,27 @@ def _picture(ui: Ui, room: ImVec2) -> None:
 
 def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     """The newest picture, beside or over the one that it is compared with, and all that lies over it."""
-    seen, gap = comparing.shown(ui), em(sides.GAP)
-    compared = ui.graphics.compared
-    if seen is not None and seen[2] is CompareMode.SIDE and compared is not None:
+    seen, gap = ui.controller.comparing.seen, em(sides.GAP)
+    if seen is not None and seen.mode is CompareMode.SIDE:
         left, top, size = _fitted(ui.picture.shape, room, 2, gap)
         area = _area(ui, "picture of A", left, top, size)
-        sides.draw_picture(ui, comparing.OF_A, compared.a.texture_id or 0, area)
+        sides.draw_a(ui, area)
         _pointer(ui, area, takes_edits=False)
-        pixels.draw(ui, area, seen[0])
+        pixels.draw(ui, area, seen.a)
         left += size.x + gap
     else:
         left, top, size = _fitted(ui.picture.shape, room)
     area = _area(ui, "picture", left, top, size)
-    sides.draw_picture(ui, comparing.PICTURE, texture, area)
-    if seen is not None:
-        sides.draw_a(ui, area, seen)
+    sides.draw_picture(ui, sides.PICTURE, texture, area)
+    sides.draw_wiped(ui, area)
     with _inside(area):
         overlays.show(ui, area)
     _pointer(ui, area)
     pixels.draw(ui, area)
-    if seen is not None:
-        overlays.show_worst_pixels(ui, area, seen[1].frame)
-    sides.show(ui, area)
     with _inside(area):
         what_if.show_lights(ui, area.whole, area.whole_end)
     lower = _title(ui, area)
-    if seen is not None:
-        sides.show_names(ui, area, seen, lower)
+    sides.show(ui, area, lower)
     legend.show(ui, area.corner, area.end)
     missing.show(ui, area.corner, area.end)
     slicing.show(ui, area)
@@ -222,7 +215,7 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
             _wheel(ui, io.mouse_wheel)
     if takes_edits and what_if.handle(ui, area.whole, area.whole_size):
         return
-    if sides.handle(ui, area) or pixels.drag(ui, area):
+    if sides.drag_line(ui, area) or pixels.drag(ui, area):
         return
     if imgui.is_item_activated():
         _take_pivot(ui, (u, v))
