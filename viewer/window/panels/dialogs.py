@@ -69,9 +69,6 @@ def _question(ui: Ui) -> None:
     if not shown:
         return
     paragraph(question.text)
-    for option in question.options:
-        if imgui.checkbox(option, option in question.ticked)[0]:
-            question.ticked.symmetric_difference_update({option})
     imgui.spacing()
     chosen = question.answers[0][0] if not stays or imgui.is_key_pressed(imgui.Key.escape) else ""
     for number, (answer, _) in enumerate(question.answers):
