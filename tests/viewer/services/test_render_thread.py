@@ -269,7 +269,7 @@ def test_the_same_query_has_the_same_future_however_many_samples_come(thread):
     sampled = replace(frame, color=frame.color + 1.0)
     assert thread.query(column, sampled, 3) is answer
     other = thread.query(column, frame, 4)
-    assert other.result(PATIENCE)[2] == 4 and thread.query(column, frame, 3) is answer, "both are known"
+    assert other.result(PATIENCE)[2] == 4
     assert thread.query(column, replace(frame, primitive=frame.primitive.copy()), 3) is not answer, "another picture"
 
 
