@@ -106,11 +106,11 @@ def parser() -> Parser:
     add("study", type=Path, metavar="STUDY.toml", help="what to trace; see below")
     help_ = "the folder of the results (default: beside the study, STUDY-results)"
     add("-o", "--output", type=Path, metavar="DIR", help=help_)
-    who = parser.add_mutually_exclusive_group()
-    help_ = "so many processes of this machine, with one thread each"
-    who.add_argument("--workers", type=count(1, 1024), metavar="N", help=help_)
+    who = parser.add_mutually_exclusive_group().add_argument
+    help_ = "so many processes of this machine, with one thread each (default: one on each core)"
+    who("--workers", type=count(1, 1024), metavar="N", help=help_)
     help_ = "the workers of a Dask scheduler that runs there, such as tcp://10.0.0.1:8786"
-    who.add_argument("--scheduler", metavar="ADDRESS", help=help_)
+    who("--scheduler", metavar="ADDRESS", help=help_)
     add("--table", action="store_true", help="trace nothing; print the table of what there is")
     add("--plot", type=Path, metavar="FILE", help="draw what there is at the end: a .png, .svg or .pdf")
     add("--anew", action="store_true", help="throw away what there is, and trace all of it")
@@ -194,7 +194,7 @@ def _trace(plan: Plan, store: Store, given: Namespace, work: Work) -> tuple[bool
     store.set_study(sweeping.identity(plan.study, plan.scenes))
     done = plan.done
     try:
-        with _cluster(given, len(missing)) as cluster:
+        with _cluster_of(given, len(missing)) as cluster:
             watch = _Watch(cluster, work)
 
             def on_progress(now: int) -> None:
@@ -214,18 +214,16 @@ def _trace(plan: Plan, store: Store, given: Namespace, work: Work) -> tuple[bool
         store.merge()
 
 
-def _cluster(given: Namespace, tasks: int) -> AbstractContextManager[Cluster]:
+def _cluster_of(options: Namespace, tasks: int) -> AbstractContextManager[Cluster]:
     """Start the processes that the options ask for; no more of this machine than there are tasks."""
-    if given.scheduler is not None:
-        return connected(given.scheduler)
+    if options.scheduler is not None:
+        return connected(options.scheduler)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return local_cluster(min(given.workers or cores, max(tasks, 1)))
+    return local_cluster(min(options.workers or cores, max(tasks, 1)))
 
 
 class _Watch:
     """Says how many processes there are, and when one has died, as they were when it last looked: once a second."""
-
-    EVERY = 1.0
 
     def __init__(self, cluster: Cluster, work: Work) -> None:
         self._cluster, self._work, self._known = cluster, work, set(cluster.process_ids())
@@ -235,7 +233,7 @@ class _Watch:
         """Note which processes have died since."""
         if time.monotonic() < self._next and not at_once:
             return
-        self._next, self._started = time.monotonic() + self.EVERY, self._cluster.started()
+        self._next, self._started = time.monotonic() + 1.0, self._cluster.started()
         now = set(self._cluster.process_ids())
         for number in self._known - now:
             self._work.note(f"process {number} has died; another takes its place, and does its task again")

@@ -27,8 +27,8 @@ from tracer.settings import Settings
 from viewer.output import exports
 from viewer.output.filmstrip import Filmstrip
 from viewer.services.capture_service import CaptureService
+from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Task, Traced
-from viewer.services.selection import Selection
 from viewer.state.methods import BY_MODES, CERTIFIED
 from viewer.state.notices import Notices
 from viewer.state.plans import LONGEST_SIDE, ExperimentPlan, ZoomPlan, parse_factors
