@@ -39,7 +39,7 @@ from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import Undo
 from viewer.state import codec
-from viewer.state.methods import fitting_view
+from viewer.state.methods import remark_on
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -129,7 +129,7 @@ class Controller:
             self._show_again(arrival)
         elif arrival.opened is not None:
             self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
-            said = self._fit_view() if arrival.place is None else ""
+            said = remark_on(arrival.opened.scene.lights, self.session.settings)
         if arrival.place is not None:
             self.undo.begin_step("the place of a saved picture")
             self.restore(arrival.place)
@@ -196,14 +196,6 @@ class Controller:
         busy = self.renderer.busy or self.loader.busy or self.runs.current is not None or self.editing.at_work
         busy = busy or not self.scheduler.rests or self.scheduler.refines_lamps or not wanted
         self.baseline.update(self.traced, second, self.motion.is_animating, busy)
-
-    def _fit_view(self) -> str:
-        """Show the picture where the view has nothing to show in the scene that has just been opened; returns what is
-        to be said of it, and of the method there."""
-        session = self.session
-        view, said = fitting_view(session.draw.view, session.settings, session.scene.lights if session.scene else ())
-        session.set_draw(view=view)
-        return said
 
     def _show_again(self, arrival: Arrival) -> None:
         """Show the scene that was open as it is now, from where we are."""
