@@ -57,9 +57,9 @@ def classes_in(frame: Frame, view: View, light: int = 0) -> list[Counted]:
     """What a legend of modes or certificates counts."""
     found = legend_in(frame, view, light)
     said = [entry for entry in found.entries if entry.color] if found is not None else []
-    pixels = [re.search(r"([\d,]+) pixels;", entry.meaning) for entry in said]
+    pixels = [re.search(r"([\d,]+) pixels$", entry.meaning) for entry in said]
     return [
-        Counted(entry.meaning.split(":")[0], entry.color, _whole(entry.values[1]), _whole(at[1]), bool(entry.stripes))
+        Counted(entry.name, entry.color, _whole(entry.values[1]), _whole(at[1]), bool(entry.stripes))
         for entry, at in zip(said, pixels, strict=True)
         if at is not None and entry.color is not None
     ]

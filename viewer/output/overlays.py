@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from viewer.state.palette import Color, color_map, signed_map
+from viewer.state.palette import Color
 from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Legend, Swatch, fitting
 from viewer.views.shadow import STRIPE
 
@@ -93,8 +93,8 @@ def _fill(image: Image.Image, draw: ImageDraw.ImageDraw, swatch: Swatch, left: i
     x, y = left + round(swatch.x), top + round(swatch.y)
     width, height = max(1, round(swatch.width)), max(1, round(swatch.height))
     if swatch.color is None:
-        colors = np.round((signed_map if swatch.signed else color_map)(width) * 255.0).astype(np.uint8)
-        bar = np.broadcast_to(colors[::-1] if swatch.reverse else colors, (height, width, 3))
+        colors = np.round(swatch.colors(width) * 255.0).astype(np.uint8)
+        bar = np.broadcast_to(colors, (height, width, 3))
         image.paste(Image.fromarray(np.ascontiguousarray(bar)), (x, y))
         return
     draw.rectangle((x, y, x + width - 1, y + height - 1), in_bytes(swatch.color))

@@ -23,7 +23,7 @@ from viewer.services.film import Films
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.history import FrameHistory, FrameNavigator
 from viewer.services.hunts import Hunts
-from viewer.services.inspector import Inspector
+from viewer.services.inspector import Inspector, Selection
 from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
 from viewer.services.named_states import Bookmarks, Presets
@@ -33,9 +33,8 @@ from viewer.services.questions import Questions
 from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import Runs
-from viewer.services.scene_loader import Arrival, SceneLoader
+from viewer.services.scene_loader import SceneLoader
 from viewer.services.scene_table import SceneTable
-from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import Undo
 from viewer.state import codec
@@ -44,7 +43,6 @@ from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
 
 
 class Controller:
@@ -63,7 +61,7 @@ class Controller:
         self.selection = selection = Selection(session, lambda: self.frame)
         self.captures = captures = CaptureService(session, preferences, notices, wake)
         self.runs = runs = Runs(
-            session, selection, renderer, preferences, notices, captures, wake, lambda: self.editing.under_way
+            session, selection, renderer.perform, preferences, notices, captures, wake, lambda: self.editing.under_way
         )
         self.baseline = Baseline(renderer)
         self.settings = settings = SettingsController(session, preferences, notices, runs.refuses)
@@ -90,7 +88,7 @@ class Controller:
             session, preferences, scheduler, self.history, loader, runs, captures, notices
         )
         self.films = Films(session, preferences, runs, pictures, bookmarks)
-        self.hunts = Hunts(session, preferences, runs, navigator, notices)
+        self.hunts = Hunts(session, runs, navigator, notices)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}
@@ -121,21 +119,24 @@ class Controller:
 
     def take_scene(self) -> None:
         """Show the scene that has been read, if one has."""
-        arrival, flown = self.loader.take_finished(), self.preview.flown
+        session, arrival, flown = self.session, self.loader.take_finished(), self.preview.flown
         if arrival is None:
             return
-        said = ""
+        place, playing, said = arrival.place, arrival.again and session.playing, arrival.text
         if arrival.again:
-            self._show_again(arrival)
-        elif arrival.opened is not None:
+            place = session.state  # it is seen as it is now, from where we are
+        if arrival.opened is not None:
             self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
-            said = remark_on(arrival.opened.scene.lights, self.session.settings)
         if arrival.place is not None:
             self.undo.begin_step("the place of a saved picture")
-            self.restore(arrival.place)
+        if place is not None:
+            self.restore(place)
+        elif session.scene is not None:
+            said = f"{said}. {remark_on(session.scene.lights, session.settings)}".removesuffix(". ")
         if flown is not None:  # while the scene was waiting for its kernels
-            self.session.change(camera=flown)
-        self.notices.say(f"{arrival.text}. {said}" if said else arrival.text)
+            session.change(camera=flown)
+        session.playing, self.reloaded = playing and session.animated, arrival.again
+        self.notices.say(said)
 
     def take_frame(self) -> None:
         """Take the newest frame, of a run that is under way or else as it was asked for."""
@@ -175,9 +176,7 @@ class Controller:
     def inspect_pixel(self) -> None:
         """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
         traced = self.own_traced
-        frame = traced.frame if traced is not None else None
-        cuts = traced is not None and traced.whole and self.scheduler.drawn_view is View.CUTS
-        self.inspector.update(frame, not self.motion.is_animating, cuts)
+        self.inspector.update(traced.frame if traced is not None else None, not self.motion.is_animating)
 
     def frame_inputs(self, size: tuple[int, int]) -> FrameInputs:
         """Return what decides how the next frame is traced, in a window that has room for so many pixels."""
@@ -196,17 +195,6 @@ class Controller:
         busy = self.renderer.busy or self.loader.busy or self.runs.current is not None or self.editing.at_work
         busy = busy or not self.scheduler.rests or self.scheduler.refines_lamps or not wanted
         self.baseline.update(self.traced, second, self.motion.is_animating, busy)
-
-    def _show_again(self, arrival: Arrival) -> None:
-        """Show the scene that was open as it is now, from where we are."""
-        session, opened = self.session, arrival.opened
-        if opened is None or session.scene is None:
-            return
-        here, playing = session.state, session.playing
-        self.show(opened.scene, opened.renderer, opened.info)
-        session.restore(here)
-        session.playing = playing and session.animated
-        self.reloaded = True
 
     # --- going elsewhere -------------------------------------------------------------------------
 
@@ -291,7 +279,5 @@ class Controller:
         stopped = self.renderer.close(timeout)
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))
-        if self.session.scene is not None:
-            self.preferences.last = codec.state_to_json(self.session.state)
         self.settings.finish()
         return stopped

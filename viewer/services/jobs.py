@@ -10,7 +10,6 @@ from __future__ import annotations
 import os
 import sys
 import threading
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Generic, TypeVar
@@ -47,21 +46,15 @@ class Job(Generic[Result]):
     """Runs `work(progress)` on a thread of its own.
 
     `label` and `fraction` say how far it is; after `done`, `result` is set, or `failure` says what
-    went wrong, or `cancelled` is true.  The end wakes the window; progress is seen often enough as it dozes.
+    went wrong, or neither where it was cancelled.  The end wakes the window; progress is seen often enough as it dozes.
     """
 
     def __init__(self, title: str, work: Callable[[Progress], Result], wake: Callable[[], None] = lambda: None) -> None:
-        self.title = title
-        self.label = ""
-        self.fraction = 0.0
+        self.title, self.label, self.fraction = title, "", 0.0
         self.result: Result | None = None
         self.failure: Failure | None = None
-        self.cancelled = False
-        self.started = time.monotonic()
-        self._work = work
-        self._wake = wake
-        self._stop = threading.Event()
-        self._finished = threading.Event()
+        self._work, self._wake = work, wake
+        self._stop, self._finished = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name=f"shadowcull {title}", daemon=True)
         self._thread.start()
 
@@ -87,11 +80,9 @@ class Job(Generic[Result]):
         step_back(JOB)
         try:
             result = self._work(self._progress)
-            if self._stop.is_set():
-                raise Cancelled(self.title)
-            self.result = result
+            self.result = None if self._stop.is_set() else result
         except Cancelled:
-            self.cancelled = True
+            pass
         except Exception as error:
             self.failure = failure(error, "" if isinstance(error, KNOWN) else f"{self.title} failed")
         finally:

@@ -16,13 +16,11 @@ from tracer.scene.arrays import Float32, Float64
 from tracer.scene.camera import Camera
 from tracer.scene.chains import Chains
 from tracer.scene.deformation import deformed
-from tracer.scene.framing import bounds
 from tracer.scene.lamps import LampTable
 from tracer.scene.limits import LARGEST, SMALLEST
 from tracer.scene.model import CONE, Progress, Quadrics, Scene
-from tracer.scene.studio import model_bounds
 from viewer.services.jobs import Job
-from viewer.services.motion import Corner, Motion
+from viewer.services.motion import Motion
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.session import Session
@@ -86,6 +84,8 @@ class Preview:
             if job.failure is not None:
                 self._notices.report(job.failure)
             self.geometry = job.result
+            if self.geometry is not None:
+                self._motion.enter(tuple(self.geometry.box.tolist()))
 
     def _enter(self, scene: Scene, time: float | None, camera: Camera | None) -> None:
         if triangles_of(scene) > MOST_TRIANGLES:
@@ -93,7 +93,6 @@ class Preview:
         start = scene.time_range[0] if time is None else time
         self._session.previewed, self._start = scene, camera
         self._session.change(camera=camera, time=start)
-        self._motion.enter(_bounds(scene))
         self._job = Job("The preview", lambda progress: preview_geometry(scene, start, progress), self._wake)
 
     def _leave(self) -> None:
@@ -102,15 +101,6 @@ class Preview:
         if self._session.scene is None:
             self._session.change(camera=None)
         self._session.previewed = self._start = self._job = self.geometry = None
-
-
-def _bounds(scene: Scene) -> tuple[Corner, Corner] | None:
-    """Least and greatest corner of what the camera goes around: the same as once the scene is traced, so that it is
-    as fast then."""
-    box = model_bounds(scene)
-    if box is None:
-        box = bounds(scene.objects, scene.animation, scene.time_range[0])
-    return None if box is None else (box[0].tolist(), box[1].tolist())
 
 
 # --- its triangles ---------------------------------------------------------------------------------

@@ -6,8 +6,9 @@ is cancelled.  A second request to open takes the place of the first.
 
 from __future__ import annotations
 
-import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -21,7 +22,6 @@ from tracer.scene.studio import up_in_studio
 from viewer.output import capture
 from viewer.services import scene_files
 from viewer.services.jobs import Job
-from viewer.state import codec
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -76,7 +76,7 @@ class SceneLoader:
         self.compiles = False  # whether this is a first start, whose kernels are to be compiled
         self.folders: tuple[Path, ...] = ()  # besides a scene's own, that it may read files from
         self.meshes = IN_STUDIO  # how the next mesh is read
-        self.watch = FileWatch(wake)  # of what the newest scene was read from, or what was missed
+        self.watch = FileWatch()  # of what the newest scene was read from, or what was missed
         self._load: _Load | None = None
         self._cancelled: list[Job] = []  # some end late, as within a library that reads a mesh
         self._restored: Arrival | None = None
@@ -163,22 +163,6 @@ class SceneLoader:
         else:
             self._ask_first(path.name, lambda: self._begin(path))
 
-    def go_on(self) -> bool:
-        """Open what was open when the window was last closed, as it was seen; where it has gone, only say so."""
-        last = self._preferences.last
-        if not last:
-            return False
-        try:
-            state = codec.state_from_json(last, self._session.state)
-            found = scene_files.find_scene(state.scene, Path(state.scene))
-            if found is None:
-                raise ValueError(f"the scene is gone: {state.scene}")
-        except ValueError as error:
-            self._notices.say(f"cannot start where you left off: {error}", error=True)
-            return False
-        self._begin(found, state)
-        return True
-
     def reload(self) -> None:
         """Read the scene's file again and keep the place."""
         if self._session.scene is not None:
@@ -187,11 +171,9 @@ class SceneLoader:
 
     def reload_changed(self, allowed: bool) -> None:
         """Read the scene again where a file that it was read from has changed; once in each frame of the window."""
-        self.watch.on = self._preferences.watch_scene
-        if allowed and self.watch.on and self._load is None and self._session.scene is not None:
-            changed = self.watch.take()
-            if changed:
-                self._begin(Path(self._session.scene.path), again=True, changed=changed)
+        allowed = allowed and self._preferences.watch_scene and self._load is None
+        if allowed and self._session.scene is not None and (changed := self.watch.changed()):
+            self._begin(Path(self._session.scene.path), again=True, changed=changed)
 
     def read_as(self, meshes: MeshOptions) -> None:
         """Read the mesh that is open in another way, and look at it from its first camera.
@@ -284,7 +266,6 @@ class SceneLoader:
 
     def close(self) -> list[Job]:
         """Ask everything to stop; returns the jobs, to be waited for."""
-        self.watch.close()
         jobs = [job for job in (self.warm_up_job, self.method_job, self.load_job, *self._cancelled) if job is not None]
         for job in jobs:
             job.cancel()
@@ -335,61 +316,33 @@ def _warm_up(progress: Progress) -> None:
 
 
 class FileWatch:
-    """Looks at files now and then on a thread, by the time of their last change and their size, while it is `on`.
+    """Looks at `files`, as they were read, by the time of their last change and their size."""
 
-    What has changed is told once it has stayed the same from one look to the next, so that nothing is read that is
-    half-written."""
-
-    def __init__(self, wake: Callable[[], None] = lambda: None) -> None:
-        self._wake, self.on = wake, False
-        self._lock, self._stop = threading.Lock(), threading.Event()
-        self._known: dict[Path, Stamp] = {}
+    def __init__(self) -> None:
+        self.files: dict[Path, Stamp] = {}
         self._seen: dict[Path, Stamp] = {}
-        self._changed: list[Path] = []
-        self._thread: threading.Thread | None = None
+        self._worker = ThreadPoolExecutor(1, "shadowcull watching the scene")
+        self._look: Future[dict[Path, Stamp]] | None = None
+        self._next = 0.0
 
-    @property
-    def files(self) -> dict[Path, Stamp]:
-        """The files, as they were read."""
-        return self._known
+    def changed(self) -> str:
+        """Name what has changed since it was read, or was named last; "" for nothing.
 
-    @files.setter
-    def files(self, files: dict[Path, Stamp]) -> None:
-        with self._lock:
-            self._known = self._seen = files
-            self._changed = []
-        if files and self._thread is None:
-            self._thread = threading.Thread(target=self._run, name="shadowcull watching the scene", daemon=True)
-            self._thread.start()
-
-    def take(self) -> str:
-        """Return what has changed since it was read, or taken last; "" for nothing."""
-        with self._lock:
-            changed, self._changed = self._changed, []
-            if changed:
-                self._known = self._seen
-        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
-        return f"{changed[0].name}{more}" if changed else ""
-
-    def look(self) -> None:
-        """Look at all files once."""
-        known, before = self._known, self._seen
-        now = {path: stamp(path) for path in known}
+        To be called in each frame of the window, which does not wait for a disk.  What has changed is told once it has
+        stayed the same from one look to the next, so that nothing is read that is half-written."""
+        if self._look is None:
+            if self.files and time.monotonic() >= self._next:
+                self._look = self._worker.submit(lambda paths: {path: stamp(path) for path in paths}, tuple(self.files))
+            return ""
+        if not self._look.done():
+            return ""
+        now, before = self._look.result(), self._seen
+        self._look, self._seen, self._next = None, now, time.monotonic() + LOOK_SECONDS
+        if now != before or now.keys() != self.files.keys():
+            return ""
+        changed = [path for path in now if now[path] != self.files[path]]
         # What has gone may be about to be replaced, as many programs write files.
-        rests = now == before and not any(now[path] is None and known[path] is not None for path in now)
-        with self._lock:
-            if known is not self._known:
-                return
-            self._seen = now
-            self._changed = [path for path in now if rests and now[path] != known[path]]
-        if self._changed:
-            self._wake()
-
-    def close(self) -> None:
-        """End the thread; what it is looking at takes no longer than a look."""
-        self._stop.set()
-
-    def _run(self) -> None:
-        while not self._stop.wait(LOOK_SECONDS):
-            if self.on:
-                self.look()
+        if not changed or any(now[path] is None and self.files[path] is not None for path in changed):
+            return ""
+        self.files = now
+        return f"{changed[0].name}{f' and {len(changed) - 1} more' if len(changed) > 1 else ''}"

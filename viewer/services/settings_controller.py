@@ -122,9 +122,6 @@ class SettingsController:
 
     def _now(self) -> dict[str, Any]:
         """The preferences as they are stored, with the state that the next window starts with."""
-        state = self._session.state
         self._note_method()
-        self._preferences.state = codec.remembered(state)
-        if self._preferences.start_where_left and self._session.scene is not None:
-            self._preferences.last = codec.state_to_json(state)
+        self._preferences.state = codec.remembered(self._session.state)
         return codec.to_json(self._preferences)

@@ -25,9 +25,13 @@ class Slice(NamedTuple):
     axis: int = 1
     at: float = 0.25
 
-    def layer(self, shape: tuple[int, int, int]) -> int:
-        """Return the number of the layer of voxels along the axis."""
-        return min(int(self.at * shape[self.axis]), shape[self.axis] - 1)
+    def layer(self, layers: int) -> int:
+        """Return the number of the layer, of so many along the axis."""
+        return min(int(self.at * layers), layers - 1)
+
+    def in_layer(self, number: int, layers: int) -> Slice:
+        """Return the slice in the middle of this layer, or of the last before they end."""
+        return self._replace(at=(min(max(number, 0), layers - 1) + 0.5) / layers)
 
     def __str__(self) -> str:
         """Return it as the option `--slice` takes it."""

@@ -78,8 +78,6 @@ class Preferences:
     theme: str = setting("dark", "Theme", "The colours of the interface.", choices=THEMES)
     ui_scale: float = setting(1.0, "Size of the interface", "How large its letters are.", low=0.75, high=2.0,
                               percent=True, panel="Window")  # fmt: skip
-    start_where_left: bool = False
-    last: dict[str, Any] = field(default_factory=dict)
     watch_scene: bool = True
     keys: dict[str, list[str]] = field(default_factory=dict)
     used: list[str] = field(default_factory=list)

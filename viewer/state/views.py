@@ -32,6 +32,8 @@ class Declaration:
     help: ClassVar[str]
     also: ClassVar[str] = ""
     """Words by which it is found as well."""
+    shows: ClassVar[str] = ""
+    """The buffer, the layer or the structure of a frame that it shows, if only some frames have it."""
     records: ClassVar[Record | None] = None
     of_light: ClassVar[bool] = False
     """Whether it is about one light."""
@@ -50,12 +52,15 @@ class Declaration:
 
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         """Return whether the frame holds what it shows, of this light where it is about one."""
-        return frame.settings.keeps_modes or not self.of_modes
+        if self.of_modes:
+            return frame.settings.keeps_modes
+        name = self.shows
+        return not name or name in frame.layers or name in frame.structures or getattr(frame, name, None) is not None
 
     def span(self, frame: Frame) -> tuple[float, float]:
         """Return what the first and the last colour of the map stand for, unless others are chosen.
 
-        Raises ValueError for a frame that did not record it, and for a view without a range."""
+        Raises ValueError for a view without a range."""
         raise ValueError(f"the view {self.label} has no range")
 
 

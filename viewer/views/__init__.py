@@ -29,7 +29,7 @@ def colorize(frame: Frame, draw: DrawOptions = USUAL, highlight: Highlight = AS_
     Raises ValueError where there is no such light, or where the frame has not recorded what the view shows."""
     if draw.view.of_light and not 0 <= draw.light < frame.lights:
         raise ValueError(f"no light {draw.light}: {lights_in_words(frame.lights)}")
-    return view_of(draw.view).highlighted(frame, draw, highlight)
+    return _drawable(frame, draw).highlighted(frame, draw, highlight)
 
 
 def legend_of(frame: Frame, draw: DrawOptions, lights: Lights = ()) -> Legend | None:
@@ -39,9 +39,7 @@ def legend_of(frame: Frame, draw: DrawOptions, lights: Lights = ()) -> Legend | 
 
 def values_of(frame: Frame, draw: DrawOptions) -> Values:
     """Return the exact values of a frame.  Raises ValueError where the view cannot be drawn of it."""
-    if not can_draw(frame, draw.view, draw.light):
-        raise ValueError(f"the frame has nothing for the view {draw.view.label}")
-    return view_of(draw.view).values(frame, draw)
+    return _drawable(frame, draw).values(frame, draw)
 
 
 def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
@@ -52,3 +50,10 @@ def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
     if not view.everywhere and frame.primitive[y, x] < 0:
         return ("miss",)
     return view.words(frame, draw, x, y)
+
+
+def _drawable(frame: Frame, draw: DrawOptions) -> FrameView:
+    view = view_of(draw.view)
+    if not view.can_draw(frame, draw.light):
+        raise ValueError(f"the frame has nothing for the view {view.label}: it has not recorded that")
+    return view

@@ -13,20 +13,15 @@ from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate
 from tracer.frame import Frame
-from tracer.scene.lights import Light
-from viewer.state.draw_options import DrawOptions, Slice
-from viewer.state.views import Declaration, Record
+from tracer.scene.lights import Light, named_light
+from viewer.state.draw_options import DrawOptions
+from viewer.state.views import Declaration
 from viewer.views.legend import Legend
+from viewer.views.paint import Pixels
 
-Pixels = NDArray[np.uint8]
 Words = tuple[str, ...]
 Lights = tuple[Light, ...]
 T = TypeVar("T")
-
-NOT_RECORDED = {
-    Record.WORK: "the frame did not record the work at its pixels",
-    Record.LIGHTS: "the frame did not record which samples of its lights reach its pixels",
-}
 
 
 class Highlight(NamedTuple):
@@ -34,18 +29,6 @@ class Highlight(NamedTuple):
 
     fate: Fate | None = None
     line: bool = True
-
-
-class Layer(NamedTuple):
-    """The layer of a slice, of so many, and where its middle lies along the axis, in units of the scene."""
-
-    number: int
-    many: int
-    place: float
-
-    def goes_to(self, cut: Slice, number: int) -> Slice:
-        """Return the slice in another layer, or in the last one before these end."""
-        return cut._replace(at=(min(max(number, 0), self.many - 1) + 0.5) / self.many)
 
 
 @dataclass(frozen=True)
@@ -61,13 +44,15 @@ class Values:
 
 
 class FrameView(Declaration):
-    """A view: the file that declares one names an instance of a subclass `VIEW`."""
+    """A view: the file that declares one names an instance of a subclass `VIEW`.
+
+    What a view returns is asked of frames that it can draw."""
 
     everywhere: ClassVar[bool] = False
     """Whether it shows something where nothing is hit, too."""
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
-        """Draw a frame that it can be drawn of, (h, w, 3) uint8.  Raises ValueError for another."""
+        """Draw a frame, (h, w, 3) uint8."""
         raise NotImplementedError
 
     def highlighted(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
@@ -86,9 +71,13 @@ class FrameView(Declaration):
         """Return what it shows of one pixel, in a few short lines."""
         raise NotImplementedError
 
-    def layer(self, frame: Frame, cut: Slice) -> Layer | None:
-        """Return the layer that a slice shows; None where there is nothing to cut."""
-        return None
+    def layers(self, frame: Frame, axis: int) -> int:
+        """Count the layers across an axis of which a slice shows one; 0 where there is nothing to cut."""
+        return 0
+
+    def title(self, draw: DrawOptions, lights: Lights) -> str:
+        """Return the title of the legend, with the light where the view is about one."""
+        return f"{self.label}, {named_light(lights, draw.light)}" if self.of_light else self.label
 
 
 _found: WeakKeyDictionary[Frame, dict[Hashable, Any]] = WeakKeyDictionary()
@@ -131,23 +120,10 @@ def shaded_pixels(frame: Frame) -> NDArray[np.bool_]:
     return np.ones(frame.primitive.shape, np.bool_) if frame.shaded is None else frame.shaded
 
 
-def per_pixel(frame: Frame, entries: NDArray) -> NDArray[np.int64]:
-    """Return what units have at each pixel (h, w); -1 for a miss."""
-    if len(entries) == 0:
-        return np.full(frame.unit.shape, -1)
-    return np.where(frame.unit >= 0, entries[np.maximum(frame.unit, 0)].astype(np.int64), -1)
-
-
-def spoken(name: str) -> Words:
-    """Return the name of a mode in short lines."""
-    return tuple(name.lower().split("_"))
-
-
 BINS = 64
 
 
-@dataclass(frozen=True)
-class Histogram:
+class Histogram(NamedTuple):
     """How often values lie where: `counts` (k, BINS) for each of k numbers, between `low` and `high`; and of each
     number the least, the largest and the mean.  `pixels` have a value, of so many."""
 
@@ -162,24 +138,16 @@ class Histogram:
 
 
 def histogram(values: Values, rows: slice, columns: slice) -> Histogram | None:
-    """Of a region's values; None where no pixel of it has one."""
+    """Count a region's values, whole numbers one by one if they are few; None where no pixel of it has one."""
     known = values.known[rows, columns]
     numbers = values.numbers[rows, columns][known].astype(np.float64)
     numbers = numbers[np.isfinite(numbers).all(axis=-1)]
     if len(numbers) == 0:
         return None
-    low, high = float(numbers.min()), float(numbers.max())
-    if low == high or (numbers == np.rint(numbers)).all():
+    low, high, whole = float(numbers.min()), float(numbers.max()), bool((numbers == np.rint(numbers)).all())
+    if low == high or whole:
         low, high = low - 0.5, high + 0.5
-    bins = min(BINS, round(high - low)) if (numbers == np.rint(numbers)).all() and high - low <= BINS else BINS
+    bins = round(high - low) if whole and high - low <= BINS else BINS
     counts = np.stack([np.histogram(column, bins, (low, high))[0] for column in numbers.T])
-    return Histogram(
-        counts,
-        low,
-        high,
-        tuple(numbers.min(axis=0)),
-        tuple(numbers.max(axis=0)),
-        tuple(numbers.mean(axis=0)),
-        len(numbers),
-        known.size,
-    )
+    least, largest, mean = (tuple(of(axis=0)) for of in (numbers.min, numbers.max, numbers.mean))
+    return Histogram(counts, low, high, least, largest, mean, len(numbers), known.size)

@@ -10,8 +10,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from viewer.state.palette import Color
-from viewer.util.numbers import count
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.state.palette import Color, color_map, signed_map
 
 
 class NoteKind(Enum):
@@ -73,13 +75,6 @@ def fact(name: str, value: str, meaning: str = "") -> Entry:
     return Entry(name, None, (value,), meaning)
 
 
-def counts_scale(most: int, span: tuple[float, float] | None) -> Scale:
-    """Return the scale of a count: over what was chosen, or up to the most that there is."""
-    if span is not None:
-        return Scale(f"{span[0]:.4g}", f"{span[1]:.4g}")
-    return Scale("0", count(most), count(most // 2) if most % 2 == 0 else "")
-
-
 def lights_in_words(lights: int) -> str:
     """Return what numbers the lights of a scene have."""
     if lights == 0:
@@ -115,17 +110,21 @@ class Words:
 
 @dataclass(frozen=True)
 class Swatch:
-    """A rectangle of a colour, maybe with `stripes` of another, or, where that is None, of the colour map, which may go
-    from last to first, or that of a signed difference."""
+    """A rectangle of a colour, maybe with `stripes` of another, or of the colour map of a `scale`."""
 
     x: float
     y: float
     width: float
     height: float
     color: Color | None
-    reverse: bool = False
-    signed: bool = False
     stripes: Color | None = None
+    scale: Scale | None = None
+
+    def colors(self, steps: int) -> NDArray[np.float32]:
+        """Return so many colours (steps, 3) of the scale's map, from left to right."""
+        assert self.scale is not None
+        colors = (signed_map if self.scale.signed else color_map)(steps)
+        return colors[::-1] if self.scale.reverse else colors
 
 
 @dataclass(frozen=True)
@@ -143,19 +142,16 @@ def fitting(legend: Legend, measure: Measure, line: float, width: float, height:
     """The layout of as much of a legend as there is room for: notes go first, then facts, then the last column.
 
     None where even the colours and their names are too large."""
-    shorter = replace(legend, notes=())
-    plain = replace(shorter, facts=())
-    narrow = replace(plain, columns=plain.columns[:1], entries=tuple(_cut(entry, 1) for entry in plain.entries))
-    bare = replace(narrow, columns=(), entries=tuple(_cut(entry, 0) for entry in plain.entries))
+    shorter, plain = replace(legend, notes=()), replace(legend, notes=(), facts=())
+    narrow, bare = (
+        replace(plain, columns=plain.columns[:n], entries=tuple(replace(e, values=e.values[:n]) for e in plain.entries))
+        for n in (1, 0)
+    )
     for one in (legend, shorter, plain, narrow, bare):
         layout = lay_out(one, measure, line)
         if layout.width <= width and layout.height <= height:
             return layout
     return None
-
-
-def _cut(entry: Entry, values: int) -> Entry:
-    return replace(entry, values=entry.values[:values])
 
 
 def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
@@ -166,11 +162,13 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
     columns = max([len(legend.columns), *(len(row.values) for row in rows)])
     table = [legend.columns, *(row.values for row in rows)]
     widths = [max((measure(row[i]) for row in table if i < len(row)), default=0.0) for i in range(columns)]
-    names = max((_indent(row, indent) + measure(row.name) for row in rows), default=0.0)
+    names = max(((indent if row.color else 0.0) + measure(row.name) for row in rows), default=0.0)
     inner = max(
-        names + sum(width + gap for width in widths), measure(legend.title), _scale_width(legend, measure, line)
+        names + sum(width + gap for width in widths),
+        measure(legend.title),
+        _scale_width(legend, measure, line),
+        NOTE_WIDTH * line if legend.notes else 0.0,
     )
-    inner = max(inner, NOTE_WIDTH * line if legend.notes else 0.0)
     words, swatches, tips = [Words(pad, pad, legend.title)], [], []
     y = pad + step
 
@@ -183,7 +181,7 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
 
     if legend.scale is not None:
         scale = legend.scale
-        swatches.append(Swatch(pad, y + 0.1 * line, inner, 0.7 * line, None, scale.reverse, scale.signed))
+        swatches.append(Swatch(pad, y + 0.1 * line, inner, 0.7 * line, None, scale=scale))
         y += line
         words.append(Words(pad, y, scale.low))
         words.append(Words(pad + (inner - measure(scale.middle)) / 2.0, y, scale.middle, QUIET))
@@ -195,8 +193,10 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
     for row in rows:
         if row.color is not None:
             side = 0.76 * line
-            swatches.append(Swatch(pad, y + 0.12 * line, side, side, row.color, stripes=row.stripes))
-        words.append(Words(pad + _indent(row, indent), y, row.name, TEXT if row.color is not None else QUIET))
+            swatches.append(Swatch(pad, y + 0.12 * line, side, side, row.color, row.stripes))
+            words.append(Words(pad + indent, y, row.name))
+        else:
+            words.append(Words(pad, y, row.name, QUIET))
         words += values(row.values, QUIET if row.quiet else TEXT)
         if row.meaning:
             tips.append((y, y + step, row.meaning))
@@ -207,10 +207,6 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
             y += step
     height = y - (step - line) + pad
     return Layout(inner + 2.0 * pad, height, tuple(words), tuple(swatches), tuple(tips))
-
-
-def _indent(row: Entry, indent: float) -> float:
-    return indent if row.color is not None else 0.0
 
 
 def _scale_width(legend: Legend, measure: Measure, line: float) -> float:

@@ -3,39 +3,37 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import OCCLUSION_COLORS, OCCLUSION_MEANING
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single, spoken
+from viewer.views.base import Lights
+from viewer.views.kinds import Class, ModeView, culled_by_modes, mode_name
 from viewer.views.legend import Legend
-from viewer.views.modes import Class, culled_by_modes, dynamic_meaning, mode_entries, units_of
-from viewer.views.paint import by_class
 
-_PALETTE = np.asarray([OCCLUSION_COLORS[mode] for mode in OcclusionMode], np.float32)
+MOVES = Class(
+    mode_name(OcclusionMode.DYNAMIC), OCCLUSION_COLORS[OcclusionMode.DYNAMIC],
+    "it moves, or could and the method is paper: never culled",
+)  # fmt: skip
 
 
-class Occlusion(FrameView):
+class Occlusion(ModeView):
     label = "Occlusion mode"
     key = "2"
     help = "How much of each primitive the camera has seen: only fully rendered ones are culled."
-    of_modes = is_flat = True
+    what = "occlusion mode"
+    classes = (
+        *[Class(mode_name(one), OCCLUSION_COLORS[one], OCCLUSION_MEANING[one]) for one in list(OcclusionMode)[:-1]],
+        MOVES,
+    )
 
-    def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
-        return by_class(frame, draw, frame.unit, occlusion_mode(frame.modes), _PALETTE)
+    def of_units(self, frame: Frame, light: int) -> NDArray[np.uint8]:
+        return occlusion_mode(frame.modes)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
-        meaning = OCCLUSION_MEANING | {OcclusionMode.DYNAMIC: dynamic_meaning(frame)}
-        classes = [Class(mode.name, OCCLUSION_COLORS[mode], meaning[mode]) for mode in OcclusionMode]
-        entries = mode_entries(frame, occlusion_mode(frame.modes), classes)
-        return Legend(self.label, ("pixels", units_of(frame)), entries, facts=culled_by_modes(frame))
-
-    def values(self, frame: Frame, draw: DrawOptions) -> Values:
-        return single(frame.occlusion_mode, "occlusion mode", hits(frame), classes=True)
-
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
-        return spoken(OcclusionMode(int(occlusion_mode(frame.modes[frame.unit[y, x]]))).name)
+        return self.mode_legend(frame, draw, self.label, culled_by_modes(frame))
 
 
 VIEW = Occlusion()

@@ -33,29 +33,23 @@ _ONE = np.float32(1.0)
 def by_class(
     frame: Frame,
     draw: DrawOptions,
-    index: NDArray[np.int32],
     classes: NDArray[np.uint8],
     palette: NDArray[np.float32],
     striped: NDArray[np.float32] | None = None,
     stripe: int = 1,
     cells: NDArray[np.int32] | None = None,
 ) -> Pixels:
-    """Draw the colour `palette[classes[index]]` of each pixel, shaded.
+    """Draw the colour of the class (h, w) of each pixel, shaded.
 
     In every second stripe, so many pixels across, `striped` takes the place of the palette.  Between `cells` there are
     lines."""
-    pixels, classes = _empty(frame), classes if len(classes) else np.zeros(1, np.uint8)
+    pixels, index, all_of_them = _empty(frame), classes.astype(np.int32), np.arange(len(palette), dtype=np.uint8)
     kernels.paint_classes(
-        index, classes, palette, palette if striped is None else striped, stripe, frame.color, np.float32(draw.shading),
-        frame.primitive, _BACKGROUND, frame.primitive if cells is None else cells,
+        index, all_of_them, palette, palette if striped is None else striped, stripe, frame.color,
+        np.float32(draw.shading), frame.primitive, _BACKGROUND, frame.primitive if cells is None else cells,
         _ONE if cells is None else np.float32(CELL_LINE), np.float32(outline(draw)), pixels,
     )  # fmt: skip
     return pixels
-
-
-def by_code(frame: Frame, draw: DrawOptions, codes: NDArray, palette: NDArray[np.float32]) -> Pixels:
-    """Draw the colour of the code (h, w) at each pixel, shaded."""
-    return by_class(frame, draw, codes.astype(np.int32), np.arange(len(palette), dtype=np.uint8), palette)
 
 
 def by_number(

@@ -7,9 +7,9 @@ import numpy as np
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, per_pixel, single
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
+from viewer.views.kinds import culled_by_modes
 from viewer.views.legend import Entry, Legend, Scale
-from viewer.views.modes import culled_by_modes
 from viewer.views.paint import by_number
 
 
@@ -35,7 +35,7 @@ class PixelCount(FrameView):
         return Legend("Pixels now, against the highest count", (), entries, scale, culled_by_modes(frame))
 
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
-        return single(per_pixel(frame, frame.pixel_count), "pixels of the primitive", hits(frame))
+        return single(frame.pixel_count[frame.unit], "pixels of the primitive", hits(frame))
 
     def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
         unit = frame.unit[y, x]

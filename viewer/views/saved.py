@@ -11,7 +11,6 @@ from viewer.state.palette import GREY
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import (
-    NOT_RECORDED,
     FrameView,
     Lights,
     Pixels,
@@ -109,7 +108,7 @@ class Work(FrameView):
 def recorded(found: NDArray[np.int32] | None) -> NDArray[np.int32]:
     """Return what a frame recorded of its work; raises ValueError where that is nothing."""
     if found is None:
-        raise ValueError(NOT_RECORDED[Record.WORK])
+        raise ValueError("the frame did not record the work at its pixels")
     return found
 
 

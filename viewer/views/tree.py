@@ -1,38 +1,32 @@
-"""A slice through an acceleration structure that is built where rays arrive."""
+"""A slice through an acceleration structure that is built where rays arrive.
+
+It is drawn through everything: wherever a ray of the picture passes the tree is built, so what waits is what lies
+behind something, and would never be seen if that hid the slice.
+"""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tracer.frame import Frame
-from tracer.geometry.tree_parts import NOWHERE, TreeParts
+from tracer.frame import EVERYWHERE, Frame, Region
+from tracer.geometry.tree_parts import NOWHERE, PartsAt, TreeParts, nothing_at
 from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import BACKGROUND, hex_color
-from viewer.state.readings import TREE, TREE_IS_GONE
-from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Layer, Lights, Pixels, Values, Words, hits, once, single
+from viewer.state.readings import TREE
+from viewer.util.numbers import count, percent, several
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Scale, fact
 from viewer.views.paint import FAINT_LINE, checkered, in_range, mapped, on_line, outline, shaded
-from viewer.views.slices import (
-    BORDER,
-    HIDDEN,
-    LAYERS,
-    LEVEL,
-    LINE,
-    NO_PART,
-    SAMPLES,
-    STRIPE,
-    WAITS,
-    layer_of,
-    part_seen,
-    part_words,
-    place_of,
-    share_built,
-    tree_codes,
-    tree_seen,
-)  # fmt: skip
+from viewer.views.slices import Met, met, wide_enough
 
+LAYERS = 100
+"""Steps from one side of what most primitives are in to the other."""
+SAMPLES = 128
+"""Points along each side of a slice, of which parts are counted."""
+STRIPE = 4
+"""Pixels across which a stripe of what waits goes."""
 WAITS_COLORS = hex_color("4A4E57"), hex_color("6B707B")
 """Stripes of what of a tree is not built."""
 _OF_SLICE = f"its area, by {SAMPLES} x {SAMPLES} points; what lies outside of all boxes counts for neither"
@@ -55,19 +49,16 @@ class Tree(FrameView):
         return 0.0, float(tree_of(frame).levels)
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
-        parts, cut = tree_of(frame), draw.slice
-        found = once(frame, ("tree", cut), lambda: tree_codes(frame, parts, cut))
-        pixels, there = _behind(frame, draw), found != NO_PART
-        codes, stripes = found[there], checkered(found.shape, STRIPE)[there]
-        colors = mapped(in_range((codes & LEVEL).astype(float), draw.span or self.span(frame)))
-        waits = codes & WAITS != 0
+        found, plane = tree_seen(frame, draw.slice)
+        pixels, there = _behind(frame, draw), found.numbers != NOWHERE
+        colors = mapped(in_range(found.levels[there].astype(float), draw.span or self.span(frame)))
+        waits, stripes = found.built[there] == 0, checkered(there.shape, STRIPE)[there]
         colors[waits] = np.asarray(WAITS_COLORS, np.float32)[stripes[waits]]
-        colors[codes & LINE != 0] *= np.float32(FAINT_LINE)
-        hidden = codes & HIDDEN != 0
-        behind = np.zeros(found.shape, np.bool_)
-        behind[there] = hidden
-        colors[hidden] = shaded(frame, colors[hidden], draw.shading, behind)
-        colors[codes & BORDER != 0] = 1.0
+        lines = on_line(found.numbers) & _all_near(wide_enough(found.widths, plane.per_pixel))
+        colors[lines[there]] *= np.float32(FAINT_LINE)
+        hidden = there & plane.behind
+        colors[hidden[there]] = shaded(frame, colors[hidden[there]], draw.shading, hidden)
+        colors[_in_company(on_line(found.owners))[there]] = 1.0
         pixels[there] = np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
         return pixels
 
@@ -75,7 +66,7 @@ class Tree(FrameView):
         parts, built, cut = tree_of(frame), frame.statistics.built, draw.slice
         share = share_built(parts, cut)
         low, high = draw.span or self.span(frame)
-        facts = [fact(f"slice at {AXES[cut.axis]}", f"{place_of(parts, cut):.4g}")]
+        facts = [fact(f"slice at {AXES[cut.axis]}", f"{plane_of(parts, cut):.4g}")]
         if share is not None:
             facts.append(fact("built of the slice", percent(share, 1.0), _OF_SLICE))
         if built is not None:
@@ -90,36 +81,84 @@ class Tree(FrameView):
         return Legend(f"{self.label}: levels of its parts, {parts.name}", (), entries, scale, tuple(facts))
 
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
-        parts = tree_seen(frame, tree_of(frame), draw.slice).parts
-        levels = np.where(parts.built, parts.levels, -1)
-        return single(levels, "level", parts.numbers != NOWHERE, classes=True)
+        found, _ = tree_seen(frame, draw.slice)
+        return single(np.where(found.built, found.levels, -1), "level", found.numbers != NOWHERE, classes=True)
 
     def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
-        tree = tree_of(frame)
-        return part_words(part_seen(frame, tree, draw.slice, x, y), tree.owner)
+        """Return what part is seen, with the word for what owners are; a dash for none."""
+        found, _ = tree_seen(frame, draw.slice, (slice(y, y + 1), slice(x, x + 1)))
+        number, level, built, held, owner = (
+            int(column[0, 0]) for column in (found.numbers, found.levels, found.built, found.held, found.owners)
+        )
+        if number == NOWHERE:
+            return ("-",)
+        leaf = f"leaf of {several(held, 'primitive')}" if held else "empty leaf"
+        what = "not built yet" if not built else "inner node" if held < 0 else leaf
+        return (what, f"level {level}", *((f"{tree_of(frame).owner} {owner}",) if owner >= 0 else ()))
 
-    def layer(self, frame: Frame, cut: Slice) -> Layer | None:
-        return Layer(layer_of(cut), LAYERS, place_of(tree_of(frame), cut)) if self.can_draw(frame) else None
+    def layers(self, frame: Frame, axis: int) -> int:
+        return LAYERS if self.can_draw(frame) else 0
+
+
+def tree_of(frame: Frame) -> TreeParts:
+    """Return the tree that the frame's rays were building."""
+    found: TreeParts = frame.structures[TREE]
+    return found
+
+
+def plane_of(parts: TreeParts, cut: Slice) -> float:
+    """Return where the plane of a slice lies along its axis, in units of the scene: in the middle of its layer."""
+    low, high = float(parts.extent[cut.axis]), float(parts.extent[cut.axis + 3])
+    return low + (cut.layer(LAYERS) + 0.5) / LAYERS * (high - low)
+
+
+def tree_seen(frame: Frame, cut: Slice, where: Region = EVERYWHERE) -> tuple[PartsAt, Met]:
+    """Return the part of the tree (h, w) that each pixel sees in a slice, and where that is; none once the tree is no
+    more."""
+    parts = tree_of(frame)
+    plane = met(frame, cut.axis, plane_of(parts, cut), where)
+    shape = plane.behind.shape
+    found = parts.at(plane.points.reshape(-1, 3), cut.axis) or nothing_at(plane.behind.size)
+    return PartsAt._make(column.reshape(shape) for column in found), plane
+
+
+def share_built(parts: TreeParts, cut: Slice) -> float | None:
+    """Return which share of what a slice has of the tree is built, by SAMPLES x SAMPLES points; None where it has
+    none."""
+    steps = (np.arange(SAMPLES, dtype=np.float32) + np.float32(0.5)) / np.float32(SAMPLES)
+    points = np.empty((SAMPLES, SAMPLES, 3), np.float32)
+    low, high = parts.extent[:3], parts.extent[3:]
+    one, other = (k for k in range(3) if k != cut.axis)
+    points[..., cut.axis] = plane_of(parts, cut)
+    points[..., one] = low[one] + steps[:, None] * (high[one] - low[one])
+    points[..., other] = low[other] + steps * (high[other] - low[other])
+    found = parts.at(points.reshape(-1, 3), cut.axis)
+    there = found.numbers != NOWHERE if found is not None else np.zeros(0, np.bool_)
+    return float(found.built[there].mean()) if found is not None and there.any() else None
 
 
 def _behind(frame: Frame, draw: DrawOptions) -> Pixels:
     """Draw the dimmed picture.  It is rounded as float64, as the slice is: dimmed white lies between two bytes."""
-    colors = np.where(
-        hits(frame)[..., None], dimmed(frame, draw.tone, draw.beneath), np.asarray(BACKGROUND, np.float32)
-    )
+    picture, background = dimmed(frame, draw.tone, draw.beneath), np.asarray(BACKGROUND, np.float32)
+    colors = np.where(hits(frame)[..., None], picture, background)
     colors[on_line(frame.primitive)] *= np.float32(outline(draw))
     return np.round(colors.astype(np.float64) * 255.0).astype(np.uint8)
 
 
-def tree_of(frame: Frame) -> TreeParts:
-    """Return the tree that the frame's rays were building.  Raises ValueError for a frame whose tree was there before,
-    or is no more."""
-    if TREE not in frame.structures:
-        raise ValueError("all of the frame's tree was built before its rays came")
-    found: TreeParts = frame.structures[TREE]
-    if not found.alive:
-        raise ValueError(TREE_IS_GONE)
-    return found
+def _in_company(line: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Find pixels of lines with two neighbours of lines at least: others are dots, as of flat boxes far away."""
+    padded = np.pad(line, 1)
+    height, width = line.shape
+    near = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3) if (y, x) != (1, 1)]
+    return line & (np.sum(near, axis=0, dtype=np.uint8) >= 2)
+
+
+def _all_near(there: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Find where a pixel and its neighbours to the right and below are: lines belong to both sides."""
+    near = there.copy()
+    near[:, :-1] &= there[:, 1:]
+    near[:-1] &= there[1:]
+    return near
 
 
 VIEW = Tree()

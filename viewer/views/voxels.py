@@ -1,22 +1,23 @@
-"""A slice through the voxels of the method `voxels`."""
+"""A slice through the voxels of the method `voxels`: one layer of them, drawn as the plane through their middles."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer.culling.modes import ShadowMode
-from tracer.culling.voxels.tell import STATE_NAMES, VoxelStates
+from tracer.culling.voxels.grid import BLOCK
+from tracer.culling.voxels.tell import STATE_NAMES, VoxelStates, index_of
 from tracer.frame import Frame
-from tracer.scene.lights import named_light
 from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import GREY, SHADOW_COLORS, Color
 from viewer.state.readings import VOXELS
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Layer, Lights, Pixels, Values, Words, once, single
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, once, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Note, NoteKind, fact
-from viewer.views.paint import CELL_LINE, by_color, in_bytes
-from viewer.views.slices import NO_VOXEL, STATE, VOXEL_LINE, middle_of, slice_codes, slice_seen, voxel_words
+from viewer.views.paint import CELL_LINE, by_color, in_bytes, on_line
+from viewer.views.slices import met, wide_enough
 
 FULL, LIT = int(ShadowMode.FULL_SHADOW), int(ShadowMode.NON_SHADOW)
 STATES: dict[int, tuple[Color, str]] = {
@@ -42,27 +43,24 @@ class Voxels(FrameView):
         "A slice through the voxels of the method voxels: which are in shadow of the chosen light as a whole, which "
         "see all of it, and of which neither is known. Behind it the picture is dimmed."
     )
+    shows = VOXELS
     of_light = has_slice = shows_picture = everywhere = True
 
-    def can_draw(self, frame: Frame, light: int = 0) -> bool:
-        return VOXELS in frame.structures
-
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
-        states, light, cut = voxels_of(frame), draw.light, draw.slice
-        codes = once(frame, ("voxels", light, cut), lambda: slice_codes(frame, states, light, cut))
-        pixels, there = by_color(frame, draw, dimmed(frame, draw.tone, draw.beneath)), codes != NO_VOXEL
-        colors = _PALETTE[codes[there] & STATE]
-        colors[codes[there] & VOXEL_LINE != 0] *= np.float32(CELL_LINE)
+        numbers, lines = voxels_seen(frame, draw.slice)
+        pixels, there = by_color(frame, draw, dimmed(frame, draw.tone, draw.beneath)), numbers >= 0
+        colors = _PALETTE[voxels_of(frame).states(draw.light, numbers[there].astype(np.int64))]
+        colors[lines[there]] *= np.float32(CELL_LINE)
         pixels[there] = in_bytes(colors)
         return pixels
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
         states, cut, light = voxels_of(frame), draw.slice, draw.light
-        title, axis, grid = f"{self.label}, {named_light(lights, light)}", AXES[cut.axis], states.grid
+        grid, number, title = states.grid, cut.layer(states.shape[cut.axis]), self.title(draw, lights)
         if not states.known[light]:
             why = "Nothing is known of this light: it is a lamp, or past those that there is room for; its rays are "
             return Legend(title, notes=(Note(f"{why}traced.", NoteKind.WARNING),))
-        layer = np.take(np.arange(grid.voxels).reshape(states.shape), cut.layer(states.shape), axis=cut.axis)
+        layer = np.take(np.arange(grid.voxels).reshape(states.shape), number, axis=cut.axis)
         in_slice = np.bincount(states.states(light, layer).reshape(-1), minlength=3).tolist()
         in_all = states.counts(light)
         entries = tuple(
@@ -75,34 +73,62 @@ class Voxels(FrameView):
             for state in (FULL, LIT, 0)
         )
         facts = (
-            fact(f"slice at {axis}", f"{middle_of(grid, cut):.4g}", "the middles of a layer of voxels"),
-            fact("layer", f"{count(cut.layer(states.shape))} of {count(states.shape[cut.axis])}", "counted from 0"),
+            fact(f"slice at {AXES[cut.axis]}", f"{plane_of(states, cut):.4g}", "the middles of a layer of voxels"),
+            fact("layer", f"{count(number)} of {count(states.shape[cut.axis])}", "counted from 0"),
             fact("grid", " x ".join(str(n) for n in states.shape), f"of voxels that are {grid.side:.3g} wide"),
         )
         return Legend(title, ("slice", "all"), entries, facts=facts)
 
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
-        voxels = voxels_of(frame)
-        numbers = slice_seen(frame, voxels.grid, draw.slice).numbers
-        states = voxels.states(draw.light, np.maximum(numbers, 0).astype(np.int64))
+        numbers = voxels_seen(frame, draw.slice)[0]
+        states = voxels_of(frame).states(draw.light, np.maximum(numbers, 0).astype(np.int64))
         return single(states, "state of the voxel", numbers >= 0, classes=True)
 
     def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
-        return voxel_words(frame, voxels_of(frame), draw.light, draw.slice, x, y)
-
-    def layer(self, frame: Frame, cut: Slice) -> Layer | None:
-        if not self.can_draw(frame):
-            return None
+        """Return the voxel's place and its state; a dash where none is seen."""
+        number = int(voxels_seen(frame, draw.slice)[0][y, x])
+        if number < 0:
+            return ("-",)
         states = voxels_of(frame)
-        return Layer(cut.layer(states.shape), states.shape[cut.axis], middle_of(states.grid, cut))
+        state = int(states.states(draw.light, np.array(number)))
+        return "{}, {}, {}".format(*index_of(states.grid, number)), STATE_NAMES[state]
+
+    def layers(self, frame: Frame, axis: int) -> int:
+        return voxels_of(frame).shape[axis] if self.can_draw(frame) else 0
 
 
 def voxels_of(frame: Frame) -> VoxelStates:
-    """Return the voxels as the frame found them.  Raises ValueError for a frame by a method that has none."""
-    if VOXELS not in frame.structures:
-        raise ValueError("the method of the frame has no voxels")
+    """Return the voxels as the frame found them."""
     found: VoxelStates = frame.structures[VOXELS]
     return found
+
+
+def plane_of(states: VoxelStates, cut: Slice) -> float:
+    """Return where the plane of a slice lies along its axis, in units of the scene: in the middle of its layer."""
+    grid, number = states.grid, cut.layer(states.shape[cut.axis])
+    return float((grid.x, grid.y, grid.z)[cut.axis] + (number + 0.5) * grid.side)
+
+
+def voxels_seen(frame: Frame, cut: Slice) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+    """Return the number of the voxel (h, w) that each pixel sees in a slice, -1 where it sees none, and whether its
+    border is drawn there; that of a block of voxels where voxels are too small.
+
+    Where something lies before the slice, that is seen instead."""
+    return once(frame, ("voxels", cut), lambda: _voxels_seen(frame, voxels_of(frame), cut))
+
+
+def _voxels_seen(frame: Frame, states: VoxelStates, cut: Slice) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+    grid, sides = states.grid, states.shape
+    seen = met(frame, cut.axis, plane_of(states, cut))
+    along = (seen.points - np.array((grid.x, grid.y, grid.z), np.float32)) * np.float32(grid.per_unit)
+    with np.errstate(invalid="ignore"):
+        there = ~seen.behind & ((along >= 0.0) & (along < sides)).all(axis=-1)
+    place = np.where(there[..., None], along, 0.0).astype(np.int64)
+    place[..., cut.axis] = cut.layer(sides[cut.axis])
+    numbers = np.where(there, np.ravel_multi_index(tuple(np.moveaxis(place, -1, 0)), sides), -1).astype(np.int32)
+    blocks = np.where(there, (place // BLOCK) @ (1 << 40, 1 << 20, 1), -1)
+    lines = np.where(wide_enough(grid.side, seen.per_pixel), on_line(numbers), on_line(blocks))
+    return numbers, there & lines & wide_enough(BLOCK * grid.side, seen.per_pixel)
 
 
 VIEW = Voxels()

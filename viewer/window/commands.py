@@ -24,13 +24,6 @@ from viewer.window.setting_rows import setting_command
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
 _STOPS = 0.5  # of exposure by a key
-_COMPARE = {
-    CompareMode.FLIP: "Flip between A and B",
-    CompareMode.WIPE: "Wipe between A and B",
-    CompareMode.SIDE: "A and B side by side",
-    CompareMode.DIFFERENCE: "Signed difference B - A",
-    CompareMode.BLINK: "Blink A and B",
-}
 
 
 def build(ui: Ui) -> list[Command]:
@@ -60,8 +53,7 @@ def _file(ui: Ui) -> list[Command]:
                 tip="the command that makes this picture, to the clipboard"),
         Command("Send to tev", "File", lambda: c.pictures.to_tev(c.frame), enabled=there,
                 tip="the frame and its buffers, to tev or HDRView; the panel Saving says where it listens"),
-        switch("Start where I left off", "File", p, "start_where_left", separated=True),
-        Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset)),
+        Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset), separated=True),
         Command("Quit", "File", lambda: ui.desktop.exit(), "Ctrl+Q", separated=True),
     ]  # fmt: skip
 
@@ -181,9 +173,10 @@ def _slice(ui: Ui) -> list[Command]:
 
     def step(layers: int) -> Callable[[], None]:
         def go() -> None:
-            layer = view_of(s.draw.view).layer(c.frame, s.draw.slice) if c.frame is not None else None
-            if layer is not None:
-                s.set_draw(slice=layer.goes_to(s.draw.slice, layer.number + layers))
+            cut = s.draw.slice
+            many = view_of(s.draw.view).layers(c.frame, cut.axis) if c.frame is not None else 0
+            if many:
+                s.set_draw(slice=cut.in_layer(cut.layer(many) + layers, many))
 
         return go
 
@@ -258,8 +251,8 @@ def _compare(ui: Ui) -> list[Command]:
         comparing.keep()
         offer(ui, "Compare")
 
-    def by(mode: CompareMode, name: str) -> Command:
-        return Command(name, "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.meaning,
+    def by(mode: CompareMode) -> Command:
+        return Command(mode.command, "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.help,
                        checked=lambda: comparing.state.on and comparing.state.mode is mode)  # fmt: skip
 
     return [
@@ -269,7 +262,7 @@ def _compare(ui: Ui) -> list[Command]:
                 checked=lambda: bool(comparing.second_method),
                 tip="trace each frame by a second method as well, with modes and counters of its own"),
         Command("Next compare mode", "Compare", comparing.next_mode, "Shift+Z", enabled=there, separated=True),
-        *[by(mode, name) for mode, name in _COMPARE.items()],
+        *map(by, CompareMode),
         Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not comparing.state.on,
                 separated=True),
     ]  # fmt: skip

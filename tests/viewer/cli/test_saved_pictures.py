@@ -10,8 +10,12 @@ import pytest
 from PIL import Image
 
 from tests.commands import CAMERA, ROOM, run
-from viewer.output import capture
+from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO, MeshOptions
+from viewer.cli.main import viewer_parser
+from viewer.cli.options import mesh_options
+from viewer.output import capture, commands
 from viewer.state import codec
+from viewer.state.view_state import ViewState
 
 
 @pytest.fixture
@@ -158,3 +162,19 @@ def test_its_tone_and_its_range_come_back_where_the_view_has_any(room: Path, cap
         and kept["distances"].draw.tone.neutral
         and kept["normals"].draw.span is None
     )
+
+
+@pytest.mark.parametrize("meshes", [AS_IN_FILE, IN_STUDIO, MeshOptions(True, "-z", 12.5), MeshOptions(False, "x", 0.0)])
+def test_how_a_mesh_was_read_comes_back(meshes: MeshOptions) -> None:
+    state = ViewState("/a.ply", meshes)
+    assert mesh_options(viewer_parser().parse_args(["a.ply", *commands.mesh_options(meshes)])) == meshes
+    assert set(commands.mesh_options(meshes)) <= set(commands.options(state))
+    assert not set(commands.mesh_options(meshes)) & set(commands.options(ViewState("/a.aff", meshes)))
+    data = codec.state_to_json(state)
+    assert codec.state_from_json(data).meshes == meshes
+    assert codec.state_from_json({k: v for k, v in data.items() if k != "meshes"}).meshes == AS_IN_FILE
+    assert mesh_options(viewer_parser().parse_args(["a.ply", "--up", "-z"])) == MeshOptions(True, "-z")
+    for bad in (5, {"up": 3}, {"up": "w"}, {"crease": "x"}, {"crease": 1e9}):
+        with pytest.raises(ValueError, match="mesh|axis|up|crease") as error:
+            codec.state_from_json(data | {"meshes": bad})
+        assert "\n" not in str(error.value)

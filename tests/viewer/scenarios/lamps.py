@@ -12,7 +12,7 @@ from tests.viewer.driver import Driver
 from tracer.renderer import Renderer
 from viewer.state import readings
 from viewer.state.views import View
-from viewer.views.penumbra import arrivals
+from viewer.views import penumbra
 from viewer.window.panels.lights import LightFilters
 from viewer.window.panels.status import doing
 
@@ -54,7 +54,7 @@ def lamps(d: Driver) -> None:
     assert d.c.session.draw.view is View.PENUMBRA
     d.settle()
     frame = d.c.frame
-    between = np.isin(arrivals(frame, d.c.session.draw.light), (2, 3))
+    between = np.isin(penumbra.VIEW.find(frame, d.c.session.draw.light), (penumbra.Arrival.MOST, penumbra.Arrival.FEW))
     assert between.any() and frame.asked.max() == 64
     assert d.c.history.values("penumbra")[-1] > between.sum() / 2, "it is plotted"
     assert d.c.history.values("samples_due")[-1] > d.c.history.values("samples_reached")[-1] > 0
@@ -112,7 +112,7 @@ def _one_of_too_many(d: Driver) -> None:
             light = d.c.session.draw.light
             d.wait(lambda: d.c.scheduler.drawn_view is View.PENUMBRA, "one light", 20.0)
             assert d.c.frame.only_light == light and d.c.history.frames == traced
-            assert np.array_equal(arrivals(d.c.frame, light), arrivals(expected, light))
+            assert np.array_equal(penumbra.VIEW.find(d.c.frame, light), penumbra.VIEW.find(expected, light))
             drawn = picture(d.c.frame, View.PENUMBRA, light).astype(int)
             assert np.abs(d.shown().astype(int) - drawn).max() <= 2
         d.press(int(KEY.j) | int(KEY.mod_shift))

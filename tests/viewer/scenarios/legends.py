@@ -71,7 +71,7 @@ def _dragged(d: Driver) -> None:
     assert d.c.selection.picked is None and d.c.session.camera == camera and d.c.frame is frame
     area = drag_to(left, top)
     assert d.c.session.draw.legend_at == (0.0, 0.0) and area[0] - left < 20.0
-    area = drag_to(right - (area[2] - area[0]) / 2.0 - 20.0, bottom - (area[3] - area[1]) / 2.0 - 20.0)
+    area = drag_to(right, bottom)
     assert d.c.session.draw.legend_at == (1.0, 1.0) and right - area[2] < 20.0 and bottom - area[3] < 20.0
     assert d.c.session.camera == camera and d.c.frame is frame and d.c.selection.picked is None
 

@@ -10,7 +10,6 @@ from imgui_bundle import glfw_utils, imgui
 
 from tests.sweeps import cases
 from tests.viewer.driver import Driver
-from viewer.state import codec
 from viewer.state.views import View
 from viewer.window import style as window_style
 from viewer.window.layout import PANELS, PICTURE
@@ -106,30 +105,6 @@ def looks(d: Driver) -> None:
         assert p.theme == after
     assert p.ui_scale == 1.0 and d.c.session.draw.view is View.COLOR and brightness() < 60.0
     assert p.recent and d.c.bookmarks.all[0].name == "here" and d.c.presets.all
-    d.c.questions.before_resetting(d.c.settings.reset)
-    d.frames(3)
-    d.context.item_click("//Reset all settings?###question/Forget bookmarks as well")
-    d.context.item_click("//Reset all settings?###question/Reset")
-    d.frames(3)
-    assert not d.c.bookmarks.all and p.recent
-
-    # What is open now is where the next start may begin; a scene that has gone since is told of.
-    d.context.menu_click("//##MainMenuBar/File/Start where I left off")
-    d.hold(KEY.d, 0.2)
-    d.settle()
-    camera, path = d.c.session.camera, d.c.session.scene.path
-    place = codec.state_to_json(d.c.session.state)
-    d.press(KEY.r)
-    d.settle()
-    assert p.start_where_left and d.c.session.camera != camera
-    p.last = place  # it follows the camera, so that it is there whenever the program ends
-    assert d.c.loader.go_on()
-    d.wait(lambda: d.c.session.camera == camera, "the place that was left")
-    assert d.c.session.scene.path == path
-    d.settle()
-    p.last = place | {"scene": str(d.folder / "gone.aff")}
-    assert not d.c.loader.go_on() and "the scene is gone" in d.c.notices.message.text
-    d.settle()
 
 
 def hiding(d: Driver) -> None:

@@ -40,8 +40,7 @@ from viewer.state.methods import (
 from viewer.state.readings import MOST_RECORDED, can_draw
 from viewer.state.session import Session
 from viewer.state.views import View
-from viewer.views import lights
-from viewer.views.penumbra import arrivals
+from viewer.views import penumbra
 
 
 @pytest.mark.parametrize("method", [*(kind.name for kind in bases()), "certified+cache", "paper+rest", "none+cache"])
@@ -102,10 +101,7 @@ def test_what_is_recorded_of_one_light_shows_that_light():
     for light in range(3):
         assert can_draw(all_of_them, View.PENUMBRA, light) and can_draw(alone, View.PENUMBRA, light) == (light == 1)
     assert can_draw(all_of_them, View.LIGHTS) and not can_draw(alone, View.LIGHTS, 1)
-    assert np.array_equal(arrivals(alone, 1), arrivals(all_of_them, 1))
-    for lacks in (lambda: arrivals(alone, 0), lambda: lights.VIEW.found(alone)):
-        with pytest.raises(ValueError, match="did not record which samples"):
-            lacks()
+    assert np.array_equal(penumbra.VIEW.find(alone, 1), penumbra.VIEW.find(all_of_them, 1))
 
 
 def test_certificates_that_may_still_come_are_promised():

@@ -142,7 +142,7 @@ A2 = {**A, "name": "A2"}
         ({"marks": [A]}, {"marks": [A2]}, {"marks": [A, B]}, {"marks": [A2, B]}),
         ({"marks": {}}, {"marks": {"room": [A]}}, {"marks": {"hall": [B]}, "of a newer version": 7},
          {"marks": {"room": [A], "hall": [B]}, "of a newer version": 7}),
-        ({"last": {"a": 1}}, {"last": {}}, {"last": {"a": 1}}, {"last": {}}),
+        ({"state": {"a": 1}}, {"state": {}}, {"state": {"a": 1}}, {"state": {}}),
     ],
 )  # fmt: skip
 def test_what_two_windows_have_changed_is_put_together(base: dict, mine: dict, theirs: dict, found: dict):

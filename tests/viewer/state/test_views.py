@@ -16,8 +16,8 @@ from viewer.services.history import Plots, counters
 from viewer.state import palette
 from viewer.state.tone import MOST_EXPOSURE, Curve, Tone, brighter, clipped, toned
 from viewer.state.views import View
+from viewer.views import penumbra
 from viewer.views.difference import Mark, wrong_marks
-from viewer.views.penumbra import ARRIVALS
 from viewer.window.widgets import percent
 
 
@@ -25,11 +25,11 @@ def test_the_certificate_legend_counts_the_cells_that_are_seen():
     frame = with_certificates(make_frame())
     rows = {r.name: r for r in classes_in(frame, View.CERTIFICATE, 1)}
     dynamic = np.isin(frame.primitive, (4, 5))
-    for number, name in enumerate(("NONE", "FULL", "LIT", "CANDIDATES")):
+    for number, name in enumerate(("none", "full", "lit", "candidates")):
         there = (frame.primitive >= 0) & ~dynamic & ((frame.certificates >> 4) & 3 == number)
         assert rows[name].pixels == there.sum()
         assert rows[name].units == len(np.unique(frame.cells[there & (frame.cells >= 0)]))
-    assert (rows["DYNAMIC"].pixels, rows["DYNAMIC"].units) == (dynamic.sum(), 0)
+    assert (rows["dynamic"].pixels, rows["dynamic"].units) == (dynamic.sum(), 0)
     assert sum(r.units for r in rows.values()) == frame.cells.max() + 1
     assert classes_in(make_frame(), View.CERTIFICATE, 1) == classes_in(frame, View.CERTIFICATE, 15) == []
 
@@ -50,7 +50,7 @@ def test_the_colour_of_wrong_answers_is_unmistakable():
     others = [
         *palette.OCCLUSION_COLORS.values(),
         *palette.SHADOW_COLORS.values(),
-        *(color for _, color, _ in ARRIVALS.values()),
+        *(one.color for one in penumbra.VIEW.classes),
     ]
     others += [palette.BACKGROUND, palette.GREY]
     for other in [*others, palette.WIPE_LINE, *palette.color_map()]:
@@ -159,11 +159,6 @@ def test_a_picture_that_becomes_whole_is_one_frame_of_the_history():
 GREYS = np.repeat(np.linspace(0.0, 8.0, 161, dtype=np.float32)[:, None, None], 3, axis=2)
 
 
-def test_a_neutral_tone_leaves_colours_as_they_are():
-    color = np.random.default_rng(0).normal(size=(4, 5, 3)).astype(np.float32)
-    assert toned(color, Tone()) is color, "not even rounded"
-
-
 @pytest.mark.parametrize("curve", Curve)
 @pytest.mark.parametrize("white", [0.5, 1.0, 4.0])
 def test_curves_rise_from_black_to_the_white_point(curve, white):
@@ -176,13 +171,16 @@ def test_curves_rise_from_black_to_the_white_point(curve, white):
     assert np.array_equal(bright[:, 0], GREYS[:, 0, 0] > white * (1.0 + 1e-6))
 
 
-def test_a_stop_of_exposure_doubles_colours():
+def test_a_stop_of_exposure_doubles_colours_and_has_limits():
     assert np.array_equal(toned(GREYS, Tone(1.0)), 2.0 * GREYS)
     for curve in Curve:
         assert toned(GREYS, Tone(-2.0, 1.0, curve)) == pytest.approx(toned(GREYS / 4.0, Tone(0.0, 1.0, curve)))
+    assert brighter(brighter(Tone(), 0.1), -0.1).neutral
+    assert brighter(Tone(MOST_EXPOSURE), 1.0).exposure == MOST_EXPOSURE
 
 
 def test_known_values_of_the_curves():
+    assert toned(GREYS, Tone()) is GREYS, "not even rounded"
     half = np.full((1, 1, 3), 0.5, np.float32)
     assert toned(half, Tone(0.0, 1.0, Curve.SRGB)) == pytest.approx(0.735357, abs=1e-5)
     assert toned(half, Tone(0.0, 2.0, Curve.REINHARD)) == pytest.approx(0.5 * (1 + 0.5 / 4.0) / 1.5)
@@ -197,9 +195,3 @@ def test_what_is_negative_is_black_and_a_single_channel_clips():
     color = np.array([[[-1.0, -0.5, 0.0], [0.0, 1.5, 0.2], [0.0, 0.0, 0.01]]], np.float32)
     bright, black = clipped(color, Tone())
     assert black.tolist() == [[True, False, False]] and bright.tolist() == [[False, True, False]]
-
-
-def test_exposure_has_limits_and_comes_back_to_none():
-    tone = brighter(brighter(Tone(), 0.1), -0.1)
-    assert tone.neutral
-    assert brighter(Tone(MOST_EXPOSURE), 1.0).exposure == MOST_EXPOSURE

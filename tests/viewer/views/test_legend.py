@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
@@ -11,9 +10,8 @@ import pytest
 from tests.scenes import loaded
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.viewer.colors import luminance
-from tests.viewer.drawn import classes_in, legend_in, picture
+from tests.viewer.drawn import legend_in
 from tests.viewer.fakes import (
-    in_cells,
     in_part,
     make_frame,
     with_cell_lights,
@@ -24,14 +22,13 @@ from tests.viewer.fakes import (
     with_voxels,
 )
 from tracer.culling.fate import MOVING_SHADOW, Fate
-from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.lights import Light, light_in_words
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.overlays import with_legend
 from viewer.state.draw_options import Slice
-from viewer.state.palette import FATE_COLORS, FATE_NAMES, GREY, OCCLUSION_COLORS, WRONG
+from viewer.state.palette import FATE_NAMES, OCCLUSION_COLORS, WRONG
 from viewer.state.readings import can_draw
 from viewer.state.views import View
 from viewer.util.numbers import count, percent
@@ -62,6 +59,7 @@ def measure(text: str) -> float:
 
 @pytest.fixture
 def frame() -> Frame:
+    """One of numbers, with whatever any view shows."""
     return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(make_frame(SETTINGS)))))))
 
 
@@ -123,15 +121,6 @@ def test_maps_of_numbers_have_their_mean_and_their_range(frame: Frame):
         assert of(frame, view, span=(1.0, 2.5), slice=cut).scale.high == "2.5"
 
 
-def test_modes_come_with_shares_and_counts(frame: Frame):
-    legend = of(frame, View.OCCLUSION)
-    assert legend.columns == ("pixels", "primitives")
-    assert [entry.color for entry in legend.entries] == list(OCCLUSION_COLORS.values())
-    by_name = {entry.name: entry.values for entry in legend.entries}
-    assert by_name["fully rendered"] == ("42.9 %", "3") and by_name["dynamic"] == ("28.6 %", "2")
-    assert of(in_cells(make_frame(SETTINGS)), View.OCCLUSION).columns == ("pixels", "cells")
-
-
 @pytest.mark.parametrize("method", ["paper", "none", "auto", "certified", "paper+rest"])
 def test_a_scene_has_the_same_dynamic_primitives_by_every_method(method: str):
     """Those that rest, in the second picture of one moment, carry modes where the method says so; none is missed."""
@@ -148,65 +137,16 @@ def test_a_scene_has_the_same_dynamic_primitives_by_every_method(method: str):
         assert (counts["dynamic"] == 0) == (method not in ("paper", "none"))
 
 
-def test_in_motion_legends_count_the_modes_that_are_drawn():
-    """Also of pictures of which only a part is shaded, from places where the camera has not been, and coarser ones."""
-    scene = loaded(embedded_scenes()["default"])
-    renderer, seen = Renderer(scene, Settings(128, 96, depth=0, threads=2)), set()
-    for number, (width, height) in enumerate([(128, 96), (128, 96), (64, 48), (128, 96), (64, 48)]):
-        renderer.settings = replace(renderer.settings, width=width, height=height)
-        time = 1.0 + number / 8.0
-        with closing(renderer.refine(time, scene.camera_at(4.0 * time), parts=(2, 16))) as refining:
-            frame = next(refining)
-        assert frame.shaded is not None and not frame.shaded.all()
-        hit = (frame.primitive >= 0).sum()
-        for view in (View.OCCLUSION, View.SHADOW):
-            rows = classes_in(frame, view, 2)
-            drawn = picture(frame, view, 2, shading=0.0).reshape(-1, 3)
-            for color in {row.color for row in rows} - {GREY}:  # which is that of stripes, too
-                solid = sum(row.pixels for row in rows if row.color == color and not row.striped)
-                striped = sum(row.pixels for row in rows if row.color == color and row.striped)
-                found = (drawn == np.round(255.0 * np.array(color))).all(axis=1).sum()
-                assert solid <= found <= solid + striped and (found > solid or striped < 40), (view, color)
-            assert sum(row.pixels for row in rows) == hit
-            seen |= {row.name for row in rows if row.pixels}
-    assert seen >= {"PARTIALLY_OCCLUDED", "FULLY_RENDERED", "DYNAMIC", "FULL_SHADOW", "FULL_SHADOW, untrusted"}
-
-
-@pytest.mark.parametrize("light", [0, 1, 2])
-def test_pixels_are_counted_by_what_reaches_them(frame: Frame, light: int):
-    legend, hit = of(frame, View.PENUMBRA, light=light, lights=LAMPS), frame.primitive >= 0
-    assert legend.title == f"Penumbra, light {light} (lamp)"
-    assert legend.facts[0].values == (str((16, 1, 64)[light]),)
-    asked, reached = frame.asked[hit][:, light].astype(int), frame.reached[hit][:, light].astype(int)
-    expected = {
-        "fully lit": (asked > 0) & (reached == asked),
-        "penumbra, more than half": (2 * reached > asked) & (reached < asked),
-        "penumbra, at most half": (2 * reached <= asked) & (reached > 0),
-        "fully dark": (asked > 0) & (reached == 0),
-        "faces away": asked == 0,
-    }
-    assert {entry.name: entry.values for entry in legend.entries} == {
-        name: (percent(there.sum(), hit.sum()),) for name, there in expected.items()
-    }
-    between = (reached > 0) & (reached < asked)
-    share = [percent(reached[between].sum(), asked[between].sum())] if between.any() else []
-    assert [fact.values[0] for fact in legend.facts[1:]] == share and bool(share) == (light != 1)
-
-
 @pytest.mark.parametrize("light", [0, 1, 2])
 @pytest.mark.parametrize("method", ["paper+cache", "certified+cache"])
-def test_fates_come_with_shares_of_pixels_and_of_the_rays_that_are_due(frame: Frame, light: int, method: str):
+def test_fates_come_with_shares_of_the_rays_that_are_due(frame: Frame, light: int, method: str):
     frame = replace(frame, settings=replace(SETTINGS, method=method))
-    legend, hit = of(frame, View.FATE, light=light, lights=LAMPS), frame.primitive >= 0
+    legend, fates = of(frame, View.FATE, light=light, lights=LAMPS), frame.fate(light)[frame.primitive >= 0]
     assert legend.title == f"Fate of shadow rays, first hits, light {light} (lamp)"
-    assert legend.columns == ("pixels", "of due")
-    fates = frame.fate(light)[hit]
-    due = (fates >= Fate.CULLED).sum()
-    by_name = {entry.name: entry for entry in legend.entries}
+    due, by_name = (fates >= Fate.CULLED).sum(), {entry.name: entry for entry in legend.entries}
     for fate in set(Fate(one) for one in fates):
-        entry, pixels = by_name.pop(FATE_NAMES[fate]), (fates == fate).sum()
-        share = percent(pixels, due) if fate is not Fate.FACES_AWAY else ""
-        assert entry.values == (percent(pixels, hit.sum()), share) and entry.color == FATE_COLORS[fate]
+        share = percent((fates == fate).sum(), due) if fate is not Fate.FACES_AWAY else ""
+        assert by_name.pop(FATE_NAMES[fate]).values[1] == share
     assert all(entry.values[0] == "0.0 %" for entry in by_name.values()), "what is usual is named"
     saved = ((fates == Fate.CULLED) | (fates == Fate.DYNAMIC_ONLY)).sum()
     said = {fact.name: fact.values[1] for fact in legend.facts}
@@ -214,29 +154,30 @@ def test_fates_come_with_shares_of_pixels_and_of_the_rays_that_are_due(frame: Fr
     assert not legend.notes and "nearest" in of(in_part(frame), View.FATE, light=light).notes[0].text
 
 
-def test_shadows_of_moving_objects_are_counted(frame: Frame):
-    legend, hit = of(frame, View.MOVING_SHADOW, light=1), frame.primitive >= 0
-    dark, asked = frame.moving_shadow(1), frame.fate(1) == Fate.DYNAMIC_ONLY
-    moves = (frame.occlusion_mode == OcclusionMode.DYNAMIC) & ~dark
-    counts = (dark & asked, dark & ~asked, ~dark & asked & ~moves, moves)
-    assert [entry.values for entry in legend.entries] == [(percent(one.sum(), hit.sum()),) for one in counts]
-    assert legend.facts[0].values == (percent((dark & asked).sum(), (dark & asked).sum() + counts[2].sum()),)
-    assert not legend.notes
+def test_the_penumbra_has_its_share_of_the_light(frame: Frame):
+    hit = frame.primitive >= 0
+    for light, samples in enumerate(("16", "1", "64")):
+        facts = of(frame, View.PENUMBRA, light=light).facts
+        asked, reached = frame.asked[hit][:, light].astype(int), frame.reached[hit][:, light].astype(int)
+        between = (reached > 0) & (reached < asked)
+        share = [percent(reached[between].sum(), asked[between].sum())] if between.any() else []
+        assert [fact.values[0] for fact in facts] == [samples, *share] and bool(share) == (light != 1)
+
+
+def test_what_no_moving_object_darkens_is_said(frame: Frame):
     bright = frame.fates.copy()
     bright[..., 1] &= ~np.uint8(MOVING_SHADOW)
     most = max((0, 2), key=lambda light: frame.moving_shadow(light).sum())
-    (note,) = of(replace(frame, fates=bright), View.MOVING_SHADOW, light=1, lights=LAMPS).notes
-    assert note.text == f"No moving object casts a shadow of this light now; light {most} (lamp) has some."
-    (note,) = of(replace(frame, fates=bright & ~np.uint8(MOVING_SHADOW)), View.MOVING_SHADOW, light=1).notes
-    assert note.text.endswith(", nor of another light.")
-    resting = replace(frame.statistics, resting=20)
-    (note,) = of(
-        replace(frame, fates=bright & ~np.uint8(MOVING_SHADOW), statistics=resting),
-        View.MOVING_SHADOW,
-        light=1,
-        lights=LAMPS,
-    ).notes
-    assert note.text == "What could move is at rest, and counts as static with paper."
+    none = replace(frame, fates=bright & ~np.uint8(MOVING_SHADOW))
+    resting = replace(none, statistics=replace(frame.statistics, resting=20))
+    for shown, said in (
+        (replace(frame, fates=bright), f"shadow of this light now; light {most} (lamp) has some."),
+        (none, ", nor of another light."),
+        (resting, "What could move is at rest, and counts as static with paper."),
+    ):
+        (note,) = of(shown, View.MOVING_SHADOW, light=1, lights=LAMPS).notes
+        assert note.text.endswith(said)
+    assert not of(frame, View.MOVING_SHADOW, light=1).notes
 
 
 def test_lights_per_pixel_and_what_is_not_known_yet(frame: Frame):

@@ -113,7 +113,7 @@ def _surface(pick: Pick, at: Pixel | None, frame: Frame, scene: Scene) -> None:
     if at is None:
         return
     x, y = at
-    asked = int(cell_lights.VIEW.found(frame)[y, x]) if can_draw(frame, View.CELL_LIGHTS) else -1
+    asked = int(cell_lights.VIEW.find(frame)[y, x]) if can_draw(frame, View.CELL_LIGHTS) else -1
     if asked >= 0:
         of = "of the octree of this method: all but those known to be hidden from it"
         value("Its cell", f"looks at {count(asked)} of {count(frame.lights)} lights", of)

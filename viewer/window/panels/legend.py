@@ -6,17 +6,15 @@ from dataclasses import dataclass, replace
 
 from imgui_bundle import ImVec2, imgui
 
-from viewer.state.palette import color_map, signed_map
 from viewer.views import legend_of
 from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, Swatch, fitting, lay_out
-from viewer.window import comparing
+from viewer.window.panels import sides
 from viewer.window.panels.area import Rect
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, tooltip_at
 
 _STEPS = 24  # of a bar of the colour map
 _MARGIN = 0.5  # ems between the legend and the picture's edge
-_CATCH = 1.6  # ems within which it snaps to an edge
 _MOST = 0.62  # of the picture's width, and of its height
 
 
@@ -35,12 +33,12 @@ def of_picture(ui: Ui) -> Legend | None:
     frame, scene = c.frame, c.session.scene
     if frame is None or scene is None:
         return None
-    of_both = comparing.legend(ui)
+    of_both = sides.legend(ui)
     if of_both is not None:
         return of_both
-    options, seen = comparing.draw_options(ui), comparing.shown(ui)
-    if seen is not None and comparing.shows_a(ui):
-        frame, options = seen[0].frame, replace(options, view=seen[0].view, light=seen[0].light)
+    options, seen = sides.draw_options(ui), c.comparing.seen
+    if seen is not None and seen.shows_a:
+        frame, options = seen.a.frame, replace(options, view=seen.a.view, light=seen.a.light)
     kept = "legend" if frame is c.frame else "legend of A"
     lights = scene.lights
     found: Legend | None = ui.cached(
@@ -99,28 +97,15 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
 
 
 def _drag(ui: Ui, at: ImVec2, least: ImVec2, room: ImVec2) -> None:
-    """Follow the pointer that holds it; let go near an edge, it lies at that edge."""
-    state = ui.state(LegendState)
-    mouse = imgui.get_io().mouse_pos
+    """Follow the pointer that holds it."""
+    state, mouse = ui.state(LegendState), imgui.get_io().mouse_pos
     if imgui.is_item_activated():
         state.held = mouse.x - at.x, mouse.y - at.y
-    released = imgui.is_item_deactivated()
     if imgui.is_item_hovered() or imgui.is_item_active():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
-    if not (imgui.is_item_active() or released):
-        return
-    left, top = mouse.x - state.held[0] - least.x, mouse.y - state.held[1] - least.y
-    across, down = (min(max(way / free, 0.0), 1.0) for way, free in ((left, room.x), (top, room.y)))
-    if released:
-        across, down = _caught(across, room.x), _caught(down, room.y)
-    ui.controller.session.set_draw(legend_at=(across, down))
-
-
-def _caught(part: float, room: float) -> float:
-    """A place along an edge, at its end where it is near one."""
-    if part * room <= em(_CATCH):
-        return 0.0
-    return 1.0 if (1.0 - part) * room <= em(_CATCH) else part
+    if imgui.is_item_active():
+        across, down = (mouse.x - state.held[0] - least.x) / room.x, (mouse.y - state.held[1] - least.y) / room.y
+        ui.controller.session.set_draw(legend_at=(min(max(across, 0.0), 1.0), min(max(down, 0.0), 1.0)))
 
 
 def draw_layout(draw: imgui.ImDrawList, layout: Layout, at: ImVec2) -> None:
@@ -140,8 +125,7 @@ def _fill(draw: imgui.ImDrawList, swatch: Swatch, at: ImVec2) -> None:
         if swatch.stripes is not None:
             _stripe(draw, packed(swatch.stripes), ImVec2(x, y), ImVec2(x + swatch.width, bottom))
         return
-    colors = (signed_map if swatch.signed else color_map)(_STEPS + 1)
-    steps = [packed((float(r), float(g), float(b))) for r, g, b in (colors[::-1] if swatch.reverse else colors)]
+    steps = [packed(tuple(color)) for color in swatch.colors(_STEPS + 1).tolist()]
     for i in range(_STEPS):
         start, stop = (x + swatch.width * k / _STEPS for k in (i, i + 1))
         left, right = steps[i], steps[i + 1]

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from viewer.state.methods import missing, with_base
 from viewer.window.ui import Ui
-from viewer.window.widgets import em, paragraph, tooltip_above
+from viewer.window.widgets import em, paragraph, tooltip
 
 _WIDTH, _LEAST = 26.0, 8.0  # in ems: of the note, and of a picture that has room for one
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
@@ -31,6 +31,6 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
             c.settings.change(accelerator=found.accelerator)
         imgui.end_disabled()
         if run is not None:
-            tooltip_above(f"Not while the {run.name} runs. Escape stops it.")
+            tooltip(f"Not while the {run.name} runs. Escape stops it.")
     imgui.end_child()
     imgui.pop_style_color()

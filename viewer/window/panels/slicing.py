@@ -1,32 +1,22 @@
-"""The slice through space: its rows in the panel View, going through its layers, and what the pointer is on."""
+"""The slice through space: its rows in the panel View; and what a view of space says beside the pointer."""
 
 from __future__ import annotations
 
-import numpy as np
 from imgui_bundle import imgui
 
-from tracer.culling.voxels.tell import STATE_NAMES
-from tracer.light_cut import LightCut
-from viewer.services.controller import Controller
-from viewer.services.inspector import MOST_CLUSTERS
 from viewer.state.draw_options import AXES
 from viewer.state.pixels import pixel_at
 from viewer.state.views import View
-from viewer.util.numbers import several
-from viewer.views import cell_lights, view_of
-from viewer.views.slices import part_seen, part_words, slice_seen, voxel_seen
-from viewer.views.tree import tree_of
-from viewer.views.voxels import voxels_of
+from viewer.views import view_of, words_at
 from viewer.window.panels.area import Area, write_beside
 from viewer.window.panels.legend import LegendState
-from viewer.window.panels.status import traced_before_an_answer
 from viewer.window.ui import Ui
-from viewer.window.widgets import count, em, percent, row
+from viewer.window.widgets import em, row
 
 
 def rows(ui: Ui) -> None:
     """Rows of the panel's table."""
-    session = ui.controller.session
+    session, frame = ui.controller.session, ui.controller.frame
     cut = session.draw.slice
     row("Slice", "The axis that the slice goes across.")
     for axis, name in enumerate(AXES):
@@ -34,69 +24,23 @@ def rows(ui: Ui) -> None:
             imgui.same_line(0.0, em(0.6))
         if imgui.radio_button(f"{name}##slice", cut.axis == axis):
             session.set_draw(slice=cut._replace(axis=axis))
-    frame = ui.controller.frame
-    layer = view_of(session.draw.view).layer(frame, cut) if frame is not None else None
-    if layer is None:
-        return
-    row("Layer", "Where along the axis it is. Ctrl+click to type a number.")
-    flags, shown = int(imgui.SliderFlags_.always_clamp), f"%d  ({AXES[cut.axis]} = {layer.place:.4g})"
-    changed, number = imgui.slider_int("##layer", layer.number, 0, layer.many - 1, shown, flags)
-    if changed:
-        session.set_draw(slice=layer.goes_to(cut, number))
+    layers = view_of(session.draw.view).layers(frame, cut.axis) if frame is not None else 0
+    if layers:
+        row("Layer", "Where along the axis it is. Ctrl+click to type a number.")
+        flags = int(imgui.SliderFlags_.always_clamp)
+        changed, number = imgui.slider_int("##layer", cut.layer(layers), 0, layers - 1, "%d", flags)
+        if changed:
+            session.set_draw(slice=cut.in_layer(number, layers))
 
 
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     """What a pixel of the newest frame shows of space, in a view of that; nothing where it shows none."""
     c = ui.controller
-    frame, view, light = c.frame, c.scheduler.drawn_view, c.session.draw.light
-    if frame is None:
+    view = c.scheduler.drawn_view
+    if c.frame is None or not (view.has_slice or view is View.CELL_LIGHTS):
         return []
-    if view is View.VOXELS:
-        states, cut = voxels_of(frame), c.session.draw.slice
-        seen = ui.cached("slice", frame, cut, lambda: slice_seen(frame, states.grid, cut))
-        number = int(seen.numbers[y, x])
-        if number < 0:
-            return []
-        found = voxel_seen(states, light, number)
-        block = f"with the block of {found.level} x {found.level} x {found.level} around it" if found.level > 1 else ""
-        inside = "something static lies in it" if found.occupied else "nothing static lies in it"
-        named = "{}, {}, {}".format(*found.place)
-        return [f"voxel {named}: {STATE_NAMES[found.state]}", *([block] if block else []), inside]
-    if view is View.TREE:
-        tree, cut = tree_of(frame), c.session.draw.slice
-        part = part_seen(frame, tree, cut, x, y)
-        return [] if part is None else list(part_words(part, tree.owner))
-    lit = c.inspector.cut
-    if view is View.CUTS and lit is not None and (lit.x, lit.y) == (x, y):
-        return cut_lines(lit)
-    if view is View.CUTS and c.selection.picked is None and c.inspector.awaits_cut == (x, y):
-        return awaited(c)
-    if view is View.CELL_LIGHTS and frame.primitive[y, x] >= 0:
-        asked = int(cell_lights.VIEW.found(frame)[y, x])
-        return ["not known yet"] if asked < 0 else [f"its cell asks {count(asked)} of {count(frame.lights)} lights"]
-    return []
-
-
-def awaited(c: Controller) -> list[str]:
-    """That the clusters of a pixel are to come, where they do not come at once."""
-    before = traced_before_an_answer(c)
-    return [f"its clusters are drawn after {before}"] if before else []
-
-
-def cut_lines(cut: LightCut) -> list[str]:
-    """What shades a pixel, in a few lines."""
-    many, single, frame = len(cut.nodes), int((cut.lights == 1).sum()), cut.frame
-    shade = f"{several(many, 'cluster')} {'shades' if many == 1 else 'shade'} it"
-    cuts = frame.statistics.cuts
-    alone = several(single, "single light" if cuts is None or cuts.lights == frame.lights else "single sample")
-    lines = [f"{shade}, {alone} among them"]
-    total = float(cut.sent.sum())
-    if total > 0.0:
-        top = np.sort(cut.sent)[::-1]
-        lines.append(f"the brightest sends {percent(float(top[0]), total)} of their light")
-    if many > MOST_CLUSTERS:
-        lines.append(f"drawn are the {MOST_CLUSTERS} that send most")
-    return lines
+    words = words_at(c.frame, c.session.draw, x, y)
+    return [] if words in (("-",), ("miss",)) else list(words)
 
 
 def show(ui: Ui, area: Area) -> None:
@@ -106,7 +50,6 @@ def show(ui: Ui, area: Area) -> None:
     if at is None or frame is None or imgui.is_mouse_down(0):
         return
     lines = lines_at(ui, *pixel_at(frame, *at))
-    if not lines:
-        return
-    room = area.corner.x, area.corner.y, area.end.x, area.end.y
-    write_beside(lines, imgui.get_io().mouse_pos, room, ui.state(LegendState).place)
+    if lines:
+        room = area.corner.x, area.corner.y, area.end.x, area.end.y
+        write_beside(lines, imgui.get_io().mouse_pos, room, ui.state(LegendState).place)

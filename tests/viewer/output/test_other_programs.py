@@ -1,8 +1,9 @@
-"""What is sent to tev is what its protocol says, read here by a server that knows nothing of ours."""
+"""What goes to the clipboard, and to tev: read here by a server that knows nothing of our own code."""
 
 from __future__ import annotations
 
 import socket
+import stat
 import struct
 import threading
 from collections.abc import Iterator
@@ -14,7 +15,7 @@ import pytest
 
 from tests.commands import ROOM, run
 from tests.viewer.fakes import make_frame
-from viewer.output import other_programs as tev
+from viewer.output import other_programs
 
 
 class Server:
@@ -82,8 +83,8 @@ def test_all_channels_arrive(server: Server, monkeypatch: pytest.MonkeyPatch) ->
     frame = make_frame()
     lights = np.ones((*frame.primitive.shape, 3), np.uint16)
     frame = replace(frame, asked=lights, reached=lights * np.array([0, 1, 1], np.uint16))
-    monkeypatch.setattr(tev, "_LARGEST", 700)  # so that it comes in several packets
-    tev.send(("127.0.0.1", server.port), "größe 1", frame)
+    monkeypatch.setattr(other_programs, "_LARGEST", 700)  # so that it comes in several packets
+    other_programs.send(("127.0.0.1", server.port), "größe 1", frame)
     server.close()
     (image,) = server.images.values()
     assert list(server.images) == ["größe 1"]
@@ -109,13 +110,34 @@ def test_nobody_listens() -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     with pytest.raises(OSError, match=rf"nothing sent to 127.0.0.1:{port}: .*is tev or HDRView open there\?") as caught:
-        tev.send(("127.0.0.1", port), "name", make_frame())
+        other_programs.send(("127.0.0.1", port), "name", make_frame())
     assert "\n" not in str(caught.value)
 
 
 def test_addresses() -> None:
-    assert tev.address("host:99") == ("host", 99) and tev.address(":99") == ("127.0.0.1", 99)
-    assert tev.address("host") == ("host", 14158) and tev.address("[::1]:5") == ("::1", 5)
+    assert other_programs.address("host:99") == ("host", 99) and other_programs.address(":99") == ("127.0.0.1", 99)
+    assert other_programs.address("host") == ("host", 14158) and other_programs.address("[::1]:5") == ("::1", 5)
     for wrong in ("host:", "host:x", "host:0", "host:70000"):
         with pytest.raises(ValueError, match="is not an address"):
-            tev.address(wrong)
+            other_programs.address(wrong)
+
+
+def test_the_clipboard_is_that_of_the_desktop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("DISPLAY", ":9")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    assert other_programs.clipboard_command() is None
+    with pytest.raises(OSError, match="install xclip"):
+        other_programs.copy(b"png")
+    for name in ("xclip", "wl-copy"):
+        program = tmp_path / name
+        program.write_text(f'#!/bin/sh\nwhile read -r line; do echo "{name} $* $line" > {tmp_path}/got; done\n')
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    other_programs.copy(b"png\n")
+    assert (tmp_path / "got").read_text() == "xclip -selection clipboard -target image/png -in png\n"
+    monkeypatch.setenv("WAYLAND_DISPLAY", "wayland-0")
+    other_programs.copy(b"png\n")
+    assert (tmp_path / "got").read_text() == "wl-copy --type image/png png\n"
+    (tmp_path / "wl-copy").write_text("#!/bin/sh\nexit 3\n")
+    with pytest.raises(OSError, match="wl-copy failed with code 3"):
+        other_programs.copy(b"png")
