@@ -15,7 +15,7 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
-from viewer.services.baseline import Baseline
+from viewer.services.beside import Baseline
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
 from viewer.services.editing import Editing
@@ -63,7 +63,7 @@ class Controller:
         self.runs = runs = Runs(
             session, selection, renderer.perform, preferences, notices, captures, wake, lambda: self.editing.under_way
         )
-        self.baseline = Baseline(renderer)
+        self.baseline = Baseline(renderer.in_spare_time)
         self.settings = settings = SettingsController(session, preferences, notices, runs.refuses)
         self.motion = motion = Motion(session, preferences, notices, runs.refuses)
         self.comparing = Comparing(session, scheduler, notices)
