@@ -15,7 +15,7 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
-from viewer.services.baseline import Baseline
+from viewer.services.beside import Baseline
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
 from viewer.services.editing import Editing
@@ -38,7 +38,7 @@ from viewer.services.scene_table import SceneTable
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import Undo
 from viewer.state import codec
-from viewer.state.methods import fitting_view
+from viewer.state.methods import remark_on
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -63,7 +63,7 @@ class Controller:
         self.runs = runs = Runs(
             session, selection, renderer.perform, preferences, notices, captures, wake, lambda: self.editing.under_way
         )
-        self.baseline = Baseline(renderer)
+        self.baseline = Baseline(renderer.in_spare_time)
         self.settings = settings = SettingsController(session, preferences, notices, runs.refuses)
         self.motion = motion = Motion(session, preferences, notices, runs.refuses)
         self.comparing = Comparing(session, scheduler, notices)
@@ -131,8 +131,8 @@ class Controller:
             self.undo.begin_step("the place of a saved picture")
         if place is not None:
             self.restore(place)
-        else:
-            said = f"{said}. {self._fit_view()}".removesuffix(". ")
+        elif session.scene is not None:
+            said = f"{said}. {remark_on(session.scene.lights, session.settings)}".removesuffix(". ")
         if flown is not None:  # while the scene was waiting for its kernels
             session.change(camera=flown)
         session.playing, self.reloaded = playing and session.animated, arrival.again
@@ -195,14 +195,6 @@ class Controller:
         busy = self.renderer.busy or self.loader.busy or self.runs.current is not None or self.editing.at_work
         busy = busy or not self.scheduler.rests or self.scheduler.refines_lamps or not wanted
         self.baseline.update(self.traced, second, self.motion.is_animating, busy)
-
-    def _fit_view(self) -> str:
-        """Show the picture where the view has nothing to show in the scene that has just been opened; returns what is
-        to be said of it, and of the method there."""
-        session = self.session
-        view, said = fitting_view(session.draw.view, session.settings, session.scene.lights if session.scene else ())
-        session.set_draw(view=view)
-        return said
 
     # --- going elsewhere -------------------------------------------------------------------------
 
