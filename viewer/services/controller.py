@@ -151,7 +151,7 @@ class Controller:
         if run.ended:
             self.scheduler.trace_once_more()  # else the world might stay where the run has put it
         if run.picture is not None:
-            self.scheduler.show(run.picture)
+            self.scheduler.traced = run.picture
             frame = run.picture.frame
         else:
             newest = self.scheduler.take()
@@ -232,9 +232,10 @@ class Controller:
         self.undo.without_undo(lambda: self.session.take(now))
         self.renderer.use(renderer, fresh=False)
         self.history.forget_modes(blank=False)
-        self.scheduler.take_edits(same)
+        self.scheduler.forget_modes()
         self.baseline.forget()
-        if not same:
+        if not same:  # primitives and lights have other numbers: the newest frame means nothing any more
+            self.scheduler.traced = None
             self.selection.update_for_edits(before, now)
             self.reloaded = True
 

@@ -18,7 +18,6 @@ from tracer.experiments import experiment
 from tracer.experiments.experiment import Experiment
 from tracer.frame import Settings
 from viewer.services.controller import Controller
-from viewer.services.render_request import Traced
 from viewer.services.runs import described, duration, shown_of
 from viewer.state.preferences import Preferences
 from viewer.state.views import View
@@ -201,16 +200,10 @@ def test_stopped_before_its_first_frame_a_run_leaves_nothing(desk: Desk) -> None
 
 
 def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> None:
-    scene, frames = weakref.ref(desk.c.session.scene), []
-    show = desk.c.scheduler.show
-
-    def showing(traced: Traced) -> None:
-        frames.append(weakref.ref(traced.frame))
-        show(traced)
-
-    desk.c.scheduler.show = showing
+    scene = weakref.ref(desk.c.session.scene)
     desk.runs.start_experiment()
     desk.run_to_its_end()
+    frames = [weakref.ref(frame) for frame in desk.came]
     desk.came.clear()
     assert desk.runs.experiment.whole and frames
     desk.open(embedded_scenes()["figure4"])

@@ -230,7 +230,7 @@ def go_to_experiment_frame(ui: Ui, run: Experiment, results: Results, place: int
     if run.settings.verify:
         wrong = {m: figures["wrong"][place] for m, figures in results.methods.items() if m != REFERENCE}
         values = [*values, *(f"{method}: {many} wrong answers" for method, many in wrong.items())]
-    if _clicked([c.navigator.name_in_experiment(run, number), *values]):
+    if _clicked([f"frame {number} of the experiment, by {run.shown}", *values]):
         c.navigator.go_to_experiment(run, number)
 
 
