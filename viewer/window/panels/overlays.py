@@ -77,7 +77,7 @@ def _shadow_rays(ui: Ui, made: Pen, frame: Frame, answer: Inspection, pointed: i
     point = place(frame, answer.lights[0].point) if answer.lights else None
     lines: list[Line] = ui.cached("shadow rays", frame, answer, lambda: shadow_lines(answer, frame))
     for color, width, light, pieces in lines:
-        made.strokes(pieces, ImVec4(*color, alpha(light)), width, hole=point)
+        made.strokes(pieces, ImVec4(*color, alpha(light)), width)
     for one in answer.drawn:
         at = place(frame, one.light_position)
         if at is not None:

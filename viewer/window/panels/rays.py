@@ -228,7 +228,7 @@ def _line(made: Pen, line: RayLine, hole: Point | None, alpha: float, width: flo
     """All of it but what would cover the clicked pixel."""
     color, ems = line.part.value
     around = _PALE if line.part is Part.DARK else SHADE
-    made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around, hole=hole)
+    made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around)
 
 
 def _points(made: Pen, tree: RayTree, frame: Frame, chosen: Row | None) -> None:
