@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from tests.viewer.fakes import make_scene
-from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
+from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Camera
 from viewer.services.motion import IDLE_AFTER, Motion
 from viewer.services.undo import Undo
@@ -35,14 +35,7 @@ class Desk:
         self.session = Session(state=codec.recalled({}))
         self.session.open(make_scene(lights=3))
         self.motion = Motion(self.session, Preferences(), self.notices, lambda: self.locked)
-        self.read: list[MeshOptions] = []  # what undo has asked for
-        self.reading = False
-
-        def read_as(meshes: MeshOptions) -> None:
-            self.read.append(meshes)
-            self.reading = True
-
-        self.undo = Undo(self.session, self.motion, self.notices, lambda: self.locked, read_as, lambda: self.reading)
+        self.undo = Undo(self.session, self.motion, self.notices, lambda: self.locked)
         self.frame()
 
     def frame(self, seconds: float = 0.02) -> None:
@@ -53,13 +46,6 @@ class Desk:
 
     def rest(self) -> None:
         self.frame(IDLE_AFTER + LONGEST_FLIGHT)
-        self.frame()
-
-    def arrive(self, meshes: MeshOptions) -> None:
-        """The mesh has been read so, and is seen from its first camera."""
-        self.reading = False
-        self.session.open(self.session.scene)
-        self.session.change(meshes=meshes)
         self.frame()
 
     @property
@@ -207,34 +193,10 @@ def test_nothing_is_undone_while_it_is_locked_and_another_scene_forgets_all(desk
     for depth in (3, 4, 4):
         desk.undo.undo()
         assert desk.depth == depth, "two steps are kept"
-    desk.undo.clear()
-    desk.session.open(make_scene(path="other.aff"))
+    desk.session.change(meshes=IN_STUDIO)
     desk.frame()
     desk.undo.redo()
-    assert desk.said == "there is nothing to redo" and desk.undo.undoes == ""
-
-
-def test_how_a_mesh_is_read_comes_back_with_what_was_seen_of_it(desk: Desk):
-    desk.arrive(IN_STUDIO)
-    desk.session.change(camera=AWAY)
-    desk.rest()
-    for meshes, name in ((MeshOptions(True, "x"), "x up"), (MeshOptions(False, "x"), "studio off")):
-        desk.arrive(meshes)
-        assert desk.undo.undoes == name and desk.session.state.camera is None
-    desk.undo.undo()
-    desk.frame()
-    desk.undo.undo()  # while it is being read: too early
-    desk.arrive(MeshOptions(True, "x"))
-    assert desk.read == [MeshOptions(True, "x")] and desk.said == "undone: studio off"
-    desk.undo.undo()
-    desk.arrive(IN_STUDIO)
-    desk.rest()
-    assert desk.said == "undone: x up" and desk.session.state.camera == AWAY
-    steps = desk.undo.undoes, desk.undo.redoes
-    desk.undo.redo()
-    desk.reading = False
-    desk.frame()
-    assert (desk.undo.undoes, desk.undo.redoes) == steps, "it could not be read"
+    assert desk.said == "there is nothing to redo" and desk.undo.undoes == "", "a mesh read anew is another scene"
 
 
 def test_turns_of_the_wheel_are_one_step_and_a_rest_begins_another(desk: Desk):
