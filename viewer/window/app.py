@@ -31,7 +31,7 @@ from viewer.window.gl_window import NO_OPENGL, closing_by_signals
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
-from viewer.window.panels import dialogs, named_states, picture, sides, status, tour
+from viewer.window.panels import dialogs, named_states, picture, sides, status
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -167,7 +167,7 @@ class App:
         step("Flying", lambda: picture.fly(ui))
         step("Comparing", lambda: sides.read_key(ui))
         dialogs.show(ui)
-        overlay("The tour", lambda: tour.show(ui), ui.tour.end)
+        step("The tour", ui.tour.update)
         overlay("The notice", lambda: status.show_fault(ui), self.controller.notices.dismiss_faults)
 
     def after_widgets(self) -> None:

@@ -27,7 +27,7 @@ from viewer.window.widgets import (
     properties,
     row,
     same_line_for,
-    tooltip_above,
+    tooltip,
 )
 
 _LIST, _DETAILS = 13.0, 14.0  # ems of width
@@ -96,7 +96,7 @@ def _details(ui: Ui, hunts: Hunts, number: int, find: Counterexample, scene: Sce
     same_line_for(rays)
     if imgui.button(rays):
         ui.show_rays()
-    tooltip_above(f"what became of each ray of the pixel{ui.key('Rays of the clicked pixel')}")
+    tooltip(f"what became of each ray of the pixel{ui.key('Rays of the clicked pixel')}")
     for sentence in (*counterexample.in_words(find, scene), counterexample.in_its_frame(find)):
         paragraph(in_window_style(sentence))
     if ui.controller.scheduler.is_frozen:

@@ -48,20 +48,23 @@ def show(ui: Ui) -> None:
     c, room = ui.controller, imgui.get_content_region_avail()
     if c.session.animated:
         room.y -= timeline.height()
-    above = savings.height(ui, ImVec2(room.x, room.y - tour.height(ui)))
+    above = savings.height(ui, ImVec2(room.x, room.y - tour.height(ui, room.x)))
     if above > 0.0:
         start = imgui.get_cursor_pos()
         ui.guard.panel("What culling saves", lambda: savings.show(ui, room.x))
         imgui.set_cursor_pos(start)
         imgui.dummy(ImVec2(room.x, above - imgui.get_style().item_spacing.y))  # where nothing follows, ImGui complains
         room.y -= above
-    strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
+    strip = tour.height(ui, room.x)
     room.y -= strip
     scale = imgui.get_io().display_framebuffer_scale
     ui.picture.area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
     top = imgui.get_cursor_pos()
     if room.x >= 1.0 and room.y >= 1.0:
         _picture(ui, room)
+    if strip:
+        imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y))
+        ui.guard.overlay("The tour", lambda: tour.show(ui, room.x), ui.tour.end)
     if c.session.animated:
         imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y + strip))
         timeline.show(ui)

@@ -26,7 +26,6 @@ from viewer.window.widgets import (
     row,
     same_line_for,
     tooltip,
-    tooltip_above,
     wide_button,
 )
 
@@ -136,7 +135,7 @@ def results_table(
                 if imgui.selectable(f"{text}##{number}", chosen == number, _ROW)[0]:
                     click(number)
                 if tip is not None:
-                    tooltip_above(tip(rows[number]))
+                    tooltip(tip(rows[number]))
     clipper.end()
     imgui.end_table()
 
@@ -152,7 +151,7 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
     runner = ui.controller.runs
     if run is None or runner.current is not run:
         imgui.begin_disabled(runner.current is not None)
-        if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip, explain=tooltip_above):
+        if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip):
             start()
         imgui.end_disabled()
         return
@@ -162,7 +161,7 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
     tip = f"Keep what is done{ui.key('Stop, or clear the selection')}"
     if run.stopping:
         imgui.text_colored(QUIET, "Stopping ...")
-    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", tip, explain=tooltip_above):
+    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", tip):
         runner.stop()
 
 
@@ -176,4 +175,4 @@ def export_buttons(ui: Ui, run: Run | None) -> None:
             same_line_for(label)
         if run is not None and imgui.button(label):
             ui.controller.runs.export(run, ending)
-        tooltip_above(tip)
+        tooltip(tip)
