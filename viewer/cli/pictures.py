@@ -15,7 +15,7 @@ from tracer.scene.model import Scene
 from tracer.setting import settings_of
 from tracer.settings import Settings
 from viewer.cli import arguments, options
-from viewer.cli.arguments import ChosenView, Parser, view_form
+from viewer.cli.arguments import Parser, view_form
 from viewer.output import capture, commands
 from viewer.services import stills
 from viewer.services.scene_files import find_scene, is_capture
@@ -47,7 +47,7 @@ def add_picture(parser: Parser) -> None:
         "the traced picture left of a line at this PART of the width, 0 to 1, and the right one on its other side; "
         ":share shows shares of rays, not counts (default: color)"
     )
-    add("--view", type=arguments.view, default=ChosenView(), metavar="V", help=help_)
+    add("--view", type=arguments.view, default=DrawOptions(), metavar="V", help=help_)
     options.add_settings(parser, DrawOptions, *(one.name for one in DRAWN))
     with_range = ", ".join(view.value for view in View if view.has_range)
     help_ = f"what has the first and the last colour in the views {with_range} (default: as they come)"
@@ -75,13 +75,9 @@ def wanted_state(scene: Scene, settings: Settings, given: Namespace) -> ViewStat
     """Return what the options ask for, with a caption that may have fields.
 
     Raises ValueError, in one line, for a moment or a light that the scene does not have."""
-    view, light, wipe, shares = given.view
-    if view.of_light:
-        light = options.light_index(given, f"--view {view.value}:", light, scene)
-    draw = DrawOptions(
-        view=view, light=light, wipe=wipe, shares=shares, legend_at=given.legend_at, savings=given.savings,
-        caption=given.caption,
-    )  # fmt: skip
+    draw = replace(given.view, legend_at=given.legend_at, savings=given.savings, caption=given.caption)
+    if draw.view.of_light:
+        draw = replace(draw, light=options.light_index(given, f"--view {draw.view}:", draw.light, scene))
     for one in DRAWN:
         draw = one.put(draw, getattr(given, one.name))
     draw = draw.with_span(given.range)

@@ -18,7 +18,7 @@ from viewer.output.ray_rows import Filter, RayRows, Row, Shown, totals, unfolded
 from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels import lights
 from viewer.window.panels.links import Pointed
-from viewer.window.panels.marks import SHADE, Pen, Point
+from viewer.window.panels.marks import SHADE, Pen
 from viewer.window.setting_rows import ALL, setting_switch
 from viewer.window.ui import RaysState, Ui
 from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip, tooltip_at
@@ -217,16 +217,15 @@ def draw(ui: Ui, made: Pen, frame: Frame) -> None:
     selected = next((row for _, row in rows(ui) if row.key == state.selected), None) if listed else None
     picked_out = [row for row in (selected, state.pointed) if row is not None and listed]
     s = tree.rays[0].shadows
-    clicked = place(frame, tree.rays[0].end) if s is not None else None
     for line in lines:
         of_light = (
             light is not None and s is not None and line.ray == 0 and line.place >= 0 and s.light[line.place] == light
         )
         faded = picked_out or light is not None
-        _line(made, line, clicked, _FADED if faded and not of_light else 1.0, 0.55 if len(lines) > _MANY else 1.0)
+        _line(made, line, _FADED if faded and not of_light else 1.0, 0.55 if len(lines) > _MANY else 1.0)
     for number, row in enumerate(picked_out):
         for line in ui.cached(f"rays of row {number}", frame, row, partial(_of_row, tree, frame, lines, row)):
-            _line(made, line, clicked, 1.0)
+            _line(made, line, 1.0)
     _points(made, tree, frame, (state.pointed or selected) if listed else None, listed)
 
 
@@ -238,11 +237,10 @@ def _of_row(tree: RayTree, frame: Frame, lines: Sequence[RayLine], row: Row) -> 
     return [line for number in wanted for line in _shadow_lines(frame, tree, row.ray, number)]
 
 
-def _line(made: Pen, line: RayLine, hole: Point | None, alpha: float, width: float = 1.0) -> None:
-    """All of it but what would cover the clicked pixel."""
+def _line(made: Pen, line: RayLine, alpha: float, width: float = 1.0) -> None:
     color, ems = line.part.value
     around = _PALE if line.part is Part.DARK else SHADE
-    made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around, hole=hole)
+    made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around)
 
 
 def _points(made: Pen, tree: RayTree, frame: Frame, chosen: Row | None, further: bool) -> None:
