@@ -255,7 +255,7 @@ def test_an_answer_that_fails_is_told_of_and_stops_nothing(desk: Desk, monkeypat
     def fail(*_: object) -> None:
         raise MemoryError("made to fail")
 
-    monkeypatch.setattr("viewer.services.inspector.explain", fail)
+    monkeypatch.setattr("viewer.services.inspector.why", fail)
     c.selection.select((0.5, 0.5))
     desk.until(lambda: c.notices.message is not None and "made to fail" in desk.said)
     assert c.session.playing
