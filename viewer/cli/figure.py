@@ -12,7 +12,7 @@ from viewer.cli import arguments, options, pictures
 from viewer.cli.arguments import Parser
 from viewer.cli.console import print_table, titled, working
 from viewer.output.comparison import ENDINGS, Comparison, Crop
-from viewer.services import comparison
+from viewer.services import stills
 from viewer.state.views import View
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
@@ -76,9 +76,9 @@ def run(given: Namespace) -> int:
         def tell(method: str, done: int, total: int) -> None:
             work.count(f"{method}, frame {done + 1} of {total}", done, total)
 
-        shown = comparison.trace(scene, state, wanted, world, tell, work.cancelled)
+        shown = stills.trace_methods(scene, state, wanted, world, tell, work.cancelled)
         work.progress("drawing", 1.0)
-        comparison.save(shown, given.output)
+        stills.save_methods(shown, given.output)
     table = titled(f"{scene.path.name}, {state.time:.3f} s")
     table.add_column("")
     for method in shown.frames:

@@ -18,7 +18,7 @@ from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, listed, print_table, working
 from viewer.output import commands
 from viewer.output.reports import findings
-from viewer.services import comparison, hunts
+from viewer.services import hunts, stills
 from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
 from viewer.util.messages import printable
@@ -104,8 +104,8 @@ def _write(found: hunt.Results, scene: Scene, search: Search, world: World, give
             work.count(f"figure {rank} of {len(found.finds)}", rank - 1, len(found.finds))
             state, figure = hunts.comparison_of(find, found, scene, search.settings, meshes.of_file(Path(scene.path)))
             try:
-                shown = comparison.trace(scene, state, figure, world, cancelled=work.cancelled)
-                comparison.save(shown, stem.with_suffix(".png"))
+                shown = stills.trace_methods(scene, state, figure, world, cancelled=work.cancelled)
+                stills.save_methods(shown, stem.with_suffix(".png"))
                 written.append(stem.with_suffix(".png"))
             except Cancelled:
                 work.note("cancelled: the figures from here on are not drawn")

@@ -142,16 +142,14 @@ def check_edits(edits: Edits, scene: Scene) -> None:
         if word in known:
             continue
         option, _, target = word.partition("=")
+        kind = {"--make-static": "moving object", "--make-moving": "static object"}.get(option, "object")
+        names = [one.name for one in things(scene) if kind == "object" or one.moves == (kind == "moving object")]
+        more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+        why = f"no {kind} of this name; there is {', '.join(names[:_LISTED]) or 'none'}{more}"
         if "light" in option:
             why = lights_in_words(len(scene.lights))
         elif option == "--hide-primitive":
             why = f"the scene has the primitives 0 to {scene.primitive_count - 1}"
-        else:
-            kind = {"--make-static": "moving object", "--make-moving": "static object"}.get(option, "object")
-            names = [one.name for one in things(scene) if kind == "object" or one.moves == (kind == "moving object")]
-            more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-            there = f"; there is {', '.join(names[:_LISTED])}{more}" if names else ""
-            why = f"no {kind} of this name{there}"
         raise ValueError(f"{option} {target}: {why}")
 
 
@@ -161,11 +159,11 @@ def light_index(options: Namespace, option: str, number: int, scene: Scene) -> i
     Raises ValueError, in one line, where none has."""
     edits = edits_of(options)
     index = edits.light_index(number)
-    if index is None:
-        raise ValueError(f"{option}{number}: this light is switched off (--without-light {number})")
-    if index >= len(scene.lights):
-        raise ValueError(f"{option}{number}: {lights_in_words(len(scene.lights) + len(edits.lights_off))}")
-    return index
+    if index is not None and index < len(scene.lights):
+        return index
+    off = f"this light is switched off (--without-light {number})"
+    there = lights_in_words(len(scene.lights) + len(edits.lights_off))
+    raise ValueError(f"{option}{number}: {off if index is None else there}")
 
 
 # --- the moment ------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import moderngl
 import numpy as np
@@ -34,6 +34,10 @@ class InWindow:
 
 
 PLAIN = InWindow()
+THUMBNAIL = 128
+"""Pixels of height of small recorded pictures."""
+BROUGHT_IN_A_FRAME = 6
+"""Recorded pictures brought to the GPU in one of the window's frames, at most."""
 
 
 class PictureTexture:
@@ -150,6 +154,48 @@ class Compared:
         self.a.release()
         self.difference.release()
         self._drawn = None
+
+
+class Recorded(Protocol):
+    """A picture that is kept, (h, w, 3) uint8, and the same so many pixels high at most."""
+
+    def pixels(self) -> Pixels: ...
+
+    def thumbnail(self, height: int) -> Pixels: ...
+
+
+class TextureCache:
+    """Recorded pictures as textures: only those that the window shows, brought to the GPU a few at a time.
+
+    Panels ask and get what is there; what they asked for is brought before the widgets of the next frame.  Needs a
+    current GL context for all but `texture_id`."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._textures: dict[tuple[Recorded, bool], PictureTexture] = {}
+        self._wanted: set[tuple[Recorded, bool]] = set()
+
+    def texture_id(self, shot: Recorded, small: bool) -> int | None:
+        """Name of the GL texture of a picture, or of its thumbnail; None until it is there."""
+        self._wanted.add((shot, small))
+        found = self._textures.get((shot, small))
+        return found.texture_id if found is not None else None
+
+    def update(self) -> None:
+        """Keep, or bring, what was asked for since the last time, and nothing else."""
+        for key in self._textures.keys() - self._wanted:
+            self._textures.pop(key).release()
+        for shot, small in list(self._wanted - self._textures.keys())[:BROUGHT_IN_A_FRAME]:
+            self._textures[shot, small] = texture = PictureTexture(self._context)
+            texture.write(
+                shot.thumbnail(THUMBNAIL) if small else shot.pixels(), smooth=small
+            )  # a lone wrong pixel stays
+        self._wanted.clear()
+
+    def release(self) -> None:
+        """Free everything on the GPU."""
+        self._wanted.clear()
+        self.update()
 
 
 def _selected_border(frame: Frame, window: InWindow, part_of: NDArray[np.int32] | None) -> NDArray[np.bool_]:

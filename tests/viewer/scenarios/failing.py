@@ -69,7 +69,7 @@ def failing(d: Driver) -> None:
     notices.dismiss_faults()
 
     # Panels, with tables, children and plots open: one says what is wrong with it, and is shown again when told to.
-    for label, module, name in (("Statistics", statistics, "_milliseconds"), ("Plots", plots, "_stack")):
+    for label, module, name in (("Statistics", statistics, "right"), ("Plots", plots, "_stack")):
         d.ui.show_panel(label)
         d.frames(3)
         good = getattr(module, name)

@@ -257,7 +257,7 @@ def test_an_answer_that_fails_stops_nothing_and_a_frame_that_fails_stops_what_pl
         raise MemoryError("made to fail")
 
     with monkeypatch.context() as patched:
-        patched.setattr("viewer.services.inspector.explain", fail)
+        patched.setattr("viewer.services.inspector.why", fail)
         c.selection.select((0.5, 0.5))
         desk.until(lambda: c.notices.message is not None and "made to fail" in desk.said)
     count = len(desk.came)
