@@ -19,7 +19,6 @@ from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
 from viewer.window.panels.light_buffer import CubeState, Unfolded
 from viewer.window.panels.links import Pointed
-from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
 
 KEY = imgui.Key
 
@@ -217,31 +216,27 @@ def explaining(d: Driver) -> None:
     shadow, lit = (_places(d, lit) for lit in (False, True))
     d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
     d.wait(lambda: explaining.answer is not None, "an answer about the pointer's pixel", 20.0)
-    blocked = [one for one in explaining.answer.lights if one.blocked_at is not None]
-    assert blocked and all(one.due and not one.lit for one in blocked)
+    blocked = [one for one in explaining.answer.reasons if one.blocker >= 0]
+    assert blocked and not any(one.lit for one in blocked)
     d.frames(3)
     hovering = _lines_drawn(d)
     d.press(KEY.i)
     assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
     d.press(KEY.i)
-    colors = {color for color, *_ in shadow_lines(explaining.answer, d.c.frame)}
-    assert colors >= {BLOCKER, LIT, STOPPED}
     d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
-    d.wait(lambda: all(one.lit for one in explaining.answer.lights if one.due), "an answer about another pixel", 20.0)
-    colors = {color for color, *_ in shadow_lines(explaining.answer, d.c.frame)}
-    assert LIT in colors and not colors & {STOPPED, BLOCKER}  # candidates there may be
+    d.wait(lambda: all(one.blocker < 0 for one in explaining.answer.reasons), "an answer about another pixel", 20.0)
     d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
     d.context.mouse_click(0)
     d.frames(3)
     assert d.c.selection.picked is not None
     d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
     d.wait(lambda: explaining.answer is not None, "an answer about what was clicked", 20.0)
-    assert any(one.blocked_at is not None for one in explaining.answer.lights), "it goes on following the pointer"
+    assert any(one.blocker >= 0 for one in explaining.answer.reasons), "it goes on following the pointer"
     assert d.c.history.frames == traced, "asking has traced a frame"
-    point = explaining.answer.lights[0].point
+    point = explaining.tree.rays[0].end
     d.hold(KEY.d, 0.3)
     d.settle()
-    assert explaining.answer is not None and math.dist(explaining.answer.lights[0].point, point) < 0.2
+    assert explaining.answer is not None and math.dist(explaining.tree.rays[0].end, point) < 0.2
     d.context.mouse_move(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
     d.frames(3)
     assert d.ui.state(Pointed).light == 0
