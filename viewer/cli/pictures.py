@@ -18,10 +18,10 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, view_form
 from viewer.output import capture, commands
 from viewer.services import stills
-from viewer.services.scene_files import find_scene, is_capture
+from viewer.services.scene_loader import find_scene, is_capture
 from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
-from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
+from viewer.state.methods import BY_MODES, SHOWN_BY, default_for
 from viewer.state.readings import MOST_RECORDED
 from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
@@ -106,20 +106,18 @@ def check_view(settings: Settings, view: View, option: str = "--method") -> None
     """Raise ValueError, in one line, where the method has nothing for a view of what single methods have; `option` is
     the one that names methods."""
     method = Method.parse(settings.method)
-    shows = {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}.get(view)
-    why, instead = "", SHOWN_BY.get(view, BY_MODES)
-    if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
-        may = "may make" if method.adaptive else "makes"
-        why, instead = f"the method {settings.method} {may} none", CERTIFIED
-    elif view is View.CUTS and not method.clusters:
-        why = f"the method {settings.method} makes no clusters of lights"
-    elif view.needs_fates and method.clusters:
-        why = f"the method {settings.method} shades by clusters of lights: single lights have no rays"
-        instead = BY_MODES
-    elif shows is not None and not any(name == method.base or method.has(name) for name in shows):
-        why = f"not with the method {settings.method}"
-    if why:
-        raise ValueError(f"--view {view.value}: {why}; give {option} {instead}")
+    names = {method.base, *method.additions}
+    shown = {
+        View.CERTIFICATE: method.has_certificates and not method.adaptive,  # which may make none
+        View.CUTS: method.clusters,
+        View.VOXELS: "voxels" in names,
+        View.CELL_LIGHTS: bool({"lie", "lie-exact"} & names),
+    }
+    if not shown.get(view, True):
+        raise ValueError(f"--view {view}: the method {method} has nothing for it; give {option} {SHOWN_BY[view]}")
+    if view.needs_fates and method.clusters:
+        why = f"the method {method} shades by clusters of lights: single lights have no rays"
+        raise ValueError(f"--view {view}: {why}; give {option} {BY_MODES}")
 
 
 def check_tree(settings: Settings, view: View, scene: Scene) -> None:
