@@ -186,7 +186,6 @@ class FrameHistory(Plots):
         """Forget who set which mode; `blank` says that no modes are left from frames before."""
         self._origins: dict[Key, ModeOrigins] = {}
         self._lights: dict[Key, NDArray[np.float64]] = {}
-        self._dropped: set[Key] = set()
         self._blank = blank
         self._repeats = {} if blank else dict.fromkeys(self._repeats, (None, 0))
 
@@ -242,13 +241,11 @@ class FrameHistory(Plots):
         key = _key(frame)
         if traced.request.divisor == 1:
             self._shown = key
-        blank = self._blank and key not in self._dropped
-        origins = self._origins.pop(key, None) or ModeOrigins(frame.lights, blank=blank)
+        origins = self._origins.pop(key, None) or ModeOrigins(frame.lights, blank=self._blank)
         self._origins[key] = origins  # the newest last
         if len(self._origins) > MOST_ORIGINS:
-            oldest = next(iter(self._origins))
-            del self._origins[oldest]
-            self._dropped.add(oldest)
+            del self._origins[next(iter(self._origins))]
+            self._blank = False  # should that come again, it would have modes from before
         lights, before = scene.light_positions(frame.time), self._lights.get(key)
         moved = None if before is None or len(before) != len(lights) else (lights != before).any(axis=1)
         self._lights[key] = lights

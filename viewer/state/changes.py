@@ -6,7 +6,6 @@ from dataclasses import fields, replace
 from typing import Any
 
 from tracer.scene.edits import Edits
-from tracer.scene.mesh_options import MeshOptions
 from tracer.setting import ALWAYS, settings_of
 from viewer.state.view_state import ViewState
 
@@ -32,20 +31,9 @@ def changes(old: ViewState, new: ViewState) -> dict[str, str]:
         if one.stored == ALWAYS and one.get(old) != one.get(new)
     }
     changed |= {f"comparison.{name}": said for name, said in old.compare.changes(new.compare).items()}
-    if old.meshes != new.meshes:
-        return changed | {"meshes": _meshes_in_words(old.meshes, new.meshes)}  # which has a first camera of its own
     if old.camera != new.camera:
         changed[CAMERA] = "camera onto the scene's path" if new.camera is None else "camera"
     return changed | edits_in_words(old.edits, new.edits)
-
-
-def _meshes_in_words(before: MeshOptions, after: MeshOptions) -> str:
-    """Return how a mesh is read now, where it was read in another way before."""
-    if before.studio != after.studio:
-        return f"studio {'on' if after.studio else 'off'}"
-    if before.up != after.up:
-        return f"{after.up} up" if after.up is not None else "up as it was guessed"
-    return f"crease angle {after.crease:g}°" if after.crease is not None else "usual crease angle"
 
 
 def edits_in_words(before: Edits, after: Edits) -> dict[str, str]:

@@ -246,27 +246,9 @@ def test_edits_of_what_is_not_there_are_one_line(
     assert code != 0 and said in lines[-1] and not (tmp_path / "out.png").exists()
 
 
-def test_an_answer_that_fails_is_told_of_and_stops_nothing(desk: Desk, monkeypatch: pytest.MonkeyPatch):
-    """Neither does the film that plays stop, nor is the picture taken for one that will not come."""
-    c = desk.c
-    c.session.playing = True
-    desk.until(lambda: len(desk.came) > 2)
-
-    def fail(*_: object) -> None:
-        raise MemoryError("made to fail")
-
-    monkeypatch.setattr("viewer.services.inspector.why", fail)
-    c.selection.select((0.5, 0.5))
-    desk.until(lambda: c.notices.message is not None and "made to fail" in desk.said)
-    assert c.session.playing
-    count = len(desk.came)
-    desk.until(lambda: len(desk.came) > count + 2)
-    c.session.playing = False
-    desk.rest()
-    assert not c.scheduler.awaits and c.scheduler._failed is None
-
-
-def test_a_frame_that_fails_stops_what_plays(desk: Desk, monkeypatch: pytest.MonkeyPatch):
+def test_an_answer_that_fails_stops_nothing_and_a_frame_that_fails_stops_what_plays(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+):
     c = desk.c
     c.session.playing = True
     desk.until(lambda: len(desk.came) > 2)
@@ -274,6 +256,13 @@ def test_a_frame_that_fails_stops_what_plays(desk: Desk, monkeypatch: pytest.Mon
     def fail(*_: object, **__: object) -> None:
         raise MemoryError("made to fail")
 
+    with monkeypatch.context() as patched:
+        patched.setattr("viewer.services.inspector.why", fail)
+        c.selection.select((0.5, 0.5))
+        desk.until(lambda: c.notices.message is not None and "made to fail" in desk.said)
+    count = len(desk.came)
+    desk.until(lambda: len(desk.came) > count + 2)
+    assert c.session.playing
     monkeypatch.setattr(c.renderer._renderer, "refine", fail)
     desk.until(lambda: not c.session.playing)
     assert "frame not traced" in desk.said and "made to fail" in desk.said
