@@ -11,12 +11,7 @@ from viewer.state.pixels import Zoom
 from viewer.window.widgets import em
 
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
-_GAPS = 1.2, 0.6  # ems from the point: to the right of it or below it, and on its other sides
 _PAD = 0.4  # ems around words
-
-Pair = tuple[float, float]
-Rect = tuple[float, float, float, float]
-"""Left, upper, right and lower edge."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +50,7 @@ class Area:
         return ImVec2(corner.x + u * size.x, corner.y + v * size.y)
 
 
-def size_of(lines: Sequence[str]) -> Pair:
+def size_of(lines: Sequence[str]) -> tuple[float, float]:
     """The size of a few lines with the ground that they are written on."""
     width = max(imgui.calc_text_size(text).x for text in lines)
     return width + 2.0 * em(_PAD), imgui.get_text_line_height() * len(lines) + 2.0 * em(_PAD)
@@ -74,28 +69,3 @@ def pointer() -> ImVec2:
     """The middle of the pixel of the screen that the pointer is on."""
     mouse = imgui.get_io().mouse_pos
     return ImVec2(mouse.x + 0.5, mouse.y + 0.5)
-
-
-def write_beside(lines: Sequence[str], at: ImVec2, room: Rect, taken: Rect | None) -> None:
-    """Write a few lines beside a point, inside the room and not over what is taken, if that can be."""
-    corner = beside((at.x, at.y), size_of(lines), (em(_GAPS[0]), em(_GAPS[1])), room, taken)
-    write_lines(lines, ImVec2(*corner))
-
-
-def beside(at: Pair, size: Pair, gaps: Pair, room: Rect, taken: Rect | None = None) -> Pair:
-    """The left and the upper edge of what is so large and stands beside a point.
-
-    It stands to the right and below by the first of the gaps, or else to the left or above by the second, wherever it
-    fits into the room and covers nothing that is taken; where all of that would, it covers it all the same."""
-    (x, y), (width, height), (after, before) = at, size, gaps
-    lefts, tops = (x + after, x - before - width), (y + after, y - before - height)
-    left, upper, right, lower = room
-    places = [(a, b) for b in tops for a in lefts if left <= a <= right - width and upper <= b <= lower - height]
-    if not places:
-        return max(lefts[1], left), max(tops[1], upper)
-    return next((place for place in places if taken is None or not _meets(place, size, taken)), places[0])
-
-
-def _meets(place: Pair, size: Pair, taken: Rect) -> bool:
-    left, upper, right, lower = taken
-    return place[0] < right and place[0] + size[0] > left and place[1] < lower and place[1] + size[1] > upper
