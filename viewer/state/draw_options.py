@@ -126,7 +126,8 @@ class DrawOptions:
         panel="View", applies=in_views(lambda view: view.needs_work),
     )  # fmt: skip
     mark_wrong: bool = setting(
-        True, "Mark wrong pixels", "Draw rings around pixels with wrong shadow answers, so that a lone one is found.",
+        True, "Mark wrong pixels",
+        "Draw rings around pixels with wrong shadow answers in Difference and Wipe, so that a lone one is found.",
         option="--no-marks", panel="View", applies=in_views(lambda view: view.needs_verify),
     )  # fmt: skip
     clipping: bool = setting(

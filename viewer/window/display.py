@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol
 
 import moderngl
@@ -14,6 +15,8 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
+from viewer.state.pixels import Zoom
+from viewer.util.resources import shader_source
 from viewer.views import AS_SAVED, Highlight, Pixels, colorize
 from viewer.views.compare import Difference, signed_picture
 
@@ -196,6 +199,64 @@ class TextureCache:
         """Free everything on the GPU."""
         self._wanted.clear()
         self.update()
+
+
+class Magnifier:
+    """Enlarged copies of pictures with crisp pixels, by name, as ImGui itself always smooths what it enlarges.  Each
+    stays until another is asked for under its name."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._targets: dict[str, Any] = {}
+        self._shown: dict[str, tuple[Any, ...]] = {}
+
+    @cached_property
+    def _triangle(self) -> Any:
+        """One that covers all, with the shader: compiled when it is first needed."""
+        vertex, fragment = (
+            "#version 330 core\n" + shader_source(name) for name in ("fullscreen.vert", "magnified.frag")
+        )
+        return self._context.vertex_array(self._context.program(vertex_shader=vertex, fragment_shader=fragment), [])
+
+    def draw(self, name: str, source: Any, version: object, zoom: Zoom, size: tuple[int, int]) -> None:
+        """Enlarge as much of a texture as the zoom shows to a size in pixels, unless it is there; `version` is another
+        one whenever the texture's contents are."""
+        wanted = source.glo, zoom, size, source.size, version
+        if self._shown.get(name) == wanted:
+            return
+        window = self._context.detect_framebuffer()
+        try:
+            target = self._targets.get(name)
+            if target is None or target.size != size:
+                self.drop(name)
+                target = self._targets[name] = self._context.framebuffer([self._context.texture(size, 4)])
+            left, top, right, bottom = zoom.shown()
+            program = self._triangle.program
+            program["part"], program["size"] = (left, top, right - left, bottom - top), size
+            source.use(0)
+            target.use()
+            self._context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+            self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        finally:
+            window.use()
+        self._shown[name] = wanted
+
+    def texture_of(self, name: str, source: int, zoom: Zoom, size: tuple[int, int]) -> int | None:
+        """Name of the GL texture with that part of that source in that size; None while there is none."""
+        there = self._shown.get(name, ())[:3] == (source, zoom, size)
+        return self._targets[name].color_attachments[0].glo if there else None
+
+    def drop(self, name: str) -> None:
+        """Free a copy, if there is one."""
+        target = self._targets.pop(name, None)
+        self._shown.pop(name, None)
+        if target is not None:
+            target.color_attachments[0].release()
+            target.release()
+
+    def release(self) -> None:
+        for name in list(self._targets):
+            self.drop(name)
 
 
 def _selected_border(frame: Frame, window: InWindow, part_of: NDArray[np.int32] | None) -> NDArray[np.bool_]:
