@@ -13,8 +13,7 @@ from tests.viewer.fakes import make_frame, with_tree
 from tracer.frame import Settings
 from tracer.geometry.accelerators import BVH8, LAZY
 from viewer.state.comparison import CompareMode, Side
-from viewer.state.draw_options import Slice
-from viewer.state.tone import Tone
+from viewer.state.draw_options import Slice, Tone
 from viewer.state.views import View
 
 
