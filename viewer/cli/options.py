@@ -24,8 +24,8 @@ from tracer.settings import Settings
 from viewer.cli.arguments import UPS, Parser, before, count, light_at, number, several, size
 from viewer.cli.console import Work
 from viewer.services import stills
-from viewer.state.changes import as_options
 from viewer.state.draw_options import Slice
+from viewer.state.view_state import as_options
 from viewer.util import resources
 from viewer.views.legend import lights_in_words
 

@@ -14,12 +14,12 @@ from viewer.services.motion import IDLE_AFTER, Motion
 from viewer.services.undo import Undo
 from viewer.state import codec
 from viewer.state.comparison import CompareMode
+from viewer.state.draw_options import Tone
 from viewer.state.navigation import LONGEST_FLIGHT, SHORTEST_FLIGHT
 from viewer.state.notices import Notices
 from viewer.state.pixels import Zoom
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
-from viewer.state.tone import Tone
 from viewer.state.views import View
 
 AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
