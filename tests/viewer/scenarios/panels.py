@@ -44,11 +44,10 @@ def panels(d: Driver) -> None:
     assert not d.ui.dialogs
     d.choose("View/Depth")
     assert d.c.session.draw.view is View.DEPTH
-    d.c.session.set_pace(keep_tracing=True)
     traced = d.c.history.frames
-    d.c.scheduler.trace_again()
+    d.press("K")
     d.wait(lambda: d.c.history.frames >= traced + 3, "frames at idle")
-    d.c.session.set_pace(keep_tracing=False)
+    d.press("K")
 
 
 def closing_panels(d: Driver) -> None:
