@@ -10,7 +10,7 @@ from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
 from tracer.statistics import RayCounts
 from viewer.state import terms, verified
-from viewer.state.in_turn import InTurn
+from viewer.state.savings import InTurn
 from viewer.util.numbers import count, percent, whole_percent
 
 RAYS, WORK, TIME = "Shadow rays", "Work", "Time"

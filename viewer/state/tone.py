@@ -17,11 +17,6 @@ from tracer.setting import setting
 
 MOST_EXPOSURE = 16.0
 """Stops of exposure, up and down."""
-WHITES = (0.01, 1000.0)
-"""The least and the highest white point."""
-
-MID_GREY = 0.18
-"""The grey that photographers expose for."""
 
 # Hable's filmic curve, "Uncharted 2: HDR Lighting" (GDC 2010): shoulder, linear strength and angle, toe strength,
 # numerator and denominator.
@@ -31,28 +26,18 @@ HABLE = (0.15, 0.50, 0.10, 0.20, 0.02, 0.30)
 class Curve(StrEnum):
     """The curves that colours can take to the screen."""
 
-    NONE = "none"
-    REINHARD = "reinhard"
-    FILMIC = "filmic"
-    SRGB = "srgb"
+    label: str
+    meaning: str
 
-    @property
-    def label(self) -> str:
-        return _LABELS[self]
+    def __new__(cls, value: str, label: str, meaning: str) -> Curve:
+        made = str.__new__(cls, value)
+        made._value_, made.label, made.meaning = value, label, meaning
+        return made
 
-    @property
-    def meaning(self) -> str:
-        return _MEANINGS[self]
-
-
-_LABELS = {Curve.NONE: "None", Curve.REINHARD: "Reinhard", Curve.FILMIC: "Filmic", Curve.SRGB: "sRGB"}
-
-_MEANINGS = {
-    Curve.NONE: "straight up to white; what is brighter is clipped",
-    Curve.REINHARD: "Reinhard's curve with a white point: compresses what is bright",
-    Curve.FILMIC: "Hable's filmic curve: compresses what is bright and deepens what is dark",
-    Curve.SRGB: "takes colours for linear light and encodes them as sRGB: brightens what is dark",
-}
+    NONE = "none", "None", "straight up to white; what is brighter is clipped"
+    REINHARD = "reinhard", "Reinhard", "Reinhard's curve with a white point: compresses what is bright"
+    FILMIC = "filmic", "Filmic", "Hable's filmic curve: compresses what is bright and deepens what is dark"
+    SRGB = "srgb", "sRGB", "takes colours for linear light and encodes them as sRGB: brightens what is dark"
 
 
 def _in_pictures(state: Any) -> bool:
@@ -69,7 +54,7 @@ class Tone:
         applies=_in_pictures, remembered=False,
     )  # fmt: skip
     white: float = setting(
-        1.0, "White", "The colour, once exposed, that becomes white.", low=WHITES[0], high=WHITES[1], log=True,
+        1.0, "White", "The colour, once exposed, that becomes white.", low=0.01, high=1000.0, log=True,
         option="--white", panel="Tone", applies=_in_pictures, remembered=False,
     )  # fmt: skip
     curve: Curve = setting(
@@ -81,15 +66,6 @@ class Tone:
     def neutral(self) -> bool:
         """Whether colours are shown as they were traced, bit for bit."""
         return self == NEUTRAL
-
-    @property
-    def gain(self) -> float:
-        return float(2.0**self.exposure)
-
-    @property
-    def mid_grey(self) -> float:
-        """What becomes of MID_GREY, of 1."""
-        return float(toned(np.full((1, 1, 3), MID_GREY, np.float32), self)[0, 0, 0])
 
     def in_words(self) -> str:
         """What differs from neutral, briefly; empty where nothing does."""
@@ -107,7 +83,7 @@ def toned(color: NDArray[np.float32], tone: Tone) -> NDArray[np.float32]:
     Unchanged, and not even copied, by a neutral tone."""
     if tone.neutral:
         return color
-    x, white = np.maximum(color, np.float32(0.0)) * np.float32(tone.gain), np.float32(tone.white)
+    x, white = np.maximum(color, np.float32(0.0)) * np.float32(2.0**tone.exposure), np.float32(tone.white)
     if tone.curve is Curve.REINHARD:
         return (x * (1 + x / (white * white)) / (1 + x)).astype(np.float32, copy=False)
     if tone.curve is Curve.FILMIC:
@@ -128,18 +104,10 @@ def _srgb(x: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.where(x <= np.float32(0.0031308), np.float32(12.92) * x, curved).astype(np.float32)
 
 
-@dataclass(frozen=True)
-class Clipped:
-    """Pixels (h, w) of which a channel is too bright for the screen, and those that are black."""
-
-    bright: NDArray[np.bool_]
-    black: NDArray[np.bool_]
-
-
-def clipped(color: NDArray[np.float32], tone: Tone) -> Clipped:
-    """What of colours (h, w, 3) is cut off by the screen."""
+def clipped(color: NDArray[np.float32], tone: Tone) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which pixels (h, w) of colours (h, w, 3) have a channel too bright for the screen, and which are black."""
     shown = toned(color, tone)
-    return Clipped(np.any(shown > 1.0, axis=-1), np.all(shown <= 0.0, axis=-1))
+    return np.any(shown > 1.0, axis=-1), np.all(shown <= 0.0, axis=-1)
 
 
 def brighter(tone: Tone, stops: float) -> Tone:

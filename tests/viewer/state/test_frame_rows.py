@@ -8,7 +8,7 @@ from tests.viewer.fakes import make_frame, with_cuts
 from tracer.frame import Frame, Settings
 from tracer.statistics import FrameStatistics, RayCounts, ShadowCounts, WrongCounts
 from viewer.state.frame_rows import NO_TIME, Row, beside, change, rows
-from viewer.state.in_turn import LEAST, InTurn
+from viewer.state.savings import LEAST, InTurn
 
 
 def frame_by(method: str, **statistics: object) -> Frame:

@@ -10,8 +10,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.frame import Frame
 from viewer.state.comparison import CompareMode, Side, Source
 from viewer.state.frame_rows import Row, beside, change
-from viewer.state.in_turn import InTurn
 from viewer.state.palette import LESS, MORE
+from viewer.state.savings import InTurn
 from viewer.window.panels.culling import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (

@@ -9,7 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.runs import missing_in
 from viewer.state.readings import can_draw
-from viewer.state.tone import MID_GREY, NEUTRAL, Tone
+from viewer.state.tone import NEUTRAL
 from viewer.state.view_state import LONGEST_SIDE
 from viewer.state.views import View
 from viewer.window.panels import legend, lights, slicing
@@ -38,7 +38,7 @@ def show(ui: Ui) -> None:
                     setting_row(ui, one, room=_BUTTON)
                     _reset_tone(ui)
                 elif one.kind is not bool:
-                    setting_row(ui, one, _mid_grey(draw.tone) if one.path == "draw.tone.curve" else "")
+                    setting_row(ui, one)
             _range(ui)
     setting_switches(ui, [one for one in settings if one.kind is bool])
     legend.in_panel(ui)
@@ -69,10 +69,6 @@ def _reset_tone(ui: Ui) -> None:
     if imgui.button(f"{icons.ICON_FA_ROTATE_LEFT}##reset tone", (-1.0, 0.0)):
         ui.controller.session.set_draw(tone=NEUTRAL)
     tooltip("Reset exposure, white and curve: colours as traced.")
-
-
-def _mid_grey(tone: Tone) -> str:
-    return f"\nMid grey, {MID_GREY:g}, becomes {tone.mid_grey:.2f} with exposure, white and curve as they are."
 
 
 def _views(ui: Ui) -> None:
