@@ -18,7 +18,7 @@ from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, listed, print_table, working
 from viewer.output import commands
 from viewer.output.reports import findings
-from viewer.services import comparison, hunts
+from viewer.services import hunts, stills
 from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
 from viewer.util.messages import printable
@@ -44,7 +44,7 @@ def parser() -> Parser:
     add = parser.add_argument
     options.add_scene(parser)
     help_ = f"whose wrong pixels: {options.METHODS} (default: paper)"
-    add("--method", type=arguments.method, default="paper", metavar="M", help=help_)
+    add("--method", type=arguments.method, default="paper", metavar="METHOD", help=help_)
     help_ = "the frames A to B of the path, or one (default: all)"
     add("--frames", type=arguments.frame_span, metavar="A-B", help=help_)
     add("--step", type=count(1, 1_000_000), default=1, metavar="N", help="only every N-th of them (default: 1)")
@@ -104,8 +104,8 @@ def _write(found: hunt.Results, scene: Scene, search: Search, world: World, give
             work.count(f"figure {rank} of {len(found.finds)}", rank - 1, len(found.finds))
             state, figure = hunts.comparison_of(find, found, scene, search.settings, meshes.of_file(Path(scene.path)))
             try:
-                shown = comparison.trace(scene, state, figure, world, cancelled=work.cancelled)
-                comparison.save(shown, stem.with_suffix(".png"))
+                shown = stills.trace_methods(scene, state, figure, world, cancelled=work.cancelled)
+                stills.save_methods(shown, stem.with_suffix(".png"))
                 written.append(stem.with_suffix(".png"))
             except Cancelled:
                 work.note("cancelled: the figures from here on are not drawn")

@@ -148,7 +148,7 @@ class FilmRun(FileRun):
         self.output = script.video or script.folder
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
-        script, reel = self.script, None
+        script, add = self.script, None
         renderer = Renderer(scene, script.state.settings, world=world)
         with ExitStack() as stack:
             for take, path in zip(script.takes, script.paths):
@@ -161,8 +161,8 @@ class FilmRun(FileRun):
                 capture.write(path, pixels, stills.text(pixels, frame, scene, state))
                 if script.video is not None:
                     size = pixels.shape[1], pixels.shape[0]
-                    reel = reel or stack.enter_context(video(script.video, size, script.fps))
-                    reel.add(pixels)
+                    add = add or stack.enter_context(video(script.video, size, script.fps))
+                    add(pixels)
                 self.progressed(f"frame {self.traced + 1} of {self.frames}", frame)
                 yield script.folder
 
@@ -235,45 +235,29 @@ def check_video() -> None:
         raise ValueError("PyAV was built without x264; give a folder for the pictures alone")
 
 
-class Video:
-    """A video that pictures are added to, as `video` opens it."""
+@contextmanager
+def video(path: Path, size: tuple[int, int], fps: float) -> Iterator[Callable[[NDArray[np.uint8]], None]]:
+    """An mp4 of pictures of this size, which takes its name at the end of the block; after an error, none is left.
 
-    def __init__(self, file: Any, size: tuple[int, int], fps: float) -> None:
-        """`file` is PyAV's; `size` is that of the pictures.  x264 takes even sides only."""
-        self._file, self._size = file, (size[0] + size[0] % 2, size[1] + size[1] % 2)
+    Gives what adds a picture, (h, w, 3) uint8.  x264 takes even sides only: an odd one is made even by its last row or
+    column once more.  Raises OSError in one line."""
+    import av
+
+    width, height = (side + side % 2 for side in size)
+    options = {"movflags": "+faststart"}
+    with whole_file(path) as (part, _), av.open(str(part), "w", format="mp4", options=options) as file:
         rate = Fraction(fps).limit_denominator(1001)
-        self._stream: Any = file.add_stream("libx264", rate=rate, options={"crf": QUALITY, "preset": "medium"})
-        self._stream.width, self._stream.height = self._size
-        self._stream.pix_fmt = "yuv420p"
-        context = self._stream.codec_context
+        stream: Any = file.add_stream("libx264", rate=rate, options={"crf": QUALITY, "preset": "medium"})
+        stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
+        context = stream.codec_context
         context.colorspace = context.color_primaries = context.color_trc = 1  # BT.709, as players take it to be
         context.color_range = 1  # of studios
 
-    def add(self, pixels: NDArray[np.uint8]) -> None:
-        """Add the next picture, (h, w, 3) uint8; an odd side is made even by its last row or column once more."""
-        import av
+        def add(pixels: NDArray[np.uint8]) -> None:
+            room = ((0, height - pixels.shape[0]), (0, width - pixels.shape[1]), (0, 0))
+            frame: Any = av.VideoFrame.from_ndarray(np.ascontiguousarray(np.pad(pixels, room, "edge")), format="rgb24")
+            colors = {"dst_colorspace": "itu709", "dst_color_range": "MPEG", "src_color_range": "JPEG"}
+            file.mux(stream.encode(frame.reformat(format="yuv420p", **colors)))
 
-        height, width = pixels.shape[:2]
-        room = ((0, self._size[1] - height), (0, self._size[0] - width), (0, 0))
-        frame: Any = av.VideoFrame.from_ndarray(np.ascontiguousarray(np.pad(pixels, room, "edge")), format="rgb24")
-        self.put(frame.reformat(format="yuv420p", dst_colorspace="itu709", dst_color_range="MPEG",
-                                src_color_range="JPEG"))  # fmt: skip
-
-    def put(self, frame: Any) -> None:
-        """Write a frame as PyAV has it, or None at the end."""
-        for packet in self._stream.encode(frame):
-            self._file.mux(packet)
-
-
-@contextmanager
-def video(path: Path, size: tuple[int, int], fps: float) -> Iterator[Video]:
-    """An mp4 of pictures of this size, which takes its name at the end of the block; after an error, none is left.
-
-    Raises OSError in one line."""
-    import av
-
-    options = {"movflags": "+faststart"}
-    with whole_file(path) as (part, _), av.open(str(part), "w", format="mp4", options=options) as file:
-        made = Video(file, size, fps)
-        yield made
-        made.put(None)
+        yield add
+        file.mux(stream.encode(None))

@@ -173,7 +173,7 @@ def _shows(view: View) -> Condition:
 def _in_shadow(c: Controller) -> bool:
     """Return whether the pixel that was clicked is in the shadow of some light."""
     answer = c.inspector.answer if c.selection.picked is not None else None
-    return answer is not None and any(one.blocked_at is not None for one in answer.lights)
+    return answer is not None and any(one.blocker >= 0 for one in answer.reasons)
 
 
 def _tests(c: Controller) -> bool:
@@ -220,8 +220,8 @@ def _click_a_shadow(c: Controller, open_panel: OpenPanel) -> Script:
             continue
         yield lambda c: c.inspector.answer is not None
         answer = c.inspector.answer
-        for one in answer.lights if answer is not None else ():
-            if one.due and not one.reached and one.blocker not in (None, picked.primitive):
+        for one in answer.reasons if answer is not None else ():
+            if not one.lit and one.blocker not in (-1, picked.primitive):
                 c.settings.set_light(one.light)
                 yield SECONDS
                 return

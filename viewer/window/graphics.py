@@ -13,11 +13,9 @@ from viewer.state.parts import parts_of
 from viewer.state.savings import comparison_in_words
 from viewer.state.views import View
 from viewer.views.base import Highlight
-from viewer.window.display import Compared, Display, InWindow
-from viewer.window.magnifier import Magnifier
+from viewer.window.display import Compared, Display, InWindow, Magnifier, TextureCache
 from viewer.window.panels import legend, savings, sides
 from viewer.window.preview import PreviewDisplay
-from viewer.window.texture_cache import TextureCache
 from viewer.window.ui import CaptureKind, Ui
 
 

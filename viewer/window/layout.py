@@ -23,7 +23,6 @@ from viewer.window.panels import (
     culling,
     experiment,
     figure1,
-    film,
     find,
     hunt,
     inspector,
@@ -83,7 +82,7 @@ PANELS = {
         Panel("Experiment", "Bottom", experiment.show),
         Panel("Zoom test", "Bottom", zoom.show),
         Panel("Hunt", "Bottom", hunt.show),
-        Panel("Film", "Bottom", film.show),
+        Panel("Film", "Bottom", saving.show_film),
         Panel("Log", "Bottom", status.show_log),
     )
 }

@@ -21,9 +21,8 @@ from viewer.output.comparison import Comparison, Crop, Shown
 from viewer.output.comparison_figure import figure
 from viewer.output.figures import COLUMNS, chosen_steps, film_figure
 from viewer.output.filmstrip import Filmstrip
-from viewer.state.draw_options import DrawOptions
+from viewer.state.draw_options import DrawOptions, Tone
 from viewer.state.palette import WRONG
-from viewer.state.tone import Tone
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
 from viewer.views.difference import Mark, ringed, wrong_marks
@@ -194,26 +193,17 @@ def test_however_long_the_way_memory_is_bounded(frame: Frame, limit: dict[str, i
     assert film.nearest(4.0, 199).number == numbers[0][-1] and film.nearest(5.0, 3) is None
 
 
-def test_the_figure_draws_first_last_and_where_something_happens(frame: Frame):
+def test_a_film_draws_first_last_and_where_something_happens_as_far_as_it_went(frame: Frame):
     film = Filmstrip()
-    for number in range(30):
-        film.record(4.0, number, frame)
-    approach = Approach(4.0, [step(n, wrong=int(11 <= n < 14)) for n in range(30)])
-    chosen = chosen_steps(zoom_results(approach), list(range(30)))
-    assert len(chosen) == COLUMNS and {0, 11, 14, 29} <= set(chosen) and chosen == sorted(chosen)
-    figure = film_figure(film, zoom_results(approach))
-    assert len(figure.axes) == COLUMNS
-    np.testing.assert_array_equal(figure.axes[0].images[0].get_array(), film.of(4.0)[0].pixels())
-
-
-def test_a_way_that_was_stopped_early_is_drawn_as_far_as_it_went(frame: Frame):
-    film = Filmstrip()
-    for factor, steps in ((4.0, 5), (16.0, 2)):
+    for factor, steps in ((4.0, 30), (16.0, 2)):
         for number in range(steps):
             film.record(factor, number, frame)
-    approaches = [Approach(4.0, [step(n) for n in range(5)]), Approach(16.0, [step(0)]), Approach(64.0)]
-    figure = film_figure(film, zoom_results(*approaches))
-    assert [len(panel.images) for panel in figure.axes] == [1, 1, 1, 1, 1, 1, 0, 0, 0, 0]
+    long = Approach(4.0, [step(n, wrong=int(11 <= n < 14)) for n in range(30)])
+    chosen = chosen_steps(zoom_results(long), list(range(30)))
+    assert len(chosen) == COLUMNS and {0, 11, 14, 29} <= set(chosen) and chosen == sorted(chosen)
+    figure = film_figure(film, zoom_results(long, Approach(16.0, [step(0)]), Approach(64.0)))
+    assert [len(panel.images) for panel in figure.axes] == [1] * COLUMNS + [1] + [0] * (COLUMNS - 1)
+    np.testing.assert_array_equal(figure.axes[0].images[0].get_array(), film.of(4.0)[0].pixels())
     with pytest.raises(ValueError, match="no step"):
         film_figure(Filmstrip(), zoom_results(Approach(4.0)))
 
@@ -232,16 +222,11 @@ def shown(view: View) -> Shown:
     return Shown(make_scene(), state, compared, {"none": right, "paper": other}, right)
 
 
-def test_differences_are_counted() -> None:
+def test_differences_are_counted_of_what_was_traced_and_pictures_have_the_tone() -> None:
     drawn = shown(View.COLOR)
-    assert drawn.differing("none") == 0 and drawn.differing("paper") == 1
     found = drawn.difference("paper")
     assert found[1, 2] > 0.0 and np.count_nonzero(found) == 1
-    assert dict(drawn.counts("paper"))["pixels that differ"] == "1"
-
-
-def test_pictures_have_the_tone_and_differences_are_of_what_was_traced() -> None:
-    drawn = shown(View.COLOR)
+    assert dict(drawn.counts("paper"))["pixels that differ"] == "1" and drawn.differing("none") == 0
     bright = replace(drawn, state=drawn.state.with_draw(tone=Tone(1.0)))
     assert (bright.pictures["none"] != drawn.pictures["none"]).any()
     assert np.array_equal(bright.difference("paper"), drawn.difference("paper"))

@@ -18,7 +18,6 @@ from viewer.views.voxels import voxels_seen
 from viewer.window.panels import slicing
 from viewer.window.panels.light_buffer import CubeState, Unfolded
 from viewer.window.panels.links import Pointed
-from viewer.window.panels.overlays import BLOCKER, LIT, STOPPED, shadow_lines
 
 KEY = imgui.Key
 
@@ -173,27 +172,24 @@ def explaining(d: Driver) -> None:
     shadow, lit = (_places(d, lit) for lit in (False, True))
     d.point(*shadow)
     d.wait(lambda: inspector.answer is not None, "an answer about the pointer's pixel", 20.0)
-    blocked = [one for one in inspector.answer.lights if one.blocked_at is not None]
-    assert blocked and all(one.due and not one.lit for one in blocked)
+    blocked = [one for one in inspector.answer.reasons if one.blocker >= 0]
+    assert blocked and not any(one.lit for one in blocked)
     hovering = _lines_drawn(d)
     d.press("I")
     assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
     d.press("I")
-    assert {color for color, *_ in shadow_lines(inspector.answer, d.c.frame)} >= {BLOCKER, LIT, STOPPED}
     d.point(*lit)
-    d.wait(lambda: all(one.lit for one in inspector.answer.lights if one.due), "an answer about another pixel", 20.0)
-    colors = {color for color, *_ in shadow_lines(inspector.answer, d.c.frame)}
-    assert LIT in colors and not colors & {STOPPED, BLOCKER}  # candidates there may be
+    d.wait(lambda: all(one.blocker < 0 for one in inspector.answer.reasons), "an answer about another pixel", 20.0)
     d.pick(*shadow)
     assert d.c.selection.picked is not None
     d.point(*lit)
     d.wait(lambda: inspector.answer is not None, "an answer about what was clicked", 20.0)
-    assert any(one.blocked_at is not None for one in inspector.answer.lights), "it goes on following the pointer"
+    assert any(one.blocker >= 0 for one in inspector.answer.reasons), "it goes on following the pointer"
     assert d.c.history.frames == traced, "asking has traced a frame"
-    point = inspector.answer.lights[0].point
+    point = inspector.tree.rays[0].end
     d.hold(KEY.d, 0.3)
     d.settle()
-    assert inspector.answer is not None and math.dist(inspector.answer.lights[0].point, point) < 0.2
+    assert inspector.answer is not None and math.dist(inspector.tree.rays[0].end, point) < 0.2
     d.hover(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
     assert d.ui.state(Pointed).light == 0
     d.point(*shadow)

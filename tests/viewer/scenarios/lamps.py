@@ -71,9 +71,9 @@ def lamps(d: Driver) -> None:
     y, x = np.argwhere(between)[between.sum() // 2]
     d.c.selection.select(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
     d.wait(lambda: d.c.inspector.answer is not None, "an answer about the penumbra", 20.0)
-    one = d.c.inspector.answer.lights[d.c.session.draw.light]
+    one = d.c.inspector.answer.reasons[d.c.session.draw.light]
     reached = int(frame.reached[y, x, d.c.session.draw.light])
-    assert (one.reached, one.samples) == (reached, int(frame.asked[y, x, d.c.session.draw.light]))
+    assert (one.lit, one.samples) == (reached, int(frame.asked[y, x, d.c.session.draw.light]))
     d.frames(3)
     d.c.selection.picked = None
 

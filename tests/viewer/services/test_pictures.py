@@ -22,9 +22,8 @@ from tracer.settings import Settings
 from viewer.output import capture
 from viewer.output.commands import BUILT, needs_history
 from viewer.services import stills
-from viewer.state.draw_options import DrawOptions
+from viewer.state.draw_options import Curve, DrawOptions, Tone
 from viewer.state.readings import can_draw
-from viewer.state.tone import Curve, Tone
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
 

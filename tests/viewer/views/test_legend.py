@@ -252,7 +252,7 @@ def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame
     assert wrong.facts[2].values[0].startswith("3 (")
     assert (wrong.entries[0].name, wrong.facts[2].name) == ("wrong pixels", "wrong answers")
     assert of(frame, View.WIPE, mark_wrong=False).entries[0].color is None
-    assert [fact.values for fact in wrong.facts[:2]] == [("2",), ("26 of 255",)]
+    assert [fact.values for fact in wrong.facts[:2]] == [("2",), ("25.5 of 255",)]
     found, known = frame.statistics.wrong, frame.statistics
     known.wrong = replace(found, samples=4)
     assert of(frame, View.DIFFERENCE).entries[0].name == "wrong pixels, 4 samples"
