@@ -110,12 +110,9 @@ def _histogram(ui: Ui) -> None:
         paragraph(f"{count(found.pixels)} of {count(found.of)} pixels {what}; these are counted here", QUIET)
     _figures(found, values.names)
     ranged = view.has_range and not (view.needs_work and c.session.draw.shares)
-    if (difference is not None or ranged) and imgui.small_button("Use as the range of colours"):
-        if difference is not None:
-            c.comparing.change(limit=max(-found.least[0], found.largest[0]))
-        else:
-            span = min(found.least), max(max(found.largest), min(found.least) + 1e-6)
-            c.session.change(draw=c.session.draw.with_span(span, view))
+    if difference is None and ranged and imgui.small_button("Use as the range of colours"):
+        span = min(found.least), max(max(found.largest), min(found.least) + 1e-6)
+        c.session.change(draw=c.session.draw.with_span(span, view))
     _plot(found, values.names)
 
 

@@ -225,7 +225,7 @@ def _changed(ui: Ui) -> None:
             comparing.end()
         else:
             comparing.kept = before
-            comparing.change(source=Source.KEPT, same_view=True)
+            comparing.change(source=Source.KEPT)
             comparing.start(CompareMode.DIFFERENCE)
     if imgui.begin_table("counters", 4):
         for name, width in (("name", 1.5), ("before", 1.0), ("now", 1.0), ("change", 1.1)):
