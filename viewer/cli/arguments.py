@@ -10,6 +10,7 @@ import json
 import math
 import re
 import sys
+import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -44,7 +45,7 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, command: str, description: str, epilog: str) -> None:
         super().__init__(
             prog=f"shadowcull {command}".strip(),
-            description=description,
+            description=textwrap.fill(description, 100),
             epilog=epilog,
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,

@@ -57,7 +57,7 @@ def parser() -> Parser:
         f"which methods: {options.METHODS}; none is always measured too; or all, for those that are worth "
         "comparing in the scene (default: paper)"
     )
-    add("--methods", type=arguments.methods_or_all, default=["paper"], metavar="M,...", help=help_)
+    add("--methods", type=arguments.methods_or_all, default=["paper"], metavar="METHOD,...", help=help_)
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
     options.add_size(parser)

@@ -37,7 +37,7 @@ def parser() -> Parser:
     options.add_scene(parser, pictures.OR_PICTURE)
     add("-o", "--output", type=Path, metavar="FILE", help="the figure, a .png or .pdf, which says how it was made")
     help_ = "which methods, in the order of the columns (default: none,paper,certified)"
-    add("--methods", type=arguments.methods, default=["none", "paper", "certified"], metavar="M,...", help=help_)
+    add("--methods", type=arguments.methods, default=["none", "paper", "certified"], metavar="METHOD,...", help=help_)
     help_ = "rectangles of pixels that are shown enlarged"
     add("--crops", type=arguments.crops, default=(), metavar="X,Y,W,H;...", help=help_)
     options.add_history(parser)

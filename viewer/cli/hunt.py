@@ -44,7 +44,7 @@ def parser() -> Parser:
     add = parser.add_argument
     options.add_scene(parser)
     help_ = f"whose wrong pixels: {options.METHODS} (default: paper)"
-    add("--method", type=arguments.method, default="paper", metavar="M", help=help_)
+    add("--method", type=arguments.method, default="paper", metavar="METHOD", help=help_)
     help_ = "the frames A to B of the path, or one (default: all)"
     add("--frames", type=arguments.frame_span, metavar="A-B", help=help_)
     add("--step", type=count(1, 1_000_000), default=1, metavar="N", help="only every N-th of them (default: 1)")

@@ -24,8 +24,8 @@ from tracer.settings import Settings
 from viewer.cli.arguments import UPS, Parser, before, count, light_at, number, several, size
 from viewer.cli.console import Work
 from viewer.services import stills
-from viewer.state.changes import as_options
 from viewer.state.draw_options import Slice
+from viewer.state.view_state import as_options
 from viewer.util import resources
 from viewer.views.legend import lights_in_words
 
@@ -216,7 +216,7 @@ def add_size(parser: Parser) -> None:
     parser.add_argument("--size", type=size, default=(512, 512), metavar="WxH", help=help_)
 
 
-def add_settings(parser: argparse.ArgumentParser, holder: type, *names: str, **defaults: Any) -> None:
+def add_settings(parser: argparse._ActionsContainer, holder: type, *names: str, **defaults: Any) -> None:
     """Add the options of settings, as these are declared; `defaults` are those of the command where they differ."""
     for one in settings_of(holder):
         if one.name in names:
@@ -224,7 +224,7 @@ def add_settings(parser: argparse.ArgumentParser, holder: type, *names: str, **d
 
 
 def add_setting(
-    parser: argparse.ArgumentParser,
+    parser: argparse._ActionsContainer,
     one: Setting,
     default: Any,
     parse: Callable[[str], Any] | None = None,
@@ -250,12 +250,13 @@ def add_tracing(parser: Parser, accelerator: str = BVH8, many_lamps: bool = Fals
     `many_lamps`: several kinds of lamps are taken; `zoom_factor`: it is an option."""
     others = ["method", "verify", "samples", "lamp_radius", "lamp_samples"] + ([] if zoom_factor else ["zoom_factor"])
     common = [one.name for one in settings_of(Settings) if one.option and one.name not in others]
-    add_settings(parser, Settings, *common, accelerator=accelerator)
-    add_lamps(parser, many_lamps)
+    group = parser.add_argument_group("how it is traced")
+    add_settings(group, Settings, *common, accelerator=accelerator)
+    add_lamps(group, many_lamps)
     add_meshes(parser)
 
 
-def add_lamps(parser: Parser, many: bool = False) -> None:
+def add_lamps(parser: argparse._ActionsContainer, many: bool = False) -> None:
     """Add what makes lamps of a scene's lights; without it, they are as the scene, or a saved picture, says."""
     for name in ("lamp_radius", "lamp_samples"):
         one = setting_of(Settings, name)

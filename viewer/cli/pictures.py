@@ -40,15 +40,16 @@ def add_picture(parser: Parser) -> None:
         f"how shadow rays are culled: {options.METHODS} (default: {DEFAULT_METHOD}, or the method that a view belongs "
         f"to: {', '.join(SHOWN_BY.values())})"
     )
-    parser.add_argument("--method", type=arguments.method, metavar="M", help=help_)
-    add = parser.add_argument_group("what is drawn").add_argument
+    parser.add_argument("--method", type=arguments.method, metavar="METHOD", help=help_)
+    group = parser.add_argument_group("what is drawn")
+    add = group.add_argument
     help_ = (
         f"what to show: {', '.join(map(view_form, View))}. LIGHT is the number of a light, 0 if left out; wipe shows "
         "the traced picture left of a line at this PART of the width, 0 to 1, and the right one on its other side; "
         ":share shows shares of rays, not counts (default: color)"
     )
-    add("--view", type=arguments.view, default=DrawOptions(), metavar="V", help=help_)
-    options.add_settings(parser, DrawOptions, *(one.name for one in DRAWN))
+    add("--view", type=arguments.view, default=DrawOptions(), metavar="VIEW", help=help_)
+    options.add_settings(group, DrawOptions, *(one.name for one in DRAWN))
     with_range = ", ".join(view.value for view in View if view.has_range)
     help_ = f"what has the first and the last colour in the views {with_range} (default: as they come)"
     add("--range", type=arguments.value_range, metavar="LOW:HIGH", help=help_)

@@ -20,6 +20,7 @@ from tracer.method import Method
 from tracer.mode_origins import ModeOrigins, Origins
 from tracer.scene.model import Camera
 from tracer.statistics import SampleCounts
+from viewer.output.commands import BUILT
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Traced, Warmup
@@ -306,9 +307,9 @@ class FrameNavigator:
             self._notices.say(f"picture {number} is no longer kept: only the last {MOST_RECORDS:,} are")
             return
         self.go_to(record.state, f"picture {number}", record.size)
-        same = record.size == self._scheduler.full_size and record.state.draw.view is not View.TREE
-        said = ": the same picture, bit for bit" if same else ""
+        said = ": the same picture, bit for bit" if record.size == self._scheduler.full_size else ""
         said = ": modes are learnt anew" if self._depends_on_modes else said
+        said = f", though {BUILT}" if record.state.draw.view is View.TREE else said
         self._notices.say(f"{self.name_of(number)}, again{said}")
 
     def go_to_experiment(self, run: Experiment, number: int) -> None:

@@ -11,10 +11,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from viewer.services.motion import Motion
-from viewer.state.changes import CAMERA, changes
 from viewer.state.notices import Notices
 from viewer.state.session import Session
-from viewer.state.view_state import ViewState
+from viewer.state.view_state import CAMERA, ViewState, changes
 
 MOST_STEPS = 200
 _BY_STROKES = {"draw.tone.exposure", "draw.tone.white", "draw.zoom"}  # changed little by little, by the wheel or a key

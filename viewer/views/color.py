@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from viewer.state.draw_options import DrawOptions
+from viewer.state.draw_options import DrawOptions, Tone, clipped, toned
 from viewer.state.palette import hex_color
-from viewer.state.tone import Tone, clipped, toned
 from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words
 from viewer.views.legend import Entry, Legend

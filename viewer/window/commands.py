@@ -9,11 +9,11 @@ from tracer.method import Kind, Method, additions, bases
 from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
 from viewer.state.comparison import CompareMode
+from viewer.state.draw_options import NEUTRAL, brighter
 from viewer.state.methods import toggled, with_base
 from viewer.state.pixels import MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.scene_rows import Level
-from viewer.state.tone import NEUTRAL, brighter
 from viewer.state.views import View
 from viewer.views import view_of
 from viewer.window.actions import FindState, copy_command, fit, offer, pointed_at, zoom_by

@@ -21,9 +21,8 @@ from viewer.output.comparison import Comparison, Crop, Shown
 from viewer.output.comparison_figure import figure
 from viewer.output.figures import COLUMNS, chosen_steps, film_figure
 from viewer.output.filmstrip import Filmstrip
-from viewer.state.draw_options import DrawOptions
+from viewer.state.draw_options import DrawOptions, Tone
 from viewer.state.palette import WRONG
-from viewer.state.tone import Tone
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
 from viewer.views.difference import Mark, ringed, wrong_marks

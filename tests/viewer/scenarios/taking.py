@@ -14,7 +14,7 @@ from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from viewer.output import capture
 from viewer.state.comparison import CompareMode
-from viewer.state.tone import Curve, Tone
+from viewer.state.draw_options import Curve, Tone
 from viewer.state.views import View
 from viewer.views.compare import composed
 from viewer.window.panels import saving

@@ -14,7 +14,7 @@ from tracer.culling.fate import Fate
 from tracer.frame import Settings
 from viewer.services.history import Plots, counters
 from viewer.state import palette
-from viewer.state.tone import MOST_EXPOSURE, Curve, Tone, brighter, clipped, toned
+from viewer.state.draw_options import MOST_EXPOSURE, Curve, Tone, brighter, clipped, toned
 from viewer.state.views import View
 from viewer.views import penumbra
 from viewer.views.difference import Mark, wrong_marks

@@ -1,14 +1,15 @@
 """Over the picture, for what was clicked: its rays to the lights and what blocks them, what hides it, and where it
-is itself."""
+is itself; and why a view has nothing to show."""
 
 from __future__ import annotations
 
-from imgui_bundle import ImVec2, ImVec4
+from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.culling.fate import Fate
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
 from tracer.reasons import Why
+from viewer.state.methods import missing, with_base
 from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
 from viewer.state.picking import outline_of, part_points, primitive_points
 from viewer.state.projection import Stroke, strokes
@@ -17,7 +18,7 @@ from viewer.window.panels.area import Area
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.marks import Pen, pen
 from viewer.window.ui import Ui
-from viewer.window.widgets import em
+from viewer.window.widgets import em, paragraph, tooltip
 
 _BLOCKER = ImVec4(*SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW], 1.0)
 _NAMED = ImVec4(0.90, 0.62, 0.0, 1.0)  # what the method's answer rests on
@@ -26,6 +27,8 @@ _OUTLINE = 0.13  # width in ems
 _HIDER, _WHITE = ImVec4(*FATE_COLORS[Fate.PARTLY_OCCLUDED], 1.0), ImVec4(1.0, 1.0, 1.0, 1.0)
 _SAME, _MISSED = ImVec4(0.6, 0.64, 0.7, 1.0), ImVec4(0.3, 0.85, 0.95, 1.0)
 _SIDE = 0.5  # ems, of a pixel's square at least
+_NOTE, _LEAST = 26.0, 8.0  # in ems of width: of a note, and of a picture that has room for one
+_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
 
 
 def show(ui: Ui, area: Area) -> None:
@@ -118,3 +121,27 @@ def _occluded_selection(ui: Ui, made: Pen, frame: Frame) -> None:
         return _projected(frame, outline_of(points if part is None else part_points(now, part, frame.time)))
 
     made.strokes(ui.cached("occluded selection", frame, (picked.primitive, part), lines), _WHITE, 0.12, behind=0.75)
+
+
+def show_missing(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """Say why a view has nothing to show, in a note below the picture's upper third, and offer the method that has."""
+    c, run, room = ui.controller, ui.controller.runs.current, end.x - corner.x - em(2.0)
+    found = missing(c.session.draw.view, c.frame, c.renderer.busy) if c.frame is not None else None
+    if found is None or room < em(_LEAST):
+        return
+    width = min(em(_NOTE), room)
+    imgui.set_cursor_screen_pos(ImVec2((corner.x + end.x - width) / 2.0, corner.y + (end.y - corner.y) / 3.0))
+    imgui.push_style_color(imgui.Col_.child_bg, _BACK)
+    flags = imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.always_use_window_padding
+    if imgui.begin_child("missing", ImVec2(width, 0.0), int(flags)):
+        paragraph(found.text, _FRONT)
+        imgui.begin_disabled(run is not None)
+        if found.base and imgui.button(f"Use {found.base}##instead"):
+            c.settings.change(method=with_base(c.session.settings.method, found.base))
+        if found.accelerator and imgui.button(f"Use {found.accelerator}##instead"):
+            c.settings.change(accelerator=found.accelerator)
+        imgui.end_disabled()
+        if run is not None:
+            tooltip(f"Not while the {run.name} runs. Escape stops it.")
+    imgui.end_child()
+    imgui.pop_style_color()

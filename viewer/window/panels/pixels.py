@@ -109,12 +109,9 @@ def _histogram(ui: Ui) -> None:
         what = "have a value" if difference is None else "differ"
         paragraph(f"{count(found.pixels)} of {count(found.of)} pixels {what}; these are counted here", QUIET)
     ranged = view.has_range and not (view.needs_work and c.session.draw.shares)
-    if (difference is not None or ranged) and imgui.small_button("Use as the range of colours"):
-        if difference is not None:
-            c.comparing.change(limit=max(-found.least[0], found.largest[0]))
-        else:
-            span = min(found.least), max(max(found.largest), min(found.least) + 1e-6)
-            c.session.change(draw=c.session.draw.with_span(span, view))
+    if difference is None and ranged and imgui.small_button("Use as the range of colours"):
+        span = min(found.least), max(max(found.largest), min(found.least) + 1e-6)
+        c.session.change(draw=c.session.draw.with_span(span, view))
     room = imgui.get_content_region_avail().x
     _figures(found, values.names, em(_FIGURES) if room > 2.0 * em(_FIGURES) else room)
     if room > 2.0 * em(_FIGURES):

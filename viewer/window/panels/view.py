@@ -8,8 +8,8 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.runs import missing_in
+from viewer.state.draw_options import NEUTRAL
 from viewer.state.readings import can_draw
-from viewer.state.tone import NEUTRAL
 from viewer.state.view_state import LONGEST_SIDE
 from viewer.state.views import View
 from viewer.window.panels import legend, lights, slicing

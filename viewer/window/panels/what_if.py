@@ -16,11 +16,11 @@ from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
-from viewer.state.changes import one_by_one
 from viewer.state.comparison import CompareMode, Source
 from viewer.state.frame_rows import RAYS, change
 from viewer.state.picking import same_place
 from viewer.state.projection import at_depth, place, seen_from
+from viewer.state.view_state import one_by_one
 from viewer.window.command import Command, Condition
 from viewer.window.panels import lights
 from viewer.window.panels.compare import pairs
@@ -225,7 +225,7 @@ def _changed(ui: Ui) -> None:
             comparing.end()
         else:
             comparing.kept = before
-            comparing.change(source=Source.KEPT, same_view=True)
+            comparing.change(source=Source.KEPT)
             comparing.start(CompareMode.DIFFERENCE)
     if imgui.begin_table("counters", 4):
         for name, width in (("name", 1.5), ("before", 1.0), ("now", 1.0), ("change", 1.1)):
