@@ -223,7 +223,7 @@ def _changed(ui: Ui) -> None:
             comparing.end()
         else:
             comparing.kept = before
-            comparing.change(source=Source.KEPT, same_view=True)
+            comparing.change(source=Source.KEPT)
             comparing.start(CompareMode.DIFFERENCE)
     then, now = before.frame.statistics.shadow, frame.statistics.shadow
     for name in ("due", "saved", "traced"):
