@@ -137,11 +137,10 @@ class Controller:
 
     def take_frame(self) -> None:
         """Take the newest frame, of a run that is under way or else as it was asked for."""
-        for complaint in self.renderer.take_complaints():
-            self.notices.report(complaint)
-        failed = self.renderer.take_failure()
-        if failed is not None:
-            self.notices.report(failed)
+        problems, frame_failed = self.renderer.take_problems()
+        for problem in problems:
+            self.notices.report(problem)
+        if frame_failed:
             self.session.playing = False
             self.scheduler.give_up()
         run = self.runs.take_progress()

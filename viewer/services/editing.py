@@ -153,7 +153,7 @@ class Editing:
             if shown.edits != session.edits:
                 self._task = EditTask(shown, session.edits, first, self._forgets, session.settings)
                 self._forgets = False
-                self._renderer.perform(self._task)
+                self._renderer.perform(self._task.work)
 
     def _give_up(self) -> None:
         if self._session.edited is not None:

@@ -183,7 +183,7 @@ class Runs:
             run.watches = True
             self.current = run
             self._session.playing = False
-            self._perform(_Task(run, self._wake))
+            self._perform(_Task(run, self._wake).work)
             return True
         return False
 

@@ -130,7 +130,7 @@ class Spare:
 
     def __init__(self) -> None:
         self.now, self.works = 0.0, list[Rounds | None]()
-        self.baseline = Baseline(self.works.append, lambda: self.now)
+        self.baseline = Baseline(lambda step: self.works.append(step and step.__self__), lambda: self.now)
 
     def see(self, newest: Traced, moving: bool = False, busy: bool = False) -> Rounds | None:
         """Show a picture for one of the window's frames; returns what the thread does then."""
@@ -208,7 +208,7 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
         return bool(came) and came[-1].frame.time == at
 
     thread.use(renderer)
-    thread.in_spare_time(work)
+    thread.in_spare_time(work.step)
     for number, at in enumerate((1.0, 2.0)):
         assert work.begun == number, "not before a picture is there"
         thread.submit(RenderRequest(at, CAMERA, SIZE))
@@ -223,7 +223,7 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
     until(lambda: work.begun == 3)
     thread.in_spare_time(None)
     until(lambda: work.ended == 3 and len(renderer.turns) == 3)
-    thread.in_spare_time(work)
+    thread.in_spare_time(work.step)
     until(lambda: work.begun == 4)
     assert thread.close(PATIENCE), "the thread hangs"
 

@@ -19,8 +19,7 @@ from viewer.util.files import (
     BackgroundWriter,
     check_writable,
     file_lock,
-    part_file,
-    part_name,
+    whole_file,
     write_new,
     write_text,
     write_whole,
@@ -169,18 +168,18 @@ def test_what_cannot_be_written_is_said_in_one_line(
 def test_what_killed_writers_have_left_is_removed_and_nothing_else(tmp_path: Path) -> None:
     child = os.fork()
     if child == 0:
-        part_name(tmp_path / "a.png").write_bytes(b"half")
+        files._part_name(tmp_path / "a.png").write_bytes(b"half")
         os._exit(9)
     os.waitpid(child, 0)
     (dead,) = tmp_path.iterdir()
     others = [tmp_path / name for name in (".a.png.part", "a.00000000-1-00000000.part", ".a.00000000-1-00000000.part")]
     for other in others:
         other.touch()
-    with part_file(tmp_path / "b.png") as (living, _):
+    with whole_file(tmp_path / "b.png") as (living, _):
         files._cleared.discard(str(tmp_path))
         write_text(tmp_path / "c.txt", "whole")
         assert living.exists() and not dead.exists()
-    assert sorted(tmp_path.iterdir()) == sorted([*others, tmp_path / "c.txt"])
+    assert sorted(tmp_path.iterdir()) == sorted([*others, tmp_path / "b.png", tmp_path / "c.txt"])
 
 
 def test_nobody_sees_a_new_file_before_it_is_whole_and_none_is_written_over(tmp_path: Path) -> None:
