@@ -24,7 +24,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _open_window(scene: Path | None, settings: dict[str, Any], folders: Sequence[Path], meshes: MeshOptions) -> int:
-    return int(window_module().run(scene, settings, folders, meshes))
+    return int(window_module().App(scene, settings, folders, meshes).run())
 
 
 if __name__ == "__main__":

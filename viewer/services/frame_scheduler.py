@@ -24,9 +24,8 @@ from viewer.services.render_request import RenderRequest, Traced, Warmup, as_ask
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
 from viewer.state.methods import NO_CULLING, with_base
-from viewer.state.readings import can_draw, records_fates, records_lights
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
+from viewer.state.views import View, can_draw, records_fates, records_lights
 
 
 @dataclass(frozen=True)

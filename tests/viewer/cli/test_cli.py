@@ -150,7 +150,7 @@ def test_a_light_among_too_many_is_looked_at_alone(
     for output in (tmp_path / "all.png", tmp_path / "alone.png"):
         assert render(capfd, room, "-o", output, "--view", "penumbra:1", "--lamp-radius", "0.5")[0] == 0
         shown.append(pixels(output))
-        monkeypatch.setattr("viewer.state.readings.MOST_TOGETHER", 1)
+        monkeypatch.setattr("viewer.state.views.MOST_TOGETHER", 1)
     assert np.array_equal(*shown) and len(np.unique(shown[0].reshape(-1, 3), axis=0)) > 50
 
 
