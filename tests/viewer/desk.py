@@ -60,7 +60,7 @@ class Desk:
 
         def rested() -> bool:
             nonlocal quiet
-            quiet = 0 if self.c.active else quiet + 1
+            quiet = 0 if self.c.active or not self.c.scheduler.rests else quiet + 1  # all samples have come
             return quiet > 10
 
         self.until(rested)

@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, TypeVar
 
+from tracer.scene.limits import LARGEST
 from tracer.setting import Setting
 from tracer.similar import did_you_mean, similar
 from viewer.state.views import View
@@ -120,6 +121,10 @@ place = _form(
 _span = _form(
     "N(?:-N)?", int, "a range of frames; give the first and the last, like 0-99, or one",
     lambda first, last=math.inf: first <= last,
+)  # fmt: skip
+light_at = _form(
+    "N=X,X,X", float, f"a light and a place within {LARGEST:g} of the origin; give them like 2=1.5,3,-0.5",
+    lambda light, *place: max(map(abs, place)) <= LARGEST,
 )  # fmt: skip
 _crop = _form("N,N,N,N", int, "a crop; give x,y,width,height, with ; between several")
 

@@ -22,7 +22,7 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
 from viewer.cli.console import columns_help, fitted, listed, print_table, terminal_width, titled, width_of, working
 from viewer.output import exports
-from viewer.output.reports import LAMPS, METHOD, TABLE_1, Column, caveats, experiment_title, leaders, table_1
+from viewer.output.reports import LAMPS, METHOD, TABLE_1, Column, caveats, experiment_title, table_1
 from viewer.state import terms
 
 ALL = "all"  # methods that are worth comparing in the scene
@@ -107,8 +107,6 @@ def run(given: Namespace) -> int:
         print_table(lamp_table(results, terminal_width()))
     else:
         print_table(bench_table(results, given.verify, terminal_width()))
-        for line in leaders(experiment.table(results), timed=not given.verify):
-            print(line)
     if failures:
         raise OSError("; ".join(failures))
     return 0 if whole else INTERRUPTED

@@ -16,7 +16,7 @@ from tracer.settings import Settings
 from viewer.cli import options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import print_table, titled, working
-from viewer.output.light_cube import EMPTY, FEW, MANY, ONE, described, picture_of, seen
+from viewer.output.light_cube import picture_of, seen
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
 from viewer.views.legend import lights_in_words
@@ -70,13 +70,13 @@ def run(given: Namespace) -> int:
         why = method.why_not(given.light) or "there is nothing static"
         raise ValueError(f"--light {given.light} has no light buffer, and its shadow rays are traced: {why}")
     light = named_light(scene.lights, given.light)
-    Image.fromarray(picture_of(found) if given.no_legend else described(found, light)).save(given.output)
+    Image.fromarray(picture_of(found, "" if given.no_legend else light)).save(given.output)
     counts = seen(found).counts
     table = titled(f"{given.path.name}, {light}, {time:.3f} s")
     table.add_column("cells of its cube")
     table.add_column("", justify="right")
-    for name, number in zip((EMPTY, ONE, FEW, MANY), counts, strict=True):
-        table.add_row(name, f"{number / counts.cells:.1%}")
+    for name, number in counts.items():
+        table.add_row(name, f"{number / sum(counts.values()):.1%}")
     table.add_row("memory", f"{found.bytes / 1e6:.1f} MB")
     table.add_row("building, all lights", f"{1e3 * frame.statistics.phases['certification']:.0f} ms")
     print_table(table)

@@ -15,11 +15,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tracer.scene.model import Cancelled
 from tracer.similar import did_you_mean
 from tracer.version import program_version
 from viewer.cli.arguments import FAILED, INTERRUPTED, MISUSED, Parser
 from viewer.util import resources
-from viewer.util.messages import ERROR, say
+from viewer.util.messages import ERROR, failure, say
 from viewer.util.screen import has_display, no_display_reason
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
         if arguments and arguments[0] in COMMANDS:
             return _run(arguments[0], arguments[1:])
         return _view(arguments, open_window)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Cancelled):
         say("cancelled")
         return INTERRUPTED
     except BrokenPipeError:
@@ -86,18 +87,11 @@ def _run(name: str, arguments: list[str]) -> int:
 
 def _failed(error: Exception) -> int:
     """Say what went wrong; a bug of the program's own can be asked for its traceback."""
-    from tracer.scene.model import Cancelled, SceneError
-
-    if isinstance(error, Cancelled):
-        say("cancelled")
-        return INTERRUPTED
+    found = failure(error)
     if isinstance(error, MemoryError):
-        why = f": {error}" if str(error) else ""
-        say(f"out of memory{why}; a simpler scene or a smaller --size needs less", ERROR)
-    elif isinstance(error, SceneError | ValueError | OSError) and str(error):
-        say(error, ERROR)
+        say(f"{found.text}; a simpler scene or a smaller --size needs less", ERROR)
     else:
-        say(f"{type(error).__name__}: {error} (a bug in the program; SHADOWCULL_DEBUG=1 shows where)", ERROR)
+        say(found.text if found.expected else f"{found.text} (a bug; SHADOWCULL_DEBUG=1 shows where)", ERROR)
     if os.environ.get("SHADOWCULL_DEBUG"):
         raise error
     return FAILED

@@ -15,14 +15,13 @@ from tracer.geometry.accelerators import BVH8
 from tracer.kernel_cache import outlives_process
 from tracer.method import Method, additions, bases
 from tracer.scene.edits import Edits, edited
-from tracer.scene.limits import LARGEST
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
 from tracer.scene.things import things
 from tracer.setting import Setting, setting_of, settings_of
 from tracer.settings import Settings
-from viewer.cli.arguments import UPS, Parser, before, count, number, several, size
+from viewer.cli.arguments import UPS, Parser, before, count, light_at, number, several, size
 from viewer.cli.console import Work
 from viewer.services import stills
 from viewer.state.changes import as_options
@@ -106,23 +105,11 @@ def add_edits(parser: argparse.ArgumentParser) -> None:
         group.add_argument(name, type=kind, action="append", default=[], metavar=metavar, help=help_)
 
     add("--without-light", "N", "switch off this light", INDEX)
-    add("--move-light", "N=X,Y,Z", "put this light elsewhere", _moved_light)
+    add("--move-light", "N=X,Y,Z", "put this light elsewhere", light_at)
     add("--hide", "NAME", "hide this object")
     add("--hide-primitive", "N", "hide this primitive alone", INDEX)
     add("--make-static", "NAME=T", "freeze a moving object where it is at T seconds, as static geometry", _name_at)
     add("--make-moving", "NAME", "treat a static object as one that could move; it stays where it is")
-
-
-def _moved_light(text: str) -> tuple[int, tuple[float, float, float]]:
-    light, _, place = text.partition("=")
-    try:
-        x, y, z = (float(part) for part in place.split(","))
-        index = INDEX(light)
-    except ValueError:
-        raise ValueError(f"{text!r} is not a light and a place; give them like 2=1.5,3,-0.5") from None
-    if not max(abs(x), abs(y), abs(z)) <= LARGEST:
-        raise ValueError(f"{text!r}: a light is within {LARGEST:g} of the origin along each axis")
-    return index, (x, y, z)
 
 
 def _name_at(text: str) -> tuple[str, float]:
@@ -140,7 +127,7 @@ def edits_of(options: Namespace) -> Edits:
     """Return the edits that are asked for."""
     return Edits(
         frozenset(options.without_light),
-        tuple(sorted(dict(options.move_light).items())),
+        tuple(sorted({int(light): tuple(place) for light, *place in options.move_light}.items())),
         frozenset(options.hide),
         frozenset(options.hide_primitive),
         tuple(sorted(dict(options.make_static).items())),

@@ -6,22 +6,25 @@ Ctrl-C ends it at once: what is traced is kept, and the same command goes on fro
 from __future__ import annotations
 
 import math
+import os
+import time
 from argparse import Namespace
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.table import Table
 
-from tracer.experiments.cluster import check_dask
+from tracer.experiments.cluster import Cluster, check_dask, connected, local_cluster
 from tracer.experiments.experiment import REFERENCE
 from tracer.experiments.study import Study, read_study
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Cancelled, Scene
-from viewer.cli import options, processes
-from viewer.cli.arguments import INTERRUPTED, Parser
+from viewer.cli import options
+from viewer.cli.arguments import INTERRUPTED, Parser, count
 from viewer.cli.console import Work, columns_help, fitted, listed, print_table, terminal_width, working
 from viewer.output.reports import METHOD, Column
 from viewer.state import terms
@@ -103,7 +106,11 @@ def parser() -> Parser:
     add("study", type=Path, metavar="STUDY.toml", help="what to trace; see below")
     help_ = "the folder of the results (default: beside the study, STUDY-results)"
     add("-o", "--output", type=Path, metavar="DIR", help=help_)
-    processes.add_processes(parser)
+    who = parser.add_mutually_exclusive_group().add_argument
+    help_ = "so many processes of this machine, with one thread each (default: one on each core)"
+    who("--workers", type=count(1, 1024), metavar="N", help=help_)
+    help_ = "the workers of a Dask scheduler that runs there, such as tcp://10.0.0.1:8786"
+    who("--scheduler", metavar="ADDRESS", help=help_)
     add("--table", action="store_true", help="trace nothing; print the table of what there is")
     add("--plot", type=Path, metavar="FILE", help="draw what there is at the end: a .png, .svg or .pdf")
     add("--anew", action="store_true", help="throw away what there is, and trace all of it")
@@ -187,8 +194,8 @@ def _trace(plan: Plan, store: Store, given: Namespace, work: Work) -> tuple[bool
     store.set_study(sweeping.identity(plan.study, plan.scenes))
     done = plan.done
     try:
-        with processes.cluster_of(given, len(missing)) as cluster:
-            watch = processes.Watch(cluster, work)
+        with _cluster_of(given, len(missing)) as cluster:
+            watch = _Watch(cluster, work)
 
             def on_progress(now: int) -> None:
                 nonlocal done
@@ -205,6 +212,39 @@ def _trace(plan: Plan, store: Store, given: Namespace, work: Work) -> tuple[bool
         return False, report
     finally:
         store.merge()
+
+
+def _cluster_of(options: Namespace, tasks: int) -> AbstractContextManager[Cluster]:
+    """Start the processes that the options ask for; no more of this machine than there are tasks."""
+    if options.scheduler is not None:
+        return connected(options.scheduler)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return local_cluster(min(options.workers or cores, max(tasks, 1)))
+
+
+class _Watch:
+    """Says how many processes there are, and when one has died, as they were when it last looked: once a second."""
+
+    def __init__(self, cluster: Cluster, work: Work) -> None:
+        self._cluster, self._work, self._known = cluster, work, set(cluster.process_ids())
+        self._started, self._next = 0, 0.0
+
+    def look(self, at_once: bool = False) -> None:
+        """Note which processes have died since."""
+        if time.monotonic() < self._next and not at_once:
+            return
+        self._next, self._started = time.monotonic() + 1.0, self._cluster.started()
+        now = set(self._cluster.process_ids())
+        for number in self._known - now:
+            self._work.note(f"process {number} has died; another takes its place, and does its task again")
+        self._known = now
+
+    def __str__(self) -> str:
+        started = self._started
+        size = self._cluster.size() if self._cluster.is_local else started
+        if not started:
+            return "waiting for workers"
+        return f"{started} of {size} workers" if started < size else f"{size} worker{'s' * (size > 1)}"
 
 
 def _summary(plan: Plan, store: Store) -> list[Line]:

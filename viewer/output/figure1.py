@@ -54,8 +54,7 @@ class Stage:
     """A box of the figure: its name, its rule in a sentence, what leaves it, the view that shows what it does, and the
     paper's section or "".
 
-    `time` is its time in words, `share` (0 to 1) its part of the frame's time; `bar` are the parts of a bar, which
-    `bar_tip` explains."""
+    `time` is its time in words, `share` (0 to 1) its part of the frame's time."""
 
     name: str
     rule: str
@@ -64,8 +63,6 @@ class Stage:
     section: str = ""
     time: str = "in shading"
     share: float = 0.0
-    bar: tuple[Flow, ...] = ()
-    bar_tip: str = ""
 
 
 @dataclass(frozen=True)
@@ -173,14 +170,12 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
              hollow=bar.would and fate.is_saved)
         for fate, number in sorted(rays.items())
     )  # fmt: skip
-    parts = flows
     if s.wrong is not None and s.cuts is None:
         tip, wrong = f"{terms.MEANINGS[terms.WRONG]}: {verified.share(s.wrong)}", s.wrong
         name = verified.named("wrong", wrong) if wrong.samples > 1 else terms.WRONG
         share = percent(wrong.answers, wrong.due)
         flows = (*flows, Flow(name, wrong.answers, WRONG, tip, View.DIFFERENCE, share))
-    tip = "shadow rays by what became of them"
-    return Stage("Shadow testing", rule, flows, View.FATE, "§2.4", bar=parts, bar_tip=tip)
+    return Stage("Shadow testing", rule, flows, View.FATE, "§2.4")
 
 
 def _shadow_mode_setting(changes: ModeChanges) -> Stage:
@@ -188,7 +183,7 @@ def _shadow_mode_setting(changes: ModeChanges) -> Stage:
         "A blocked ray adds FULL_SHADOW to its primitive and light, an unblocked one NON_SHADOW; both together are "
         "PARTIAL_SHADOW, and always traced."
     )
-    flows, bar = [], []
+    flows = []
     for mode, name in (
         (ShadowMode.FULL_SHADOW, "full shadow"),
         (ShadowMode.NON_SHADOW, "non-shadow"),
@@ -200,10 +195,7 @@ def _shadow_mode_setting(changes: ModeChanges) -> Stage:
             f"There are {count(changes.shadow_modes[key])} now."
         )
         flows.append(Flow(f"→ {name}", getattr(changes, key), SHADOW_COLORS[mode], tip, View.SHADOW))
-        bar.append(Flow(name, changes.shadow_modes[key], SHADOW_COLORS[mode]))
-    known = count(sum(changes.shadow_modes.values()))
-    tip = f"the {known} shadow modes, of a primitive and a light each, that are known now"
-    return Stage("Shadow-mode setting", rule, tuple(flows), View.SHADOW, "§2.5", bar=tuple(bar), bar_tip=tip)
+    return Stage("Shadow-mode setting", rule, tuple(flows), View.SHADOW, "§2.5")
 
 
 def _occlusion_mode_setting(frame: Frame, method: Method, changes: ModeChanges) -> Stage:
@@ -222,10 +214,7 @@ def _occlusion_mode_setting(frame: Frame, method: Method, changes: ModeChanges) 
              f"{units} that went from FULLY_RENDERED to INIT, as they cover more than {factor} times their highest "
              "pixel count: they may show shadows that were too small before", View.PIXEL_COUNT),
     )  # fmt: skip
-    modes = (whole, part, init, OcclusionMode.DYNAMIC)
-    bar = tuple(Flow(m.name, changes.units[m.name.lower()], OCCLUSION_COLORS[m]) for m in modes)
-    tip = f"all {units} by their occlusion modes now: {', '.join(f'{count(one.number)} {one.name}' for one in bar)}"
-    stage = Stage("Occlusion-mode setting", rule, flows, View.OCCLUSION, "§2.6", bar=bar, bar_tip=tip)
+    stage = Stage("Occlusion-mode setting", rule, flows, View.OCCLUSION, "§2.6")
     return _timed(frame.statistics, stage, "mode setting", counted=method.uses_modes)
 
 

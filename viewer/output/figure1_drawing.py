@@ -94,7 +94,7 @@ class Drawing:
 _PAD, _STEP = 0.35, 1.15  # the room inside a box and around it, and from line to line
 _ARROW, _ROWS = 0.7, 1.35  # from a box's left edge to the arrow that leaves it, and to the rows beside this
 _LOOP, _GUTTER = 1.1, 1.6  # the way back to the first stage, at the left edge, and the room between columns
-_BAR, _TIME = 0.4, 0.14  # how high a bar of parts is, and one of time
+_TIME = 0.14  # how high the bar of a stage's time is
 _SQUARE, _BETWEEN = 0.7, 0.7  # a row's square of colour, and the room between its columns
 _HEAD = 0.28  # half of an arrow's head
 _WIDEST = 28.0  # a column, where there is room for several: else numbers stand far from their names
@@ -195,8 +195,6 @@ class _Sheet:
             self._write([heading], x + pad, STRONG)
             self._write([stage.time], x + pad, QUIET)
         self._write(wrapped(stage.rule, self._measure, inner) if self._rules else [], x + pad)
-        if stage.bar:
-            self._bar(stage, x + pad, inner)
         bottom = drawing.height + pad - 0.15 * line
         tip = f"{heading}\n{stage.rule}\n{stage.time}"
         drawing.parts[place] = Box(x, top, self._column, bottom - top, BOX, tip=tip, view=stage.view)
@@ -207,19 +205,6 @@ class _Sheet:
         self._rows(stage, x)
         drawing.height = max(drawing.height, bottom + pad + 0.4 * line) + pad
         return bottom
-
-    def _bar(self, stage: Stage, x: float, width: float) -> None:
-        """Parts of a whole beside each other, each as wide as its share."""
-        drawing, y, height = self.drawing, self.drawing.height + 0.15 * self._line, _BAR * self._line
-        place = Box(x, y, width, height, tip=stage.bar_tip, view=stage.view)
-        whole = max(sum(part.number for part in stage.bar), 1)
-        for part in stage.bar:
-            share = width * part.number / whole
-            if share and part.color is not None:
-                drawing.parts.append(Box(x, y, share, height, part.color, part.hollow))
-            x += share
-        drawing.parts.append(place)
-        drawing.height += (_BAR + 0.3) * self._line
 
     # --- what leaves a stage ----------------------------------------------------------------------
 

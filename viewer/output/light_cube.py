@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,21 +29,8 @@ COVERED: Color = SHADOW_COLORS[ShadowMode.FULL_SHADOW]
 
 
 EMPTY, ONE, FEW, MANY = "nothing there", "covered by one triangle", "candidates to test", "too many: traced"
-"""What cells are called, in the order of CellCounts."""
-
-
-class CellCounts(NamedTuple):
-    """How many cells of a cube have nothing in them; a triangle that covers them, before which there is nothing; few
-    candidates; and too many."""
-
-    empty: int
-    covered: int
-    few: int
-    many: int
-
-    @property
-    def cells(self) -> int:
-        return sum(self)
+"""What cells are called: nothing is in them; a triangle covers them, before which there is nothing; few candidates; and
+too many."""
 
 
 def _ways(face: str, side: int) -> NDArray[np.float64]:
@@ -88,16 +74,16 @@ class CubeSeen:
     lengths: NDArray[np.int32]
     depths: NDArray[np.float32]
 
-    @cached_property
+    @property
     def covered(self) -> NDArray[np.bool_]:
         """(6, side, side): cells of one triangle that covers them, before which there is nothing."""
         return (self.lengths < 0) & np.isfinite(self.depths)
 
     @cached_property
-    def counts(self) -> CellCounts:
-        """How many cells have what."""
+    def counts(self) -> dict[str, int]:
+        """How many cells have what, by what they are called."""
         masks = self.lengths == 0, self.covered, self.lengths > 0, (self.lengths < 0) & ~self.covered
-        return CellCounts(*(int(mask.sum()) for mask in masks))
+        return {name: int(mask.sum()) for name, mask in zip((EMPTY, ONE, FEW, MANY), masks, strict=True)}
 
     @property
     def longest(self) -> int:
@@ -110,29 +96,51 @@ class CubeSeen:
         there = self.depths[np.isfinite(self.depths)]
         return (float(there.min()), float(there.max())) if len(there) else (1.0, 1.0)
 
-    @cached_property
     def list_colors(self) -> NDArray[np.float32]:
-        """(6, side, side, 3): what is known of each cell."""
-        steps = np.clip((self.lengths - 1) * 255 // (self.longest - 1), 0, 255)
-        found = color_map()[steps]
-        found[self.lengths == 0] = NOTHING_THERE
-        found[self.lengths < 0] = GREY
-        found[self.covered] = COVERED
+        """Return (6, side, side, 3): what is known of each cell."""
+        found = color_map()[np.clip((self.lengths - 1) * 255 // (self.longest - 1), 0, 255)]
+        for mask, color in ((self.lengths == 0, NOTHING_THERE), (self.lengths < 0, GREY), (self.covered, COVERED)):
+            found[mask] = color
         return found
 
-    @cached_property
     def depth_colors(self) -> NDArray[np.float32]:
-        """(6, side, side, 3): where full shadow begins, by the logarithms of distances; background for nowhere."""
+        """Return (6, side, side, 3): where full shadow begins, by the logarithms of distances; background for
+        nowhere."""
         there, (least, most) = np.isfinite(self.depths), np.log(self.range)
         found = np.broadcast_to(np.array(BACKGROUND, np.float32), (*self.depths.shape, 3)).copy()
-        logarithms = np.log(self.depths[there])
-        places = np.round((logarithms - least) * (255.0 / max(most - least, 1e-6))).astype(int)
+        places = np.round((np.log(self.depths[there]) - least) * (255.0 / max(most - least, 1e-6))).astype(int)
         found[there] = color_map()[np.clip(places, 0, 255)]
         return found
 
+    def list_legend(self, light: str) -> Legend:
+        """Return the legend of what is known of each cell."""
+        cells = sum(self.counts.values())
+
+        def entry(name: str, color: Color | None, meaning: str) -> Entry:
+            number = self.counts[name]
+            return Entry(name, color, (percent(number, cells),), f"{meaning}: {count(number)} cells")
+
+        entries = (
+            entry(EMPTY, NOTHING_THERE, "nothing is in the way of any ray in this direction"),
+            entry(ONE, COVERED, "before it there is nothing, behind it all is in shadow"),
+            entry(MANY, GREY, "so many candidates that rays are traced instead of tested against them"),
+        )
+        facts = (entry(FEW, None, "a list of primitives that rays are tested against"),)
+        return Legend(
+            f"What {light} sees: lists", ("cells",), entries, Scale("1", f"{self.longest}", "candidates"), facts
+        )
+
+    def depth_legend(self) -> Legend:
+        """Return the legend of where full shadow begins."""
+        near, far = self.range
+        nowhere = percent(int(np.isinf(self.depths).sum()), self.depths.size)
+        entries = (Entry("nowhere", BACKGROUND, (nowhere,), "nothing covers these cells"),)
+        scale = Scale(f"{near:.3g}", f"{far:.3g}", f"{float(np.sqrt(near * far)):.3g}")
+        return Legend("Full shadow begins at a distance of", ("cells",), entries, scale)
+
 
 def seen(cube: Cube) -> CubeSeen:
-    """What is drawn of a cube."""
+    """Return what is drawn of a cube."""
     return CubeSeen(list_lengths(cube), full_depths(cube))
 
 
@@ -142,66 +150,21 @@ def cross_of(colors: NDArray[np.float32], enlarged: int = 1) -> NDArray[np.uint8
     return cross.repeat(enlarged, 0).repeat(enlarged, 1)
 
 
-def picture_of(cube: Cube) -> NDArray[np.uint8]:
-    """(h, w, 3) uint8, row 0 at the top: what is known of each cell, and beside it where shadow begins; a pixel for
-    each cell.
+def picture_of(cube: Cube, light: str = "") -> NDArray[np.uint8]:
+    """Return (h, w, 3) uint8, row 0 at the top: what is known of each cell, and beside it where shadow begins; a pixel
+    for each cell, or, with the name of a light, large enough for legends.
 
     Cells with nothing in them are white, those that one triangle covers have the colour of FULL_SHADOW, those with few
     candidates colours from one to the most that any has, and others are grey.  Depths go from the nearest to the
     farthest, in their logarithms; where nothing covers a cell there is only the background."""
     drawn = seen(cube)
-    return _beside(cross_of(drawn.list_colors), cross_of(drawn.depth_colors))
-
-
-def described(cube: Cube, light: str) -> NDArray[np.uint8]:
-    """The same, large enough for the legends of both, which say what light it is."""
-    drawn = seen(cube)
-    enlarged = max(1, -(-READABLE // cube.side))
-    crosses = []
-    for colors, legend in (
-        (drawn.list_colors, lists_legend(drawn, light)),
-        (drawn.depth_colors, depths_legend(drawn, light)),
-    ):
-        cross = cross_of(colors, enlarged)
-        side = cross.shape[0] // 3
-        corner = cross[2 * side :, 2 * side :]  # there is no face there
-        told = with_legend(np.ascontiguousarray(corner), legend, (1.0, 1.0))
+    enlarged = max(1, -(-READABLE // cube.side)) if light else 1
+    left, right = (cross_of(colors, enlarged) for colors in (drawn.list_colors(), drawn.depth_colors()))
+    side = 2 * left.shape[0] // 3
+    for cross, legend in ((left, drawn.list_legend(light)), (right, drawn.depth_legend())):
+        told = with_legend(np.ascontiguousarray(cross[side:, side:]), legend, (1.0, 1.0)) if light else None
         if told is not None:
-            cross = cross.copy()
-            cross[2 * side :, 2 * side :] = told
-        crosses.append(cross)
-    return _beside(*crosses)
-
-
-def _beside(left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uint8]:
+            cross[side:, side:] = told  # there is no face in this corner
     background = np.round(np.array(BACKGROUND) * 255.0).astype(np.uint8)
     gap = np.broadcast_to(background, (left.shape[0], max(1, round(_GAP * left.shape[0] / 3)), 3))
     return np.concatenate([left, gap, right], axis=1)
-
-
-def lists_legend(drawn: CubeSeen, light: str) -> Legend:
-    """Of what is known of each cell."""
-    counts = drawn.counts
-    rows = (
-        (EMPTY, NOTHING_THERE, counts.empty, "nothing is in the way of any ray in this direction"),
-        (ONE, COVERED, counts.covered, "before it there is nothing, behind it all is in shadow"),
-        (MANY, GREY, counts.many, "so many candidates that rays are traced instead of tested against them"),
-    )
-    entries = tuple(
-        Entry(name, color, (percent(number, counts.cells),), f"{meaning}: {count(number)} cells")
-        for name, color, number, meaning in rows
-    )
-    facts = (
-        Entry(FEW, None, (percent(counts.few, counts.cells),), "a list of primitives that rays are tested against"),
-    )
-    scale = Scale("1", f"{drawn.longest}", "candidates")
-    return Legend(f"What {light} sees: lists", ("cells",), entries, scale, facts)
-
-
-def depths_legend(drawn: CubeSeen, light: str) -> Legend:
-    """Of where full shadow begins."""
-    near, far = drawn.range
-    there = np.isfinite(drawn.depths)
-    entries = (Entry("nowhere", BACKGROUND, (percent(int((~there).sum()), there.size),), "nothing covers these cells"),)
-    scale = Scale(f"{near:.3g}", f"{far:.3g}", f"{float(np.sqrt(near * far)):.3g}")
-    return Legend("Full shadow begins at a distance of", ("cells",), entries, scale)

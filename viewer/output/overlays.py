@@ -1,4 +1,5 @@
-"""What is drawn into and under pictures that are saved: legends, and a caption, at sizes that go with the picture's."""
+"""What is drawn above, into and under pictures that are saved: what culling saves, legends, and a caption, at sizes
+that go with the picture's."""
 
 from __future__ import annotations
 
@@ -10,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from viewer.state.palette import Color
-from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Legend, Swatch, fitting
+from tracer.frame import Frame
+from viewer.state.palette import FATE_COLORS, Color, label_color
+from viewer.state.savings import PALE, bar_of, counters_in_words
+from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, TEXT, Legend, Swatch, fitting, wrapped
 from viewer.views.shadow import STRIPE
 
 # The least size of letters in pixels, and how many lines of them the picture's shorter side holds.
@@ -47,6 +50,34 @@ def with_caption(pixels: NDArray[np.uint8], caption: str) -> NDArray[np.uint8]:
     for number, line in enumerate(lines):
         draw.text((margin, margin + number * step), line, INK, letters)
     return np.concatenate([pixels, np.asarray(strip)])
+
+
+def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None) -> NDArray[np.uint8]:
+    """Return a picture (h, w, 3) of a frame below a strip with the sentence of what culling saves, and the bar; the
+    picture itself where `comparison` is None.
+
+    What is said there of steps and time is the `comparison`; all else is read off the frame's counters."""
+    if comparison is None:
+        return pixels
+    height, width = pixels.shape[:2]
+    size = max(CAPTION_SMALLEST, round(min(width, height) / CAPTION_LINES))
+    letters, margin, step = font(size), round(0.6 * size), round(1.35 * size)
+    words = ", ".join(filter(None, (counters_in_words(frame), comparison)))
+    lines, bar = wrapped(words, letters.getlength, width - 2 * margin), bar_of(frame)
+    strip = Image.new("RGB", (width, 2 * margin + step * (len(lines) + bool(bar.parts))), in_bytes(BACKDROP))
+    draw = ImageDraw.Draw(strip)
+    for number, line in enumerate(lines):
+        draw.text((margin, margin + number * step), line, in_bytes(TEXT), letters)
+    top, pad = margin + len(lines) * step, round(0.35 * size)
+    for part, left, right in bar.places(margin, width - margin):
+        if right > left:
+            color, there = FATE_COLORS[part.fate], PALE if part.would else 1.0
+            drawn = np.multiply(there, color) + np.multiply(1.0 - there, BACKDROP)
+            draw.rectangle((left, top, right - 1, top + step - 1), in_bytes((drawn[0], drawn[1], drawn[2])))
+            text = part.label(letters.getlength, right - left - 2 * pad)
+            said = TEXT if part.would else label_color(color)
+            draw.text((left + pad, top + round(0.1 * size)), text, in_bytes(said), letters)
+    return np.concatenate([np.asarray(strip), pixels])
 
 
 def _broken(text: str, fits: Callable[[str], bool]) -> list[str]:

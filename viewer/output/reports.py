@@ -13,7 +13,6 @@ from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.experiment import REFERENCE, Row
 from tracer.experiments.lamp_experiment import CEILING, LampResults, LampRow
 from tracer.experiments.zoom import Approach, Change, Step
-from tracer.method import Method
 from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
 from viewer.state import terms
@@ -112,31 +111,6 @@ def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
     if len(results.frames) > 1:
         said.append("±: two standard errors over the frames")
     return said
-
-
-def leaders(rows: Sequence[Row], timed: bool = True) -> list[str]:
-    """Return a line for each respect in which one of several exact methods is the best; the reference is among them.
-
-    Nothing is said of time unless frames were `timed` for what they are: one that is verified traces all rays.  Of time
-    a method is the best only by more than chance."""
-    exact = [row for row in rows if Method.parse(row.method).exact and not _only_measures(row.method)]
-    if len(exact) < 3:
-        return []
-    # Of equals the first, which is the reference.
-    steps, tests, time = (
-        max(exact, key=lambda row: round(row.average_steps, 3)),
-        max(exact, key=lambda row: round(row.average_tests, 3)),
-        max(exact, key=lambda row: round(row.speed_up - row.speed_up_spread, 2)),
-    )
-    return [
-        f"fewest steps, of exact methods: {steps.method} ({saved(steps.average_steps)} saved)",
-        f"fewest tests, of exact methods: {tests.method} ({saved(tests.average_tests)} saved)",
-        f"least time, of exact methods: {time.method} ({time.speed_up:.2f} times as fast as {REFERENCE})",
-    ][: 3 if timed else 2]
-
-
-def _only_measures(method: str) -> bool:
-    return any(kind.measures for kind in Method.parse(method).kinds)
 
 
 def frames_in_words(results: experiment.Results) -> str:

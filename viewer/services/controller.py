@@ -15,7 +15,7 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
 from tracer.scene.model import Scene
-from viewer.services.baseline import Baseline
+from viewer.services.beside import Baseline
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
 from viewer.services.editing import Editing
@@ -23,7 +23,7 @@ from viewer.services.film import Films
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.history import FrameHistory, FrameNavigator
 from viewer.services.hunts import Hunts
-from viewer.services.inspector import Inspector
+from viewer.services.inspector import Inspector, Selection
 from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
 from viewer.services.named_states import Bookmarks, Presets
@@ -35,7 +35,6 @@ from viewer.services.render_thread import RenderThread
 from viewer.services.runs import Runs
 from viewer.services.scene_loader import SceneLoader
 from viewer.services.scene_table import SceneTable
-from viewer.services.selection import Selection
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import Undo
 from viewer.state import codec
@@ -44,7 +43,6 @@ from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
 
 
 class Controller:
@@ -63,9 +61,9 @@ class Controller:
         self.selection = selection = Selection(session, lambda: self.frame)
         self.captures = captures = CaptureService(session, preferences, notices, wake)
         self.runs = runs = Runs(
-            session, selection, renderer, preferences, notices, captures, wake, lambda: self.editing.under_way
+            session, selection, renderer.perform, preferences, notices, captures, wake, lambda: self.editing.under_way
         )
-        self.baseline = Baseline(renderer)
+        self.baseline = Baseline(renderer.in_spare_time)
         self.settings = settings = SettingsController(session, preferences, notices, runs.refuses)
         self.motion = motion = Motion(session, preferences, notices, runs.refuses)
         self.comparing = Comparing(session, scheduler, notices)
@@ -90,7 +88,7 @@ class Controller:
             session, preferences, scheduler, self.history, loader, runs, captures, notices
         )
         self.films = Films(session, preferences, runs, pictures, bookmarks)
-        self.hunts = Hunts(session, preferences, runs, navigator, notices)
+        self.hunts = Hunts(session, runs, navigator, notices)
         self.reloaded = False
         self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}
@@ -178,9 +176,7 @@ class Controller:
     def inspect_pixel(self) -> None:
         """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
         traced = self.own_traced
-        frame = traced.frame if traced is not None else None
-        cuts = traced is not None and traced.whole and self.scheduler.drawn_view is View.CUTS
-        self.inspector.update(frame, not self.motion.is_animating, cuts)
+        self.inspector.update(traced.frame if traced is not None else None, not self.motion.is_animating)
 
     def frame_inputs(self, size: tuple[int, int]) -> FrameInputs:
         """Return what decides how the next frame is traced, in a window that has room for so many pixels."""

@@ -22,13 +22,13 @@ from tracer.scene.model import Camera
 from tracer.statistics import SampleCounts
 from viewer.output.commands import BUILT
 from viewer.services.frame_scheduler import FrameScheduler
+from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.runs import Experiment, Runs
-from viewer.services.selection import Point, Selection
 from viewer.services.undo import Undo
 from viewer.state.notices import Notices
 from viewer.state.picking import Pick
-from viewer.state.pixels import Zoom
+from viewer.state.pixels import Point, Zoom
 from viewer.state.readings import has_modes_of_cells
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +12,6 @@ from tracer.experiments import counterexample, hunt
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.hunt import Hunt, Search
 from tracer.frame import Settings
-from tracer.geometry.world import World
-from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Scene
 from tracer.setting import settings_of
@@ -21,16 +19,13 @@ from tracer.version import program_version
 from viewer.output import exports
 from viewer.output.commands import scene_word
 from viewer.output.comparison import Comparison, Crop
-from viewer.services import comparison
 from viewer.services.history import FrameNavigator
-from viewer.services.runs import FileRun, Runs, check_size
+from viewer.services.runs import Runs, check_size
 from viewer.state import navigation
-from viewer.state.changes import as_options
 from viewer.state.methods import NO_CULLING
 from viewer.state.notices import Notices
 from viewer.state.pixels import around
 from viewer.state.plans import HuntPlan, frames_within
-from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
 from viewer.util.files import write_text
@@ -65,7 +60,6 @@ def comparison_of(
     scene: Scene,
     settings: Settings,
     meshes: MeshOptions = AS_IN_FILE,
-    edits: Edits = NO_EDITS,
 ) -> tuple[ViewState, Comparison]:
     """Return the figure of a counterexample: the right picture and the method's, with the pixel's surroundings
     enlarged."""
@@ -76,7 +70,6 @@ def comparison_of(
         settings=replace(settings, method=found.method, verify=False, samples=1, modes=False),
         warmup=Warmup(find.before),
         meshes=meshes,
-        edits=edits,
     )
     methods, words = (NO_CULLING, found.method), " ".join(counterexample.in_words(find, scene))
     shown = Comparison(methods, (crop_of(find, found.size),), ((find.x, find.y),), words)
@@ -116,48 +109,12 @@ def _explaining(find: Counterexample, found: hunt.Results, before: str) -> list[
 # --- in the window ------------------------------------------------------------------------------------
 
 
-class FigureRun(FileRun):
-    """The figure of a counterexample being traced and drawn; its results are its file."""
-
-    name = "figure"
-
-    def __init__(self, find: Counterexample, hunt: Hunt, scene: Scene, session: Session, folder: Path) -> None:
-        assert hunt.results is not None
-        self._find, self._found, self._folder = find, hunt.results, folder
-        edits = session.edited.edits if session.edited is not None else NO_EDITS
-        self._state, self._figure = comparison_of(
-            find, self._found, scene, hunt.search.settings, session.meshes, edits
-        )  # fmt: skip
-        super().__init__(scene, len(find.before) + 2)
-
-    def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
-        assert world is not None
-
-        def tell(method: str, done: int, total: int) -> None:
-            if self.traced < self.frames - 1:
-                self.progressed(f"{method}, frame {done + 1} of {total}")
-
-        def write(path: Path) -> None:
-            comparison.save(comparison.trace(scene, self._state, self._figure, world, tell, cancel), path)
-
-        name = f"{Path(scene.path).stem}-find-{self._find.primitive}-{self._find.light}"
-        self.output = exports.save(self._folder, name, ".png", write)
-        save_json(
-            self._find, self._found, scene, self.output.with_suffix(".json"), as_options(self._state.edits)
-        )  # fmt: skip
-        self.traced = self.frames
-        yield self.output
-
-
 class Hunts:
     """`plan` is what to search next, `hunt` the last hunt: under way, done or stopped; `chosen` is the counterexample
     that is looked at, by its place in the list."""
 
-    def __init__(
-        self, session: Session, preferences: Preferences, runs: Runs, navigator: FrameNavigator, notices: Notices
-    ) -> None:
-        self._session, self._preferences, self._runs, self._navigator = session, preferences, runs, navigator
-        self._notices = notices
+    def __init__(self, session: Session, runs: Runs, navigator: FrameNavigator, notices: Notices) -> None:
+        self._session, self._runs, self._navigator, self._notices = session, runs, navigator, notices
         self.plan = HuntPlan()
         self.hunt: Hunt | None = None
         self.chosen: int | None = None
@@ -216,9 +173,3 @@ class Hunts:
         warmup = tuple((one.time, one.camera or scene.camera_at(one.time)) for one in find.before)
         zoom = around(*point, size[0] / crop_of(find, size).width)
         self._navigator.go_to(state, f"counterexample {number + 1}", size, point, zoom, warmup)
-
-    def save_figure(self, number: int) -> None:
-        """Trace and draw the figure of a counterexample, into the folder of the pictures."""
-        find, hunt, folder = self.find(number), self.hunt, self._preferences.picture_folder
-        if find is not None and hunt is not None:
-            self._runs.start(lambda scene: FigureRun(find, hunt, scene, self._session, folder))

@@ -1,4 +1,4 @@
-"""What the renderer says of the clicked pixel or, until one is clicked, of the one under the pointer.
+"""What is selected, and what the renderer says of it or, until something is, of the pixel under the pointer.
 
 `inspect_pixel` is a pure function of the renderer and a pixel of a frame, asked as a query: what light reaches it, and
 why its shadow rays were culled or traced.  An answer speaks of one moment of the scene, in world space, and so it stays
@@ -18,23 +18,102 @@ from numpy.typing import NDArray
 
 from tracer.explanation import Explanation, explain, outline
 from tracer.frame import Frame
-from tracer.light_cut import LightCut, light_cut
 from tracer.mode_origins import NEVER, Origins
 from tracer.reasons import TaughtBy, Why
 from tracer.renderer import Renderer
-from tracer.scene.model import Cancelled
+from tracer.scene.edits import Edited
 from tracer.told_rays import RayTree
 from tracer.why import why
 from viewer.services.queries import Ask, Newest
-from viewer.services.selection import Selection
-from viewer.state.picking import pixel_of, same_place
-from viewer.state.pixels import pixel_at
+from viewer.state.picking import Pick, pick, pick_part, pick_primitive, pixel_of, refreshed, same_place
+from viewer.state.pixels import Point, pixel_at
+from viewer.state.session import Session
 
 MOST_OCCLUDERS = 8  # of one light that are named and drawn
 MOST_LIGHTS = 40  # that are drawn, and listed at once
-MOST_CLUSTERS = 100
-"""Clusters of lights that are drawn: those that send most."""
 Pixel = tuple[int, int]
+
+
+class Selection:
+    """`picked` is what was clicked, `hovered` where the pointer is; None where there is nothing.  `part` is the part of
+    the scene (`viewer.state.parts`) that is selected as a whole, None for the primitive alone.  `serial` is another
+    number after each selection."""
+
+    def __init__(self, session: Session, newest: Callable[[], Frame | None]) -> None:
+        """`newest` returns the frame that the picture shows."""
+        self._session, self._newest = session, newest
+        self._picked: Pick | None = None
+        self.part: int | None = None
+        self.hovered: Point | None = None
+        self.serial = 0
+
+    @property
+    def picked(self) -> Pick | None:
+        return self._picked
+
+    @picked.setter
+    def picked(self, found: Pick | None) -> None:
+        self._picked, self.part = found, None
+        self.serial += 1
+
+    @property
+    def frame(self) -> Frame | None:
+        """The frame that the picture shows."""
+        return self._newest()
+
+    @property
+    def pixel(self) -> tuple[int, int] | None:
+        """Where the picture shows what was clicked; None where it does not, or where nothing was."""
+        frame, kept = self.frame, self.picked
+        return pixel_of(kept, frame) if kept is not None and frame is not None else None
+
+    def at(self, point: Point | None) -> Pick | None:
+        """What lies under a point of the picture."""
+        frame, scene = self.frame, self._session.scene
+        return pick(frame, scene, *point) if point is not None and frame is not None and scene is not None else None
+
+    def select(self, point: Point) -> None:
+        """Select what is under a point of the picture; nothing there: clear the selection."""
+        found = self.at(point)
+        self.picked = found if found is not None and found.primitive >= 0 else None
+
+    def select_primitive(self, primitive: int) -> bool:
+        """Select a primitive by its number in the scene as it was read, seen or not; whether that could be done."""
+        frame, now = self.frame, self._session.edited
+        if frame is None or now is None or not 0 <= primitive < len(now.numbers):
+            return False
+        return self._take(pick_primitive(frame, now.scene, int(now.numbers[primitive])), None)
+
+    def select_part(self, part: int) -> bool:
+        """Select a part of the scene, in the middle of what is seen of it; whether that could be done."""
+        frame, now = self.frame, self._session.edited
+        return frame is not None and now is not None and self._take(pick_part(frame, now, part), part)
+
+    def _take(self, found: Pick | None, part: int | None) -> bool:
+        if found is not None:
+            self.picked, self.part = found, part
+        return found is not None
+
+    def clear(self) -> None:
+        self.picked = None
+
+    def update_for_edits(self, before: Edited | None, now: Edited) -> None:
+        """The same primitive has another number now; one that is hidden is selected no more."""
+        kept = self.picked
+        if kept is not None and before is not None:
+            number = int(now.numbers[before.primitives[kept.primitive]])
+            if number >= 0:  # nothing else was selected
+                self._picked = replace(kept, primitive=number, unit=number, in_cells=False, seen=None)
+            else:
+                self.picked = None
+
+    def refresh(self, frame: Frame) -> None:
+        """Take over from a newer frame what carries the modes."""
+        if self._picked is not None:
+            self._picked = refreshed(self._picked, frame)
+
+
+# --- what the renderer says of it -----------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
@@ -69,14 +148,6 @@ def inspect_pixel(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: C
     return Inspection(frame, lights, {number: outline(renderer.world, number) for number in numbers}, reasons)
 
 
-def find_cut(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Callable[[], bool]) -> LightCut | None:
-    """Find the clusters of lights that shade a pixel, None where no cut does."""
-    try:
-        return light_cut(renderer, frame, x, y)
-    except LookupError:
-        raise Cancelled("another frame has begun") from None
-
-
 def with_origins(found: Why, origins: Origins, name: Callable[[int], str]) -> Why:
     """Return the same reasons with the frames that set the modes; `name` names a frame by its number."""
     coverage = found.coverage
@@ -92,10 +163,7 @@ def with_origins(found: Why, origins: Origins, name: Callable[[int], str]) -> Wh
 
 
 class Inspector:
-    """Asks about the pixel that is selected or pointed at; nothing is known of what is not visible from here.
-
-    `cut` are the clusters of lights that shade it, where they are wanted, and `awaits_cut` is the pixel whose clusters
-    are to come."""
+    """Asks about the pixel that is selected or pointed at; nothing is known of what is not visible from here."""
 
     def __init__(self, selection: Selection, query: Ask) -> None:
         self._selection, self._query = selection, query
@@ -108,14 +176,12 @@ class Inspector:
         self._inspected.forget()
         self._told: Inspection | None = None  # the newest with reasons
         self._traced: RayTree | None = None  # the newest; a picture that is shaded in part so far has none
-        self.cut: LightCut | None = None
-        self.awaits_cut: Pixel | None = None
 
-    def update(self, frame: Frame | None, idle: bool, cuts: bool = False) -> None:
+    def update(self, frame: Frame | None, idle: bool) -> None:
         """Take up what has been answered, and ask about what is looked at now.
 
         `frame` is the newest, None where nothing may be asked about it; what the pointer is on is asked about when
-        `idle`, and `cuts` says that clusters are wanted."""
+        `idle`."""
         kept, self._frame = self._selection.picked, frame
         at = None
         if frame is not None:
@@ -130,7 +196,6 @@ class Inspector:
         found: Inspection | None = self._inspected.answer
         if found is not None and found.why is not None:
             self._told, self._traced = found, found.why.tree or self._traced
-        self._find_cut(frame, at if cuts and idle else None)
 
     @property
     def answer(self) -> Inspection | None:
@@ -163,15 +228,6 @@ class Inspector:
         if now is None or then.settings.method != now.settings.method:
             return False
         return at_any_time or then.time == now.time
-
-    def _find_cut(self, frame: Frame, at: Pixel | None) -> None:
-        self.cut = self.awaits_cut = None
-        if at is not None and frame.primitive[at[1], at[0]] >= 0:
-            future = self._query(find_cut, frame, *at)
-            if not future.done() or future.cancelled():
-                self.awaits_cut = at
-            elif future.exception() is None:
-                self.cut = future.result()
 
     def _pointed_at(self, frame: Frame, idle: bool) -> Pixel | None:
         """The pixel under the pointer, while nothing moves and it shows something."""

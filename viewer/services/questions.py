@@ -4,8 +4,8 @@ A question is shown by the window until one of its answers is chosen; what is do
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
 from pathlib import Path
 
 from tracer.experiments.runner import Run
@@ -16,29 +16,29 @@ from viewer.services.runs import Runs
 _KEPT = "They are kept, and can still be saved from its panel."
 _SAVED = "Their figures, table and plot can be saved beside the pictures."
 _WRITTEN = "They are written already, and stay."
+_COLLECTED = ("bookmarks", "presets", "recent", "tour", "last")  # which resetting the settings leaves
+
+Do = Callable[[], None]
 
 
 @dataclass(frozen=True)
 class Question:
-    """`answers` are names and what they do; the first changes nothing, and Escape chooses it.  `options` may be
-    ticked beside, which puts their names into `ticked`.  It is asked as long as `run`, if there is one, goes on."""
+    """`answers` are names and what they do; the first changes nothing, and Escape chooses it.  It is asked as long as
+    `run`, if there is one, goes on."""
 
     title: str
     text: str
-    answers: tuple[tuple[str, Callable[[], None]], ...]
-    options: tuple[str, ...] = ()
-    ticked: set[str] = field(default_factory=set)
+    answers: tuple[tuple[str, Do], ...]
     run: Run | None = None
 
 
 class Questions:
     """`question` is the one to be answered now; a newer one takes its place."""
 
-    def __init__(self, runs: Runs, captures: CaptureService, wake: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, runs: Runs, captures: CaptureService, wake: Do = lambda: None) -> None:
         self._runs, self._captures, self._wake = runs, captures, wake
         self.question: Question | None = None
-        self._leave: Callable[[], None] | None = None  # how to quit once the run's results are written
-        self._run: Run | None = None
+        self._leaving: tuple[Do, Run] | None = None  # how to quit once the results of a run are written
         self._files: list[Job[Path]] | None = None
 
     def answer(self, name: str) -> None:
@@ -51,65 +51,46 @@ class Questions:
         """Let the question go without an answer."""
         self.question = None
 
-    def before_opening(self, name: str, go_on: Callable[[], None]) -> None:
+    def before_opening(self, name: str, go_on: Do) -> None:
         """Open something, at once or, while a run is under way, when the user agrees."""
-        run = self._under_way()
-        if run is None:
-            go_on()
-            return
 
         def stop() -> None:
             self._runs.stop()
             go_on()
 
-        self.question = Question(
-            f"Stop the {run.name} and open {name}?",
-            f"{_so_far(run)} {_KEPT if self._runs.exports_of(run) else _WRITTEN}",
-            (("Keep running", _nothing), ("Stop and open", stop)),
-            run=run,
-        )
-        self._wake()
+        run = self._runs.current
+        kept = _KEPT if run is not None and self._runs.exports_of(run) else _WRITTEN
+        self._ask_to_stop(f"open {name}", kept, go_on, ("Stop and open", stop))
 
-    def before_quitting(self, leave: Callable[[], None]) -> None:
+    def before_quitting(self, leave: Do) -> None:
         """Quit, at once or, while a run is under way, when the user agrees."""
-        run = self._under_way()
-        if run is None:
-            leave()
-            return
+        run = self._runs.current
 
         def save() -> None:
+            assert run is not None
             self._runs.stop()
-            self._leave, self._run, self._files = leave, run, None
+            self._leaving, self._files = (leave, run), None
 
-        saving = [("Save and quit", save)] if self._runs.exports_of(run) else []
-        self.question = Question(
-            f"Stop the {run.name} and quit?",
-            f"{_so_far(run)} {_SAVED if saving else _WRITTEN}",
-            (("Keep running", _nothing), *saving, ("Quit", leave)),
-            run=run,
-        )
+        saving = [("Save and quit", save)] if run is not None and self._runs.exports_of(run) else []
+        self._ask_to_stop("quit", _SAVED if saving else _WRITTEN, leave, *saving, ("Quit", leave))
+
+    def _ask_to_stop(self, goal: str, kept: str, go_on: Do, *answers: tuple[str, Do]) -> None:
+        run = self._runs.current
+        if run is None or run.stopping:
+            go_on()
+            return
+        done, frames = run.done_of
+        text = f"{done} of {frames} frames are done. {kept}"
+        self.question = Question(f"Stop the {run.name} and {goal}?", text, (("Keep running", _nothing), *answers), run)
         self._wake()
 
-    def before_resetting(self, reset: Callable[[list[str]], None]) -> None:
-        """Reset all settings when the user agrees, except the fields of the preferences that `reset` gets: what was
-        collected is reset where that is ticked."""
-        fields = {
-            "Forget bookmarks as well": "bookmarks",
-            "Forget presets as well": "presets",
-            "Forget recent scenes as well": "recent",
-        }
-        ticked: set[str] = set()
-
-        def agree() -> None:
-            kept = [name for option, name in fields.items() if option not in ticked]
-            reset([*kept, "tour", "last"])
-
+    def before_resetting(self, reset: Callable[[Collection[str]], None]) -> None:
+        """Reset all settings when the user agrees, except the fields of the preferences that `reset` gets."""
         self.question = Question(
             "Reset all settings?",
-            "View, culling, quality, keys, theme, sizes and the picture folder go back to their defaults.",
-            (("Keep them", _nothing), ("Reset", agree)),
-            tuple(fields),
-            ticked,
+            "View, culling, quality, keys, theme, sizes and the picture folder go back to their defaults. Bookmarks, "
+            "presets and recent scenes stay.",
+            (("Keep them", _nothing), ("Reset", lambda: reset(_COLLECTED))),
         )
 
     def leave_when_saved(self) -> None:
@@ -118,28 +99,18 @@ class Questions:
         A question about a run that has ended meanwhile is none any more."""
         if self.question is not None and self.question.run is not None and self.question.run.done:
             self.drop()
-        run = self._run
-        if self._leave is None or run is None or not run.done:
+        if self._leaving is None or not self._leaving[1].done:
             return
+        leave, run = self._leaving
         if self._files is None:
             before = len(self._captures.saving)
             for ending in self._runs.exports_of(run):
                 self._runs.export(run, ending)
             self._files = self._captures.saving[before:]
         elif all(job.done for job in self._files):
-            leave, failed = self._leave, any(job.failure is not None for job in self._files)
-            self._leave = self._run = self._files = None
-            if not failed:
+            self._leaving = None
+            if all(job.failure is None for job in self._files):
                 leave()
-
-    def _under_way(self) -> Run | None:
-        run = self._runs.current
-        return run if run is not None and not run.stopping else None
-
-
-def _so_far(run: Run) -> str:
-    done, frames = run.done_of
-    return f"{done} of {frames} frames are done."
 
 
 def _nothing() -> None:

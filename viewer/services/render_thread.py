@@ -27,8 +27,8 @@ from typing import Any
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
+from viewer.services.beside import Pair
 from viewer.services.jobs import TRACER, step_back
-from viewer.services.pair import Pair
 from viewer.services.queries import Function, Queries, Query
 from viewer.services.render_request import Parts, RenderRequest, Spare, Task, Traced
 from viewer.util.messages import Failure, failure

@@ -11,10 +11,9 @@ import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from datetime import date
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from tracer.experiments import experiment, zoom
 from tracer.experiments.experiment import Experiment
@@ -28,8 +27,8 @@ from tracer.settings import Settings
 from viewer.output import exports
 from viewer.output.filmstrip import Filmstrip
 from viewer.services.capture_service import CaptureService
+from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Task, Traced
-from viewer.services.selection import Selection
 from viewer.state.methods import BY_MODES, CERTIFIED
 from viewer.state.notices import Notices
 from viewer.state.plans import LONGEST_SIDE, ExperimentPlan, ZoomPlan, parse_factors
@@ -86,18 +85,18 @@ def shown_of(run: Run) -> str:
 
 
 def described(run: Experiment | ZoomTest, scene: Scene | None) -> tuple[str, bool]:
-    """Scene, size, what was done, and when it began, of a run's results; and whether they are of another scene than the
-    one that is open, or of what that was before: this is said first."""
+    """Scene, size, and what was done of a run's results; and whether they are of another scene than the one that is
+    open, or of what that was before: this is said first."""
     name, elsewhere = run.scene_path.name, not run.is_of(scene)
     if elsewhere and scene is not None:
         same = Path(scene.path) == run.scene_path
         name += " before it was edited or reloaded" if same else f" (not {Path(scene.path).name}, which is open)"
-    done, of = run.done_of
-    frames = several(of, "frame") if done == of else f"{done} of {several(of, 'frame')}"
-    what = f"towards primitive {run.start.primitive}" if isinstance(run, ZoomTest) else frames
-    what += "" if isinstance(run, ZoomTest) else f", {run.settings.accelerator}"
-    when = f"{run.began:%H:%M}" if run.began.date() == date.today() else f"{run.began:%Y-%m-%d %H:%M}"
-    return f"{name}, {run.settings.width} x {run.settings.height}, {what}, begun {when}", elsewhere
+    if isinstance(run, ZoomTest):
+        what = f"towards primitive {run.start.primitive}"
+    else:
+        done, of = run.done_of
+        what = f"{'' if done == of else f'{done} of '}{several(of, 'frame')}, {run.settings.accelerator}"
+    return f"{name}, {run.settings.width} x {run.settings.height}, {what}", elsewhere
 
 
 def duration(seconds: float) -> str:
@@ -115,12 +114,6 @@ def check_size(size: tuple[int, int]) -> None:
     """Raise ValueError, in one line, for pictures that are too large for a run."""
     if max(size) > LONGEST_SIDE:
         raise ValueError(f"{size[0]} x {size[1]} is too large for a run; {LONGEST_SIDE} pixels a side at most")
-
-
-class Performs(Protocol):
-    """The part of `RenderThread` that is used here."""
-
-    def perform(self, task: Task) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -151,7 +144,7 @@ class Runs:
         self,
         session: Session,
         selection: Selection,
-        renderer: Performs,
+        perform: Callable[[Task], None],
         preferences: Preferences,
         notices: Notices,
         files: CaptureService,
@@ -160,7 +153,7 @@ class Runs:
     ) -> None:
         """Nothing begins while `edited()`: the scene is being edited, and the next picture is of another."""
         self._edited = edited
-        self._session, self._selection, self._renderer = session, selection, renderer
+        self._session, self._selection, self._perform = session, selection, perform
         self._preferences, self._notices, self._files, self._wake = preferences, notices, files, wake
         self.experiment_plan = ExperimentPlan({BY_MODES, CERTIFIED})
         self.zoom_plan = ZoomPlan()
@@ -195,7 +188,7 @@ class Runs:
             run.watches = True
             self.current = run
             self._session.playing = False
-            self._renderer.perform(_Task(run, self._wake))
+            self._perform(_Task(run, self._wake))
             return True
         return False
 

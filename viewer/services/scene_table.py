@@ -19,9 +19,9 @@ from tracer.scene.model import Progress
 from viewer.output import exports
 from viewer.services.capture_service import CaptureService
 from viewer.services.editing import Editing
+from viewer.services.inspector import Selection
 from viewer.services.jobs import Job
 from viewer.services.render_request import Traced
-from viewer.services.selection import Selection
 from viewer.state.notices import Notices
 from viewer.state.parts import parts_of
 from viewer.state.preferences import Preferences

@@ -23,8 +23,7 @@ from tracer.scene.model import Scene
 from tracer.version import program_version
 from viewer.output import capture, commands
 from viewer.output.commands import by_one_thread
-from viewer.output.overlays import with_caption, with_legend
-from viewer.output.savings_picture import with_savings
+from viewer.output.overlays import with_caption, with_legend, with_savings
 from viewer.state.draw_options import DrawOptions
 from viewer.state.readings import can_record_lights, records_lights
 from viewer.state.session import Session

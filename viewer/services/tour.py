@@ -50,14 +50,14 @@ class Step:
 
 class Tour:
     """`at` is the number of the step that is next, or None while no tour is being taken; `done` are those done so far:
-    the others are watched for, as somebody may run ahead.  `last_word` is said after the last step, until it is
-    closed."""
+    the others are watched for, as somebody may run ahead.  `over` says that the last one was done, until that is
+    dismissed."""
 
     def __init__(self, controller: Controller, open_panel: OpenPanel, key: Callable[[str], str]) -> None:
         """`key` returns the key of a command as the user reads it, or else where its menu is."""
         self._c, self._open_panel, self._key = controller, open_panel, key
         self.at: int | None = None
-        self.last_word = ""
+        self.over = False
         self._held = [0] * len(STEPS)  # of each step's conditions
         self._script: Script | None = None
         self._waits_for: Condition = lambda c: False
@@ -92,13 +92,13 @@ class Tour:
         """Begin with the first step."""
         self._held = [0] * len(STEPS)
         self._c.selection.picked = None  # what was clicked before was not clicked for the tour
-        self.last_word = ""
+        self.over = False
         self._go_to(0)
 
     def end(self) -> None:
         """Take the tour away."""
         self.at = self._script = None
-        self.last_word = ""
+        self.over = False
 
     def skip(self) -> None:
         """Go on to the next step that is not done; after the last the tour is over."""
@@ -120,7 +120,7 @@ class Tour:
             self._held[number] += held < len(step.done) and step.done[held](self._c)
         if self.at in self.done and self._script is None:
             self.skip()
-            self.last_word = "" if self.step is not None else LAST_WORD
+            self.over = self.step is None
 
     def _go_on_showing(self) -> None:
         now = time.monotonic()
@@ -228,7 +228,8 @@ def _click_a_shadow(c: Controller, open_panel: OpenPanel) -> Script:
         if picked is None or picked.dynamic:
             continue
         yield lambda c: c.inspector.answer is not None
-        for one in c.inspector.answer.lights if c.inspector.answer is not None else ():
+        answer = c.inspector.answer
+        for one in answer.lights if answer is not None else ():
             if one.due and not one.reached and one.blocker not in (None, picked.primitive):
                 c.settings.set_light(one.light)
                 yield SECONDS
@@ -243,7 +244,7 @@ def _run_a_zoom_test(c: Controller, open_panel: OpenPanel) -> Script:
     small = _small_primitive(c)
     if small is not None:
         c.selection.select_primitive(small)
-    elif c.selection.picked is None or c.selection.picked.dynamic:
+    if c.selection.picked is None or c.selection.picked.dynamic:
         yield from _click_a_shadow(c, open_panel)
     yield SECONDS
     c.runs.start_zoom_test()
@@ -253,14 +254,13 @@ def _run_a_zoom_test(c: Controller, open_panel: OpenPanel) -> Script:
 
 def _small_primitive(c: Controller) -> int | None:
     """Return the number of a static primitive, in the scene as it was read, that is fully rendered in about `_ZOOMED`
-    pixels, and has set some shadow mode; None where there is none."""
+    pixels; None where there is none."""
     now, frame = c.session.edited, c.frame
     if now is None or frame is None or not frame.settings.keeps_modes or Method.parse(frame.settings.method).uses_cells:
         return None
-    counts, modes = frame.pixel_count, frame.modes
-    small = (occlusion_mode(modes) == OcclusionMode.FULLY_RENDERED) & (counts > 0) & (modes >> modes.dtype.type(2) > 0)
-    numbers = np.nonzero(small)[0]
-    numbers = numbers[np.argsort(np.abs(np.log(counts[numbers] / _ZOOMED)), kind="stable")]
+    whole = (occlusion_mode(frame.modes) == OcclusionMode.FULLY_RENDERED) & (frame.pixel_count > 0)
+    numbers = np.nonzero(whole)[0]
+    numbers = numbers[np.argsort(np.abs(np.log(frame.pixel_count[numbers] / _ZOOMED)), kind="stable")]
     return next((int(now.primitives[n]) for n in numbers if now.scene.object_of(int(n)) == 0), None)
 
 

@@ -107,12 +107,9 @@ class Mark(IntEnum):
 
 
 def wrong_marks(frame: Frame, magnified: int = 1) -> NDArray[np.uint8]:
-    """Return the Mark of each pixel (h, w): the wrong ones, and a ring around each, or around each crowd.
-
-    The rings grow with the picture, so that a lone pixel is found in any; they are so much smaller where each pixel
-    is shown as `magnified` of the screen's.  Raises ValueError where the frame was not verified."""
+    """Return the marks of wrong pixels.  Raises ValueError where the frame was not verified."""
     wrong = verified.known(frame.wrong) > 0
-    return once(frame, ("marks", magnified), lambda: _marks(wrong, magnified))
+    return once(frame, ("marks", magnified), lambda: marks(wrong, magnified))
 
 
 def ringed(frame: Frame) -> Pixels:
@@ -122,7 +119,11 @@ def ringed(frame: Frame) -> Pixels:
     return pixels
 
 
-def _marks(wrong: NDArray[np.bool_], magnified: int) -> NDArray[np.uint8]:
+def marks(wrong: NDArray[np.bool_], magnified: int = 1) -> NDArray[np.uint8]:
+    """Return the Mark of each pixel (h, w): these ones, and a ring around each, or around each crowd.
+
+    The rings grow with the picture, so that a lone pixel is found in any; they are so much smaller where each pixel
+    is shown as `magnified` of the screen's."""
     if not wrong.any():
         return np.zeros(wrong.shape, np.uint8)
     side = max(wrong.shape)

@@ -26,12 +26,12 @@ from viewer.services.controller import Controller
 from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.messages import failure
 from viewer.util.resources import default_scene
-from viewer.window import commands, comparing, graphics, layout, menus, style
+from viewer.window import commands, graphics, layout, menus, style
 from viewer.window.gl_window import NO_OPENGL, closing_by_signals
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
-from viewer.window.panels import dialogs, named_states, picture, status, tour
+from viewer.window.panels import dialogs, named_states, picture, sides, status
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -66,7 +66,7 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Moving", c.move)
     step("Noting what can be undone", c.undo.note_changes)
     step("Editing the scene", c.apply_edits)
-    step("Comparing", c.comparing.end_beside_wipe)
+    step("Comparing", c.comparing.update)
     # The scheduler: queries about the newest frame are answered before the next.
     step("Inspecting the pixel", c.inspect_pixel)
     step("Listing the scene", lambda: c.table.update(c.own_traced))
@@ -165,9 +165,9 @@ class App:
         step("The layout", self.layout.update)
         step("Reading the keys", lambda: menus.handle_keys(ui))
         step("Flying", lambda: picture.fly(ui))
-        step("Comparing", lambda: comparing.read_key(ui))
+        step("Comparing", lambda: sides.read_key(ui))
         dialogs.show(ui)
-        overlay("The tour", lambda: tour.show(ui), ui.tour.end)
+        step("The tour", ui.tour.update)
         overlay("The notice", lambda: status.show_fault(ui), self.controller.notices.dismiss_faults)
 
     def after_widgets(self) -> None:
@@ -223,7 +223,7 @@ class App:
     def _set_frame_rate(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
         idling = self.params.fps_idling
-        lively = self.controller.motion.is_animating or self.controller.comparing.blinks()
+        lively = self.controller.motion.is_animating
         by_processor = lively and self.drawn_by_processor
         idling.enable_idling = by_processor or not lively
         idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE

@@ -24,13 +24,6 @@ from viewer.window.setting_rows import setting_command
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
 _STOPS = 0.5  # of exposure by a key
-_COMPARE = {
-    CompareMode.FLIP: "Flip between A and B",
-    CompareMode.WIPE: "Wipe between A and B",
-    CompareMode.SIDE: "A and B side by side",
-    CompareMode.DIFFERENCE: "Signed difference B - A",
-    CompareMode.BLINK: "Blink A and B",
-}
 
 
 def build(ui: Ui) -> list[Command]:
@@ -258,8 +251,8 @@ def _compare(ui: Ui) -> list[Command]:
         comparing.keep()
         offer(ui, "Compare")
 
-    def by(mode: CompareMode, name: str) -> Command:
-        return Command(name, "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.meaning,
+    def by(mode: CompareMode) -> Command:
+        return Command(mode.command, "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.help,
                        checked=lambda: comparing.state.on and comparing.state.mode is mode)  # fmt: skip
 
     return [
@@ -269,7 +262,7 @@ def _compare(ui: Ui) -> list[Command]:
                 checked=lambda: bool(comparing.second_method),
                 tip="trace each frame by a second method as well, with modes and counters of its own"),
         Command("Next compare mode", "Compare", comparing.next_mode, "Shift+Z", enabled=there, separated=True),
-        *[by(mode, name) for mode, name in _COMPARE.items()],
+        *map(by, CompareMode),
         Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not comparing.state.on,
                 separated=True),
     ]  # fmt: skip

@@ -138,13 +138,13 @@ class Compared:
     def __init__(self, context: moderngl.Context) -> None:
         self.a = Display(context)
         self.difference = PictureTexture(context)
-        self._drawn: tuple[Difference, float] | None = None
+        self._drawn: tuple[Difference, float, bool] | None = None
 
-    def draw_difference(self, found: Difference, limit: float) -> None:
+    def draw_difference(self, found: Difference, limit: float, ringed: bool) -> None:
         """Draw a signed difference as far as `limit` to both sides, unless it is there."""
-        if self._drawn is None or self._drawn[0] is not found or self._drawn[1] != limit:
-            self.difference.write(signed_picture(found.pixels, limit), smooth=False)
-            self._drawn = found, limit
+        if self._drawn != (found, limit, ringed):
+            self.difference.write(signed_picture(found, limit, ringed), smooth=False)
+            self._drawn = found, limit, ringed
 
     def release(self) -> None:
         self.a.release()

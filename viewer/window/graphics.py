@@ -13,10 +13,9 @@ from viewer.state.parts import parts_of
 from viewer.state.savings import comparison_in_words
 from viewer.state.views import View
 from viewer.views.base import Highlight
-from viewer.window import comparing
 from viewer.window.display import Compared, Display, InWindow
 from viewer.window.magnifier import Magnifier
-from viewer.window.panels import legend, savings
+from viewer.window.panels import legend, savings, sides
 from viewer.window.preview import PreviewDisplay
 from viewer.window.texture_cache import TextureCache
 from viewer.window.ui import CaptureKind, Ui
@@ -49,12 +48,12 @@ def draw(ui: Ui) -> None:
     picked, part, now = c.selection.picked, c.selection.part, c.session.edited
     if part is not None and now is not None:
         display.part_of = ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives])
-    options, window = comparing.draw_options(ui), in_window(ui)
+    options, window = sides.draw_options(ui), in_window(ui)
     if picked is not None:
         window = replace(window, selected=picked.primitive, selected_part=-1 if part is None else part)
     display.draw(c.frame, options, window)
-    comparing.draw(ui, options, window.smooth)
-    comparing.magnify(ui, options, window.smooth)
+    sides.draw(ui, options, window.smooth)
+    sides.magnify(ui, options, window.smooth)
 
 
 def draw_recorded(ui: Ui) -> None:
@@ -119,12 +118,12 @@ def capture(ui: Ui) -> None:
     ready = shown and not c.scheduler.becoming_finer  # else the picture is saved when it has come
     if ui.graphics.display is not None and ready:
         ui.capture_wanted = ui.graphics.capture_view = None
-        options, window = comparing.draw_options(ui), in_window(ui)  # without what is selected
+        options, window = sides.draw_options(ui), in_window(ui)  # without what is selected
         ui.graphics.display.draw(c.frame, options, window)
         pixels = ui.graphics.display.read() if ui.graphics.display.shows(options, window) else None
-        compared = pixels is not None and comparing.shown(ui) is not None
+        compared = pixels is not None and c.comparing.seen is not None
         if pixels is not None and compared:
-            pixels = comparing.composed_picture(ui, pixels)
+            pixels = sides.composed_picture(ui, pixels)
         described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
         state = c.pictures.state_of(c.frame, options.view) if c.frame is not None and not compared else None
         if state is not None and c.frame is not None and state.draw.savings is not None:

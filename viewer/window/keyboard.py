@@ -10,7 +10,7 @@ import re
 import time
 from collections.abc import Callable, Iterable, Mapping
 
-from imgui_bundle import glfw_utils, imgui
+from imgui_bundle import imgui
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
@@ -150,19 +150,12 @@ def printed_there(key: int) -> str | None:
     return glfw.get_key_name(key, 0)
 
 
-def held_there(key: int) -> bool:
-    """Return whether GLFW says that a key is down; needs a window."""
-    return bool(glfw.get_key(glfw_utils.glfw_window_hello_imgui(), key) == glfw.PRESS)
-
-
 class Keyboard:
     """As a US keyboard until `update` is called.  `wanted_for` is the command that waits for a key to be pressed,
     `modifiers` are those that are held, `chorded` the names in HELD whose keys are down as part of a chord."""
 
-    def __init__(
-        self, printed: Callable[[int], str | None] = printed_there, held: Callable[[int], bool] = held_there
-    ) -> None:
-        self._printed, self._held = printed, held
+    def __init__(self, printed: Callable[[int], str | None] = printed_there) -> None:
+        self._printed = printed
         self._looked = -_EVERY
         self._letters: dict[str, str] = {}
         self._chords: dict[str, int] = {}
@@ -190,19 +183,7 @@ class Keyboard:
         number = self.chord(key)
         if number & _ALL_MODIFIERS != modifiers:
             return False
-        return imgui.is_key_pressed(imgui.Key(number & ~_ALL_MODIFIERS), repeats) and self.is_meant(key)
-
-    def is_meant(self, key: str) -> bool:
-        """Return whether ImGui's key is this one, where it takes two places for the same: French keyboards have a minus
-        on the 6, and ImGui knows the key that has it elsewhere as a minus too."""
-        name = key.split("+")[-1]
-        if not is_place(key) or name not in PLACES:
-            return True
-        others = [other for other in PLACES if other != name and self.chord(other) == self.chord(name)]
-        if not others or self._held(PLACES[name]):
-            return True
-        # Let go already, it is rather the one that has the sign printed on it.
-        return not any(self._held(PLACES[other]) for other in others) and self._asked_for(name) != name
+        return imgui.is_key_pressed(imgui.Key(number & ~_ALL_MODIFIERS), repeats)
 
     def label(self, key: str) -> str:
         """Return a key as the user reads it on the keyboard."""
@@ -212,8 +193,7 @@ class Keyboard:
 
     def is_down(self, keys: Iterable[str]) -> bool:
         """Return whether one of these keys is held, whatever modifiers are held with it."""
-        numbers = {key: imgui.Key(self.chord(key) & ~_ALL_MODIFIERS) for key in keys}
-        return any(imgui.is_key_down(number) and self.is_meant(key) for key, number in numbers.items())
+        return any(imgui.is_key_down(imgui.Key(self.chord(key) & ~_ALL_MODIFIERS)) for key in keys)
 
     def pressed(self) -> str | None:
         """Return the key that has just been pressed, with its modifiers, as commands have it."""

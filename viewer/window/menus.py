@@ -67,21 +67,10 @@ def _close_list() -> None:
 
 
 def show(ui: Ui, others: Contents, more: Contents) -> None:
-    """Show all menus of the menu bar, and `others` after them; within a single one where there is no room for their
-    names.  Some menus, by their paths, have `more` after their commands."""
+    """Show all menus of the menu bar, and `others` after them.  Some menus, by their paths, have `more` after their
+    commands."""
     contents: dict[str, Callable[[], None]] = {name: partial(_menu, ui, name, more) for name in MENUS}
-    contents |= others
-    gap = imgui.get_style().item_spacing.x
-    needed = sum(imgui.calc_text_size(name).x + 2.0 * gap for name in contents)
-    if needed <= imgui.get_content_region_avail().x:
-        _menus(contents)
-    elif imgui.begin_menu("Menu"):
-        _menus(contents)
-        imgui.end_menu()
-
-
-def _menus(contents: Contents) -> None:
-    for name, show_content in contents.items():
+    for name, show_content in (contents | dict(others)).items():
         if imgui.begin_menu(name):
             show_content()
             imgui.end_menu()

@@ -141,13 +141,6 @@ def entries(ui: Ui) -> Iterator[Item]:
     for one in ALL.values():
         if one.panel and one.label not in commands:
             yield from _entries(ui, one, value_of(ui, one), partial(c.settings.set, one))
-    scene = c.session.scene
-    if scene is not None and c.session.animated:
-        frame = Setting("Frame", "", 0, scene.frames - 1, kind=int, panel="Time", name="frame")
-        yield from _entries(ui, frame, c.session.frame, lambda number: c.motion.step(number - c.session.frame))
-    if scene is not None and len(scene.lights) > 1:
-        light = replace(ALL["draw.light"], high=len(scene.lights) - 1, panel="View")
-        yield from _entries(ui, light, c.session.draw.light, c.settings.set_light)
 
 
 def _entries(ui: Ui, one: Setting, now: Any, change: Callable[[Any], None]) -> Iterator[Item]:

@@ -48,62 +48,43 @@ _COLORS = {name: rgb(dark) for name, (dark, _) in _NAMED.items()}
 ) = _COLORS.values()  # fmt: skip
 ON_PICTURE_ERROR = rgb("FF786B")
 
-# ImGui's colours: dark, light; with an opacity where it is not 1.
-_SLOTS: dict[imgui.Col_, tuple[str, str] | tuple[str, str, float]] = {
-    imgui.Col_.text: ("E4E7EC", "1C2026"),
-    imgui.Col_.text_disabled: ("7B828E", "7A818C"),
-    imgui.Col_.window_bg: ("1E2127", "F4F5F7"),
-    imgui.Col_.child_bg: ("1E2127", "F4F5F7", 0.0),
-    imgui.Col_.popup_bg: ("262A32", "FFFFFF", 0.98),
-    imgui.Col_.border: ("343A45", "C3C8D0"),
-    imgui.Col_.frame_bg: ("2C313B", "E0E4EA"),
-    imgui.Col_.frame_bg_hovered: ("363D49", "D3DAE4"),
-    imgui.Col_.frame_bg_active: ("3F4856", "C5CFDC"),
-    imgui.Col_.title_bg: ("181A1F", "DDE1E7"),
-    imgui.Col_.title_bg_active: ("181A1F", "DDE1E7"),
-    imgui.Col_.title_bg_collapsed: ("181A1F", "DDE1E7"),
-    imgui.Col_.menu_bar_bg: ("181A1F", "E6E9EE"),
-    imgui.Col_.scrollbar_bg: ("1E2127", "F4F5F7", 0.0),
-    imgui.Col_.scrollbar_grab: ("3F4652", "BCC2CC"),
-    imgui.Col_.scrollbar_grab_hovered: ("525B6B", "A3ABB8"),
-    imgui.Col_.scrollbar_grab_active: ("616C7F", "8C96A6"),
-    imgui.Col_.checkbox_selected_bg: ("2C313B", "E0E4EA"),
-    imgui.Col_.text_link: ("6CB2F5", "1C67B5"),
-    imgui.Col_.check_mark: ("6CB2F5", "1C67B5"),
-    imgui.Col_.slider_grab: ("4E92D6", "4E92D6", 0.6),
-    imgui.Col_.slider_grab_active: ("6CB2F5", "2F79C4", 0.7),
-    imgui.Col_.button: ("343B47", "D8DDE5"),
-    imgui.Col_.button_hovered: ("41506A", "BDD3EC"),
-    imgui.Col_.button_active: ("3A6EA5", "94BDE6"),
-    imgui.Col_.header: ("34506F", "C4DAF1", 0.8),
-    imgui.Col_.header_hovered: ("3D5F86", "B3D0EE"),
-    imgui.Col_.header_active: ("3A6EA5", "94BDE6"),
-    imgui.Col_.separator: ("343A45", "C9CED6"),
-    imgui.Col_.separator_hovered: ("4E92D6", "4E92D6"),
-    imgui.Col_.separator_active: ("6CB2F5", "2F79C4"),
-    imgui.Col_.resize_grip: ("343A45", "C9CED6"),
-    imgui.Col_.resize_grip_hovered: ("4E92D6", "4E92D6"),
-    imgui.Col_.resize_grip_active: ("6CB2F5", "2F79C4"),
-    imgui.Col_.tab: ("181A1F", "DDE1E7"),
-    imgui.Col_.tab_hovered: ("3D5F86", "B3D0EE"),
-    imgui.Col_.tab_selected: ("2A303A", "FFFFFF"),
-    imgui.Col_.tab_selected_overline: ("4E92D6", "2F79C4"),
-    imgui.Col_.tab_dimmed: ("181A1F", "DDE1E7"),
-    imgui.Col_.tab_dimmed_selected: ("242932", "EEF0F4"),
-    imgui.Col_.tab_dimmed_selected_overline: ("343A45", "C3C8D0"),
-    imgui.Col_.docking_preview: ("4E92D6", "4E92D6", 0.6),
-    imgui.Col_.docking_empty_bg: ("121418", "D3D7DD"),
-    imgui.Col_.plot_histogram: ("4E92D6", "4E92D6"),
-    imgui.Col_.table_row_bg_alt: ("FFFFFF", "000000", 0.03),
-    imgui.Col_.table_header_bg: ("262A32", "E0E4EA"),
-    imgui.Col_.table_border_light: ("343A45", "D3D7DD"),
-    imgui.Col_.table_border_strong: ("343A45", "C3C8D0"),
-    imgui.Col_.text_selected_bg: ("3A6EA5", "94BDE6", 0.8),
-    imgui.Col_.nav_cursor: ("6CB2F5", "2F79C4"),
-    imgui.Col_.modal_window_dim_bg: ("0C0D10", "20242B", 0.45),
-    imgui.Col_.input_text_cursor: ("E4E7EC", "1C2026"),
-    imgui.Col_.tree_lines: ("343A45", "C3C8D0"),
-}
+# Colours, dark and light, an opacity, and what of ImGui has them.
+_SLOTS = (
+    ("E4E7EC", "1C2026", 1.0, "text input_text_cursor"),
+    ("7B828E", "7A818C", 1.0, "text_disabled"),
+    ("1E2127", "F4F5F7", 1.0, "window_bg"),
+    ("1E2127", "F4F5F7", 0.0, "child_bg scrollbar_bg"),
+    ("262A32", "FFFFFF", 0.98, "popup_bg"),
+    ("343A45", "C3C8D0", 1.0, "border tab_dimmed_selected_overline table_border_strong tree_lines"),
+    ("2C313B", "E0E4EA", 1.0, "frame_bg checkbox_selected_bg"),
+    ("363D49", "D3DAE4", 1.0, "frame_bg_hovered"),
+    ("3F4856", "C5CFDC", 1.0, "frame_bg_active"),
+    ("181A1F", "DDE1E7", 1.0, "title_bg title_bg_active title_bg_collapsed tab tab_dimmed"),
+    ("181A1F", "E6E9EE", 1.0, "menu_bar_bg"),
+    ("3F4652", "BCC2CC", 1.0, "scrollbar_grab"),
+    ("525B6B", "A3ABB8", 1.0, "scrollbar_grab_hovered"),
+    ("616C7F", "8C96A6", 1.0, "scrollbar_grab_active"),
+    ("6CB2F5", "1C67B5", 1.0, "text_link check_mark"),
+    ("4E92D6", "4E92D6", 0.6, "slider_grab docking_preview"),
+    ("6CB2F5", "2F79C4", 0.7, "slider_grab_active"),
+    ("343B47", "D8DDE5", 1.0, "button"),
+    ("41506A", "BDD3EC", 1.0, "button_hovered"),
+    ("3A6EA5", "94BDE6", 1.0, "button_active header_active"),
+    ("34506F", "C4DAF1", 0.8, "header"),
+    ("3D5F86", "B3D0EE", 1.0, "header_hovered tab_hovered"),
+    ("343A45", "C9CED6", 1.0, "separator resize_grip"),
+    ("4E92D6", "4E92D6", 1.0, "separator_hovered resize_grip_hovered plot_histogram"),
+    ("6CB2F5", "2F79C4", 1.0, "separator_active resize_grip_active nav_cursor"),
+    ("2A303A", "FFFFFF", 1.0, "tab_selected"),
+    ("4E92D6", "2F79C4", 1.0, "tab_selected_overline"),
+    ("242932", "EEF0F4", 1.0, "tab_dimmed_selected"),
+    ("121418", "D3D7DD", 1.0, "docking_empty_bg"),
+    ("FFFFFF", "000000", 0.03, "table_row_bg_alt"),
+    ("262A32", "E0E4EA", 1.0, "table_header_bg"),
+    ("343A45", "D3D7DD", 1.0, "table_border_light"),
+    ("3A6EA5", "94BDE6", 0.8, "text_selected_bg"),
+    ("0C0D10", "20242B", 0.45, "modal_window_dim_bg"),
+)  # fmt: skip
 
 
 def apply_colors(theme: str) -> None:
@@ -113,8 +94,9 @@ def apply_colors(theme: str) -> None:
         now = rgb(codes[which])
         color.x, color.y, color.z = now.x, now.y, now.z
     style = imgui.get_style()
-    for slot, (*slot_codes, opacity) in ((slot, (*found, 1.0)[:3]) for slot, found in _SLOTS.items()):
-        style.set_color_(int(slot), rgb(slot_codes[which], opacity))
+    for *both, opacity, slots in _SLOTS:
+        for slot in slots.split():
+            style.set_color_(int(getattr(imgui.Col_, slot)), rgb(both[which], opacity))
 
 
 FONT = "fonts/Roboto/Roboto-Regular.ttf"

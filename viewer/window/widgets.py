@@ -100,9 +100,9 @@ def same_line_for(label: str) -> None:
         imgui.same_line(0.0, spacing)
 
 
-def clipped(text: str, color: ImVec4 | None = None) -> None:
+def clipped(text: str, color: ImVec4 | None = None, room: float | None = None) -> None:
     """One line of text that ends in an ellipsis where there is no room, with all of it as a tooltip."""
-    shown = fitted(text, imgui.get_content_region_avail().x)
+    shown = fitted(text, imgui.get_content_region_avail().x if room is None else room)
     _text(shown, color)
     if shown != text:
         tooltip(text)
@@ -127,22 +127,13 @@ def tooltip(text: str) -> None:
         tooltip_at(text)
 
 
-def tooltip_at(text: str, width: float = 24.0) -> None:
-    """Explain what is under the pointer, in lines of so many ems."""
+def tooltip_at(text: str) -> None:
+    """Explain what is under the pointer."""
     if imgui.begin_tooltip():
-        imgui.push_text_wrap_pos(em(width))
+        imgui.push_text_wrap_pos(em(24.0))
         imgui.text_unformatted(text)
         imgui.pop_text_wrap_pos()
         imgui.end_tooltip()
-
-
-def tooltip_above(text: str) -> None:
-    """The same above the item, after a longer rest, so that neither what lies beside nor what lies below is hidden."""
-    flags = imgui.HoveredFlags_.stationary | imgui.HoveredFlags_.delay_normal | imgui.HoveredFlags_.allow_when_disabled
-    if imgui.is_item_hovered(int(flags)):
-        corner = imgui.get_item_rect_min()
-        imgui.set_next_window_pos(ImVec2(corner.x, corner.y - em(0.3)), 0, ImVec2(0.0, 1.0))
-        tooltip_at(text, 13.0)
 
 
 @contextmanager
@@ -193,9 +184,9 @@ def size_field(size: tuple[int, int], longest: int, say: Callable[[str], None]) 
     return size
 
 
-def wide_button(label: str, tip: str = "", columns: int = 1, explain: Callable[[str], None] = tooltip) -> bool:
-    """A button that fills its share of the width; `explain` shows its tip.  Where that is too narrow for a label of an
-    icon and words, the words are in the tip alone."""
+def wide_button(label: str, tip: str = "", columns: int = 1) -> bool:
+    """A button that fills its share of the width; where that is too narrow for a label of an icon and words, the words
+    are in the tip alone."""
     style = imgui.get_style()
     width = (imgui.get_content_region_avail().x - style.item_spacing.x * (columns - 1)) / columns
     text, _, _ = label.partition("##")
@@ -204,7 +195,7 @@ def wide_button(label: str, tip: str = "", columns: int = 1, explain: Callable[[
         label, tip = f"{icon}###{label}", f"{words}: {tip}" if tip else words
     clicked = imgui.button(label, ImVec2(max(width, em(2.0)), 0.0))
     if tip:
-        explain(tip)
+        tooltip(tip)
     return clicked
 
 
@@ -215,7 +206,7 @@ def swatch(color: tuple[float, float, float]) -> None:
     end = ImVec2(at.x + 0.8 * side, at.y + 0.9 * side)
     start = ImVec2(at.x, at.y + 0.1 * side)
     draw = imgui.get_window_draw_list()
-    draw.add_rect_filled(start, end, imgui.get_color_u32(ImVec4(*color, 1.0)), em(0.15))
+    draw.add_rect_filled(start, end, packed(color), em(0.15))
     if min(color) > _PALE:
         draw.add_rect(start, end, imgui.get_color_u32(QUIET), em(0.15))
     imgui.dummy(ImVec2(0.8 * side, side))

@@ -230,14 +230,10 @@ def test_ctrl_c_keeps_what_is_done(tmp_path: Path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_all_methods_have_a_line_each_and_the_best_is_named(tmp_path: Path, capsys) -> None:
+def test_all_methods_have_a_line_each(tmp_path: Path, capsys) -> None:
     results = bench(tmp_path, "--methods", "all, paper+rest,paper", "--frames", "0:3")
     assert {"none", "paper", "certified", "free", "certified+cache", "paper+rest"} <= set(results["methods"])
     out = capsys.readouterr().out
     for name in results["methods"]:
         assert re.search(rf"^\│ {re.escape(name)} +│", out, re.MULTILINE), name
-    steps = {name: sum(figures["shadow_traversal_steps"]) for name, figures in results["methods"].items()}
-    assert 0 == steps["free"] < steps["none"]
-    (best,) = re.findall(r"^fewest steps, of exact methods: (\S+) ", out, re.MULTILINE)
-    assert best not in ("free", "paper", "cells"), "it measures only, or is not exact"
     assert max(results["memory_bytes"]["certified"]) > max(results["memory_bytes"]["none"]) == 0

@@ -26,7 +26,7 @@ from tracer.experiments.cluster import Cluster, local_cluster
 from tracer.frame import Frame
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
-from viewer.cli import processes
+from viewer.cli import sweep
 from viewer.cli.console import Work
 
 METHODS = ("none", "paper", "cells", "certified", "certified+cache")
@@ -65,7 +65,7 @@ def shared(two_workers: Cluster, monkeypatch: pytest.MonkeyPatch) -> Cluster:
     def there(workers: int) -> Iterator[Cluster]:
         yield two_workers
 
-    monkeypatch.setattr(processes, "local_cluster", there)
+    monkeypatch.setattr(sweep, "local_cluster", there)
     return two_workers
 
 
@@ -151,7 +151,7 @@ def test_a_sweep_that_was_stopped_goes_on(
     assert len(every) == 40 and first.items() <= every.items(), "what was kept has stayed, times and all"
     assert not list(Path("study-results/parts").iterdir())
 
-    monkeypatch.setattr(processes, "local_cluster", None)  # nothing is missing, so that nobody is asked
+    monkeypatch.setattr(sweep, "local_cluster", None)  # nothing is missing, so that nobody is asked
     code, out, err = run(capfd, "sweep", "study.toml")
     assert code == 0 and "nothing is missing: all 40 frames" in err
 

@@ -14,7 +14,6 @@ from viewer.output.reports import (
     changes_in_words,
     frames_in_words,
     happenings,
-    leaders,
     modes_in_words,
     table_1,
 )
@@ -25,19 +24,6 @@ def row(method: str, steps: float = 0.0, tests: float = 0.0, speed_up: float = 1
     return Row(
         method, steps, steps, 3, tests, tests, 3, 0.0, 0, 0.0, 0.1, 1.0 / speed_up, 0.0, 0, speed_up, spread, 0.3
     )
-
-
-def test_the_best_of_several_exact_methods_is_named_and_chance_is_not_called_speed():
-    rows = [row("none"), row("certified", 0.9, 0.2, 1.5), row("auto", 0.1, 0.1, 1.2), row("paper", 0.95, 0.9, 3.0)]
-    assert leaders(rows) == [
-        "fewest steps, of exact methods: certified (90.0% saved)",
-        "fewest tests, of exact methods: certified (20.0% saved)",
-        "least time, of exact methods: certified (1.50 times as fast as none)",
-    ]
-    assert leaders(rows, timed=False) == leaders(rows)[:2], "verified frames trace all rays"
-    rows = [row("none"), row("certified", -1193.6, -0.2, 1.2, spread=0.3), row("auto", 0.0, 0.0, 1.1, spread=0.2)]
-    assert all(": none (" in line for line in leaders(rows))
-    assert leaders(rows[:2]) == [], "nothing to choose from"
 
 
 def test_table_1_of_a_verified_run_tells_what_is_wrong_and_no_speed_up() -> None:

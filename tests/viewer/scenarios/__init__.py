@@ -17,7 +17,7 @@ from tests.viewer.scenarios.fitting import fitting
 from tests.viewer.scenarios.hunting import hunting
 from tests.viewer.scenarios.lamps import lamps
 from tests.viewer.scenarios.legends import legends
-from tests.viewer.scenarios.moving import flying, orbiting, playing, resizing
+from tests.viewer.scenarios.moving import flying, playing, resizing
 from tests.viewer.scenarios.navigating import navigating
 from tests.viewer.scenarios.panels import closing_panels, hiding, looks, panels
 from tests.viewer.scenarios.previewing import previewing
@@ -34,7 +34,7 @@ SCENARIOS = {
     scenario.__name__: scenario
     for scenario in (
         views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, fates, savings, certifying,
-        explaining, rays, flying, orbiting, playing, resizing, capturing, dropping, reopening, cancelling, browsing,
+        explaining, rays, flying, playing, resizing, capturing, dropping, reopening, cancelling, browsing,
         experimenting, figure1, zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
         panels, closing_panels, looks, hiding, touring, fitting, at_home, navigating, what_if, why,
         previewing,

@@ -9,13 +9,13 @@ from PIL import Image
 from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
-from viewer.state.columns import rows
-from viewer.state.comparison import CompareMode, Source, with_rings
+from viewer.state.comparison import CompareMode, Source
+from viewer.state.frame_rows import beside
 from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 from viewer.views.compare import GAP, composed, signed_picture
 from viewer.views.wipe import wipe_column
-from viewer.window import comparing as seen
+from viewer.window.panels.sides import filling
 
 KEY = imgui.Key
 CTRL, SHIFT = int(KEY.mod_ctrl), int(KEY.mod_shift)
@@ -30,7 +30,7 @@ def comparing(d: Driver) -> None:
     d.settle()
     comparing = d.c.comparing
     d.press(int(KEY.z) | SHIFT)
-    assert "choose Keep as A" in d.c.notices.message.text and seen.shown(d.ui) is None, "nothing is kept yet"
+    assert "choose Keep as A" in d.c.notices.message.text and comparing.seen is None, "nothing is kept yet"
     d.press(int(KEY.a) | CTRL | SHIFT)
     d.press(int(KEY.a) | CTRL)
     kept = d.c.frame
@@ -39,26 +39,20 @@ def comparing(d: Driver) -> None:
     d.settle()
     assert d.c.frame is not kept and d.c.session.camera != kept.camera, "Ctrl+A has flown, or D has not"
     a, b = picture(kept), picture(d.c.frame)
-    for way in (CompareMode.WIPE, CompareMode.SIDE, CompareMode.DIFFERENCE, CompareMode.BLINK, CompareMode.FLIP):
-        d.press(int(KEY.z) | SHIFT) if way is not CompareMode.WIPE else d.c.comparing.start(way)
+    for mode in (CompareMode.WIPE, CompareMode.SIDE, CompareMode.DIFFERENCE, CompareMode.FLIP):
+        d.press(int(KEY.z) | SHIFT) if mode is not CompareMode.WIPE else d.c.comparing.start(mode)
         d.settle()
-        assert comparing.state.on and seen.shown(d.ui)[2] is comparing.state.mode is way
+        assert comparing.state.on and comparing.seen.mode is comparing.state.mode is mode
         assert d.c.frame.primitive.shape == kept.primitive.shape, "both can be compared pixel by pixel"
-        saved = _saved(d, f"{way.value}.png")
-        if way is CompareMode.DIFFERENCE:
-            found = d.c.comparing.difference(*d.c.comparing.sides)
-            assert found.stats.pixels > 100 and np.array_equal(
-                found.pixels != 0.0, (kept.color != d.c.frame.color).any(-1)
-            )
-            shown = with_rings(signed_picture(found.pixels, found.stats.limit), found.worst)
-            assert np.abs(saved.astype(int) - shown).max() <= 1 and found.worst, "with its rings"
-            assert seen.legend(d.ui).entries[0].values == (str(len(found.worst)),)
-            d.c.session.set_draw(mark_wrong=False)
-            assert seen.marked(d.ui) == () and not seen.legend(d.ui).entries
-            d.c.session.set_draw(mark_wrong=True)
-        elif way is not CompareMode.BLINK:  # which may show either
-            assert np.array_equal(saved, composed(a, b, way, 0.5, shows_a=False))
-        if way is CompareMode.SIDE:
+        saved = _saved(d, f"{mode.value}.png")
+        if mode is CompareMode.DIFFERENCE:
+            found = comparing.seen.difference
+            assert found.stats.pixels > 100
+            assert np.array_equal(found.pixels != 0.0, (kept.color != d.c.frame.color).any(-1))
+            assert np.array_equal(saved, signed_picture(found, found.stats.limit, ringed=True))
+        else:
+            assert np.array_equal(saved, composed(a, b, mode, 0.5, shows_a=False))
+        if mode is CompareMode.SIDE:
             assert saved.shape[1] == 2 * b.shape[1] + GAP
             _inspects_from_a(d)
             for panel in ("Pixels", "Compare"):
@@ -67,20 +61,16 @@ def comparing(d: Driver) -> None:
                 check_fit(d, f"{panel}, comparing")
     d.context.key_down(KEY.z)
     d.frames(3)
-    assert seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.graphics.compared.a
+    assert comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.compared.a
     assert np.array_equal(_saved(d, "held.png"), a)
     d.context.key_up(KEY.z)
     d.frames(3)
-    assert not seen.shows_a(d.ui) and seen.filling(d.ui) is d.ui.graphics.display
+    assert not comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.display
     _line(d, a, b)
     d.c.session.set_draw(tone=Tone(-1.0, 1.0, Curve.SRGB))
     d.frames(2)
-    expected = composed(
-        *(picture(f, tone=d.c.session.draw.tone) for f in (kept, d.c.frame)),
-        CompareMode.WIPE,
-        d.c.session.draw.wipe,
-        False,
-    )
+    toned = (picture(frame, tone=d.c.session.draw.tone) for frame in (kept, d.c.frame))
+    expected = composed(*toned, CompareMode.WIPE, d.c.session.draw.wipe, False)
     assert np.abs(_saved(d, "toned.png").astype(int) - expected).max() <= 1, "both have the tone"
     d.press(KEY._9)
     d.settle()
@@ -173,8 +163,9 @@ def _two_methods(d: Driver) -> None:
     d.c.comparing.trace_by("certified")
     d.settle()
     d.wait(lambda: d.c.baseline.measured is not None and d.c.baseline.measured.tells, "times of frames in turn", 60.0)
-    times = {row.name: row for row in rows(d.c.traced.second, d.c.frame, d.c.baseline.measured)}
-    assert times["Frame"].a > times["  shading"].a > 0.0 and times["Frame"].b > times["  shading"].b > 0.0
+    found = beside(d.c.traced.second, d.c.frame, d.c.baseline.measured)
+    times = {row.name: row.number for pair in zip(*found, strict=True) for row in pair}
+    assert times["Frame"] > times["  shading"] > 0.0
     d.press(KEY.h)
     d.settle()
     assert d.c.session.draw.view is View.SAVED and d.c.traced.second.settings.method == "certified"

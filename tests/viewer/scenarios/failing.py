@@ -94,11 +94,11 @@ def failing(d: Driver) -> None:
         guard.again(part)
         d.frames(3)
         assert not guard.broken
-    good, dialogs._names = dialogs._names, fail
+    good, dialogs._line = dialogs._line, fail
     d.press(int(KEY.o) | int(KEY.mod_ctrl))
     noticed(dialogs.OPEN)
     assert not d.ui.dialogs
-    dialogs._names = good
+    dialogs._line = good
     d.ui.commands = [replace(c, run=fail) if c.name == "Depth" else c for c in d.ui.commands]
     d.press(KEY._5)
     noticed("The command Depth")

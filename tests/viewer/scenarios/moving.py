@@ -70,31 +70,6 @@ def flying(d: Driver) -> None:
     d.settle()
 
 
-def orbiting(d: Driver) -> None:
-    """An orbit keeps the distance to what was clicked; F goes near it; the wheel comes nearer."""
-    d.settle()
-    d.press(KEY.o)
-    assert d.c.preferences.navigation == "orbit"
-    d.drag(d.picture_centre(), (90.0, 40.0))
-    pivot, camera = d.ui.picture.pivot, d.c.session.camera
-    assert pivot is not None and not d.c.session.on_path
-    d.settle()
-    d.drag(d.picture_centre(), (0.0, 0.0))
-    distance = math.dist(camera.position, pivot)
-    d.context.mouse_move_to_pos(d.picture_centre())
-    d.frames(2)
-    d.context.mouse_wheel_y(3.0)
-    d.frames(3)
-    assert math.dist(d.c.session.camera.position, d.ui.picture.pivot) < distance
-    d.settle()
-    d.press(KEY.f)
-    d.wait(lambda: not d.c.motion.under_way, "the glide of the focus")
-    view = d.c.session.camera.basis()[2]
-    to_pivot = np.subtract(d.ui.picture.pivot, d.c.session.camera.position)
-    assert view @ to_pivot / np.linalg.norm(to_pivot) > 0.9999
-    d.settle()
-
-
 def playing(d: Driver) -> None:
     """Play, pause, step and scrub; every frame is traced in full where that was asked for."""
     d.settle()

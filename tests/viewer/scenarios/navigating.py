@@ -75,7 +75,7 @@ def _texts(d: Driver) -> None:
 
 
 def _drags(d: Driver) -> None:
-    d.c.preferences.navigation = "orbit"
+    d.press(KEY.o)
     before = d.c.session.camera
     d.drag(d.picture_centre(), (80.0, 0.0))
     pivot, after = d.ui.picture.pivot, d.c.session.camera
@@ -88,7 +88,12 @@ def _drags(d: Driver) -> None:
     d.wait(lambda: d.c.session.camera != before, "the wheel")
     after, pivot = d.c.session.camera, d.ui.picture.pivot  # that under the pointer, in the frame that was there then
     assert math.dist(after.position, pivot) < math.dist(before.position, pivot), "the wheel goes nearer"
-    d.c.preferences.navigation = "fly"
+    d.settle()
+    d.press(KEY.f)
+    d.wait(lambda: not d.c.motion.under_way, "the way of the focus", 30.0)
+    to_pivot = np.subtract(d.ui.picture.pivot, d.c.session.camera.position)
+    assert d.c.session.camera.basis()[2] @ to_pivot / np.linalg.norm(to_pivot) > 0.9999
+    d.press(KEY.g)
     d.settle()
 
 

@@ -105,12 +105,6 @@ def looks(d: Driver) -> None:
         assert p.theme == after
     assert p.ui_scale == 1.0 and d.c.session.draw.view is View.COLOR and brightness() < 60.0
     assert p.recent and d.c.bookmarks.all[0].name == "here" and d.c.presets.all
-    d.c.questions.before_resetting(d.c.settings.reset)
-    d.frames(3)
-    d.context.item_click("//Reset all settings?###question/Forget bookmarks as well")
-    d.context.item_click("//Reset all settings?###question/Reset")
-    d.frames(3)
-    assert not d.c.bookmarks.all and p.recent
 
 
 def hiding(d: Driver) -> None:

@@ -16,7 +16,6 @@ from tests.viewer.previews import colors_of
 from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Progress
 from viewer.services import scene_files, scene_loader
-from viewer.window import graphics
 
 KEY = imgui.Key
 _compiled = threading.Event()
@@ -62,27 +61,11 @@ def previewing(d: Driver) -> None:
     d.wait(lambda: not d.c.motion.under_way, "rest", 10.0)
     d.frames(2)
     assert np.abs(_read(d).astype(int) - first).max() > 50, "another picture"
-    _tour_fits(d)
     _compiled.set()
     d.settle()
     assert d.ui.graphics.preview is None and d.c.preview.geometry is None and d.c.session.previewed is None
     assert d.c.frame is not None and d.c.frame.camera == flown == d.c.session.camera
     assert d.context.item_exists("//Picture/picture") and not d.context.item_exists("//Picture/preview")
-
-
-def _tour_fits(d: Driver) -> None:
-    """Until there is a preview, the tour's strip lies above the status bar, and says when one can begin."""
-    made = d.ui.graphics.preview
-    with mock.patch.object(graphics, "draw_preview"):
-        d.ui.tour.start()
-        d.ui.graphics.preview = None
-        for height in (680, 1100):
-            d.resize(1280, height)
-            strip, viewport = imgui.internal.find_window_by_name("###tour"), imgui.get_main_viewport()
-            assert strip.pos.y + strip.size.y <= viewport.work_pos.y + viewport.work_size.y, "the tour is cut off"
-        d.resize(1280, 800)
-        d.ui.graphics.preview = made
-        d.ui.tour.end()
 
 
 def _read(d: Driver) -> np.ndarray:

@@ -14,15 +14,13 @@ from viewer.services.tour import STEPS
 from viewer.state.preferences import load_preferences
 from viewer.state.views import View
 from viewer.window.panels.status import doing
-from viewer.window.panels.tour import TourState
 
 KEY = imgui.Key
 
 
 def touring(d: Driver) -> None:
     """The tour comes on the first start; a step is done by doing it, by "Show me", or skipped; Help has it again."""
-    places = steps._PLACES[::5]  # where a shadow is looked for
-    with patch.object(steps, "SECONDS", 0.3), patch.object(steps, "_PLACES", places):  # nobody looks
+    with patch.object(steps, "SECONDS", 0.3):  # nobody looks
         _tour(d)
 
 
@@ -31,8 +29,8 @@ def _tour(d: Driver) -> None:
     assert tour.at == 0 and not d.c.preferences.tour, "a first start begins with the tour, and only that one"
     d.settle()
     assert doing(d.c).startswith("idle")
-    show, skip = f"//###tour/{icons.ICON_FA_PLAY}  Show me", "//###tour/Skip"
-    finish = "//###tour/Finish"
+    show, skip = f"//Picture/**/{icons.ICON_FA_PLAY}  Show me", "//Picture/**/Skip"
+    finish = "//Picture/**/Finish"
     d.frames(5)
     assert tour.at == 0, "nothing has been done yet"
     d.hold(KEY.w, 0.1)
@@ -74,22 +72,20 @@ def _tour(d: Driver) -> None:
     d.wait(lambda: tour.at is None, "the zoom test", 120.0)
     assert d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole
     assert all(one.seen_whole for one in d.c.runs.zoom_test.results.approaches), "else there is no limit to see"
-    assert "Next: " in tour.last_word
+    assert tour.over
     d.settle()
-    d.context.item_click("//###tour/Close")
+    d.context.item_click("//Picture/**/Close")
     d.frames(2)
-    assert not tour.last_word and d.ui.state(TourState).height == 0.0
+    assert not tour.over and not d.context.item_exists(show)
 
     d.context.menu_click("//##MainMenuBar/Help/Tour")
     d.frames(3)
     assert tour.at == 0
     for size in ((1400, 900), (900, 600)):
         d.resize(*size)
-        window = imgui.internal.find_window_by_name("###tour")
-        assert window.pos.x >= 0 and window.pos.x + window.size.x <= size[0], f"the tour is cut off at {size}"
-        assert window.pos.y >= 0 and window.pos.y + window.size.y <= size[1], f"the tour is cut off at {size}"
-        d.frames(3)
-        assert d.picture_edges()[3] <= window.pos.y + 1.0, f"the tour covers the picture at {size}"
+        button = d.context.item_info(show).rect_full
+        assert d.picture_edges()[3] <= button.min.y, f"the tour covers the picture at {size}"
+        assert button.max.x < size[0] and button.max.y < size[1], f"the tour is cut off at {size}"
     camera = d.c.session.camera
     d.context.item_click(show)
     d.wait(lambda: tour.at == 1, "the flight that is shown", 90.0)

@@ -43,12 +43,13 @@ def what_if(d: Driver) -> None:
     d.context.item_click("//What if/**/Compare with the picture before")
     d.frames(5)
     look(d, "2-light-off")
-    a, b = c.comparing.sides
-    assert (a.frame, b.frame) == (before, c.frame) and c.comparing.state.mode is CompareMode.DIFFERENCE
+    seen = c.comparing.seen
+    assert (seen.a.frame, seen.b.frame) == (before, c.frame) and c.comparing.state.mode is CompareMode.DIFFERENCE
     d.scroll_down("What if")
     look(d, "2-scrolled")
     d.context.item_click("//What if/**/End the comparison")
-    assert c.comparing.sides is None
+    d.frames(2)
+    assert c.comparing.seen is None
 
     # What was clicked, hidden.
     left, top, right, bottom = d.picture_edges()

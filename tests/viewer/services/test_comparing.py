@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+from dataclasses import replace
 
 import numpy as np
 
@@ -24,7 +25,7 @@ def keep(desk: Desk, method: str = "none") -> None:
 
 def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
     comparing = desk.c.comparing
-    assert comparing.sides is None and comparing.b is not None and comparing.a is None
+    assert comparing.seen is None and comparing.b is not None and comparing.a is None
     keep(desk)
     kept, color = comparing.a.frame, comparing.a.frame.color.copy()
     desk.c.settings.change(method="paper")
@@ -32,17 +33,21 @@ def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
     desk.rest()
     comparing.start(CompareMode.DIFFERENCE)
     desk.rest()
-    a, b = comparing.sides
-    assert a.frame is kept and np.array_equal(a.frame.color, color)
-    assert (a.method, b.method) == ("none", "paper") and b.frame is desk.c.frame
-    assert comparing.names(a, b) == ("A  none", "B  paper")
-    found = comparing.difference(a, b)
-    assert comparing.difference(a, b) is found, "found out once"
+    seen, b = comparing.seen, comparing.b
+    assert seen.a.frame is kept and np.array_equal(seen.a.frame.color, color)
+    assert (seen.a.method, seen.b.method) == ("none", "paper") and seen.b.frame is desk.c.frame
+    assert seen.names == ("A  none", "B  paper")
+    found = seen.difference
+    assert comparing.difference(seen.a, seen.b) is found, "found out once"
     assert np.array_equal(found.pixels != 0.0, (b.frame.color != color).any(axis=-1)) and found.stats.pixels
     comparing.change(limit=0.25)
     assert comparing.limit(found) == 0.25
+    comparing.held = True
+    comparing.update()
+    assert comparing.seen.shows_a and comparing.seen.difference is None, "A alone while the key is held"
     comparing.forget()
-    assert comparing.sides is None and comparing.a is None
+    comparing.update()
+    assert comparing.seen is None and comparing.a is None
 
 
 def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
@@ -51,16 +56,16 @@ def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
     comparing.start(CompareMode.FLIP)
     desk.c.session.set_draw(view=View.COST)
     desk.rest()
-    a, b = comparing.sides
-    assert (a.view, b.view) == (View.COLOR, View.COST)
+    assert (comparing.a.view, comparing.b.view) == (View.COLOR, View.COST)
     comparing.change(same_view=True)
     assert comparing.a.view is View.COLOR, "what it has not recorded it cannot show"
     comparing.start(CompareMode.DIFFERENCE)
-    assert comparing.difference(*comparing.sides) is None and "keep A in this one" in comparing.remark
+    comparing.update()
+    assert comparing.seen.mode is CompareMode.FLIP and comparing.seen.difference is None
+    assert "keep A in this one" in comparing.remark
     desk.c.session.set_draw(view=View.DEPTH)
     desk.rest()
-    assert comparing.a.view is View.DEPTH and comparing.difference(*comparing.sides) is not None
-    assert comparing.remark == ""
+    assert comparing.a.view is View.DEPTH and comparing.seen.difference is not None and comparing.remark == ""
 
 
 def test_maps_of_both_have_one_range(desk: Desk) -> None:
@@ -71,7 +76,7 @@ def test_maps_of_both_have_one_range(desk: Desk) -> None:
     desk.c.motion.move(ELSEWHERE)
     desk.rest()
     comparing.start(CompareMode.SIDE)
-    a, b = comparing.sides
+    a, b = comparing.a, comparing.b
     both = comparing.span(View.DEPTH)
     hit = [side.frame.depth[np.isfinite(side.frame.depth)] for side in (a, b)]
     assert alone is None and both[0] <= min(np.median(d) for d in hit) and both[1] >= max(np.median(d) for d in hit)
@@ -108,3 +113,37 @@ def test_a_difference_is_that_of_the_chosen_slice(desk: Desk) -> None:
         expected = values_in(b.frame, View.TREE, slice=cut)
         assert np.array_equal(found.values.numbers, expected.numbers)
     assert not np.array_equal(expected.numbers, values_in(b.frame, View.TREE, slice=Slice(1, 0.25)).numbers)
+
+
+def side(settings: Settings, time: float = 0.0, view: View = View.COLOR, light: int = 0, scene: str = "study") -> Side:
+    return Side(make_frame(settings, time=time), view, light, scene, round(3 + 2 * time))
+
+
+def test_each_is_called_by_its_method_and_what_sets_it_apart() -> None:
+    none, paper = Settings(16, 8, method="none"), Settings(16, 8, method="paper")
+    a, b = side(none), side(paper)
+    for one, other, name in (
+        (a, b, "none"),
+        (b, a, "paper"),
+        (a, side(none, 2.0), "none, frame 3"),
+        (side(none, 2.0), a, "none, frame 7"),
+        (side(paper, view=View.SHADOW, light=2), b, "paper, shadow mode, light 2"),
+        (b, side(paper, view=View.SHADOW, light=2), "paper, colour"),
+        (side(none, scene="hall"), b, "none, hall, frame 3"),
+        (side(Settings(16, 8, method="paper", depth=1)), b, "paper, depth 1"),
+    ):
+        assert one.named(other) == name
+
+
+def test_sizes_and_samples_that_differ_are_told(desk: Desk) -> None:
+    comparing = desk.c.comparing
+    keep(desk)
+    comparing.start(CompareMode.WIPE)
+    frame = comparing.kept.frame
+    for settings, said in (
+        (replace(frame.settings, width=10, height=5), f"A has 10 x 5 pixels, B {frame.width} x {frame.height}: A is"),
+        (replace(frame.settings, samples=1 + frame.settings.samples), f"A has {1 + frame.settings.samples} samples a"),
+        (frame.settings, ""),
+    ):
+        comparing.kept = replace(comparing.kept, frame=make_frame(settings))
+        assert comparing.remark.startswith(said) and bool(comparing.remark) is bool(said)

@@ -234,8 +234,8 @@ def test_the_command_makes_the_edited_picture_again(
         ("--make-static=car", "give them like train=2.5"),
         ("--make-moving=car", "no static object of this name"),
         ("--move-light=0", "give them like 2=1.5,3,-0.5"),
-        ("--move-light=0=1.1e9,0,5", "a light is within 1e+09 of the origin"),
-        ("--move-light=0=nan,0,5", "a light is within 1e+09 of the origin"),
+        ("--move-light=0=1.1e9,0,5", "a place within 1e+09 of the origin"),
+        ("--move-light=0=nan,0,5", "a place within 1e+09 of the origin"),
     ],
 )
 def test_edits_of_what_is_not_there_are_one_line(

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import time
 from dataclasses import replace
 from threading import Event, Thread
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 import pytest
-from PIL import Image
 
-from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
+from tests.viewer.fakes import FakeRenderer, make_scene
 from tracer.culling.mode_changes import ModeChanges
 from tracer.frame import Settings
 from tracer.scene.model import Camera
@@ -23,7 +20,6 @@ from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.jobs import Wake
 from viewer.services.refinement import MOST_FRAMES, MOST_LEARNING, Refinement
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.state import codec
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
@@ -182,26 +178,6 @@ def test_the_users_own_setting_counts_in_every_view(desk: Desk):
     assert desk.rest() == [False]
 
 
-def test_a_capture_of_a_runs_frame_is_named_and_restored_as_what_it_shows(desk: Desk, tmp_path):
-    own = desk.c.session.scene.camera
-    elsewhere = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
-    assert desk.c.session.on_path and desk.c.session.frame == 0
-    desk.c.preferences.screenshot_folder, desk.c.preferences.screenshot_template = str(tmp_path), "{frame:04d}.png"
-    for camera, follow in ((elsewhere, False), (own, True)):
-        frame = make_frame(time=7.0, camera=camera)
-        desk.c.scheduler.show(Traced(RenderRequest(7.0, camera, frame.settings), frame, frame.statistics))
-        desk.c.captures.capture(desk.c.frame, np.zeros((8, 16, 3), np.uint8))
-        name = "0007.png" if camera == elsewhere else "0007-2.png"
-        assert desk.c.captures.saving.pop().join(10.0)
-        with Image.open(tmp_path / name) as image:
-            kept = json.loads(image.text["shadowcull"])
-        state = codec.picture_from_json(kept)
-        assert (kept["frame"], state.time, state.camera is None) == (7, 7.0, follow)
-        desk.c.restore(state)
-        assert (desk.c.session.camera, desk.c.session.frame) == (camera, 7)
-        desk.c.motion.follow_path(True)
-
-
 ELSEWHERE = Camera((1.0, 0.0, 0.0), CAMERA.direction, CAMERA.up)
 
 
@@ -270,13 +246,3 @@ def test_the_view_of_certificates_asks_for_more_of_them():
     assert frames(refinement, [9] * 20, method="auto") == 2
     assert frames(refinement, [9] * 5 + [0] * 3, view=View.CERTIFICATE, method="auto") == 6
     assert frames(refinement, [0] * 5, view=View.CERTIFICATE, method="paper") == 2
-
-
-def test_frames_go_on_where_the_user_says_so_and_coarse_ones_teach_nothing():
-    refinement = Refinement()
-    for k in range(10):
-        request = RenderRequest(0.0, CAMERA, Settings(8, 8, method="none"), 1, k)
-        assert refinement.wants_another(traced(request, 0), View.COLOR, keep_tracing=True)
-    coarse = RenderRequest(0.0, ELSEWHERE, Settings(8, 8, method="paper"), 2)
-    assert not refinement.wants_another(traced(coarse, 0), View.COLOR, keep_tracing=False)
-    assert not refinement.wants_another(None, View.COLOR, keep_tracing=True)

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
 import pytest
 
 from tests.viewer.desk import Desk
-from tests.viewer.fakes import make_frame
 from tracer.culling.fate import Fate
 from tracer.explanation import NO_CERTIFICATE, Explanation, explain
 from tracer.frame import Frame
@@ -21,8 +19,7 @@ from tracer.told_rays import RayTree
 from tracer.why_in_words import Link
 from viewer.output.ray_rows import Filter
 from viewer.services import inspector as module
-from viewer.services.inspector import MOST_LIGHTS, MOST_OCCLUDERS, Inspection, Inspector, drawn_lights, find_cut
-from viewer.services.queries import Queries, Query
+from viewer.services.inspector import MOST_LIGHTS, MOST_OCCLUDERS, Inspection, drawn_lights
 from viewer.state import navigation
 from viewer.window.panels.inspector import summary, unanswered
 from viewer.window.panels.links import go_to
@@ -205,52 +202,6 @@ def test_of_many_lights_the_nearest_are_drawn():
     drawn = drawn_lights(lights)
     assert len(drawn) == MOST_LIGHTS and all(one.due for one in drawn) and min(one.light for one in drawn) >= 240
     assert drawn_lights(lights[:30]) == tuple(one for one in lights[:30] if one.due)
-
-
-# --- clusters of lights -----------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("over", [False, True])
-def test_clusters_are_those_of_the_pixel_and_the_picture_that_is_looked_at(monkeypatch: pytest.MonkeyPatch, over: bool):
-    """`over`: the renderer has begun another frame when it is asked."""
-    asked: list[Query] = []
-
-    def light_cut(renderer, frame, x, y):
-        if over:
-            raise LookupError("another frame has begun")
-        return SimpleNamespace(frame=frame, x=x, y=y) if x == 0 else None
-
-    monkeypatch.setattr(module, "light_cut", light_cut)
-    queries, frame = Queries(), make_frame()
-    selection = SimpleNamespace(picked=None, hovered=(0.0, 0.0))
-    frame.primitive[:] = 0
-
-    def answer() -> None:
-        while (query := queries.take()) is not None:
-            if query.function is find_cut:
-                asked.append(query)
-                query.answer(None, lambda: False)
-
-    inspector = Inspector(selection, lambda function, frame, *more: queries.ask(function, frame, more))
-
-    def look(frame: Frame) -> tuple[bool, object]:
-        inspector.update(frame, idle=True, cuts=True)
-        return inspector.cut is not None, inspector.awaits_cut
-
-    assert look(frame) == (False, (0, 0))
-    answer()
-    assert look(frame) == ((False, (0, 0)) if over else (True, None)), "asked again where nobody could say"
-    if over:
-        return
-    assert look(replace(frame, color=frame.color + 1.0)) == (True, None) and len(asked) == 1, "more samples"
-    selection.hovered = (0.6, 0.0)
-    assert look(frame)[0] is False, "what is drawn is never that of another pixel"
-    answer()
-    assert look(frame) == (False, None), "it has none"
-    selection.hovered = (0.0, 0.0)
-    assert look(replace(frame, primitive=frame.primitive.copy())) == (False, (0, 0)), "another picture"
-    inspector.update(frame, idle=True, cuts=False)
-    assert inspector.awaits_cut is None
 
 
 # --- what fails, and what takes long ----------------------------------------------------------------

@@ -20,7 +20,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
 from viewer.output import capture
-from viewer.output.commands import BUILT, by_one_thread, cannot_come_back, needs_history
+from viewer.output.commands import BUILT, needs_history
 from viewer.services import stills
 from viewer.state.draw_options import DrawOptions
 from viewer.state.readings import can_draw
@@ -305,18 +305,3 @@ def test_without_frames_before_it_a_picture_is_the_same_unless_its_state_says_ot
     if can_draw(one, view):
         drawn = (stills.draw(frame, scene, state)[0] for frame in (one, other))
         np.testing.assert_array_equal(*drawn)
-
-
-@pytest.mark.parametrize("view", [View.FATE, View.MOVING_SHADOW])
-def test_what_becomes_of_rays_depends_on_what_an_exact_method_has_learnt(view: View) -> None:
-    """As work does: such a picture is filmed after those before it, and by chance where that is by chance."""
-    for method in ("certified", "auto", "voxels", "none+cache", "certified+cache"):
-        for threads in (1, 2):
-            one, work = (
-                ViewState(settings=Settings(method=method, threads=threads), draw=DrawOptions(shown))
-                for shown in (view, View.SAVED)
-            )
-            assert needs_history(one)
-            assert by_one_thread(one) == by_one_thread(work)
-            assert cannot_come_back(one.settings, one.draw) == cannot_come_back(work.settings, work.draw)
-    assert not needs_history(ViewState(settings=Settings(method="none"), draw=DrawOptions(view)))

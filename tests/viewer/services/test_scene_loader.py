@@ -101,7 +101,9 @@ def door_opened(door: Door, path: Path):
     return door.arrival().opened.scene
 
 
-def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(door: Door, tiny_scene_file: Path, tmp_path: Path):
+def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(
+    door: Door, tiny_scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     door.session.open(door_opened(door, tiny_scene_file))
     door.session.set_draw(view=View.DEPTH)
     frame = make_frame(time=1.0)
@@ -116,23 +118,11 @@ def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(door: Door, tiny_sce
     assert arrival.opened is None and arrival.text == f"restored {picture.name}"
     assert (arrival.place.time, arrival.place.draw.view) == (1.0, View.DEPTH)
     door.session.scene = None
-    door.loader.open(picture)
+    monkeypatch.setattr("viewer.services.scene_loader.warm_up", lambda progress: None)
+    door.loader.start(picture, {"lamp_radius": 0.5})
     arrival = door.arrival()
     assert arrival.opened.scene.path == tiny_scene_file and arrival.place.camera == frame.camera
-
-
-def test_settings_from_the_command_line_win_over_the_first_picture_alone(
-    door: Door, tiny_scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
-    monkeypatch.setattr("viewer.services.scene_loader.warm_up", lambda progress: None)
-    door.session.open(door_opened(door, tiny_scene_file))
-    door.captures.capture(make_frame(time=1.0), np.zeros((8, 16, 3), np.uint8))
-    assert door.captures.saving[0].join(20.0)
-    (picture,) = (tmp_path / "pictures").iterdir()
-    door.session.scene = None
-    door.loader.start(picture, {"lamp_radius": 0.5})
-    first = door.arrival().place
-    assert first.settings.lamp_radius == 0.5 and first.settings.lamp_samples is None
+    assert arrival.place.settings.lamp_radius == 0.5, "as the command line says of what is opened first"
     assert door.session.settings.lamp_radius == 0.5, "also where a scene is opened that says nothing of it"
     door.loader.open(picture)
     assert door.arrival().place.settings.lamp_radius is None

@@ -41,6 +41,9 @@ def test_a_setting_is_changed_and_remembered_unless_it_is_no_good_or_locked():
         parts.settings.change(**wrong)
         assert parts.session.settings.depth == 3 and parts.session.settings.method == "paper"
         assert parts.notices.current.error
+    for light, chosen in ((2, 2), (3, 0), (-1, 2)):
+        parts.settings.set_light(light)
+        assert parts.session.draw.light == chosen, "around"
     parts.locked = True
     parts.settings.change(depth=5)
     parts.settings.reset(())
@@ -56,13 +59,6 @@ def test_culling_is_turned_off_and_on_as_it_was_with_what_was_added_meanwhile(ch
     for method in toggled:
         parts.settings.toggle_culling()
         assert parts.session.settings.method == method
-
-
-def test_lights_are_counted_around():
-    parts = Parts()
-    for light, chosen in ((2, 2), (3, 0), (-1, 2)):
-        parts.settings.set_light(light)
-        assert parts.session.draw.light == chosen
 
 
 def test_a_reset_keeps_what_it_is_told_to(own_settings: Path):

@@ -12,7 +12,6 @@ import pytest
 from tests.viewer.desk import ELSEWHERE, Desk, is_the_same_picture
 from tests.viewer.marbles import LAST, STEP, write_marbles
 from tracer.experiments import zoom
-from viewer.output import capture
 from viewer.state.picking import wrong_at
 from viewer.util.resources import embedded_scenes
 
@@ -127,20 +126,6 @@ def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
         c.undo.undo()
         study.rest()
     assert c.session.state == here and not c.session.pace.fixed_size
-
-
-def test_the_figure_of_a_find_is_saved(study: Desk) -> None:
-    c, folder = study.c, study.c.preferences.picture_folder
-    c.hunts.plan.around, c.hunts.plan.keep = 0, 1
-    c.hunts.start()
-    study.run_to_its_end()
-    c.hunts.save_figure(0)
-    study.run_to_its_end()
-    (picture,), (told,) = folder.glob("*.png"), folder.glob("*.json")
-    find, data = c.hunts.found.finds[0], capture.read_data(picture)
-    assert data["figure"]["marks"] == [[find.x, find.y]] and data["figure"]["methods"] == ["none", "paper"]
-    assert json.loads(told.read_text())["before"] == data["state"]["warmup"]["frames"]
-    assert str(picture) in study.said
 
 
 def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(study: Desk, tiny_scene_file: Path) -> None:

@@ -77,14 +77,6 @@ def test_focus_looks_at_the_point_from_a_distance_that_fits():
     assert np.linalg.norm(to_point) == pytest.approx(3.0 * 0.2 / math.tan(math.radians(30.0)))
 
 
-def test_rays_run_through_the_pictures_corners_and_centre():
-    _, middle = nav.ray(HOME, 0.5, 0.5, 2.0)
-    assert middle == pytest.approx((0.0, 0.0, -1.0))
-    _, corner = nav.ray(HOME, 0.0, 0.0, 2.0)
-    half = math.tan(math.radians(30.0))
-    assert corner / -corner[2] == pytest.approx((-2.0 * half, half, -1.0))
-
-
 def test_a_glide_begins_and_ends_where_it_should():
     there = nav.orbit(HOME, (0.0, 0.0, 0.0), 1.0, 0.3, UP)
     assert nav.blend(HOME, there, 0.0).position == pytest.approx(HOME.position)
@@ -153,15 +145,6 @@ def test_each_frame_goes_on_as_far():
     assert (takes[0].camera, takes[0].time) == (stops[0].camera, 0.0)
     assert (takes[-1].camera, takes[-1].time) == (stops[-1].camera, 8.0)
     assert (np.diff([take.time for take in takes]) >= 0.0).all(), "time never runs back"
-
-
-def test_turning_in_place_is_even_too():
-    angles = np.radians([0.0, 10.0, 150.0])
-    takes = through([stop(0, 0, 0.0, (float(np.sin(a)), 0.0, -float(np.cos(a)))) for a in angles], 60)
-    views = np.array([take.camera.basis()[2] for take in takes])
-    assert np.allclose(np.linalg.norm([take.camera.direction for take in takes], axis=1), 1.0, atol=1e-2)
-    turns = np.degrees(np.arccos(np.clip((views[1:] * views[:-1]).sum(axis=1), -1.0, 1.0)))
-    assert turns.max() / turns.min() < 1.05
 
 
 def test_nothing_is_lost_where_cameras_look_opposite_ways_or_nothing_moves():

@@ -41,6 +41,7 @@ def test_a_point_lies_where_it_was_picked(at):
 def test_what_is_behind_the_camera_has_no_place():
     assert place(frame_of(1.0), world(0.1, 0.1, -1.0)) is None
     assert strokes(frame_of(1.0), [world(0.1, 0.0, -1.0), world(0.2, 0.3, -0.01)]) == []
+    assert strokes(frame_of(np.inf), [world(5.0, 0.0, 1.0), world(9.0, 3.0, 2.0)]) == [], "nor what is beside it"
 
 
 @pytest.mark.parametrize("start", [world(0.3, 0.1, -5.0), world(0.0, 0.0, 0.0), world(40.0, -30.0, 1.0)])
@@ -57,10 +58,6 @@ def test_a_line_from_behind_or_beside_is_cut_where_it_comes_in(start):
         between = place(frame, start + (1.0 - (1.0 - fraction) * 1e-3) * (end - start))
         way, other = np.subtract(found[-1].end, first), np.subtract(between, first)
         assert way[0] * other[1] - way[1] * other[0] == pytest.approx(0.0, abs=1e-9)
-
-
-def test_what_is_beside_the_picture_is_not_drawn():
-    assert strokes(frame_of(np.inf), [world(5.0, 0.0, 1.0), world(9.0, 3.0, 2.0)]) == []
 
 
 def test_hidden_parts_are_dashed_and_begin_where_the_line_goes_behind():
@@ -95,13 +92,6 @@ def test_lines_on_what_is_seen_are_seen():
     assert all(stroke.seen for stroke in strokes(frame, points))
 
 
-def test_an_outline_may_have_any_number_of_corners_but_one_piece_needs_two():
-    frame = frame_of(np.inf)
-    corners = [world(x, 0.0, 2.0) for x in (-0.5, 0.0, 0.5)]
-    assert len(strokes(frame, corners)) == 2
-    assert strokes(frame, corners[:1]) == []
-
-
 SIZE, GAPS, ROOM = (40.0, 20.0), (12.0, 6.0), (0.0, 0.0, 200.0, 100.0)
 
 
@@ -114,11 +104,8 @@ SIZE, GAPS, ROOM = (40.0, 20.0), (12.0, 6.0), (0.0, 0.0, 200.0, 100.0)
         ((195.0, 95.0), None, (149.0, 69.0)),
         ((50.0, 50.0), (100.0, 70.0, 200.0, 100.0), (4.0, 62.0)),  # a legend on the right
         ((60.0, 50.0), (0.0, 65.0, 200.0, 100.0), (72.0, 24.0)),  # and one below
-        ((170.0, 50.0), (0.0, 60.0, 160.0, 100.0), (124.0, 24.0)),
-        ((50.0, 50.0), (60.0, 80.0, 200.0, 100.0), (4.0, 62.0)),
         ((50.0, 50.0), (62.0, 82.0, 200.0, 100.0), (62.0, 62.0)),  # which it only touches
         ((50.0, 50.0), (0.0, 0.0, 200.0, 100.0), (62.0, 62.0)),  # all is taken
-        ((20.0, 50.0), (50.0, 60.0, 200.0, 100.0), (32.0, 24.0)),  # there is no room on the left
     ],
 )
 def test_words_stand_where_they_hide_nothing(at: tuple[float, float], taken: Rect | None, place: tuple[float, float]):

@@ -15,13 +15,13 @@ from imgui_bundle import portable_file_dialogs as native
 from viewer.services.scene_files import CAPTURE_SUFFIXES, SCENE_SUFFIXES, is_capture, is_scene, refusal
 from viewer.window.panels import command_palette, keys, named_states, saving
 from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import ERROR, QUIET, centred, clipped, em, fitted, paragraph
+from viewer.window.widgets import ERROR, QUIET, centred, clipped, em, paragraph
 
 OPEN = Dialog.OPEN_FILE.value
 _PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # which portable_file_dialogs asks, outside macOS and Windows
 _FILTERS = ["Scenes and saved pictures", " ".join(f"*{suffix}" for suffix in (*SCENE_SUFFIXES, *CAPTURE_SUFFIXES))]
 _LINE = int(imgui.InputTextFlags_.enter_returns_true) | int(imgui.InputTextFlags_.callback_completion)
-_MOST = 200  # names that are listed
+_MOST = 100  # names that are listed
 
 
 def show(ui: Ui) -> None:
@@ -69,9 +69,6 @@ def _question(ui: Ui) -> None:
     if not shown:
         return
     paragraph(question.text)
-    for option in question.options:
-        if imgui.checkbox(option, option in question.ticked)[0]:
-            question.ticked.symmetric_difference_update({option})
     imgui.spacing()
     chosen = question.answers[0][0] if not stays or imgui.is_key_pressed(imgui.Key.escape) else ""
     for number, (answer, _) in enumerate(question.answers):
@@ -175,10 +172,10 @@ def _ask(ui: Ui, state: OpenFileState) -> None:
         return
     clipped(str(state.folder), QUIET)
     entered = _line(state)
-    clicked = _names(state)
-    if state.problem:
-        paragraph(state.problem, ERROR)
-    entered = imgui.button("Open", ImVec2(em(6.0), 0.0)) or entered or clicked
+    names = state.names()
+    more = f"  and {len(names) - _MOST} more" if len(names) > _MOST else ""
+    paragraph(state.problem or "  ".join(names[:_MOST]) + more, ERROR if state.problem else QUIET)
+    entered = imgui.button("Open", ImVec2(em(6.0), 0.0)) or entered
     imgui.same_line()
     cancelled = imgui.button("Cancel", ImVec2(em(6.0), 0.0)) or imgui.is_key_pressed(imgui.Key.escape) or not stays
     path = state.inside / state.part.strip()
@@ -213,20 +210,3 @@ def _line(state: OpenFileState) -> bool:
     if text != state.typed:
         state.typed, state.problem = text, ""
     return bool(entered)
-
-
-def _names(state: OpenFileState) -> bool:
-    """Show what may come next; a click puts it into the line, and returns whether it was that of a file."""
-    clicked = ""
-    if imgui.begin_child("names", ImVec2(0.0, em(12.0)), int(imgui.ChildFlags_.borders)):
-        names = state.names()
-        for name in names[:_MOST]:
-            shown = fitted(name, imgui.get_content_region_avail().x)
-            if imgui.selectable(f"{shown}##{name}", False, int(imgui.SelectableFlags_.no_auto_close_popups))[0]:
-                clicked = name
-        if not names or len(names) > _MOST:
-            imgui.text_colored(QUIET, f"{len(names) - _MOST} more" if names else "nothing to open here")
-    imgui.end_child()
-    if clicked:
-        state.typed, state.problem = state.typed.removesuffix(state.part) + clicked, ""
-    return bool(clicked) and not clicked.endswith("/")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import combinations
-
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
@@ -16,7 +14,7 @@ from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
 from viewer.window.panels.culling import lights_to_fit, pale, said_of
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, go_to_experiment_frame, pointed_frame, wrong_axis
-from viewer.window.panels.runs import arrange, export_buttons, nothing_yet, results_table, start_or_progress, whose
+from viewer.window.panels.runs import arrange, export_buttons, results_table, start_or_progress, whose
 from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, in_window_style, outlined, paragraph, properties, row, tooltip
@@ -31,7 +29,7 @@ def show(ui: Ui) -> None:
     results = run.results if run is not None else None
     if run is None or results is None:
         why = "What culling saves of the work of shadow rays, frame by frame, and the paper's Table 1."
-        arrange(lambda: _controls(ui, run), ("Plot", _PLOT, lambda: nothing_yet(why)))
+        arrange(lambda: _controls(ui, run), ("Plot", _PLOT, lambda: paragraph(why, QUIET)))
         return
     arrange(
         lambda: _controls(ui, run),
@@ -45,7 +43,8 @@ def _controls(ui: Ui, run: Experiment | None) -> None:
     runner = ui.controller.runs
     under_way = runner.current is run
     if run is not None and under_way:
-        _shown_method(run)
+        said = f"{run.settings.width} x {run.settings.height}, {run.settings.depth} bounces, showing {run.shown}"
+        paragraph(said, QUIET)
     else:
         _plan(ui)
     start_or_progress(ui, run, runner.start_experiment, "Trace the path by each method, and compare them")
@@ -74,61 +73,35 @@ def _methods(plan: ExperimentPlan, lights: tuple[int, int]) -> None:
 
 
 def _method_ticks(plan: ExperimentPlan, lights: tuple[int, int]) -> None:
-    small, whole = ([kind for kind in additions() if kind.alone is alone] for alone in (False, True))
-    sets: list[tuple[Kind, ...]] = [added for n in range(len(small) + 1) for added in combinations(small, n)]
-    sets += [(kind,) for kind in whole]  # methods in their own right: one of them at a time
-    if not imgui.begin_table("methods", 1 + len(sets), int(imgui.TableFlags_.sizing_fixed_fit)):
-        return
-    imgui.table_next_column()
-    for added in sets:
-        imgui.table_next_column()
-        _name("".join(f"+{kind.name}" for kind in added) or "alone", added, lights)
     for heading, kinds in groups():
-        imgui.table_next_row()
-        imgui.table_next_column()
-        imgui.text_colored(QUIET, heading.partition(":")[0])
-        for base in kinds:
-            imgui.table_next_row()
-            imgui.table_next_column()
-            imgui.align_text_to_frame_padding()
-            _name(base.name, (base,), lights)
-            for added in sets:
-                imgui.table_next_column()
-                if base not in added:
-                    _tick(plan, "+".join(kind.name for kind in (base, *added)))
-    imgui.end_table()
+        imgui.separator_text(heading)
+        for kind in kinds:
+            _tick(plan, kind.name, kind, lights)
+    imgui.separator_text("And each of these with")
+    bases = [method for method in plan.methods if "+" not in method and method != REFERENCE]
+    for kind in additions():
+        mine = {f"{base}+{kind.name}" for base in bases if base != kind.name}
+        before = bool(mine) and mine <= plan.methods
+        now = _tick(plan, f"+{kind.name}", kind, lights, before)
+        if now != before:
+            plan.methods = plan.methods | mine if now else plan.methods - mine
 
 
-def _name(text: str, kinds: tuple[Kind, ...], lights: tuple[int, int]) -> None:
-    """Methods by their names, pale where one has nothing to say of so many lights."""
-    normal = imgui.get_style_color_vec4(imgui.Col_.text)
-    imgui.text_colored(normal if all(kind.fits(*lights) for kind in kinds) else pale(), text)
-    if kinds:
-        tooltip("\n".join(f"{kind.name}: {said_of(kind, lights)}" for kind in kinds))
-
-
-def _tick(plan: ExperimentPlan, method: str) -> None:
+def _tick(plan: ExperimentPlan, method: str, kind: Kind, lights: tuple[int, int], now: bool | None = None) -> bool:
+    """A tick of a method, which changes the plan, or else of what is `now`; returns what it is after that."""
+    ticked = now if now is not None else method == REFERENCE or method in plan.methods
     imgui.begin_disabled(method == REFERENCE)
+    if not kind.fits(*lights):
+        imgui.push_style_color(imgui.Col_.text, pale())
     with outlined():
-        changed, _ = imgui.checkbox(f"##{method}", method == REFERENCE or method in plan.methods)
+        changed, ticked = imgui.checkbox(method, ticked)
+    if not kind.fits(*lights):
+        imgui.pop_style_color()
     imgui.end_disabled()
-    if changed:
+    tooltip(said_of(kind, lights))
+    if changed and now is None:
         plan.methods ^= {method}
-
-
-def _shown_method(run: Experiment) -> None:
-    """Whose frames are the picture."""
-    imgui.align_text_to_frame_padding()
-    imgui.text_colored(QUIET, "show")
-    imgui.same_line()
-    imgui.set_next_item_width(-1.0)
-    if imgui.begin_combo("##shown", run.shown):
-        for method in run.methods:
-            if imgui.selectable(method, run.shown == method)[0]:
-                run.shown = method
-        imgui.end_combo()
-    width, height = run.settings.width, run.settings.height
-    imgui.text_colored(QUIET, f"{width} x {height}, {run.settings.depth} bounces")
+    return ticked
 
 
 def _table(ui: Ui, run: Experiment, results: Results) -> None:

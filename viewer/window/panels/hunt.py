@@ -15,7 +15,6 @@ from viewer.window.panels.runs import (
     arrange,
     export_buttons,
     frames_row,
-    nothing_yet,
     results_table,
     start_or_progress,
 )
@@ -23,15 +22,12 @@ from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
-    clipped,
-    em,
     in_window_style,
     paragraph,
     properties,
     row,
     same_line_for,
-    swatch,
-    tooltip_above,
+    tooltip,
 )
 
 _LIST, _DETAILS = 13.0, 14.0  # ems of width
@@ -46,10 +42,10 @@ def show(ui: Ui) -> None:
             "Where is a method wrong, and how badly? Start: the worst wrong pixels are listed here. Click one to "
             "fly there; the inspector explains it."
         )
-        parts.append(("Findings", _LIST, lambda: nothing_yet(why)))
+        parts.append(("Findings", _LIST, lambda: paragraph(why, QUIET)))
     elif scene is None or not hunts.hunt.is_of(scene):
         made = f"The last hunt was made {hunts.hunt.made_in(scene)}."
-        parts.append(("Findings", _LIST, lambda: nothing_yet(made)))
+        parts.append(("Findings", _LIST, lambda: paragraph(made, QUIET)))
     else:
         parts.append(("Findings", _LIST, lambda: _findings(ui, hunts, found, scene)))
         if hunts.chosen is not None and hunts.chosen < len(found.finds):
@@ -95,23 +91,12 @@ def _details(ui: Ui, hunts: Hunts, number: int, find: Counterexample, scene: Sce
     imgui.begin_disabled(ui.controller.runs.current is not None)
     if imgui.button(f"{icons.ICON_FA_PAPER_PLANE}  Fly there"):
         _fly(ui, number)
-    figure = f"{icons.ICON_FA_FLOPPY_DISK}  Figure"
-    same_line_for(figure)
-    if imgui.button(figure):
-        hunts.save_figure(number)
-    tooltip_above("Save it beside the right picture; shadowcull check draws it again")
     imgui.end_disabled()
     rays = f"{icons.ICON_FA_CODE_BRANCH}  Rays"
     same_line_for(rays)
     if imgui.button(rays):
         ui.show_rays()
-    tooltip_above(f"what became of each ray of the pixel{ui.key('Rays of the clicked pixel')}")
-    for color, name in ((find.color, "shown"), (find.reference, "right")):
-        red, green, blue = (min(max(channel, 0.0), 1.0) for channel in color)
-        swatch((red, green, blue))
-        clipped(name, QUIET)
-        if name == "shown":
-            imgui.same_line(0.0, em(1.0))
+    tooltip(f"what became of each ray of the pixel{ui.key('Rays of the clicked pixel')}")
     for sentence in (*counterexample.in_words(find, scene), counterexample.in_its_frame(find)):
         paragraph(in_window_style(sentence))
     if ui.controller.scheduler.is_frozen:

@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui
 
 from viewer.views import legend_of
 from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, Swatch, fitting, lay_out
-from viewer.window import comparing
+from viewer.window.panels import sides
 from viewer.window.panels.area import Rect
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, tooltip_at
@@ -33,12 +33,12 @@ def of_picture(ui: Ui) -> Legend | None:
     frame, scene = c.frame, c.session.scene
     if frame is None or scene is None:
         return None
-    of_both = comparing.legend(ui)
+    of_both = sides.legend(ui)
     if of_both is not None:
         return of_both
-    options, seen = comparing.draw_options(ui), comparing.shown(ui)
-    if seen is not None and comparing.shows_a(ui):
-        frame, options = seen[0].frame, replace(options, view=seen[0].view, light=seen[0].light)
+    options, seen = sides.draw_options(ui), c.comparing.seen
+    if seen is not None and seen.shows_a:
+        frame, options = seen.a.frame, replace(options, view=seen.a.view, light=seen.a.light)
     kept = "legend" if frame is c.frame else "legend of A"
     lights = scene.lights
     found: Legend | None = ui.cached(

@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
-from viewer.output.light_cube import cross_of, depths_legend, lists_legend, seen
+from viewer.output.light_cube import cross_of, seen
 from viewer.services.queries import Newest
 from viewer.state.readings import LIGHT_CUBES
 from viewer.window.panels import legend, lights
@@ -44,8 +44,8 @@ def unfold(renderer: Renderer, frame: Frame, light: int, depths: bool, cancelled
         why = cubes[light].why if light < len(cubes) else f"the method {frame.settings.method} keeps none for it"
         return f"No light buffer of {name}: {why or 'there is nothing static'}."
     cube = seen(cubes[light].cube)
-    colors, told = (cube.depth_colors, depths_legend) if depths else (cube.list_colors, lists_legend)
-    return Unfolded(cross_of(colors), told(cube, name))
+    colors = cube.depth_colors() if depths else cube.list_colors()
+    return Unfolded(cross_of(colors), cube.depth_legend() if depths else cube.list_legend(name))
 
 
 def show(ui: Ui) -> None:

@@ -8,7 +8,7 @@ from viewer.state.methods import with_base
 from viewer.state.missing import missing
 from viewer.state.views import View
 from viewer.window.ui import Ui
-from viewer.window.widgets import em, tooltip_above
+from viewer.window.widgets import em, tooltip
 
 _WIDTH, _LEAST = 26.0, 8.0  # in ems: of the note, and of a picture that has room for one
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
@@ -49,7 +49,7 @@ def _button(ui: Ui, what: str) -> bool:
     clicked = imgui.button(f"Use {what}##instead")
     imgui.end_disabled()
     if run is not None:
-        tooltip_above(f"Not while the {run.name} runs. Escape stops it.")
+        tooltip(f"Not while the {run.name} runs. Escape stops it.")
     return clicked
 
 

@@ -1,25 +1,20 @@
-"""Over the picture, for what was clicked: its rays to the lights and what blocks them, what hides it, where it is
-itself, and the clusters of lights that shade it.
-"""
+"""Over the picture, for what was clicked: its rays to the lights and what blocks them, what hides it, and where it
+is itself."""
 
 from __future__ import annotations
 
-import numpy as np
 from imgui_bundle import ImVec2, ImVec4
 
 from tracer.culling.fate import Fate
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
-from tracer.light_cut import LightCut
 from tracer.reasons import Why
-from viewer.services.inspector import MOST_CLUSTERS, Inspection, drawn_primitives
-from viewer.state.palette import FATE_COLORS, SHADOW_COLORS, color_map
+from viewer.services.inspector import Inspection, drawn_primitives
+from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
 from viewer.state.picking import outline_of, part_points, primitive_points
 from viewer.state.projection import Stroke, place, strokes
-from viewer.window import comparing
-from viewer.window.panels import rays, slicing
-from viewer.window.panels.area import Area, write_beside
-from viewer.window.panels.legend import LegendState
+from viewer.window.panels import rays
+from viewer.window.panels.area import Area
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.marks import Pen, pen
 from viewer.window.ui import Ui
@@ -29,13 +24,10 @@ LIT, STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
 BLOCKER, OCCLUDER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW], (0.90, 0.62, 0.0)
 """Colours of a shadow ray as far as light comes, of its rest, of what blocks it, and of what a certificate names."""
 _FADED = 0.18  # opacity of other lights than the one that is pointed at
-BESIDE_CLUSTERS = 0.2
-"""Opacity of rays where clusters of lights are drawn over them."""
 _OUTLINE = 0.13  # width in ems
 _HIDER, _WHITE = ImVec4(*FATE_COLORS[Fate.PARTLY_OCCLUDED], 1.0), ImVec4(1.0, 1.0, 1.0, 1.0)
 _SAME, _MISSED = ImVec4(0.6, 0.64, 0.7, 1.0), ImVec4(0.3, 0.85, 0.95, 1.0)
 _SIDE = 0.5  # ems, of a pixel's square at least
-_THIN, _WIDE = 0.05, 0.13  # ems: boxes of clusters that send least, and of those that send most
 
 
 def show(ui: Ui, area: Area) -> None:
@@ -50,12 +42,11 @@ def show(ui: Ui, area: Area) -> None:
         picked, answer = c.selection.picked, c.inspector.answer
         tree = rays.listed(ui)
         if tree is not None:  # it has the same rays, and more
-            rays.draw(ui, made, frame, tree, BESIDE_CLUSTERS if c.inspector.cut is not None else 1.0)
+            rays.draw(ui, made, frame, tree)
         elif picked is not None and answer is not None and c.session.draw.rays:
             _shadow_rays(ui, made, frame, answer, pointed)
         _why(ui, made, frame)
         _occluded_selection(ui, made, frame)
-        _clusters(ui, made, frame)
 
 
 Line = tuple[tuple[float, float, float], float, int, list[Stroke]]
@@ -79,10 +70,9 @@ def shadow_lines(answer: Inspection, frame: Frame) -> list[Line]:
 
 def _shadow_rays(ui: Ui, made: Pen, frame: Frame, answer: Inspection, pointed: int | None) -> None:
     """The lights' rays to the point, with a disc at each light and a cross where its ray ends before the point."""
-    others = BESIDE_CLUSTERS if ui.controller.inspector.cut is not None else 1.0
 
     def alpha(light: int) -> float:
-        return others if pointed is None else 1.0 if pointed == light else _FADED
+        return 1.0 if pointed in (None, light) else _FADED
 
     point = place(frame, answer.lights[0].point) if answer.lights else None
     lines: list[Line] = ui.cached("shadow rays", frame, answer, lambda: shadow_lines(answer, frame))
@@ -173,52 +163,3 @@ def _occluded_selection(ui: Ui, made: Pen, frame: Frame) -> None:
         return _projected(frame, outline_of(points if part is None else part_points(now, part, frame.time)))
 
     made.strokes(ui.cached("occluded selection", frame, (picked.primitive, part), lines), _WHITE, 0.12, behind=0.75)
-
-
-# --- clusters of lights -----------------------------------------------------------------------------
-
-Cluster = tuple[list[Stroke], tuple[float, float] | None, float]
-"""Edges of a cluster's box, or where its only light is, and what it sends as a fraction of the most that one does."""
-
-
-def clusters(cut: LightCut) -> list[Cluster]:
-    """What is drawn of a cut: the clusters that send most, those that send least of them first."""
-    order = np.argsort(-cut.sent, kind="stable")[:MOST_CLUSTERS][::-1]
-    most, found = max(float(cut.sent.max(initial=0.0)), 1e-30), list[Cluster]()
-    for k in order.tolist():
-        box, fraction = cut.boxes[k].astype(np.float64), float(cut.sent[k]) / most
-        if int(cut.lights[k]) == 1 or (box[:3] == box[3:]).all():
-            found.append(([], place(cut.frame, box[:3]), fraction))
-            continue
-        found.append((_projected(cut.frame, outline_of(box.reshape(2, 3))), None, fraction))
-    return found
-
-
-def _clusters(ui: Ui, made: Pen, frame: Frame) -> None:
-    """The clusters that shade a pixel, by how much of its light each sends; until they come, that they are to come."""
-    inspector, waits = ui.controller.inspector, slicing.awaited(ui.controller)
-    cut, at = inspector.cut, inspector.awaits_cut
-    if cut is not None and cut.frame.camera == frame.camera:
-        colors = color_map(64)
-        drawn: list[Cluster] = ui.cached("clusters", cut, None, lambda: clusters(cut))
-        for pieces, light, fraction in drawn:
-            red, green, blue = colors[min(int(63.0 * fraction**0.5), 63)].tolist()
-            color = ImVec4(red, green, blue, 1.0)
-            made.strokes(pieces, color, _THIN + (_WIDE - _THIN) * fraction**0.5, behind=0.45)
-            if light is not None:
-                made.disc(light, color, 0.28)
-        made.ring(((cut.x + 0.5) / cut.frame.width, (cut.y + 0.5) / cut.frame.height))
-    elif at is not None and waits and ui.controller.selection.picked is not None:
-        where = (at[0] + 0.5) / frame.width, (at[1] + 0.5) / frame.height
-        made.ring(where)
-        corner, end = made.area.whole, made.area.whole_end
-        write_beside(waits, made.to_screen(*where), (corner.x, corner.y, end.x, end.y), ui.state(LegendState).place)
-
-
-def show_worst_pixels(ui: Ui, area: Area, frame: Frame) -> None:
-    """Over a signed difference: rings around the pixels that are furthest apart, where marks are wanted."""
-    spots = comparing.marked(ui)
-    if spots:
-        with pen(area, frame) as made:
-            for x, y in spots:
-                made.ring(((x + 0.5) / frame.width, (y + 0.5) / frame.height), max(0.65, made.radius))

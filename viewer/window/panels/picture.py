@@ -17,7 +17,6 @@ from viewer.state import navigation, verified
 from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
 from viewer.util.numbers import whole_percent
-from viewer.window import comparing
 from viewer.window.panels import (
     legend,
     missing,
@@ -49,20 +48,23 @@ def show(ui: Ui) -> None:
     c, room = ui.controller, imgui.get_content_region_avail()
     if c.session.animated:
         room.y -= timeline.height()
-    above = savings.height(ui, ImVec2(room.x, room.y - tour.height(ui)))
+    above = savings.height(ui, ImVec2(room.x, room.y - tour.height(ui, room.x)))
     if above > 0.0:
         start = imgui.get_cursor_pos()
         ui.guard.panel("What culling saves", lambda: savings.show(ui, room.x))
         imgui.set_cursor_pos(start)
         imgui.dummy(ImVec2(room.x, above - imgui.get_style().item_spacing.y))  # where nothing follows, ImGui complains
         room.y -= above
-    strip = tour.leave_room(ui, imgui.get_cursor_screen_pos(), room)
+    strip = tour.height(ui, room.x)
     room.y -= strip
     scale = imgui.get_io().display_framebuffer_scale
     ui.picture.area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
     top = imgui.get_cursor_pos()
     if room.x >= 1.0 and room.y >= 1.0:
         _picture(ui, room)
+    if strip:
+        imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y))
+        ui.guard.overlay("The tour", lambda: tour.show(ui, room.x), ui.tour.end)
     if c.session.animated:
         imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y + strip))
         timeline.show(ui)
@@ -71,7 +73,7 @@ def show(ui: Ui) -> None:
 def _picture(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
     c.selection.hovered = None
-    filling = comparing.filling(ui)
+    filling = sides.filling(ui)
     texture = filling.texture_id if filling is not None else None
     if c.traced is None:
         if texture is not None and c.reloaded:  # what was shown before stays until there is news: it would flash
@@ -89,33 +91,27 @@ def _picture(ui: Ui, room: ImVec2) -> None:
 
 def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     """The newest picture, beside or over the one that it is compared with, and all that lies over it."""
-    seen, gap = comparing.shown(ui), em(sides.GAP)
-    compared = ui.graphics.compared
-    if seen is not None and seen[2] is CompareMode.SIDE and compared is not None:
+    seen, gap = ui.controller.comparing.seen, em(sides.GAP)
+    if seen is not None and seen.mode is CompareMode.SIDE:
         left, top, size = _fitted(ui.picture.shape, room, 2, gap)
         area = _area(ui, "picture of A", left, top, size)
-        sides.draw_picture(ui, comparing.OF_A, compared.a.texture_id or 0, area)
+        sides.draw_a(ui, area)
         _pointer(ui, area, takes_edits=False)
-        pixels.draw(ui, area, seen[0])
+        pixels.draw(ui, area, seen.a)
         left += size.x + gap
     else:
         left, top, size = _fitted(ui.picture.shape, room)
     area = _area(ui, "picture", left, top, size)
-    sides.draw_picture(ui, comparing.PICTURE, texture, area)
-    if seen is not None:
-        sides.draw_a(ui, area, seen)
+    sides.draw_picture(ui, sides.PICTURE, texture, area)
+    sides.draw_wiped(ui, area)
     with _inside(area):
         overlays.show(ui, area)
     _pointer(ui, area)
     pixels.draw(ui, area)
-    if seen is not None:
-        overlays.show_worst_pixels(ui, area, seen[1].frame)
-    sides.show(ui, area)
     with _inside(area):
         what_if.show_lights(ui, area.whole, area.whole_end)
     lower = _title(ui, area)
-    if seen is not None:
-        sides.show_names(ui, area, seen, lower)
+    sides.show(ui, area, lower)
     legend.show(ui, area.corner, area.end)
     missing.show(ui, area.corner, area.end)
     slicing.show(ui, area)
@@ -222,7 +218,7 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
             _wheel(ui, io.mouse_wheel)
     if takes_edits and what_if.handle(ui, area.whole, area.whole_size):
         return
-    if sides.handle(ui, area) or pixels.drag(ui, area):
+    if sides.drag_line(ui, area) or pixels.drag(ui, area):
         return
     if imgui.is_item_activated():
         _take_pivot(ui, (u, v))

@@ -19,8 +19,9 @@ from viewer.state.readings import can_draw
 from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
-from viewer.window import actions, comparing
+from viewer.window import actions
 from viewer.window.keyboard import HELD
+from viewer.window.panels import sides
 from viewer.window.panels.area import Area, pointer
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
@@ -76,7 +77,8 @@ def show(ui: Ui) -> None:
 
 def _histogram(ui: Ui) -> None:
     c, frame, chosen = ui.controller, ui.controller.frame, region(ui)
-    options, difference = comparing.draw_options(ui), comparing.difference(ui)
+    options, seen = sides.draw_options(ui), c.comparing.seen
+    difference = seen.difference if seen is not None else None
     view = options.view
     if frame is None or not can_draw(frame, view, options.light):
         return
@@ -199,7 +201,7 @@ def drag(ui: Ui, area: Area) -> bool:
 
 def draw(ui: Ui, area: Area, side: Side | None = None) -> None:
     """Over the picture of a side, or what else is seen: a grid of pixels with their values, and the region."""
-    found = comparing.words(ui, comparing.draw_options(ui), side)
+    found = sides.words(ui, sides.draw_options(ui), side)
     if found is None:
         return
     frame, words = found

@@ -201,15 +201,15 @@ def _shadow_lines(frame: Frame, tree: RayTree, number: int, place: int) -> list[
     ]
 
 
-def draw(ui: Ui, made: Pen, frame: Frame, tree: RayTree, alpha: float) -> None:
-    """Draw all rays, so transparent, and those of the rows that are selected or pointed at over them."""
+def draw(ui: Ui, made: Pen, frame: Frame, tree: RayTree) -> None:
+    """Draw all rays, and those of the rows that are selected or pointed at over them."""
     state = ui.state(RaysState)
     selected = next((row for _, row in rows(ui) if row.key == state.selected), None)
     picked_out = [row for row in (selected, state.pointed) if row is not None]
     lines: list[RayLine] = ui.cached("rays", frame, (tree, state.shown), lambda: ray_lines(frame, tree, state.shown))
     clicked = place(frame, tree.rays[0].end) if tree.rays[0].shadows is not None else None
     for line in lines:
-        _line(made, line, clicked, _FADED if picked_out else alpha, 0.55 if len(lines) > _MANY else 1.0)
+        _line(made, line, clicked, _FADED if picked_out else 1.0, 0.55 if len(lines) > _MANY else 1.0)
     for number, row in enumerate(picked_out):
         for line in ui.cached(f"rays of row {number}", frame, row, partial(_of_row, tree, frame, lines, row)):
             _line(made, line, clicked, 1.0)

@@ -22,12 +22,10 @@ from viewer.window.widgets import (
     clipped,
     em,
     in_window_style,
-    paragraph,
     right,
     row,
     same_line_for,
     tooltip,
-    tooltip_above,
     wide_button,
 )
 
@@ -37,6 +35,7 @@ _SAVED_AS = {".json": ("JSON", "Save every figure"), ".csv": ("CSV", "Save the t
 _LEFT, _LEAST = 14.0, 12.0  # ems of the controls, and of results beside them
 _MEASURED, _LONGEST = 100, 12.0  # rows whose texts are measured, and ems of a column of text, at most
 
+_ROW = int(imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap)
 Row = TypeVar("Row")
 
 
@@ -127,36 +126,18 @@ def results_table(
     while clipper.step():
         for number in range(clipper.display_start, clipper.display_end):
             imgui.table_next_row()
-            _cells(columns, rows[number], number, click, chosen, tip)
+            for place, column in enumerate(columns):
+                imgui.table_next_column()
+                text, color = in_window_style(column.cell(rows[number])), ERROR if column.wrong(rows[number]) else None
+                if place or click is None:
+                    (clipped if column.text else right)(text, color)
+                    continue
+                if imgui.selectable(f"{text}##{number}", chosen == number, _ROW)[0]:
+                    click(number)
+                if tip is not None:
+                    tooltip(tip(rows[number]))
     clipper.end()
     imgui.end_table()
-
-
-def _cells(
-    columns: Sequence[Column[Row]],
-    one: Row,
-    number: int,
-    click: Callable[[int], None] | None,
-    chosen: int | None,
-    tip: Callable[[Row], str] | None,
-) -> None:
-    """A row of such a table, which can be clicked anywhere, by its first cell."""
-    for place, column in enumerate(columns):
-        imgui.table_next_column()
-        text, color = in_window_style(column.cell(one)), ERROR if column.wrong(one) else None
-        if place or click is None:
-            (clipped if column.text else right)(text, color)
-            continue
-        flags = imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap
-        if imgui.selectable(f"{text}##{number}", chosen == number, int(flags))[0]:
-            click(number)
-        if tip is not None:
-            tooltip_above(tip(one))
-
-
-def nothing_yet(text: str) -> None:
-    """Say what is seen here once something was done."""
-    paragraph(text, QUIET)
 
 
 def whose(ui: Ui, run: Experiment | ZoomTest) -> None:
@@ -170,7 +151,7 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
     runner = ui.controller.runs
     if run is None or runner.current is not run:
         imgui.begin_disabled(runner.current is not None)
-        if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip, explain=tooltip_above):
+        if wide_button(f"{icons.ICON_FA_PLAY}  Start", tip):
             start()
         imgui.end_disabled()
         return
@@ -180,7 +161,7 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
     tip = f"Keep what is done{ui.key('Stop, or clear the selection')}"
     if run.stopping:
         imgui.text_colored(QUIET, "Stopping ...")
-    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", tip, explain=tooltip_above):
+    elif wide_button(f"{icons.ICON_FA_STOP}  Stop", tip):
         runner.stop()
 
 
@@ -194,4 +175,4 @@ def export_buttons(ui: Ui, run: Run | None) -> None:
             same_line_for(label)
         if run is not None and imgui.button(label):
             ui.controller.runs.export(run, ending)
-        tooltip_above(tip)
+        tooltip(tip)

@@ -59,7 +59,7 @@ def show_dialog(ui: Ui) -> None:
     if not shown:
         return
     pictures = ui.controller.pictures
-    with properties("plan", 6.0) as rows:
+    with properties("plan", 8.0) as rows:
         if rows:
             plan_rows(ui, pictures.plan, "multiple", "samples", "ending")
             if pictures.plan.ending != exr.ENDING:

@@ -1,30 +1,154 @@
-"""A and B over the picture: A's part of a wipe, the line that is dragged, and labels that say which is which."""
+"""A and B in the window: what of them is on the GPU, what the picture shows of them, with its names and its line."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import ImVec2, imgui
 
+from tracer.frame import Frame
 from tracer.method import Method
-from viewer.state.comparison import CompareMode, Source
+from viewer.state.comparison import CompareMode, Side, Source
+from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import LESS, MORE, Color
+from viewer.state.picking import pixel_at
 from viewer.state.views import View
-from viewer.window import comparing
+from viewer.views import words_at
+from viewer.views.base import Highlight, Pixels, Words
+from viewer.views.compare import composed, difference_legend
+from viewer.views.legend import Legend
+from viewer.views.wipe import wipe_column
+from viewer.window.display import InWindow, PictureTexture
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
-from viewer.window.widgets import em, fitted
+from viewer.window.widgets import em, fitted, packed
 
+PICTURE, OF_A = "picture", "A"
+"""What the magnifier calls what fills the picture, and A beside it."""
 GAP = 0.3
 """Ems between pictures side by side."""
-_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.78), ImVec4(0.95, 0.96, 0.97, 1.0)
+_REACH = 0.45  # ems to either side of the line where it can be taken hold of
+_LEAST = 3.0  # ems of room for a name beside the line
+_DARK, _LIGHT, _HELD = (0.05, 0.06, 0.08), (0.95, 0.96, 0.97), (0.42, 0.70, 0.96)
 
-Seen = comparing.Seen
+
+# --- on the GPU --------------------------------------------------------------------------------------
+
+
+def draw_options(ui: Ui) -> DrawOptions:
+    """Return how the newest frame is drawn: in the view that it can be drawn in, with a range for both pictures."""
+    c, view = ui.controller, ui.controller.scheduler.drawn_view
+    options = replace(c.session.draw, view=view, magnified=c.scheduler.magnified)
+    return options.with_span(c.comparing.span(view))
+
+
+def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
+    """Bring what is to be seen besides the live picture, which is drawn with these options."""
+    comparing, compared = ui.controller.comparing, ui.graphics.compared
+    seen = comparing.seen
+    if compared is None:
+        return
+    if seen is None:
+        compared.release()
+    elif seen.difference is not None:
+        compared.draw_difference(seen.difference, comparing.limit(seen.difference), options.mark_wrong)
+    else:
+        spans = options.spans if seen.a.view is seen.b.view else ui.controller.session.draw.spans
+        of_a = replace(options, view=seen.a.view, light=seen.a.light, spans=spans)
+        compared.a.draw(seen.a.frame, of_a, InWindow(smooth=smooth, highlight=Highlight(line=False)))
+
+
+def filling(ui: Ui) -> PictureTexture | None:
+    """Return what fills the picture: B, or A, or their difference; A's part of a wipe is drawn over it."""
+    seen, compared = ui.controller.comparing.seen, ui.graphics.compared
+    if seen is None or compared is None:
+        return ui.graphics.display
+    if seen.shows_a:
+        return compared.a
+    return compared.difference if seen.difference is not None else ui.graphics.display
+
+
+def magnify(ui: Ui, options: DrawOptions, smooth: bool) -> None:
+    """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
+    magnifier, size, zoom = ui.graphics.magnifier, ui.picture.size, ui.controller.session.draw.zoom
+    if magnifier is None or min(size) < 1:
+        return
+    seen, compared = ui.controller.comparing.seen, ui.graphics.compared
+    a = compared.a if compared is not None else None
+    beside = seen is not None and not seen.shows_a and seen.mode in (CompareMode.SIDE, CompareMode.WIPE)
+    for name, drawn in ((PICTURE, filling(ui)), (OF_A, a if beside else None)):
+        picture = drawn.picture if drawn is not None else None
+        view = seen.a.view if seen is not None and drawn is a else options.view
+        blended = smooth and view.shows_clipped and (compared is None or drawn is not compared.difference)
+        enlarged = picture is not None and (size[0] > picture.size[0] or not zoom.fits)
+        if drawn is not None and enlarged and not blended:
+            magnifier.draw(name, picture, drawn.version, zoom, size)
+        else:
+            magnifier.drop(name)
+
+
+def composed_picture(ui: Ui, b: Pixels) -> Pixels:
+    """Return the picture to save: B as it was drawn, and what is compared with it."""
+    seen, compared = ui.controller.comparing.seen, ui.graphics.compared
+    if seen is None or compared is None:
+        return b
+    if seen.difference is not None:
+        return compared.difference.read()
+    return composed(compared.a.read(), b, seen.mode, ui.controller.session.draw.wipe, seen.shows_a)
+
+
+# --- in words ----------------------------------------------------------------------------------------
+
+
+def legend(ui: Ui) -> Legend | None:
+    """Return the legend of the signed difference, while that is seen."""
+    comparing = ui.controller.comparing
+    found = comparing.seen.difference if comparing.seen is not None else None
+    return None if found is None else difference_legend(found, comparing.limit(found))
+
+
+def words(ui: Ui, options: DrawOptions, side: Side | None = None) -> tuple[Frame, Callable[[int, int], Words]] | None:
+    """Return the frame whose pixels are seen, and what says what each of them shows: those of a side, or of all that
+    fills the picture; None without a frame."""
+    seen = ui.controller.comparing.seen
+    if side is None and seen is not None and seen.difference is not None:
+        return seen.b.frame, seen.difference.words
+    found = side or (seen.a if seen is not None and seen.shows_a else ui.controller.comparing.b)
+    if found is None:
+        return None
+    width, height = found.frame.width, found.frame.height
+    wiped = seen if seen is not None and side is None and not seen.shows_a and seen.mode is CompareMode.WIPE else None
+    column = wipe_column(width, options.wipe)
+
+    def of(x: int, y: int) -> Words:
+        one = found if wiped is None else wiped.a if x < column else wiped.b
+        at = pixel_at(one.frame, (x + 0.5) / width, (y + 0.5) / height)
+        return words_at(one.frame, replace(options, view=one.view, light=one.light), *at)
+
+    return found.frame, of
+
+
+# --- over the picture --------------------------------------------------------------------------------
+
+
+@dataclass
+class WipeState:
+    """Whether the pointer holds the line."""
+
+    held: bool = False
+
+
+def read_key(ui: Ui) -> None:
+    """While the key is held, A is seen."""
+    io, comparing = imgui.get_io(), ui.controller.comparing
+    free = not (io.want_text_input or io.key_ctrl or io.key_alt or io.key_super or io.key_shift)
+    comparing.held = comparing.state.on and free and ui.keyboard.is_down(ui.keymap.of("Show A"))
 
 
 def area_of_b(ui: Ui, room: tuple[int, int]) -> tuple[int, int]:
-    """The pixels that B is to have in a room for one picture: beside a picture that was kept as many as that has, so
-    that both show the same; else as many as there is room for."""
+    """Return the pixels that B is to have in a room for one picture: beside a picture that was kept as many as that
+    has, so that both show the same; else as many as there is room for."""
     comparing, state = ui.controller.comparing, ui.controller.comparing.state
     if not state.on or state.mode is not CompareMode.SIDE or min(room) < 1:
         return room
@@ -35,152 +159,8 @@ def area_of_b(ui: Ui, room: tuple[int, int]) -> tuple[int, int]:
     return (max(1, (room[0] - gap) // 2), room[1]) if comparing.b is not None else room
 
 
-def draw_a(ui: Ui, area: Area, seen: Seen) -> None:
-    """A, left of the line of a wipe."""
-    if (
-        seen[2] is not CompareMode.WIPE
-        or comparing.shows_a(ui)
-        or ui.graphics.compared is None
-        or ui.graphics.compared.a.texture_id is None
-    ):
-        return
-    draw_picture(ui, comparing.OF_A, ui.graphics.compared.a.texture_id, area, ui.controller.session.draw.wipe)
-
-
-def show_names(ui: Ui, area: Area, seen: Seen, top: float) -> None:
-    """Which is which, below the picture's title; a wipe has its names at the line."""
-    a, b, way = seen
-    names = ui.controller.comparing.names(a, b)
-    y, room = top + em(0.2), area.size.x - em(0.6)
-    if way is CompareMode.SIDE:
-        _label(ImVec2(area.corner.x - em(GAP) - area.size.x, area.corner.y), names[0], LESS, room)
-        _label(ImVec2(area.corner.x, y), names[1], MORE, room)
-    elif comparing.shows_a(ui):
-        _label(ImVec2(area.corner.x, y), names[0], LESS, room)
-    elif way is CompareMode.DIFFERENCE:
-        _label(ImVec2(area.corner.x, y), f"{names[1]}   minus   {names[0]}", None, room)
-    elif way is not CompareMode.WIPE:
-        _label(ImVec2(area.corner.x, y), names[1], MORE, room)
-
-
-def _label(at: ImVec2, text: str, color: Color | None, room: float) -> None:
-    """A line on a dark ground, with a square of the colour that stands for A or B."""
-    pad, line = em(0.35), imgui.get_text_line_height()
-    side = 0.7 * line if color is not None else 0.0
-    text = fitted(text, room - side - 4.0 * pad)
-    width = imgui.calc_text_size(text).x + side + (4.0 if color is not None else 3.0) * pad
-    draw = imgui.get_window_draw_list()
-    end = ImVec2(at.x + width, at.y + line + 2.0 * pad)
-    draw.add_rect_filled(at, end, imgui.get_color_u32(_BACK), em(0.3))
-    x = at.x + 1.5 * pad
-    if color is not None:
-        y = at.y + pad + 0.18 * line
-        draw.add_rect_filled(
-            ImVec2(x, y), ImVec2(x + side, y + side), imgui.get_color_u32(ImVec4(*color, 1.0)), em(0.1)
-        )
-        x += side + pad
-    draw.add_text(ImVec2(x, at.y + pad), imgui.get_color_u32(_FRONT), text)
-
-
-_REACH = 0.45  # ems to either side of the line where it can be taken hold of
-_DARK, _LIGHT, _HELD, _GROUND = (
-    ImVec4(0.05, 0.06, 0.08, 0.72),
-    ImVec4(0.95, 0.96, 0.97, 1.0),
-    ImVec4(0.42, 0.70, 0.96, 1.0),
-    ImVec4(0.05, 0.06, 0.08, 0.94),  # where numbers may lie beneath
-)
-
-
-@dataclass
-class WipeState:
-    """Whether the pointer holds the line."""
-
-    held: bool = False
-
-
-def handle(ui: Ui, area: Area) -> bool:
-    """Let the pointer drag the line across the picture, which is ImGui's last item; whether the line holds it."""
-    state = ui.state(WipeState)
-    c = ui.controller
-    if not _there(ui):
-        state.held = False
-        return False
-    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and _near(ui, area):
-        state.held = True
-    held = state.held
-    if held:
-        c.session.set_draw(wipe=min(max(area.to_picture(imgui.get_io().mouse_pos.x, 0.0)[0], 0.0), 1.0))
-        state.held = imgui.is_item_active()
-    if held or (imgui.is_item_hovered() and not imgui.is_item_active() and _near(ui, area)):
-        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-    return held
-
-
-def _there(ui: Ui) -> bool:
-    """Whether a line is seen: between the culled picture and the right one, or between A and B."""
-    seen = comparing.shown(ui)
-    if seen is not None:
-        return seen[2] is CompareMode.WIPE and not comparing.shows_a(ui)
-    return ui.controller.scheduler.drawn_view is View.WIPE
-
-
-def _names(ui: Ui) -> tuple[str, str]:
-    """Of what lies left of the line, and right of it."""
-    c, seen = ui.controller, comparing.shown(ui)
-    if seen is not None:
-        return c.comparing.names(seen[0], seen[1])
-    method = c.frame.settings.method if c.frame is not None else ""
-    return method if Method.parse(method).culls else "no culling", "reference"
-
-
-def _place(ui: Ui, area: Area) -> float:
-    """Where the line is on the screen: at an edge where it lies beyond what is shown."""
-    return min(max(area.to_screen(ui.controller.session.draw.wipe, 0.0).x, area.corner.x), area.end.x)
-
-
-def _near(ui: Ui, area: Area) -> bool:
-    return abs(imgui.get_io().mouse_pos.x - _place(ui, area)) <= em(_REACH)
-
-
-def show(ui: Ui, area: Area) -> None:
-    """The line, its handle, and the names of both sides near the picture's upper edge, below the text there."""
-    c = ui.controller
-    if not _there(ui) or c.frame is None:
-        return
-    x, corner, end = _place(ui, area), area.corner, area.end
-    dark, light, held, ground = (imgui.get_color_u32(color) for color in (_DARK, _LIGHT, _HELD, _GROUND))
-    bright = held if ui.state(WipeState).held else light
-    draw = imgui.get_window_draw_list()
-    draw.push_clip_rect(corner, end, True)
-    half = max(1.0, em(0.05))
-    draw.add_rect_filled(ImVec2(x - 2.0 * half, corner.y), ImVec2(x + 2.0 * half, end.y), dark)
-    draw.add_rect_filled(ImVec2(x - half, corner.y), ImVec2(x + half, end.y), bright)
-    _knob(draw, ImVec2(x, (corner.y + end.y) / 2.0), bright, dark)
-    left, right = _names(ui)
-    pad, text = em(0.35), imgui.get_text_line_height()
-    top = corner.y + text + 4.0 * pad
-    for name, side in ((left, -1.0), (right, 1.0)):
-        width = imgui.calc_text_size(name).x + 2.0 * pad
-        start = x + 2.0 * pad if side > 0.0 else x - 2.0 * pad - width
-        if corner.x <= start and start + width <= end.x:
-            lower = ImVec2(start + width, top + text + 2.0 * pad)
-            draw.add_rect_filled(ImVec2(start, top), lower, dark if c.session.draw.zoom.fits else ground, em(0.3))
-            draw.add_text(ImVec2(start + pad, top + pad), light, name)
-    draw.pop_clip_rect()
-
-
-def _knob(draw: imgui.ImDrawList, at: ImVec2, bright: int, dark: int) -> None:
-    """A disc on the line with an arrow to either side."""
-    radius, arrow = em(0.8), em(0.28)
-    draw.add_circle_filled(at, radius, dark)
-    draw.add_circle(at, radius, bright, 0, max(1.5, em(0.1)))
-    for side in (-1.0, 1.0):
-        tip, base = at.x + side * 0.62 * radius, at.x + side * 0.22 * radius
-        draw.add_triangle_filled(ImVec2(tip, at.y), ImVec2(base, at.y - arrow), ImVec2(base, at.y + arrow), bright)
-
-
 def draw_picture(ui: Ui, name: str, texture: int, area: Area, right: float = 1.0) -> None:
-    """As much of a picture as is to be seen, up to a column, 0 to 1 from the picture's left edge."""
+    """Draw as much of a picture as is to be seen, up to a column, 0 to 1 from the picture's left edge."""
     left, top, end, bottom = area.zoom.shown()
     right = min(right, end)
     if right <= left:
@@ -192,3 +172,113 @@ def draw_picture(ui: Ui, name: str, texture: int, area: Area, right: float = 1.0
     if crisp is not None:
         texture, start, stop = crisp, ImVec2(0.0, 0.0), ImVec2((right - left) / (end - left), 1.0)
     imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), area.corner, at, start, stop)
+
+
+def draw_a(ui: Ui, area: Area, right: float = 1.0) -> None:
+    """Draw A, up to a column, if it is there."""
+    texture = ui.graphics.compared.a.texture_id if ui.graphics.compared is not None else None
+    if texture is not None:
+        draw_picture(ui, OF_A, texture, area, right)
+
+
+def draw_wiped(ui: Ui, area: Area) -> None:
+    """Draw A left of the line, where A and B are wiped."""
+    if ui.controller.comparing.seen is not None and _line_is_there(ui):
+        draw_a(ui, area, ui.controller.session.draw.wipe)
+
+
+def drag_line(ui: Ui, area: Area) -> bool:
+    """Let the pointer drag the line across the picture, which is ImGui's last item; returns whether it holds it."""
+    state, near = ui.state(WipeState), abs(imgui.get_io().mouse_pos.x - _line_at(ui, area)) <= em(_REACH)
+    if not _line_is_there(ui):
+        state.held = False
+        return False
+    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and near:
+        state.held = True
+    held = state.held
+    if held:
+        across = area.to_picture(imgui.get_io().mouse_pos.x, 0.0)[0]
+        ui.controller.session.set_draw(wipe=min(max(across, 0.0), 1.0))
+        state.held = imgui.is_item_active()
+    if held or (imgui.is_item_hovered() and not imgui.is_item_active() and near):
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+    return held
+
+
+def _line_is_there(ui: Ui) -> bool:
+    """Whether a line is seen: between A and B, or between the culled picture and the right one."""
+    seen = ui.controller.comparing.seen
+    if seen is not None:
+        return seen.mode is CompareMode.WIPE and not seen.shows_a
+    return ui.controller.scheduler.drawn_view is View.WIPE
+
+
+def _line_at(ui: Ui, area: Area) -> float:
+    """Where the line is on the screen: at an edge where it lies beyond what is shown."""
+    return min(max(area.to_screen(ui.controller.session.draw.wipe, 0.0).x, area.corner.x), area.end.x)
+
+
+def show(ui: Ui, area: Area, top: float) -> None:
+    """Draw what says which is which, below the picture's title, which ends at `top`; and the line of a wipe."""
+    seen, frame = ui.controller.comparing.seen, ui.controller.frame
+    y, room = top + em(0.2), area.size.x - em(0.6)
+    if seen is None and frame is not None and _line_is_there(ui):
+        method = frame.settings.method
+        _line(ui, area)
+        _names_beside_line(ui, area, y, (method if Method.parse(method).culls else "no culling", "reference"))
+    if seen is None:
+        return
+    a, b = seen.names
+    if seen.mode is CompareMode.SIDE:
+        _label(ImVec2(area.corner.x - em(GAP) - area.size.x, area.corner.y), a, LESS, room)
+        _label(ImVec2(area.corner.x, y), b, MORE, room)
+    elif _line_is_there(ui):
+        _line(ui, area)
+        _names_beside_line(ui, area, y, (a, b), (LESS, MORE))
+    elif seen.difference is not None:
+        _label(ImVec2(area.corner.x, y), f"{b}   minus   {a}", None, room)
+    else:
+        _label(ImVec2(area.corner.x, y), *((a, LESS) if seen.shows_a else (b, MORE)), room)
+
+
+def _names_beside_line(
+    ui: Ui, area: Area, y: float, names: tuple[str, str], colors: tuple[Color | None, Color | None] = (None, None)
+) -> None:
+    """What lies left of the line, and right of it, as far as there is room."""
+    x, apart = _line_at(ui, area), em(0.7)
+    left, right = x - apart - area.corner.x, area.end.x - x - apart
+    if left > em(_LEAST):
+        _label(ImVec2(x - apart, y), names[0], colors[0], left, ends_there=True)
+    if right > em(_LEAST):
+        _label(ImVec2(x + apart, y), names[1], colors[1], right)
+
+
+def _label(at: ImVec2, text: str, color: Color | None, room: float, ends_there: bool = False) -> None:
+    """A line on a dark ground, with a square of the colour that stands for A or B."""
+    pad, line = em(0.35), imgui.get_text_line_height()
+    square = 0.7 * line + pad if color is not None else 0.0
+    text = fitted(text, room - square - 3.0 * pad)
+    width = imgui.calc_text_size(text).x + square + 3.0 * pad
+    at = ImVec2(at.x - width if ends_there else at.x, at.y)
+    draw = imgui.get_window_draw_list()
+    draw.add_rect_filled(at, ImVec2(at.x + width, at.y + line + 2.0 * pad), packed(_DARK, 0.94), em(0.3))
+    x, y = at.x + 1.5 * pad, at.y + pad + 0.18 * line
+    if color is not None:
+        draw.add_rect_filled(ImVec2(x, y), ImVec2(x + 0.7 * line, y + 0.7 * line), packed(color), em(0.1))
+    draw.add_text(ImVec2(x + square, at.y + pad), packed(_LIGHT), text)
+
+
+def _line(ui: Ui, area: Area) -> None:
+    """The line, with a disc on it that has an arrow to either side."""
+    draw, x, y = imgui.get_window_draw_list(), _line_at(ui, area), (area.corner.y + area.end.y) / 2.0
+    dark, bright = packed(_DARK, 0.72), packed(_HELD if ui.state(WipeState).held else _LIGHT)
+    half, radius, arrow = max(1.0, em(0.05)), em(0.8), em(0.28)
+    draw.push_clip_rect(area.corner, area.end, True)
+    for wide, color in ((2.0 * half, dark), (half, bright)):
+        draw.add_rect_filled(ImVec2(x - wide, area.corner.y), ImVec2(x + wide, area.end.y), color)
+    draw.add_circle_filled(ImVec2(x, y), radius, dark)
+    draw.add_circle(ImVec2(x, y), radius, bright, 0, max(1.5, em(0.1)))
+    for side in (-1.0, 1.0):
+        tip, base = x + side * 0.62 * radius, x + side * 0.22 * radius
+        draw.add_triangle_filled(ImVec2(tip, y), ImVec2(base, y - arrow), ImVec2(base, y + arrow), bright)
+    draw.pop_clip_rect()

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
 from imgui_bundle import imgui
 
-from tracer.light_cut import LightCut
-from viewer.services.controller import Controller
-from viewer.services.inspector import MOST_CLUSTERS
 from viewer.state.draw_options import AXES
 from viewer.state.pixels import pixel_at
 from viewer.state.views import View
-from viewer.util.numbers import several
 from viewer.views import view_of, words_at
 from viewer.window.panels.area import Area, write_beside
 from viewer.window.panels.legend import LegendState
-from viewer.window.panels.status import traced_before_an_answer
 from viewer.window.ui import Ui
-from viewer.window.widgets import em, percent, row
+from viewer.window.widgets import em, row
 
 
 def rows(ui: Ui) -> None:
@@ -42,35 +36,11 @@ def rows(ui: Ui) -> None:
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     """What a pixel of the newest frame shows of space, in a view of that; nothing where it shows none."""
     c = ui.controller
-    view, lit = c.scheduler.drawn_view, c.inspector.cut
-    if c.frame is not None and (view.has_slice or view is View.CELL_LIGHTS):
-        words = words_at(c.frame, c.session.draw, x, y)
-        return [] if words in (("-",), ("miss",)) else list(words)
-    if view is View.CUTS and lit is not None and (lit.x, lit.y) == (x, y):
-        return cut_lines(lit)
-    if view is View.CUTS and c.selection.picked is None and c.inspector.awaits_cut == (x, y):
-        return awaited(c)
-    return []
-
-
-def awaited(c: Controller) -> list[str]:
-    """That the clusters of a pixel are to come, where they do not come at once."""
-    before = traced_before_an_answer(c)
-    return [f"its clusters are drawn after {before}"] if before else []
-
-
-def cut_lines(cut: LightCut) -> list[str]:
-    """What shades a pixel, in a few lines."""
-    many, single, cuts = len(cut.nodes), int((cut.lights == 1).sum()), cut.frame.statistics.cuts
-    shade = f"{several(many, 'cluster')} {'shades' if many == 1 else 'shade'} it"
-    one = "single light" if cuts is None or cuts.lights == cut.frame.lights else "single sample"
-    lines = [f"{shade}, {several(single, one)} among them"]
-    total = float(cut.sent.sum())
-    if total > 0.0:
-        lines.append(f"the brightest sends {percent(float(np.max(cut.sent)), total)} of their light")
-    if many > MOST_CLUSTERS:
-        lines.append(f"drawn are the {MOST_CLUSTERS} that send most")
-    return lines
+    view = c.scheduler.drawn_view
+    if c.frame is None or not (view.has_slice or view is View.CELL_LIGHTS):
+        return []
+    words = words_at(c.frame, c.session.draw, x, y)
+    return [] if words in (("-",), ("miss",)) else list(words)
 
 
 def show(ui: Ui, area: Area) -> None:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import dropwhile, takewhile
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
@@ -19,24 +18,23 @@ from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
 from viewer.state.changes import one_by_one
 from viewer.state.comparison import CompareMode, Source
+from viewer.state.frame_rows import RAYS, change
 from viewer.state.picking import same_place
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.window.command import Command, Condition
 from viewer.window.panels import lights
-from viewer.window.panels.compare import figures
+from viewer.window.panels.compare import pairs
 from viewer.window.panels.marks import SHADE
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
     checkbox,
     clipped,
-    count,
     em,
     fitted,
     heading,
     paragraph,
     right,
-    short,
     tooltip,
     tooltip_at,
     wide_button,
@@ -232,13 +230,11 @@ def _changed(ui: Ui) -> None:
     if imgui.begin_table("counters", 4):
         for name, width in (("name", 1.5), ("before", 1.0), ("now", 1.0), ("change", 1.1)):
             imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
-        found = dropwhile(lambda one: not one.heading, figures(ui, before.frame, frame, None))
-        next(found)  # the heading of what follows
         table = [("Rays", "before", "now", "change", "")]
-        for one in takewhile(lambda one: not one.heading, found):
-            said = f"{one.tip}: {count(one.a or 0)} before, {count(one.b or 0)} now"
-            a, b, change = map(short, (one.a or 0, one.b or 0, one.difference or 0))
-            table.append((one.name, a, b, change, said))
+        for one, other in pairs(ui, before.frame, frame):
+            if one.group == RAYS:
+                apart, share = change(one, other)
+                table.append((one.name, one.text(one.number), other.text(other.number), apart, f"{one.tip} ({share})"))
         for name, *numbers, tip in table:
             imgui.table_next_row()
             imgui.table_next_column()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
@@ -13,22 +12,15 @@ from viewer.output.reports import STEPS, Column, changes_in_words, happenings
 from viewer.services.runs import RecordedZoomTest
 from viewer.window.panels import filmstrip
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
-from viewer.window.panels.runs import arrange, export_buttons, nothing_yet, results_table, start_or_progress, whose
+from viewer.window.panels.runs import arrange, export_buttons, results_table, start_or_progress, whose
 from viewer.window.setting_rows import plan_rows
 from viewer.window.style import GREY, MARK
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, checkbox, clipped, em, paragraph, properties, row, tooltip
+from viewer.window.widgets import QUIET, WARNING, clipped, em, paragraph, properties, row, tooltip
 
 _PLOT, _TABLE = 14.0, 15.0  # ems of width
 _LOW = 7.0  # ems of height below which a plot has no legend
 _FILM, _LEAST_FILM, _MOST_FILM = 0.45, 3.2, 9.0  # the filmstrips' part of the height, and ems of one
-
-
-@dataclass
-class ZoomState:
-    """Whether the table has a row for each step."""
-
-    all_steps: bool = False
 
 
 def show(ui: Ui) -> None:
@@ -37,7 +29,7 @@ def show(ui: Ui) -> None:
     results = test.results if test is not None else None
     if test is None or results is None:
         why = "Does a shadow that can only be seen from close up appear in time? Click a primitive, and start."
-        arrange(lambda: _controls(ui, test), ("Plot", _PLOT, lambda: nothing_yet(why)))
+        arrange(lambda: _controls(ui, test), ("Plot", _PLOT, lambda: paragraph(why, QUIET)))
         return
     arrange(
         lambda: _controls(ui, test),
@@ -152,15 +144,8 @@ _COLUMNS = (Column[Line]("factor", "zoom factor", lambda line: f"{line[0].factor
 
 
 def _table(ui: Ui, test: RecordedZoomTest, results: Results) -> None:
-    """The steps, those where something happens or all; a click shows what was recorded there."""
-    state = ui.state(ZoomState)
-    tip = "else only those where modes or wrong pixels change"
-    checkbox("all steps", state.all_steps, lambda on: setattr(state, "all_steps", on), tip)
-    lines = [
-        (approach, step)
-        for approach in results.approaches
-        for step in (approach.steps if state.all_steps else happenings(approach))
-    ]
+    """The steps where something happens; a click shows what was recorded there."""
+    lines = [(approach, step) for approach in results.approaches for step in happenings(approach)]
 
     def go(number: int) -> None:
         ui.controller.go_to_step(lines[number][1])

@@ -1,4 +1,4 @@
-"""Two methods in turn, on one world: what is traced for it, when, and what becomes of the numbers."""
+"""Renderers beside the window's: a second method live, and two in turn; what is traced, when, and what comes of it."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Camera, Cancelled
-from viewer.services.baseline import FIRST, MOST, STILL, Baseline, Rounds, Subject, subject_of
-from viewer.services.pair import Pair
+from viewer.services.beside import FIRST, MOST, STILL, Baseline, Pair, Rounds, Subject, subject_of
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.render_thread import RenderThread
-from viewer.state.in_turn import LEAST, Spread
+from viewer.state.savings import LEAST, Spread
 
 CAMERA = Camera((0.0, 1.0, 4.0), (0.0, -0.25, -1.0))
 SIZE = Settings(width=16, height=8)
@@ -130,16 +129,15 @@ def test_none_keeps_no_modes_and_nobody_records_or_verifies():
 
 
 class Thread:
+    """What it is given to do in spare time."""
+
     def __init__(self) -> None:
         self.works: list[Rounds | None] = []
-
-    def in_spare_time(self, work) -> None:
-        self.works.append(work)
 
 
 def test_it_begins_at_rest_stops_at_once_and_goes_on_where_it_stopped():
     now, thread, paper = [0.0], Thread(), traced("paper")
-    baseline = Baseline(thread, lambda: now[0])
+    baseline = Baseline(thread.works.append, lambda: now[0])
 
     def follow(newest=paper, moving=False, busy=False):
         baseline.update(newest, "", moving, busy)
@@ -186,7 +184,7 @@ def test_it_begins_at_rest_stops_at_once_and_goes_on_where_it_stopped():
 
 def test_no_tree_is_built_for_a_figure():
     thread = Thread()
-    baseline = Baseline(thread, lambda: 1e9)
+    baseline = Baseline(thread.works.append, lambda: 1e9)
     for _ in range(2):
         baseline.update(traced(accelerator="kdtree-lazy"), "", False, False)
     assert not thread.works and "built" in baseline.why_not
@@ -194,7 +192,7 @@ def test_no_tree_is_built_for_a_figure():
 
 def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
     now, thread = [0.0], Thread()
-    baseline = Baseline(thread, lambda: now[0])
+    baseline = Baseline(thread.works.append, lambda: now[0])
 
     def rest(newest: Traced) -> None:
         for _ in range(2):

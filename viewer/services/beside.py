@@ -1,0 +1,252 @@
+"""Renderers beside the window's own, in its world: a second method live, and a standing answer to "is it faster?".
+
+`Pair` traces each picture by a second method as well.  `Baseline` measures in spare time, while the picture rests and
+nothing else is wanted: the picture that is shown, by `none` and by the chosen method in turn.  All of them have modes,
+certificates and counters of their own, so that none gains by what another has found out, and the window's stay what
+they are.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import dataclass, replace
+
+from tracer.frame import Settings
+from tracer.geometry.accelerators import LAZY
+from tracer.renderer import Renderer
+from tracer.scene.model import Camera, Cancelled
+from tracer.statistics import FrameStatistics
+from viewer.services import refinement
+from viewer.services.render_request import Parts, RenderRequest, Traced
+from viewer.state.methods import NO_CULLING
+from viewer.state.savings import InTurn, Spread
+from viewer.util.messages import one_line
+
+STILL = 0.7
+"""Seconds that the picture must have rested before anything is measured."""
+FIRST = 2
+"""Frames of each method that do not count, at least: the first finds memory and caches cold, and learns."""
+PROVING = 2.0
+"""Seconds that each of these may spend on certificates, which takes fewer frames than where each is shown."""
+MOST_PROVING = round(refinement.MOST_FRAMES * refinement.SECONDS / PROVING)
+"""Frames that do not count, at most: as much time for certificates as the window's own take at rest."""
+MOST = 40
+"""Rounds, each of one frame by every method."""
+NARROW, CLEAR = 0.01, 0.25
+"""The margin of the median ratio that is small enough: in any case, and as a part of what it is away from 1."""
+FAILED = "tracing the picture in turn has failed"
+BUILDS = "the tree is built where rays arrive: none would have more of it built"
+
+Cancel = Callable[[], bool]
+
+
+class Pair:
+    """A renderer and another beside it, which trace the same picture by two methods, part after part in turn.
+
+    The world is placed again whenever the turn changes, as methods differ in what they count as static."""
+
+    def __init__(self, first: Renderer) -> None:
+        self._first, self._second = first, first.beside()
+        self._world = getattr(first, "world", None)
+
+    def is_of(self, renderer: Renderer) -> bool:
+        """Return whether it is the pair of this renderer, in the world that this one has now."""
+        return renderer is self._first and getattr(renderer, "world", None) is self._world
+
+    def refine(self, request: RenderRequest, cancel: Cancel) -> Parts:
+        """Yield each part of the picture by the first renderer, and the same by the second with the other method.
+
+        The world is always left as the first has placed it: queries may be answered between two parts."""
+        self._second.settings = replace(self._first.settings, method=request.second)
+        self._second.take_scene(self._first)
+        first, second = request.refine(self._first, cancel), request.refine(self._second, cancel)
+        with closing(first) as ours, closing(second) as theirs:
+            begun = False
+            for frame, _ in ours:
+                try:
+                    if begun:
+                        self._second.take_turn(request.time)
+                    begun = True
+                    other, _ = next(theirs)
+                finally:
+                    self._first.take_turn(request.time)
+                yield frame, other
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What is measured: one picture, whole and with one sample a pixel, by these methods; `none` keeps no modes, and
+    nobody records or verifies."""
+
+    time: float
+    camera: Camera
+    settings: Settings
+    methods: tuple[str, ...]
+
+    def is_of(self, other: Subject) -> bool:
+        """Return whether it is the same picture, by whichever methods."""
+        return replace(self, methods=other.methods) == other
+
+
+def subject_of(traced: Traced, second: str = "") -> Subject | None:
+    """Return what is to be measured of a picture, and by a second method that it is compared with; None where there is
+    only one method."""
+    frame = traced.frame
+    methods = tuple(dict.fromkeys(filter(None, (NO_CULLING, frame.settings.method, second))))
+    if len(methods) < 2:
+        return None
+    settings = replace(
+        frame.settings.recording_only(), method=NO_CULLING, samples=1, modes=False,
+        certificate_seconds=traced.request.settings.certificate_seconds, patient=False,
+    )  # fmt: skip
+    return Subject(frame.time, frame.camera, settings, methods)
+
+
+class Rounds:
+    """Measures a subject, a frame at a time, and goes on from what is known of it.  `so_far`, and `why_not` where it
+    failed, may be read from any thread."""
+
+    def __init__(self, subject: Subject, so_far: InTurn | None = None) -> None:
+        self.subject = subject
+        self.so_far = so_far or InTurn(subject.methods)
+        self.why_not = ""
+        self._renderers: dict[str, Renderer] = {}
+        self._preparing = list(subject.methods)
+        self._prepared = 0  # frames of the first of these
+        self._round: dict[str, FrameStatistics] = {}
+
+    @property
+    def ended(self) -> bool:
+        """Whether no more is measured."""
+        return self.so_far.settled or bool(self.why_not)
+
+    def step(self, renderer: Renderer, cancelled: Cancel) -> bool:
+        """Trace one more frame, in the world of this renderer; returns whether more are to come.
+
+        Raises Cancelled, and then the frame is traced again by the next step; all else that goes wrong ends it."""
+        if self.so_far.settled or self.why_not:
+            return False
+        try:
+            if self._preparing:
+                self._prepare(renderer, cancelled)
+            else:
+                self._count(renderer, cancelled)
+        except Cancelled:
+            raise
+        except Exception as problem:
+            self.why_not = f"{FAILED}: {one_line(problem)}"
+            raise
+        finally:
+            if self.ended:
+                self._renderers = {}  # with all that they have learnt
+        return not self.so_far.settled
+
+    def _prepare(self, renderer: Renderer, cancelled: Cancel) -> None:
+        """A frame that does not count: until nothing is left to be made for the picture."""
+        method = self._preparing[0]
+        made = self._trace(renderer, method, cancelled, proves=True).certificates
+        self._prepared += 1
+        if self._prepared >= FIRST and (not made or self._prepared >= MOST_PROVING):
+            self._preparing, self._prepared = self._preparing[1:], 0
+
+    def _count(self, renderer: Renderer, cancelled: Cancel) -> None:
+        """A frame of the round; who comes first changes from round to round, as what drifts concerns all alike."""
+        methods = self.subject.methods
+        order = methods if self.so_far.count % 2 == 0 else methods[::-1]
+        method = next(method for method in order if method not in self._round)
+        self._round[method] = self._trace(renderer, method, cancelled)
+        if len(self._round) < len(methods):
+            return
+        rounds = (*self.so_far.rounds, tuple(self._round[method] for method in methods))
+        self._round = {}
+        so_far = InTurn(methods, rounds, prepares=False)
+        speeds = [so_far.speed(method, methods[0]) for method in methods[1:]]
+        self.so_far = replace(so_far, settled=len(rounds) >= MOST or (so_far.tells and all(map(_is_narrow, speeds))))
+
+    def _trace(self, renderer: Renderer, method: str, cancelled: Cancel, proves: bool = False) -> FrameStatistics:
+        """Trace a frame, beginning with the modes that the window has."""
+        subject, own = self.subject, self._renderers.get(method)
+        if own is None:
+            own = self._renderers[method] = renderer.beside()
+            own.settings = replace(subject.settings, method=method)
+            own.take_modes(renderer)
+        seconds = PROVING if proves else subject.settings.certificate_seconds
+        own.settings = replace(subject.settings, method=method, certificate_seconds=seconds, patient=proves)
+        return own.render(subject.time, subject.camera, cancelled).statistics
+
+
+def _is_narrow(speed: Spread | None) -> bool:
+    return speed is not None and speed.margin <= max(NARROW, CLEAR * abs(speed.median - 1.0))
+
+
+class Baseline:
+    """Measures what is shown.  `moving` says that nothing can be measured, as pictures keep coming."""
+
+    def __init__(
+        self, in_spare_time: Callable[[Rounds | None], None], clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        """`in_spare_time` has rounds measured by the render thread, until it is given others or None."""
+        self._in_spare_time, self._clock = in_spare_time, clock
+        self._known: dict[Subject, Rounds] = {}  # of the picture that is shown, by whichever methods
+        self._subject: Subject | None = None
+        self._at_work: Rounds | None = None
+        self._still_since: float | None = None
+        self.moving = False
+        self.why_not = ""
+
+    @property
+    def measured(self) -> InTurn | None:
+        """What is known of the picture that is shown; None where nothing is measured of it."""
+        rounds = self._known.get(self._subject) if self._subject is not None else None
+        return rounds.so_far if rounds is not None else None
+
+    def forget(self) -> None:
+        """Begin anew: the scene is another, or modes were forgotten."""
+        self._known, self._subject = {}, None
+        self._stop()
+
+    def update(self, traced: Traced | None, second: str, moving: bool, busy: bool) -> None:
+        """Measure the picture that is shown, and compared with one by a `second` method, in each frame of the window;
+        not while anything is `moving`, or the thread is `busy` with what is wanted more."""
+        self.moving = moving
+        if moving or traced is None or not traced.whole or traced.request.divisor > 1:
+            self._leave()
+            return
+        lazy = traced.frame.settings.accelerator == LAZY
+        self._subject = subject = None if lazy else subject_of(traced, second)
+        rounds = self._known.get(subject) if subject is not None else None
+        self.why_not = BUILDS if lazy else rounds.why_not if rounds is not None else ""
+        if subject is None or busy:
+            self._still_since = None
+            self._stop()
+            return
+        now = self._clock()
+        self._still_since = now if self._still_since is None else self._still_since
+        if now - self._still_since >= STILL:
+            self._measure(subject)
+
+    def _measure(self, subject: Subject) -> None:
+        self._known = {
+            one: known for one, known in self._known.items() if replace(one, methods=()) == replace(subject, methods=())
+        }
+        rounds = self._known.setdefault(subject, Rounds(subject))
+        if rounds is not self._at_work and not rounds.ended:
+            self._at_work = rounds
+            self._in_spare_time(rounds)
+
+    def _leave(self) -> None:
+        """The picture is another: what was measured of the last stays known, without the renderers that did so."""
+        self._stop()
+        if self._subject is not None:
+            self._known = {
+                one: known if known.ended else Rounds(one, known.so_far) for one, known in self._known.items()
+            }
+        self._subject = self._still_since = None
+
+    def _stop(self) -> None:
+        """Leave the thread to others; what was measured of a picture is taken up again."""
+        if self._at_work is not None:
+            self._at_work = None
+            self._in_spare_time(None)
