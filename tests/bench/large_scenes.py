@@ -91,7 +91,7 @@ def inspect(path: Path, size: int) -> dict[str, Any]:
     from tracer.scene.load import load_visible_scene
     from tracer.scene.mesh_options import IN_STUDIO
     from tracer.settings import Settings
-    from viewer.services.scene_files import open_scene
+    from viewer.services.scene_loader import open_scene
 
     warm_up(lights=1)
     warm_up(lights=96)

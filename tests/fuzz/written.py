@@ -131,9 +131,9 @@ def _check_figure(folder: Path) -> None:
 
 
 def _video(folder: Path, number: int) -> None:
-    with video(folder / "film.mp4", (64, 48), 25.0) as film:
+    with video(folder / "film.mp4", (64, 48), 25.0) as add:
         for frame in range(4):
-            film.add(_pixels(number + frame)[:48, :64])
+            add(_pixels(number + frame)[:48, :64])
 
 
 def _check_video(folder: Path) -> None:

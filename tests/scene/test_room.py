@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import tracer
+from tests.commands import run
 from tests.fuzz.seeds import seeds
 from tests.platforms import linux_only
 from tracer.scene import room
@@ -113,11 +114,8 @@ def test_elsewhere_a_library_tells_the_same(monkeypatch: pytest.MonkeyPatch) -> 
     assert room._of_system() is None
 
 
-def test_a_summary_builds_no_trees(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
-    from viewer.cli.info import info
-
+def test_a_summary_builds_no_trees(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd) -> None:
     monkeypatch.setattr("tracer.geometry.world.World.__init__", lambda *_, **__: pytest.fail("a world is built"))
     path = tmp_path / "small.obj"
     path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    info(path, as_json=True)
-    assert json.loads(capsys.readouterr().out)["triangles"] == 1
+    assert json.loads(run(capfd, "info", path, "--json")[1])["triangles"] == 1

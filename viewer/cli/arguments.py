@@ -10,19 +10,23 @@ import json
 import math
 import re
 import sys
+import textwrap
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, TypeVar
+from typing import Any, NoReturn, TypeVar
 
+from tracer.experiments import warmup_frames
+from tracer.experiments.warmup_frames import WarmupFrame
+from tracer.method import Method, unknown
+from tracer.scene.camera import Camera
+from tracer.scene.files import read_regular
 from tracer.scene.limits import LARGEST
 from tracer.setting import Setting
-from tracer.similar import did_you_mean, similar
+from tracer.similar import similar
+from viewer.state.draw_options import DrawOptions
 from viewer.state.views import View
 from viewer.util.messages import ERROR, say
-
-if TYPE_CHECKING:
-    from tracer.experiments.warmup_frames import WarmupFrame
-    from tracer.scene.model import Camera
 
 T = TypeVar("T")
 
@@ -41,7 +45,7 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, command: str, description: str, epilog: str) -> None:
         super().__init__(
             prog=f"shadowcull {command}".strip(),
-            description=description,
+            description=textwrap.fill(description, 100),
             epilog=epilog,
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,
@@ -59,12 +63,6 @@ class Parser(argparse.ArgumentParser):
             return action.type(text) if callable(action.type) else text
         except ValueError as error:
             raise argparse.ArgumentError(action, str(error)) from None
-
-    def _check_value(self, action: argparse.Action, value: Any) -> None:
-        choices = [str(choice) for choice in action.choices or ()]
-        if choices and value not in choices:
-            hint = did_you_mean(value, choices) or f"; it is one of {', '.join(choices)}"
-            raise argparse.ArgumentError(action, f"invalid choice: {value!r}{hint}")
 
     def error(self, message: str) -> NoReturn:
         """Ask about the first unknown word that is like an option; its dashes, which all have, do not count."""
@@ -145,8 +143,6 @@ def crops(text: str) -> tuple[tuple[int, ...], ...]:
 
 def _json(text: str, start: str, most: int) -> Any:
     """Read JSON, or the file of that name, which holds it, in `most` bytes at most."""
-    from tracer.scene.files import read_regular
-
     name = text[:60]
     try:
         if not text.lstrip().startswith(start):
@@ -160,18 +156,14 @@ def _json(text: str, start: str, most: int) -> Any:
 
 def before(text: str) -> tuple[WarmupFrame, ...]:
     """Read the frames that come before."""
-    from tracer.experiments import warmup_frames
-
     return warmup_frames.from_json(_json(text, "[", 1 << 26))
 
 
-def camera(text: str) -> Camera | None:
+def camera(text: str) -> Camera:
     """Read a camera: JSON, a file that holds it, or a saved picture."""
-    from tracer.scene.model import Camera
-    from viewer.output import capture
-    from viewer.services.scene_files import is_capture
+    if text.lower().endswith(".png"):
+        from viewer.output import capture
 
-    if is_capture(Path(text)):
         return capture.read_camera(Path(text))[1]
     try:
         return Camera.from_json(_json(text, "{", 1 << 20))
@@ -183,22 +175,13 @@ def camera(text: str) -> Camera | None:
 # --- views and methods -----------------------------------------------------------------------------
 
 
-class ChosenView(NamedTuple):
-    """A view, the light it speaks of, the place of a wipe's line, and whether a map of work shows shares."""
-
-    view: View = View.COLOR
-    light: int = 0
-    wipe: float = 0.5
-    shares: bool = False
-
-
 def view_form(view: View) -> str:
     """Return a view as it is given, with what it takes: shadow:LIGHT, wipe:PART, saved:share."""
     takes = ":LIGHT" if view.of_light else ":PART" if view is View.WIPE else "[:share]" if view.needs_work else ""
     return view.value + takes
 
 
-def view(text: str) -> ChosenView:
+def view(text: str) -> DrawOptions:
     """Read a view with what it takes: occlusion, shadow:2, wipe:0.3, saved:share."""
     name, colon, detail = text.partition(":")
     found = next((view for view in View if view.value == name), None)
@@ -206,17 +189,16 @@ def view(text: str) -> ChosenView:
         close = similar(name, list(View))
         hint = f": did you mean {view_form(View(close))}?" if close else f"; the views are {', '.join(View)}"
         raise ValueError(f"{text!r} is not a view{hint}")
-    chosen = ChosenView(found)
+    chosen, why = DrawOptions(found), ""
     try:
         if not colon:
             return chosen
         if found.of_light:
-            return chosen._replace(light=count(0, 2**31 - 1)(detail))
+            return replace(chosen, light=count(0, 2**31 - 1)(detail))
         if found is View.WIPE:
-            return chosen._replace(wipe=number(0.0, 1.0)(detail))
+            return replace(chosen, wipe=number(0.0, 1.0)(detail))
         if found.needs_work and detail == "share":
-            return chosen._replace(shares=True)
-        why = ""
+            return replace(chosen, shares=True)
     except ValueError as error:
         why = f": {error}"
     raise ValueError(f"{text!r} is not a view; give {view_form(found)}{why}")
@@ -230,8 +212,6 @@ def method(text: str) -> str:
 
 def methods(text: str, more: Sequence[str] = ()) -> list[str]:
     """Read names of methods, or others; all that are unknown are named together."""
-    from tracer.method import Method, unknown
-
     wrong, found = [], []
     for name in (part.strip() for part in text.split(",")):
         try:

@@ -6,14 +6,15 @@ Ctrl-C ends it after the last whole frame: what is done is shown, and written wh
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from rich.table import Table
 
 from tracer.experiments import experiment, lamp_experiment
 from tracer.experiments.experiment import REFERENCE, Experiment, Results
-from tracer.experiments.lamp_experiment import CEILING, LampExperiment, LampResults, LampRow
+from tracer.experiments.lamp_experiment import CEILING, LampExperiment, LampResults
+from tracer.experiments.runner import Run
 from tracer.geometry.world import World
 from tracer.method import line_up
 from tracer.scene.load import check_scene_file
@@ -22,7 +23,7 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
 from viewer.cli.console import columns_help, fitted, listed, print_table, terminal_width, titled, width_of, working
 from viewer.output import exports
-from viewer.output.reports import LAMPS, METHOD, TABLE_1, Column, caveats, experiment_title, table_1
+from viewer.output.reports import LAMPS, METHOD, TABLE_1, caveats, experiment_title, lamps_in_words, table_1
 from viewer.state import terms
 
 ALL = "all"  # methods that are worth comparing in the scene
@@ -56,7 +57,7 @@ def parser() -> Parser:
         f"which methods: {options.METHODS}; none is always measured too; or all, for those that are worth "
         "comparing in the scene (default: paper)"
     )
-    add("--methods", type=arguments.methods_or_all, default=["paper"], metavar="M,...", help=help_)
+    add("--methods", type=arguments.methods_or_all, default=["paper"], metavar="METHOD,...", help=help_)
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
     add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
     options.add_size(parser)
@@ -90,18 +91,15 @@ def run(given: Namespace) -> int:
         numbers = frame_range(given.frames, len(times))
         options.prepare_kernels(work, len(scene.lights), given.accelerator, *methods)
         world = World(scene, times[0], settings.accelerator, work.progress)
-        results: Results | LampResults
+        measured: Run[Any]
         if by_lamps:
             kinds = lamp_experiment.kinds_of_lamps(scene, radii, samples)
-            results = work.perform(LampExperiment(scene, settings, methods, kinds, times, numbers), world)
-            whole = len(results.runs) == len(kinds) and len(results.runs[-1].frames) == len(numbers)
-            done = f"in lamps {len(results.runs)} of {len(kinds)}; the table is of the frames that are done"
+            measured = LampExperiment(scene, settings, methods, kinds, times, numbers)
         else:
-            results = work.perform(Experiment(scene, settings, methods, times, numbers), world)
-            whole = len(results.frames) == len(numbers)
-            done = f"after {len(results.frames)} of {len(numbers)} frames; the table is of these"
-        if not whole:
-            work.note(f"cancelled {done}")
+            measured = Experiment(scene, settings, methods, times, numbers)
+        results: Any = work.perform(measured, world)  # type: ignore[misc]
+        if not measured.whole:
+            work.note("cancelled after {} of {} frames; the table is of these".format(*measured.done_of))
         failures = exports.write_files(results, wanted)
     if isinstance(results, LampResults):
         print_table(lamp_table(results, terminal_width()))
@@ -109,7 +107,7 @@ def run(given: Namespace) -> int:
         print_table(bench_table(results, given.verify, terminal_width()))
     if failures:
         raise OSError("; ".join(failures))
-    return 0 if whole else INTERRUPTED
+    return 0 if measured.whole else INTERRUPTED
 
 
 def frame_range(text: str | None, count: int) -> range:
@@ -150,24 +148,10 @@ def bench_table(results: Results, verified: bool, width: int | None) -> Table:
 
 def lamp_table(results: LampResults, width: int | None) -> Table:
     """Make a table with a row for each method under each kind of lamps, as `bench_table`."""
-    rows = lamp_experiment.table(results)
-
-    def made(columns: Sequence[Column[LampRow]]) -> list[Table]:
-        return [listed([*kinds, *columns], rows, title, caption, _lamps)]
-
-    kinds: list[Column[LampRow]] = [
-        Column("radius", "of the lamps", lambda row: _lamps(row)[0]),
-        Column("samples", "of each lamp", lambda row: _lamps(row)[1]),
-    ]
     title = f"What culling is worth under lamps\n{experiment_title(results.runs[0])}"
     caption = "\n".join((
         f"shadow rays: due per frame; speed-up: over {REFERENCE}, all frames; {CEILING}: shadow rays cost nothing",
         f"saved: shadow rays {terms.MEANINGS[terms.SAVED]}; --csv FILE has all figures",
     ))  # fmt: skip
-    return fitted(LAMPS, made, width)[0]
-
-
-def _lamps(row: LampRow) -> tuple[str, str]:
-    """Their radius and their samples, in words."""
-    radius = "scene's" if row.lamp_radius is None else f"{row.lamp_radius:g}"
-    return radius, "scene's" if row.lamp_samples is None else str(row.lamp_samples)
+    rows = lamp_experiment.table(results)
+    return fitted(LAMPS, lambda some: [listed(some, rows, title, caption, lamps_in_words)], width, least=5)[0]

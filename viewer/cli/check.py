@@ -33,8 +33,8 @@ from viewer.cli.console import Work, working
 from viewer.output import capture, exr
 from viewer.output.commands import BUILT, CHANCE
 from viewer.output.comparison import comparison_of, text_of_pdf
-from viewer.services import comparison, stills
-from viewer.services.scene_files import find_scene
+from viewer.services import stills
+from viewer.services.scene_loader import find_scene
 from viewer.state import codec
 from viewer.state.methods import NO_CULLING
 from viewer.state.view_state import ViewState, Warmup
@@ -192,11 +192,11 @@ class Checker:
         def tell(method: str, done: int, frames: int) -> None:
             self._work.count(f"{path.name}, {method}, frame {done + 1} of {frames}", done, frames)
 
-        shown = comparison.trace(scene, state, wanted, world, tell, self._work.cancelled)
+        shown = stills.trace_methods(scene, state, wanted, world, tell, self._work.cancelled)
         with tempfile.TemporaryDirectory() as folder:
             again = Path(folder) / f"again{path.suffix.lower()}"
             # What it carries is what the other carried: times and versions are of then.
-            comparison.save(shown, again, json.dumps(data))
+            stills.save_methods(shown, again, json.dumps(data))
             return again.read_bytes()
 
     def _prepared(self, path: Path, wanted: ViewState, methods: tuple[str, ...]) -> tuple[Scene, ViewState, World]:

@@ -163,7 +163,8 @@ def listed(
     for number, column in enumerate(columns):
         in_one = not column.text or not any(" " in line[number] for line in lines)
         side: Literal["left", "right"] = "left" if column.text else "right"
-        table.add_column(column.heading.replace(" ", "\n"), justify=side, no_wrap=in_one)
+        heading = column.heading if column.text else column.heading.replace(" ", "\n")
+        table.add_column(heading, justify=side, no_wrap=in_one)
     for number, line in enumerate(lines):
         after = rows[number + 1] if number + 1 < len(rows) else rows[number]
         table.add_row(*line, end_section=section(after) != section(rows[number]))

@@ -55,7 +55,7 @@ def parser() -> Parser:
     options.add_moment(parser)
     options.add_size(parser)
     help_ = f"how shadow rays are culled: {options.METHODS} (default: {DEFAULT_METHOD})"
-    add("--method", type=arguments.method, metavar="M", help=help_)
+    add("--method", type=arguments.method, metavar="METHOD", help=help_)
     only = ("all", "traced", "untraced", "blocked", "wrong")
     add("--only", choices=only, default="all", help="which shadow rays are listed (default: all)")
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")

@@ -12,7 +12,7 @@ from viewer.cli import arguments, options, pictures
 from viewer.cli.arguments import Parser
 from viewer.cli.console import print_table, titled, working
 from viewer.output.comparison import ENDINGS, Comparison, Crop
-from viewer.services import comparison
+from viewer.services import stills
 from viewer.state.views import View
 from viewer.util.files import check_writable
 from viewer.util.messages import printable
@@ -37,7 +37,7 @@ def parser() -> Parser:
     options.add_scene(parser, pictures.OR_PICTURE)
     add("-o", "--output", type=Path, metavar="FILE", help="the figure, a .png or .pdf, which says how it was made")
     help_ = "which methods, in the order of the columns (default: none,paper,certified)"
-    add("--methods", type=arguments.methods, default=["none", "paper", "certified"], metavar="M,...", help=help_)
+    add("--methods", type=arguments.methods, default=["none", "paper", "certified"], metavar="METHOD,...", help=help_)
     help_ = "rectangles of pixels that are shown enlarged"
     add("--crops", type=arguments.crops, default=(), metavar="X,Y,W,H;...", help=help_)
     options.add_history(parser)
@@ -76,9 +76,9 @@ def run(given: Namespace) -> int:
         def tell(method: str, done: int, total: int) -> None:
             work.count(f"{method}, frame {done + 1} of {total}", done, total)
 
-        shown = comparison.trace(scene, state, wanted, world, tell, work.cancelled)
+        shown = stills.trace_methods(scene, state, wanted, world, tell, work.cancelled)
         work.progress("drawing", 1.0)
-        comparison.save(shown, given.output)
+        stills.save_methods(shown, given.output)
     table = titled(f"{scene.path.name}, {state.time:.3f} s")
     table.add_column("")
     for method in shown.frames:

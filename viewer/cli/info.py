@@ -43,25 +43,21 @@ def parser() -> Parser:
 
 def run(options: Namespace) -> int:
     """Print what a scene holds; raises SceneError."""
-    info(pictures.scene_of(options.path), options.json, options.folder)
-    return 0
-
-
-def info(path: Path, as_json: bool, folders: Sequence[Path] = ()) -> None:
-    """Print what the file of a scene holds; raises SceneError."""
+    path, folders = pictures.scene_of(options.path), options.folder
     with working() as work:
         scene = load_scene(path, work.progress, folders)
         studio = {"triangles": FLOOR_TRIANGLES, "lights": LAMPS} if _gets_studio(scene, work, folders) else None
     facts = scene_info(scene) | {"studio": studio}
-    if as_json:
+    if options.json:
         print(json.dumps(facts, indent=2))
-        return
+        return 0
     print_table(_table(path, facts))
     if studio is not None:
         print(
             f"in the window and in pictures, a studio adds {FLOOR_TRIANGLES} triangles, and {LAMPS} lamps in place of "
             "these lights; --no-studio leaves it out"
         )
+    return 0
 
 
 def _gets_studio(scene: Scene, work: Work, folders: Sequence[Path]) -> bool:
@@ -83,23 +79,15 @@ def _table(path: Path, facts: dict[str, Any]) -> Table:
     table.add_column()
     table.add_column(justify="right")
     for name, value in facts.items():
-        if name in ("bounds", "time", "warnings", "light_kinds", "studio"):
-            continue
-        table.add_row(name.replace("_", " "), f"{value:,}")
-        if name == "lights":
-            for alike in facts["light_kinds"]:
-                table.add_row(f"  {_light_kind(alike)}", f"{alike['lights']:,}")
+        if isinstance(value, int):
+            table.add_row(name.replace("_", " "), f"{value:,}")
+        for alike in facts["light_kinds"] if name == "lights" else ():
+            samples = f", {alike['samples']} sample{'s' * (alike['samples'] > 1)}" if alike["kind"] != "point" else ""
+            falloff = f", falloff {alike['falloff']}" if alike["falloff"] != "none" else ""
+            table.add_row(f"  {alike['kind']}{samples}{falloff}", f"{alike['lights']:,}")
     table.add_row("time", "{:g} to {:g} s".format(*facts["time"]))
-    if facts["bounds"] is not None:
-        for name, corner in zip(("least corner", "greatest corner"), facts["bounds"]):
-            table.add_row(name, "  ".join(f"{x:.4g}" for x in corner))
+    for name, corner in zip(("least corner", "greatest corner"), facts["bounds"] or ()):
+        table.add_row(name, "  ".join(f"{x:.4g}" for x in corner))
     for warning in facts["warnings"]:
         say(f"warning: {warning}")
     return table
-
-
-def _light_kind(alike: dict[str, Any]) -> str:
-    """Say in a few words what lights that are alike are."""
-    samples = f", {alike['samples']} sample{'s' * (alike['samples'] > 1)}" if alike["kind"] != "point" else ""
-    falloff = f", falloff {alike['falloff']}" if alike["falloff"] != "none" else ""
-    return f"{alike['kind']}{samples}{falloff}"

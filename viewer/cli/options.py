@@ -24,8 +24,8 @@ from tracer.settings import Settings
 from viewer.cli.arguments import UPS, Parser, before, count, light_at, number, several, size
 from viewer.cli.console import Work
 from viewer.services import stills
-from viewer.state.changes import as_options
 from viewer.state.draw_options import Slice
+from viewer.state.view_state import as_options
 from viewer.util import resources
 from viewer.views.legend import lights_in_words
 
@@ -142,16 +142,14 @@ def check_edits(edits: Edits, scene: Scene) -> None:
         if word in known:
             continue
         option, _, target = word.partition("=")
+        kind = {"--make-static": "moving object", "--make-moving": "static object"}.get(option, "object")
+        names = [one.name for one in things(scene) if kind == "object" or one.moves == (kind == "moving object")]
+        more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+        why = f"no {kind} of this name; there is {', '.join(names[:_LISTED]) or 'none'}{more}"
         if "light" in option:
             why = lights_in_words(len(scene.lights))
         elif option == "--hide-primitive":
             why = f"the scene has the primitives 0 to {scene.primitive_count - 1}"
-        else:
-            kind = {"--make-static": "moving object", "--make-moving": "static object"}.get(option, "object")
-            names = [one.name for one in things(scene) if kind == "object" or one.moves == (kind == "moving object")]
-            more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-            there = f"; there is {', '.join(names[:_LISTED])}{more}" if names else ""
-            why = f"no {kind} of this name{there}"
         raise ValueError(f"{option} {target}: {why}")
 
 
@@ -161,11 +159,11 @@ def light_index(options: Namespace, option: str, number: int, scene: Scene) -> i
     Raises ValueError, in one line, where none has."""
     edits = edits_of(options)
     index = edits.light_index(number)
-    if index is None:
-        raise ValueError(f"{option}{number}: this light is switched off (--without-light {number})")
-    if index >= len(scene.lights):
-        raise ValueError(f"{option}{number}: {lights_in_words(len(scene.lights) + len(edits.lights_off))}")
-    return index
+    if index is not None and index < len(scene.lights):
+        return index
+    off = f"this light is switched off (--without-light {number})"
+    there = lights_in_words(len(scene.lights) + len(edits.lights_off))
+    raise ValueError(f"{option}{number}: {off if index is None else there}")
 
 
 # --- the moment ------------------------------------------------------------------------------------
@@ -218,7 +216,7 @@ def add_size(parser: Parser) -> None:
     parser.add_argument("--size", type=size, default=(512, 512), metavar="WxH", help=help_)
 
 
-def add_settings(parser: argparse.ArgumentParser, holder: type, *names: str, **defaults: Any) -> None:
+def add_settings(parser: argparse._ActionsContainer, holder: type, *names: str, **defaults: Any) -> None:
     """Add the options of settings, as these are declared; `defaults` are those of the command where they differ."""
     for one in settings_of(holder):
         if one.name in names:
@@ -226,7 +224,7 @@ def add_settings(parser: argparse.ArgumentParser, holder: type, *names: str, **d
 
 
 def add_setting(
-    parser: argparse.ArgumentParser,
+    parser: argparse._ActionsContainer,
     one: Setting,
     default: Any,
     parse: Callable[[str], Any] | None = None,
@@ -252,12 +250,13 @@ def add_tracing(parser: Parser, accelerator: str = BVH8, many_lamps: bool = Fals
     `many_lamps`: several kinds of lamps are taken; `zoom_factor`: it is an option."""
     others = ["method", "verify", "samples", "lamp_radius", "lamp_samples"] + ([] if zoom_factor else ["zoom_factor"])
     common = [one.name for one in settings_of(Settings) if one.option and one.name not in others]
-    add_settings(parser, Settings, *common, accelerator=accelerator)
-    add_lamps(parser, many_lamps)
+    group = parser.add_argument_group("how it is traced")
+    add_settings(group, Settings, *common, accelerator=accelerator)
+    add_lamps(group, many_lamps)
     add_meshes(parser)
 
 
-def add_lamps(parser: Parser, many: bool = False) -> None:
+def add_lamps(parser: argparse._ActionsContainer, many: bool = False) -> None:
     """Add what makes lamps of a scene's lights; without it, they are as the scene, or a saved picture, says."""
     for name in ("lamp_radius", "lamp_samples"):
         one = setting_of(Settings, name)

@@ -15,16 +15,15 @@ from tracer.scene.model import Scene
 from tracer.setting import settings_of
 from tracer.settings import Settings
 from viewer.cli import arguments, options
-from viewer.cli.arguments import ChosenView, Parser, view_form
+from viewer.cli.arguments import Parser, view_form
 from viewer.output import capture, commands
 from viewer.services import stills
-from viewer.services.scene_files import find_scene, is_capture
+from viewer.services.scene_loader import find_scene, is_capture
 from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
-from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
-from viewer.state.readings import MOST_RECORDED
+from viewer.state.methods import BY_MODES, SHOWN_BY, default_for
 from viewer.state.view_state import ViewState, Warmup
-from viewer.state.views import View
+from viewer.state.views import MOST_RECORDED, View
 
 _SPECIAL = {"view", "spans", "savings", "caption"}  # whose options are no plain values
 DRAWN = [one for one in settings_of(DrawOptions) if one.option and one.path not in _SPECIAL]
@@ -40,15 +39,16 @@ def add_picture(parser: Parser) -> None:
         f"how shadow rays are culled: {options.METHODS} (default: {DEFAULT_METHOD}, or the method that a view belongs "
         f"to: {', '.join(SHOWN_BY.values())})"
     )
-    parser.add_argument("--method", type=arguments.method, metavar="M", help=help_)
-    add = parser.add_argument_group("what is drawn").add_argument
+    parser.add_argument("--method", type=arguments.method, metavar="METHOD", help=help_)
+    group = parser.add_argument_group("what is drawn")
+    add = group.add_argument
     help_ = (
         f"what to show: {', '.join(map(view_form, View))}. LIGHT is the number of a light, 0 if left out; wipe shows "
         "the traced picture left of a line at this PART of the width, 0 to 1, and the right one on its other side; "
         ":share shows shares of rays, not counts (default: color)"
     )
-    add("--view", type=arguments.view, default=ChosenView(), metavar="V", help=help_)
-    options.add_settings(parser, DrawOptions, *(one.name for one in DRAWN))
+    add("--view", type=arguments.view, default=DrawOptions(), metavar="VIEW", help=help_)
+    options.add_settings(group, DrawOptions, *(one.name for one in DRAWN))
     with_range = ", ".join(view.value for view in View if view.has_range)
     help_ = f"what has the first and the last colour in the views {with_range} (default: as they come)"
     add("--range", type=arguments.value_range, metavar="LOW:HIGH", help=help_)
@@ -75,13 +75,9 @@ def wanted_state(scene: Scene, settings: Settings, given: Namespace) -> ViewStat
     """Return what the options ask for, with a caption that may have fields.
 
     Raises ValueError, in one line, for a moment or a light that the scene does not have."""
-    view, light, wipe, shares = given.view
-    if view.of_light:
-        light = options.light_index(given, f"--view {view.value}:", light, scene)
-    draw = DrawOptions(
-        view=view, light=light, wipe=wipe, shares=shares, legend_at=given.legend_at, savings=given.savings,
-        caption=given.caption,
-    )  # fmt: skip
+    draw = replace(given.view, legend_at=given.legend_at, savings=given.savings, caption=given.caption)
+    if draw.view.of_light:
+        draw = replace(draw, light=options.light_index(given, f"--view {draw.view}:", draw.light, scene))
     for one in DRAWN:
         draw = one.put(draw, getattr(given, one.name))
     draw = draw.with_span(given.range)
@@ -110,20 +106,18 @@ def check_view(settings: Settings, view: View, option: str = "--method") -> None
     """Raise ValueError, in one line, where the method has nothing for a view of what single methods have; `option` is
     the one that names methods."""
     method = Method.parse(settings.method)
-    shows = {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}.get(view)
-    why, instead = "", SHOWN_BY.get(view, BY_MODES)
-    if view is View.CERTIFICATE and (method.adaptive or not method.has_certificates):
-        may = "may make" if method.adaptive else "makes"
-        why, instead = f"the method {settings.method} {may} none", CERTIFIED
-    elif view is View.CUTS and not method.clusters:
-        why = f"the method {settings.method} makes no clusters of lights"
-    elif view.needs_fates and method.clusters:
-        why = f"the method {settings.method} shades by clusters of lights: single lights have no rays"
-        instead = BY_MODES
-    elif shows is not None and not any(name == method.base or method.has(name) for name in shows):
-        why = f"not with the method {settings.method}"
-    if why:
-        raise ValueError(f"--view {view.value}: {why}; give {option} {instead}")
+    names = {method.base, *method.additions}
+    shown = {
+        View.CERTIFICATE: method.has_certificates and not method.adaptive,  # which may make none
+        View.CUTS: method.clusters,
+        View.VOXELS: "voxels" in names,
+        View.CELL_LIGHTS: bool({"lie", "lie-exact"} & names),
+    }
+    if not shown.get(view, True):
+        raise ValueError(f"--view {view}: the method {method} has nothing for it; give {option} {SHOWN_BY[view]}")
+    if view.needs_fates and method.clusters:
+        why = f"the method {method} shades by clusters of lights: single lights have no rays"
+        raise ValueError(f"--view {view}: {why}; give {option} {BY_MODES}")
 
 
 def check_tree(settings: Settings, view: View, scene: Scene) -> None:

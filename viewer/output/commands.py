@@ -25,9 +25,8 @@ from tracer.scene.model import Scene
 from tracer.setting import settings_of
 from tracer.settings import Settings
 from viewer.state import codec
-from viewer.state.changes import as_options
 from viewer.state.draw_options import DrawOptions
-from viewer.state.view_state import ViewState
+from viewer.state.view_state import ViewState, as_options
 from viewer.state.views import View
 from viewer.util import resources
 from viewer.views.wipe import wipe_column

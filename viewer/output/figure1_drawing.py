@@ -109,20 +109,19 @@ def lay_out(figure: Figure, measure: Measure, line: float, width: float, height:
 
     Rules are written out where they find room in letters of full size.  Else they are tips, and letters get smaller
     until all is seen, but not so small that nobody can read them: then the figure is higher than the room."""
-    known, stages = cache(measure), len(figure.stages)
+    known, stages, best = cache(measure), len(figure.stages), (0.0, 1)
     fewest = min(max(1, int(width / (_WIDEST * line))), stages)
-    best = None
     for rules in (True, False):
         for columns in range(fewest, stages + 1):
             drawing = _Sheet(figure, known, line, width, columns, rules).drawing
-            drawing.scale = min(1.0, width / drawing.width, height / drawing.height)
-            if drawing.scale == 1.0:
+            scale = min(1.0, width / drawing.width, height / drawing.height)
+            if scale == 1.0:
                 return drawing
-            if best is None or drawing.scale > best.scale:
-                best = drawing
-    assert best is not None
-    best.scale = min(max(best.scale, _SMALLEST), width / best.width)
-    return best
+            best = max(best, (scale, columns))
+    scale, columns = best
+    drawing = _Sheet(figure, known, line, width / scale, columns, rules=False).drawing
+    drawing.scale = min(1.0, width / drawing.width, max(height / drawing.height, _SMALLEST))
+    return drawing
 
 
 class _Sheet:

@@ -15,7 +15,7 @@ from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator, PercentFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, PercentFormatter
 
 from tracer.experiments import zoom
 from tracer.experiments.experiment import REFERENCE, Results, Row, table
@@ -278,10 +278,13 @@ def sweep_figure(title: str, lines: Sequence[Line]) -> Figure:
     panels = figure.subplots(len(_ROWS), len(columns), squeeze=False, sharex="col", sharey="row")
     for column, (scene, settings) in enumerate(columns):
         mine = [line for line in drawn if (line.scene, line.settings) == (scene, settings)]
-        panels[0][column].set_title("\n".join(filter(None, (scene, settings))), fontsize=15.0)
-        for row, (_, value) in enumerate(_ROWS):
-            _draw_sizes(panels[row][column], mine, methods, value)
-        _name_sizes(panels[-1][column], mine)
+        panels[0][column].set_title("\n".join(filter(None, (scene, *settings.split(", ")))), fontsize=15.0)
+        for (_, value), panel in zip(_ROWS, panels[:, column], strict=True):
+            for number, method in enumerate(methods):
+                of_method = [line for line in mine if line.method == method]  # the smallest first
+                sizes = [f"{line.width}×{line.height}" for line in of_method]
+                panel.plot(sizes, [value(line) for line in of_method], label=method, markersize=8, **look(number))
+        panels[-1][column].tick_params(axis="x", labelsize=12.0, labelrotation=30.0)
     for row, (label, _) in enumerate(_ROWS):
         panels[row][0].set_ylabel(label)
         if row < 2:
@@ -292,24 +295,3 @@ def sweep_figure(title: str, lines: Sequence[Line]) -> Figure:
     figure.legend(handles, names, loc="outside right upper")
     figure.align_ylabels()
     return figure
-
-
-def _draw_sizes(panel: Axes, lines: Sequence[Line], methods: Sequence[str], value: Callable[[Line], float]) -> None:
-    for number, method in enumerate(methods):
-        of_method = sorted((line for line in lines if line.method == method), key=_pixels)
-        sizes, values = [_pixels(line) for line in of_method], [value(line) for line in of_method]
-        panel.plot(sizes, values, label=method, markersize=8, **look(number))
-
-
-def _name_sizes(panel: Axes, lines: Sequence[Line]) -> None:
-    """Sizes on a scale of pixels, on which each step of a pyramid is as wide as the others."""
-    sizes = {_pixels(line): f"{line.width}×{line.height}" for line in lines}
-    panel.set_xscale("log", base=2)
-    panel.xaxis.set_minor_locator(NullLocator())
-    panel.set_xticks(list(sizes))
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: sizes.get(round(x), "")))
-    panel.tick_params(axis="x", labelsize=12.0, labelrotation=30.0 if len(sizes) > 2 else 0.0)
-
-
-def _pixels(line: Line) -> int:
-    return line.width * line.height

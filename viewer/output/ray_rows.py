@@ -51,18 +51,21 @@ SAID: dict[Verdict, str] = {
 class Shown(StrEnum):
     """Which shadow rays are to be seen."""
 
-    meaning: str
+    ALL = "all"
+    TRACED = "traced"
+    UNTRACED = "untraced"
+    BLOCKED = "blocked"
+    WRONG = "wrong"
 
-    def __new__(cls, value: str, meaning: str = "") -> Shown:
-        made = str.__new__(cls, value)
-        made._value_, made.meaning = value, meaning
-        return made
-
-    ALL = "all", "all lights, also those that the surface faces away from"
-    TRACED = "traced", "shadow rays that were traced through the scene"
-    UNTRACED = "untraced", "shadow rays that were due and not traced: culled, dynamic only, candidates and cache"
-    BLOCKED = "blocked", "shadow rays that do not reach their light"
-    WRONG = "wrong", "shadow rays with a wrong answer"
+    @property
+    def meaning(self) -> str:
+        return {
+            Shown.ALL: "all lights, also those that the surface faces away from",
+            Shown.TRACED: "shadow rays that were traced through the scene",
+            Shown.UNTRACED: "shadow rays that were due and not traced: culled, dynamic only, candidates and cache",
+            Shown.BLOCKED: "shadow rays that do not reach their light",
+            Shown.WRONG: "shadow rays with a wrong answer",
+        }[self]
 
 
 class Filter(NamedTuple):
@@ -80,9 +83,7 @@ class Filter(NamedTuple):
             Shown.BLOCKED: (rays.verdict != AWAY) & ~rays.lit,
             Shown.WRONG: rays.wrong,
         }[self.shown]
-        if self.light is not None:
-            kept = kept & (rays.light == self.light)
-        return np.flatnonzero(kept)
+        return np.flatnonzero(kept if self.light is None else kept & (rays.light == self.light))
 
 
 GREY: Color = (0.52, 0.55, 0.60)
@@ -92,21 +93,15 @@ PARTLY: Color = (0.90, 0.55, 0.20)
 WRONG: Color = (1.0, 0.0, 0.66)
 
 
-def color_of(rays: ShadowRays, place: int) -> Color:
-    """Yellow for what is lit, blue for what is dark, grey for what was not asked, magenta for what is wrong."""
-    if rays.wrong[place]:
-        return WRONG
-    if rays.verdict[place] == AWAY:
+def color_of(rays: ShadowRays, places: Places) -> Color:
+    """Yellow for what is lit, blue for what is dark, orange where both are, grey for what was not asked, magenta for
+    what is wrong."""
+    due = places[rays.verdict[places] != AWAY]
+    if not len(due):
         return GREY
-    return LIT if rays.lit[place] else DARK
-
-
-def color_of_all(rays: ShadowRays, places: NDArray[np.int64]) -> Color:
-    """The colour of those that share one; orange where some are lit and others are not."""
-    colors = {color_of(rays, place) for place in places.tolist()} - {GREY}
-    if WRONG in colors:
+    if rays.wrong[due].any():
         return WRONG
-    return PARTLY if len(colors) > 1 else next(iter(colors), GREY)
+    return LIT if rays.lit[due].all() else PARTLY if rays.lit[due].any() else DARK
 
 
 MOST_LIGHTS = 12
@@ -149,89 +144,81 @@ class RayRows:
         """The primary ray's row."""
         return [self._path(number) for number in self.tree.children.get(-1, ())]
 
-    # --- rays on their way -----------------------------------------------------------------------
-
     def _path(self, number: int) -> Row:
+        """A ray on its way, and below it its shadow rays and the rays that it sends on."""
         ray = self.tree.rays[number]
-        return Row(("ray", number), self._path_text(ray), self._path_tip(ray), PATH_COLOR, number,
-                   below=lambda: self._below(ray))  # fmt: skip
-
-    def _path_text(self, ray: PathRay) -> str:
-        if ray.primitive < 0:
-            return f"{ray.kind.value} ray: leaves the scene"
-        return f"{ray.kind.value} ray: {self.name(ray.primitive)} at {ray.t:.4g}"
-
-    def _path_tip(self, ray: PathRay) -> str:
-        parts = [
+        met = "leaves the scene" if ray.primitive < 0 else f"{self.name(ray.primitive)} at {ray.t:.4g}"
+        tip = [
             f"ray {ray.number}, bounce {ray.bounce}; weight {ray.weight.max():.3g}; "
             f"{count(ray.steps)} steps and {count(ray.tests)} tests, traced alone",
             "adds ({:.3g}, {:.3g}, {:.3g}) to the pixel".format(*ray.light),
         ]
         if ray.shadows is not None:
-            parts.append("shadow rays: " + self.summary(ray.shadows, np.arange(len(ray.shadows.light))))
-        return "\n".join(parts)
+            tip.append("shadow rays: " + self.summary(ray.shadows, np.arange(len(ray.shadows.light))))
+        text, key = f"{ray.kind.value} ray: {met}", ("ray", number)
+        return Row(key, text, "\n".join(tip), PATH_COLOR, number, below=lambda: self._below(ray, key))
 
-    def _below(self, ray: PathRay) -> list[Row]:
-        found: list[Row] = []
-        if ray.shadows is not None:
-            places = self._filter.places(ray.shadows)
-            lights = np.unique(ray.shadows.light[places])
-            of_lights = self._lights if len(lights) <= MOST_LIGHTS else self._fates
-            found += of_lights(ray, ray.shadows, places, ("ray", ray.number))
+    def _below(self, ray: PathRay, key: Key) -> list[Row]:
+        found, s = [], ray.shadows
+        if s is not None:
+            places = self._filter.places(s)
+            many = len(np.unique(s.light[places])) > MOST_LIGHTS
+            found = (self._fates if many else self._lights)(ray, s, places, key)
         return found + [self._path(number) for number in self.tree.children.get(ray.number, ())]
 
-    # --- shadow rays -----------------------------------------------------------------------------
+    # --- shadow rays: by light, by what became of them, and one by one ---------------------------------
 
     def _lights(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
-        """A row for each light: of a lamp with its samples below."""
-        cuts = np.flatnonzero(np.diff(s.light[places])) + 1
-        return [self._light(ray, s, own, above) for own in np.split(places, cuts) if len(own)]
-
-    def _light(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> Row:
-        light = int(s.light[places[0]])
-        key, name, whole = (*above, "light", light), self._name_of_light(light), s.of_light(light)
-        if whole.stop - whole.start == 1:
-            return self._single(ray, s, int(places[0]), key, name)
-        fates = self._by_fate(s, places, True)
-        if len(fates) > 1:
-            text, color = f"{name}: {self.summary(s, places)}", color_of_all(s, places)
-            return Row(key, text, "", color, ray.number, places, lambda: self._fates(ray, s, places, key))
-        ((_, _, by, _, _),) = fates
-        text, first = f"{name}: {count(len(places))} samples {self.fate(s, places, by)}", int(places[0])
-        below = None if s.verdict[first] == AWAY else lambda: self._samples(ray, s, places, key)
-        return Row(key, text, MEANING[VERDICTS[s.verdict[first]]], color_of(s, first), ray.number, places, below)
+        """A row for each light."""
+        own = np.split(places, np.flatnonzero(np.diff(s.light[places])) + 1) if len(places) else []
+        return [self._group(ray, s, of, (*above, "light", int(s.light[of[0]])), self._light(s, of[0])) for of in own]
 
     def _fates(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
-        """A row for those with each fate: the verdict, whether the light arrives, and of one light also the object that
-        blocks it."""
+        """A row for those with each fate."""
         one, rows = len(np.unique(s.light[places])) == 1, []
-        for fate, numbers in sorted(self._by_fate(s, places, one).items()):
-            same, key, first = np.array(numbers), (*above, "fate", *fate), numbers[0]
-            if len(same) == 1:
-                name = self._name_of_light(int(s.light[first]))
-                rows.append(self._single(ray, s, first, key, self._name_of_sample(s, first, one, name)))
-                continue
-            text = f"{count(len(same))} {'samples' if one else 'rays'} {self.fate(s, same, fate[2])}"
-            below = partial(self._samples if one else self._lights, ray, s, same, key)
-            rows.append(Row(key, text, MEANING[VERDICTS[fate[0]]], color_of(s, first), ray.number, same, below))
+        for fate, same in sorted(self._by_fate(s, places).items()):
+            name = "" if len(same) > 1 else self._sample(s, same[0]) if one else self._light(s, same[0])
+            rows.append(self._group(ray, s, np.array(same), (*above, "fate", *fate), name))
         return rows
 
-    def _by_fate(self, s: ShadowRays, places: Places, one: bool) -> dict[Fate, list[int]]:
+    def _samples(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
+        """A row for each sample of a light."""
+        return [self._single(ray, s, place, (*above, place), self._sample(s, place)) for place in places.tolist()]
+
+    def _group(self, ray: PathRay, s: ShadowRays, places: Places, key: Key, name: str) -> Row:
+        """A row for several: of those alike what they share, else how many have which fate; of one its own."""
+        first, named = int(places[0]), f"{name}: " if name else ""
+        one = len(np.unique(s.light[places])) == 1
+        if len(places) == 1:
+            return self._single(ray, s, first, key, name)
+        fates = list(self._by_fate(s, places))
+        if len(fates) > 1:
+            text, tip, below = f"{named}{self.summary(s, places)}", "", partial(self._fates, ray, s, places, key)
+        else:
+            what = "samples" if one else "rays"
+            text = f"{named}{count(len(places))} {what} {self.fate(s, places, fates[0][2])}"
+            tip = MEANING[VERDICTS[s.verdict[first]]]
+            below = partial(self._samples if one else self._lights, ray, s, places, key)
+        away = one and (s.verdict[places] == AWAY).all()
+        return Row(key, text, tip, color_of(s, places), ray.number, places, None if away else below)
+
+    def _single(self, ray: PathRay, s: ShadowRays, place: int, key: Key, name: str) -> Row:
+        places = np.array([place])
+        text = f"{name}: {self.fate(s, places)}"
+        return Row(key, text, self._tip(s, place), color_of(s, places), ray.number, places)
+
+    def _by_fate(self, s: ShadowRays, places: Places) -> dict[Fate, list[int]]:
         """The places with each fate; what blocks them counts where they are of one light."""
         fates: dict[Fate, list[int]] = {}
+        one = len(np.unique(s.light[places])) == 1
         for place in places.tolist():
-            by = self._object(s, place) if one and s.verdict[place] != AWAY and not s.lit[place] else ""
+            blocked = one and s.verdict[place] != AWAY and not s.lit[place] and s.blocker[place] >= 0
+            by = self._scene.name_of(int(s.blocker[place])) if blocked else ""
             fate = int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place]), s.known.get(place, "")
             fates.setdefault(fate, []).append(place)
         return fates
 
-    def _samples(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
-        names = ((place, self._name_of_sample(s, place, True, "")) for place in places.tolist())
-        return [self._single(ray, s, place, (*above, place), name) for place, name in names]
-
-    def _single(self, ray: PathRay, s: ShadowRays, place: int, key: Key, name: str) -> Row:
-        places = np.array([place])
-        return Row(key, f"{name}: {self.fate(s, places)}", self._tip(s, place), color_of(s, place), ray.number, places)
+    # --- words -----------------------------------------------------------------------------------------
 
     def fate(self, s: ShadowRays, places: Places, by: str = "") -> str:
         """What became of a shadow ray in words, or of several with the same fate, `by` the object that blocks them."""
@@ -246,9 +233,6 @@ class RayRows:
         if verdict is Verdict.TRACED:
             text += f"; {several(s.steps[places].sum(), 'step')}, {several(s.tests[places].sum(), 'test')}"
         return text
-
-    def _object(self, s: ShadowRays, place: int) -> str:
-        return self._scene.name_of(int(s.blocker[place])) if s.blocker[place] >= 0 else ""
 
     def _blocked(self, s: ShadowRays, place: int) -> str:
         return f"blocked by {self.name(int(s.blocker[place]))}" if s.blocker[place] >= 0 else "in shadow by its mode"
@@ -280,18 +264,15 @@ class RayRows:
             parts.append(f"{count(len(same))} {SAID[VERDICTS[number]]}" + (f" ({count(lit)} lit)" if lit else ""))
         return ", ".join(parts)
 
-    # --- names -----------------------------------------------------------------------------------
-
     def name(self, primitive: int) -> str:
         """A primitive as people find it again."""
         return primitive_in_words(self._scene, primitive)
 
-    def _name_of_light(self, light: int) -> str:
-        return named_light(self._scene.lights, light)
+    def _light(self, s: ShadowRays, place: int) -> str:
+        return named_light(self._scene.lights, int(s.light[place]))
 
-    def _name_of_sample(self, s: ShadowRays, place: int, one: bool, light: str) -> str:
-        whole = s.of_light(int(s.light[place]))
-        return f"sample {place - whole.start}" if one and whole.stop - whole.start > 1 else light
+    def _sample(self, s: ShadowRays, place: int) -> str:
+        return f"sample {place - s.of_light(int(s.light[place])).start}"
 
 
 def unfolded(rows: list[Row], is_open: Callable[[Row], bool], level: int = 0) -> Iterator[tuple[int, Row]]:

@@ -81,7 +81,15 @@ def table_1(verified: bool) -> list[Column[Row]]:
     return [column for column in TABLE_1 if column is not (SPEED_UP if verified else WRONG)]
 
 
+def lamps_in_words(row: LampRow) -> tuple[str, str]:
+    """Return their radius and their samples."""
+    radius = "scene's" if row.lamp_radius is None else f"{row.lamp_radius:g}"
+    return radius, "scene's" if row.lamp_samples is None else str(row.lamp_samples)
+
+
 LAMPS: tuple[Column[LampRow], ...] = (
+    Column("radius", "of the lamps", lambda row: lamps_in_words(row)[0]),
+    Column("samples", "of each lamp", lambda row: lamps_in_words(row)[1]),
     METHOD,
     Column("frame, median", "time of a frame", lambda row: f"{1000.0 * row.frame_seconds:,.1f} ms"),
     Column("speed-up", f"over {REFERENCE}, all frames", lambda row: f"{row.speed_up:.2f}"),

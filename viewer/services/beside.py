@@ -19,7 +19,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Cancelled
 from tracer.statistics import FrameStatistics
 from viewer.services import refinement
-from viewer.services.render_request import Parts, RenderRequest, Traced
+from viewer.services.render_request import Parts, RenderRequest, Spare, Traced
 from viewer.state.methods import NO_CULLING
 from viewer.state.savings import InTurn, Spread
 from viewer.util.messages import one_line
@@ -185,7 +185,7 @@ class Baseline:
     """Measures what is shown.  `moving` says that nothing can be measured, as pictures keep coming."""
 
     def __init__(
-        self, in_spare_time: Callable[[Rounds | None], None], clock: Callable[[], float] = time.monotonic
+        self, in_spare_time: Callable[[Spare | None], None], clock: Callable[[], float] = time.monotonic
     ) -> None:
         """`in_spare_time` has rounds measured by the render thread, until it is given others or None."""
         self._in_spare_time, self._clock = in_spare_time, clock
@@ -234,7 +234,7 @@ class Baseline:
         rounds = self._known.setdefault(subject, Rounds(subject))
         if rounds is not self._at_work and not rounds.ended:
             self._at_work = rounds
-            self._in_spare_time(rounds)
+            self._in_spare_time(rounds.step)
 
     def _leave(self) -> None:
         """The picture is another: what was measured of the last stays known, without the renderers that did so."""

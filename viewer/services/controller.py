@@ -38,7 +38,7 @@ from viewer.services.scene_table import SceneTable
 from viewer.services.settings_controller import SettingsController
 from viewer.services.undo import Undo
 from viewer.state import codec
-from viewer.state.methods import fitting_view
+from viewer.state.methods import remark_on
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -68,10 +68,7 @@ class Controller:
         self.motion = motion = Motion(session, preferences, notices, runs.refuses)
         self.comparing = Comparing(session, scheduler, notices)
         self.bookmarks = bookmarks = Bookmarks(session, preferences, notices, settings.save)
-        self.undo = undo = Undo(
-            session, motion, notices, runs.refuses,
-            lambda meshes: self.loader.read_as(meshes), lambda: self.loader.load_job is not None,
-        )  # fmt: skip
+        self.undo = undo = Undo(session, motion, notices, runs.refuses)
         self.presets = Presets(session, preferences, notices, settings.save, runs.refuses, undo.begin_step)
         self.inspector = Inspector(selection, renderer.query)
         self.navigator = navigator = FrameNavigator(
@@ -131,8 +128,8 @@ class Controller:
             self.undo.begin_step("the place of a saved picture")
         if place is not None:
             self.restore(place)
-        else:
-            said = f"{said}. {self._fit_view()}".removesuffix(". ")
+        elif session.scene is not None:
+            said = f"{said}. {remark_on(session.scene.lights, session.settings)}".removesuffix(". ")
         if flown is not None:  # while the scene was waiting for its kernels
             session.change(camera=flown)
         session.playing, self.reloaded = playing and session.animated, arrival.again
@@ -140,18 +137,17 @@ class Controller:
 
     def take_frame(self) -> None:
         """Take the newest frame, of a run that is under way or else as it was asked for."""
-        for complaint in self.renderer.take_complaints():
-            self.notices.report(complaint)
-        failed = self.renderer.take_failure()
-        if failed is not None:
-            self.notices.report(failed)
+        problems, frame_failed = self.renderer.take_problems()
+        for problem in problems:
+            self.notices.report(problem)
+        if frame_failed:
             self.session.playing = False
             self.scheduler.give_up()
         run = self.runs.take_progress()
         if run.ended:
             self.scheduler.trace_once_more()  # else the world might stay where the run has put it
         if run.picture is not None:
-            self.scheduler.show(run.picture)
+            self.scheduler.traced = run.picture
             frame = run.picture.frame
         else:
             newest = self.scheduler.take()
@@ -196,14 +192,6 @@ class Controller:
         busy = busy or not self.scheduler.rests or self.scheduler.refines_lamps or not wanted
         self.baseline.update(self.traced, second, self.motion.is_animating, busy)
 
-    def _fit_view(self) -> str:
-        """Show the picture where the view has nothing to show in the scene that has just been opened; returns what is
-        to be said of it, and of the method there."""
-        session = self.session
-        view, said = fitting_view(session.draw.view, session.settings, session.scene.lights if session.scene else ())
-        session.set_draw(view=view)
-        return said
-
     # --- going elsewhere -------------------------------------------------------------------------
 
     def reset_modes(self) -> None:
@@ -240,9 +228,10 @@ class Controller:
         self.undo.without_undo(lambda: self.session.take(now))
         self.renderer.use(renderer, fresh=False)
         self.history.forget_modes(blank=False)
-        self.scheduler.take_edits(same)
+        self.scheduler.forget_modes()
         self.baseline.forget()
-        if not same:
+        if not same:  # primitives and lights have other numbers: the newest frame means nothing any more
+            self.scheduler.traced = None
             self.selection.update_for_edits(before, now)
             self.reloaded = True
 

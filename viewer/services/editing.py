@@ -3,8 +3,8 @@
 `Session.edits` says what is wanted; `apply` brings it about on the render thread, which alone may touch the world.
 Lights that move and dynamic objects that are hidden only change the scene of a renderer, which drops what no longer
 holds (`Renderer.scene`).  All else takes another renderer, with trees of its own where geometry is another.  The
-renderer of the scene as it was read is kept, with all that it knows, and so are those used last.  What edits change is
-seen by comparing the picture with the one before them.
+renderer of the scene as it was read is kept, with all that it knows.  What edits change is seen by comparing the
+picture with the one before them.
 """
 
 from __future__ import annotations
@@ -24,9 +24,6 @@ from viewer.state.notices import Notices
 from viewer.state.session import Session
 from viewer.util.messages import KNOWN, Failure, failure
 
-KEPT = 2
-"""Renderers that are kept besides that of the scene as it was read."""
-
 Show = Callable[[Edited, Renderer], None]
 
 
@@ -37,40 +34,16 @@ def makes(edits: Edits, scene: Scene) -> Hashable:
     return replace(edits, moved_lights=(), hidden=edits.hidden - in_place)
 
 
-class Renderers:
-    """Renderers by what their scenes are made of, those used last at the end, and the `first`: of the scene as it was
-    read.  When they are `outdated`, all modes have been forgotten since, but those of the one in use."""
-
-    def __init__(self, first: Renderer) -> None:
-        self.first, self.outdated = first, False
-        self._others: dict[Hashable, Renderer] = {}
-
-    def find(self, made_of: Hashable, used: Renderer) -> Renderer | None:
-        """Return the renderer of a scene, with no modes that were to be forgotten while another was in `use`."""
-        if self.outdated:
-            self.outdated = False
-            self._others = {kept: renderer for kept, renderer in self._others.items() if renderer is used}
-            if self.first is not used:
-                self.first.reset_modes()
-        return self.first if made_of == NO_EDITS else self._others.get(made_of)
-
-    def keep(self, made_of: Hashable, renderer: Renderer) -> None:
-        if renderer is not self.first:
-            self._others.pop(made_of, None)
-            self._others[made_of] = renderer
-            if len(self._others) > KEPT:
-                del self._others[next(iter(self._others))]
-
-
 class EditTask:
     """Makes the edits on the render thread; then `found` is set, or `problem`, unless it was cancelled.
 
     From its beginning on the renderer's scene may be another than the session's: no picture must be asked for until it
     is `done`, and what it has `found` is taken up."""
 
-    def __init__(self, shown: Edited, edits: Edits, renderers: Renderers, settings: Settings) -> None:
+    def __init__(self, shown: Edited, edits: Edits, first: Renderer, forgets: bool, settings: Settings) -> None:
+        """`first` is the renderer of the scene as it was read, whose modes it `forgets` if it is not in use."""
         self.scene, self._shown, self._edits = shown.original, shown, edits
-        self._renderers, self._settings = renderers, settings
+        self._first, self._forgets, self._settings = first, forgets, settings
         self.done = False
         self.found: tuple[Edited, Renderer] | None = None
         self.problem: Failure | None = None
@@ -89,14 +62,15 @@ class EditTask:
             if cancelled():
                 raise Cancelled("cancelled")
 
+        if self._forgets and self._first is not before:
+            self._first.reset_modes()
         made, made_of = edited(self.scene, self._edits), makes(self._edits, self.scene)
-        renderer = self._renderers.find(made_of, before)
-        if renderer is None:
+        if made_of in (NO_EDITS, makes(self._shown.edits, self.scene)):
+            renderer = self._first if made_of == NO_EDITS else before
+            renderer.scene = renderer.world.scene = made.scene
+        else:
             renderer = Renderer(made.scene, self._settings, progress)
             carry_modes(before, self._shown, renderer, made)
-        else:
-            renderer.scene = renderer.world.scene = made.scene
-        self._renderers.keep(made_of, renderer)
         return made, renderer
 
 
@@ -118,13 +92,14 @@ class Editing:
         could be asked about what is shown.  What changes within `without_undo` is no step of undo."""
         self._session, self._renderer, self._notices = session, renderer, notices
         self._locked, self._show, self._without_undo, self._again = locked, show, without_undo, again
-        self._renderers: Renderers | None = None
+        self._first: Renderer | None = None
+        self._forgets = False  # whether all modes have been forgotten, those of the first renderer as well
         self._task: EditTask | None = None
         self.before: Side | None = None
 
     def enter(self, renderer: Renderer) -> None:
         """Begin with another scene, whose renderer this is."""
-        self._renderers, self._task, self.before = Renderers(renderer), None, None
+        self._first, self._forgets, self._task, self.before = renderer, False, None, None
 
     @property
     def at_work(self) -> bool:
@@ -138,9 +113,8 @@ class Editing:
         return self.at_work or (shown is not None and shown.edits != self._session.edits)
 
     def forget_modes(self) -> None:
-        """Let what is known of shadows in scenes with other edits than these be forgotten."""
-        if self._renderers is not None:
-            self._renderers.outdated = True
+        """Let what is known of shadows in the scene as it was read be forgotten, too, if that is not shown."""
+        self._forgets = True
 
     @property
     def now(self) -> Edits:
@@ -174,11 +148,12 @@ class Editing:
                 seen = False  # of this scene, nothing yet
             else:
                 self._again()
-        shown, renderers = session.edited, self._renderers
-        if self._task is None and seen and not running and shown is not None and renderers is not None:
+        shown, first = session.edited, self._first
+        if self._task is None and seen and not running and shown is not None and first is not None:
             if shown.edits != session.edits:
-                self._task = EditTask(shown, session.edits, renderers, session.settings)
-                self._renderer.perform(self._task)
+                self._task = EditTask(shown, session.edits, first, self._forgets, session.settings)
+                self._forgets = False
+                self._renderer.perform(self._task.work)
 
     def _give_up(self) -> None:
         if self._session.edited is not None:

@@ -24,9 +24,8 @@ from viewer.services.render_request import RenderRequest, Traced, Warmup, as_ask
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
 from viewer.state.methods import NO_CULLING, with_base
-from viewer.state.readings import can_draw, records_fates, records_lights
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
+from viewer.state.views import View, can_draw, records_fates, records_lights
 
 
 @dataclass(frozen=True)
@@ -88,10 +87,6 @@ class FrameScheduler:
         self.traced = traced
         return traced
 
-    def show(self, traced: Traced) -> None:
-        """Take a frame that was not asked for here; what should be seen is asked for again after it."""
-        self.traced, self._asked = traced, None
-
     def record_light(self) -> None:
         """Have the chosen light recorded for the newest frame, where the view needs it and the frame lacks it, as there
         are too many lights to record all of them in every frame."""
@@ -115,15 +110,6 @@ class FrameScheduler:
         self.budget.forget()
         self.forget_modes()
 
-    def take_edits(self, same: bool) -> None:
-        """Trace the scene with other edits; `same` says that primitives and lights have the numbers that they had.
-
-        If they have not, the newest frame means nothing any more."""
-        if not same:
-            self.traced = None
-        self._asked = None
-        self.forget_modes()
-
     def trace_once_more(self) -> None:
         """Trace what was traced last once more."""
         self._serial += 1
@@ -134,7 +120,7 @@ class FrameScheduler:
             self.trace_once_more()
 
     def forget_modes(self) -> None:
-        """Note that nothing is known about shadows any more."""
+        """Note that nothing is known about shadows any more, and trace what was traced last once more."""
         self.refinement.forget()
         self.trace_once_more()
 
@@ -172,7 +158,9 @@ class FrameScheduler:
         coarse = inputs.moving or self._coarse_first
         self._refines = self._refines and not coarse and not inputs.playing
         wanted = self._next_request(coarse)
-        made = self._asked or self._whole_with(wanted.samples)
+        made = self._asked
+        if made is None and self.traced is not None and self.samples_shown >= wanted.samples:
+            made = self.traced.request  # it holds what is wanted already
         if made is None or not made.covers(wanted):
             self._asked = wanted
             self._thread.submit(wanted)
@@ -193,7 +181,7 @@ class FrameScheduler:
             settings, samples = replace(settings, lamp_samples=lamp_samples), 1
         return RenderRequest(
             now.state.time, now.camera, settings, plan.divisor, self._serial,
-            refinement.SECONDS if self._refines else 0.0, samples, self._second,
+            refinement.SECONDS if self._refines else 0.0, samples, self._until_ready(now.second),
             parts=plan.parts, quick=coarse or now.playing, focus=now.focus,
             warmup=self._frozen[1] if self._frozen is not None and self.is_frozen else None,
         )  # fmt: skip
@@ -217,14 +205,10 @@ class FrameScheduler:
         """That a frame may take until some of it is shown: half of it where each is traced twice."""
         return (0.5 if self.inputs.second else 1.0) / self.inputs.state.pace.target_fps
 
-    @property
-    def _second(self) -> str:
-        return self._until_ready(self.inputs.second) if self.inputs.second else ""
-
     def _until_ready(self, method: str) -> str:
         """The method, or the one without culling until what makes certificates has been compiled: the picture is the
         same."""
-        waits = not self.inputs.ready and Method.parse(method).has_certificates
+        waits = bool(method) and not self.inputs.ready and Method.parse(method).has_certificates
         return with_base(method, NO_CULLING) if waits else method
 
     def _next_lamp_samples(self, coarse: bool) -> int:
@@ -252,14 +236,10 @@ class FrameScheduler:
             certificate_seconds=now.state.pace.certificate_share * self._frame_seconds,
         )
 
-    def _whole_with(self, samples: int) -> RenderRequest | None:
-        """Return what the newest frame answers, if it is whole and has so many samples a pixel."""
-        return self.traced.request if self.traced is not None and self.samples_shown >= samples else None
-
     def _is_of_inputs(self, asked: RenderRequest) -> bool:
         """Return whether a request is for what should be seen now, however finely."""
         now = self.inputs
-        wanted = now.state.time, now.camera, self._second, as_asked(self.settings, asked.settings)
+        wanted = now.state.time, now.camera, self._until_ready(now.second), as_asked(self.settings, asked.settings)
         return wanted == (asked.time, asked.camera, asked.second, asked.settings)
 
     # --- what the newest frame is -------------------------------------------------------------------
@@ -276,9 +256,8 @@ class FrameScheduler:
     def adds_samples(self) -> bool:
         """Whether the frame that was asked for is there, and more samples a pixel are to come."""
         asked = self._asked
-        if asked is None or asked is self._failed or self.awaits:
-            return False
-        return self.samples_shown < asked.samples
+        comes = asked is not None and asked is not self._failed and not self.awaits
+        return comes and asked is not None and self.samples_shown < asked.samples
 
     @property
     def rests(self) -> bool:

@@ -29,10 +29,9 @@ from viewer.services.undo import Undo
 from viewer.state.notices import Notices
 from viewer.state.picking import Pick
 from viewer.state.pixels import Point, Zoom
-from viewer.state.readings import has_modes_of_cells
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
+from viewer.state.views import View, has_modes_of_cells
 
 CAPACITY = 600
 """Frames in the plots."""
@@ -187,7 +186,6 @@ class FrameHistory(Plots):
         """Forget who set which mode; `blank` says that no modes are left from frames before."""
         self._origins: dict[Key, ModeOrigins] = {}
         self._lights: dict[Key, NDArray[np.float64]] = {}
-        self._dropped: set[Key] = set()
         self._blank = blank
         self._repeats = {} if blank else dict.fromkeys(self._repeats, (None, 0))
 
@@ -243,13 +241,11 @@ class FrameHistory(Plots):
         key = _key(frame)
         if traced.request.divisor == 1:
             self._shown = key
-        blank = self._blank and key not in self._dropped
-        origins = self._origins.pop(key, None) or ModeOrigins(frame.lights, blank=blank)
+        origins = self._origins.pop(key, None) or ModeOrigins(frame.lights, blank=self._blank)
         self._origins[key] = origins  # the newest last
         if len(self._origins) > MOST_ORIGINS:
-            oldest = next(iter(self._origins))
-            del self._origins[oldest]
-            self._dropped.add(oldest)
+            del self._origins[next(iter(self._origins))]
+            self._blank = False  # should that come again, it would have modes from before
         lights, before = scene.light_positions(frame.time), self._lights.get(key)
         moved = None if before is None or len(before) != len(lights) else (lights != before).any(axis=1)
         self._lights[key] = lights
@@ -310,11 +306,9 @@ class FrameNavigator:
             self._notices.say(f"picture {number} is no longer kept: only the last {MOST_RECORDS:,} are")
             return
         self.go_to(record.state, f"picture {number}", record.size)
-        said = ": modes are learnt anew" if self._depends_on_modes else ": the same picture, bit for bit"
-        if record.size != self._scheduler.full_size:
-            said = ", though its picture had {} x {} pixels".format(*record.size)
-        elif record.state.draw.view is View.TREE:
-            said = f", though {BUILT}"
+        said = ": the same picture, bit for bit" if record.size == self._scheduler.full_size else ""
+        said = ": modes are learnt anew" if self._depends_on_modes else said
+        said = f", though {BUILT}" if record.state.draw.view is View.TREE else said
         self._notices.say(f"{self.name_of(number)}, again{said}")
 
     def go_to_experiment(self, run: Experiment, number: int) -> None:
@@ -327,8 +321,9 @@ class FrameNavigator:
             return
         settings = replace(run.settings, method=run.shown, samples=session.settings.samples)
         state = replace(session.state, time=run.times[number], camera=None, settings=settings)
-        self.go_to(state, f"frame {number} of the experiment", (settings.width, settings.height))
-        self._notices.say(self.name_in_experiment(run, number))
+        name = f"frame {number} of the experiment"
+        self.go_to(state, name, (settings.width, settings.height))
+        self._notices.say(f"{name}, by {run.shown}")
 
     def go_to(
         self,
@@ -373,18 +368,10 @@ class FrameNavigator:
 
     def name_of(self, number: int) -> str:
         """Return what a frame is called: by its number in the plots, and in the scene's path, where it is another."""
-        record = self._history.records.get(number)
-        return f"picture {number}{self._of_path(record.state.time) if record is not None else ''}"
-
-    def name_in_experiment(self, run: Experiment, number: int) -> str:
-        """Return what a frame of an experiment is called, and in the scene's path where the experiment has others."""
-        scene = self._session.scene
-        if scene is None or not run.is_of(scene) or len(run.times) == scene.frames:
-            return f"frame {number} of the path, by {run.shown}"
-        return f"frame {number} of the experiment, by {run.shown}{self._of_path(run.times[number])}"
-
-    def _of_path(self, then: float) -> str:
-        return f", frame {self._session.frame_at(then)} of the path" if self._session.animated else ""
+        record, session = self._history.records.get(number), self._session
+        if record is None or not session.animated:
+            return f"picture {number}"
+        return f"picture {number}, frame {session.frame_at(record.state.time)} of the path"
 
     @property
     def _depends_on_modes(self) -> bool:

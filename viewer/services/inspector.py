@@ -1,22 +1,16 @@
 """What is selected, and what the renderer says of it or, until something is, of the pixel under the pointer.
 
-`inspect_pixel` is a pure function of the renderer and a pixel of a frame, asked as a query: what light reaches it, and
-why its shadow rays were culled or traced.  An answer speaks of one moment of the scene, in world space, and so it stays
+`inspect_pixel` is a pure function of the renderer and a pixel of a frame, asked as a query: why its shadow rays were
+culled or traced.  An answer speaks of one moment of the scene, in world space, and so it stays
 right while the camera moves and the next is on its way.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from tracer.explanation import Explanation, explain, outline
 from tracer.frame import Frame
 from tracer.mode_origins import NEVER, Origins
 from tracer.reasons import TaughtBy, Why
@@ -29,8 +23,6 @@ from viewer.state.picking import Pick, pick, pick_part, pick_primitive, pixel_of
 from viewer.state.pixels import Point, pixel_at
 from viewer.state.session import Session
 
-MOST_OCCLUDERS = 8  # of one light that are named and drawn
-MOST_LIGHTS = 40  # that are drawn, and listed at once
 Pixel = tuple[int, int]
 
 
@@ -116,36 +108,20 @@ class Selection:
 # --- what the renderer says of it -----------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
-class Inspection:
-    """What was found for a pixel of a frame: an explanation for each light, outlines of what they name, and `why` its
-    shadow rays were culled or traced, None where the renderer has gone on to another frame."""
+class Inspection(NamedTuple):
+    """What was found for a pixel of a frame: why its shadow rays were culled or traced, None where the renderer has
+    gone on to another frame."""
 
     frame: Frame
-    lights: tuple[Explanation, ...]
-    outlines: dict[int, tuple[NDArray[np.float64], ...]]
-    why: Why | None = None
-
-    @cached_property
-    def drawn(self) -> tuple[Explanation, ...]:
-        """Lights whose shadow rays are drawn: those that are due, or of many the nearest of these, in their order."""
-        return drawn_lights(self.lights)
-
-    @cached_property
-    def wrong_beyond(self) -> int:
-        """How many answers are wrong at what is mirrored at the pixel, or seen through it."""
-        rays = () if self.why is None or self.why.tree is None else self.why.tree.rays[1:]
-        return sum(int(np.count_nonzero(ray.shadows.wrong)) for ray in rays if ray.shadows is not None)
+    why: Why | None
 
 
 def inspect_pixel(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Callable[[], bool]) -> Inspection:
-    """Find out what lights do at a pixel."""
-    lights = explain(renderer, frame, x, y)
-    numbers = {number for one in drawn_lights(lights) for number in drawn_primitives(one)}
-    reasons = None
-    with suppress(LookupError):  # another frame has begun
-        reasons = why(renderer, frame, x, y, cancelled)
-    return Inspection(frame, lights, {number: outline(renderer.world, number) for number in numbers}, reasons)
+    """Find out why the shadow rays of a pixel were culled or traced."""
+    try:
+        return Inspection(frame, why(renderer, frame, x, y, cancelled))
+    except LookupError:
+        return Inspection(frame, None)
 
 
 def with_origins(found: Why, origins: Origins, name: Callable[[int], str]) -> Why:
@@ -198,10 +174,10 @@ class Inspector:
             self._told, self._traced = found, found.why.tree or self._traced
 
     @property
-    def answer(self) -> Inspection | None:
-        """What is known of the pixel, None while that is nothing, or of another moment or method."""
-        found: Inspection | None = self._inspected.answer
-        return found if found is not None and self._is_of_now(found.frame) else None
+    def answer(self) -> Why | None:
+        """The reasons of this moment and method, None while they are not known."""
+        told = self._told
+        return told.why if told is not None and self._is_of_now(told.frame) else None
 
     @property
     def why(self) -> Why | None:
@@ -236,20 +212,3 @@ class Inspector:
             return None
         x, y = pixel_at(frame, *hovered)
         return (x, y) if frame.primitive[y, x] >= 0 else None
-
-
-def nearest_first(lights: Sequence[Explanation]) -> list[Explanation]:
-    """The lights by their distance from the point."""
-    return sorted(lights, key=lambda one: math.dist(one.light_position, one.point))
-
-
-def drawn_lights(lights: Sequence[Explanation]) -> tuple[Explanation, ...]:
-    """Those of the lights that are due, or of many the nearest of these, in their order."""
-    due = [one for one in lights if one.due]
-    return tuple(due) if len(due) <= MOST_LIGHTS else tuple(nearest_first(due)[:MOST_LIGHTS])
-
-
-def drawn_primitives(one: Explanation) -> list[int]:
-    """What blocks a light, then what its certificate names, each once and no more than are drawn."""
-    blocker = [] if one.blocker is None else [one.blocker]
-    return [*blocker, *(number for number in one.named if number != one.blocker)][:MOST_OCCLUDERS]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -19,9 +19,10 @@ LONGEST_NAME = 60
 
 
 class NamedStates:
-    """What bookmarks and presets have in common; `kind` is what one is called."""
+    """What bookmarks and presets have in common; `kind` is what one is called, `reserved` are names that none has."""
 
     kind = ""
+    reserved: Collection[str] = ()
 
     def __init__(self, session: Session, preferences: Preferences, notices: Notices, write: Callable[[], None]) -> None:
         """`write` writes the preferences to their file."""
@@ -38,9 +39,8 @@ class NamedStates:
 
     def save(self, name: str) -> bool:
         """Save what is shown under a name, in the place of one that has it; returns whether that could be done."""
-        name = _tidy(name)
-        if problem := self._problem(name):
-            self._notices.say(f"{self.kind} not saved: {problem}", error=True)
+        name = " ".join(name.split())[:LONGEST_NAME]
+        if not self._may_be(name, "saved"):
             return False
         found = next((one for one in self.all if one.name == name), None)
         if found is None:
@@ -53,16 +53,21 @@ class NamedStates:
 
     def rename(self, index: int, name: str) -> bool:
         """Give one another name; returns whether that could be done."""
-        name = _tidy(name)
-        problem = self._problem(name)
-        if not problem and any(one.name == name for one in self.all if one is not self.all[index]):
-            problem = f"there is a {self.kind} {name} already"
-        if problem:
-            self._notices.say(f"{self.kind} not renamed: {problem}", error=True)
+        name = " ".join(name.split())[:LONGEST_NAME]
+        if not self._may_be(name, "renamed", {one.name for one in self.all} - {self.all[index].name}):
             return False
         self.all[index].name = name
         self._write()
         return True
+
+    def _may_be(self, name: str, done: str, taken: Collection[str] = ()) -> bool:
+        """Return whether a state may have a name; else say why not."""
+        problem = "" if name else "give it a name"
+        problem = f"there is a {self.kind} {name} already" if name in taken else problem
+        problem = f"{name} comes with the program; choose another name" if name in self.reserved else problem
+        if problem:
+            self._notices.say(f"{self.kind} not {done}: {problem}", error=True)
+        return not problem
 
     def move(self, index: int, to: int) -> None:
         """Bring one to another place in the list."""
@@ -73,13 +78,6 @@ class NamedStates:
         gone = self.all.pop(index)
         self._write()
         self._notices.say(f"{self.kind} deleted: {gone.name}")
-
-    def _problem(self, name: str) -> str:
-        return "" if name else "give it a name"
-
-
-def _tidy(name: str) -> str:
-    return " ".join(name.split())[:LONGEST_NAME]
 
 
 class Bookmarks(NamedStates):
@@ -190,6 +188,7 @@ class Presets(NamedStates):
     """Settings, and how frames are drawn: those that come with the program, and the user's."""
 
     kind = "preset"
+    reserved = frozenset(preset.name for preset in BUILT_IN)
 
     def __init__(
         self,
@@ -241,7 +240,3 @@ class Presets(NamedStates):
         lights = len(self._session.scene.lights) if self._session.scene is not None else 0
         self._session.state = found.with_draw(light=min(found.draw.light, max(lights - 1, 0)))
         self._notices.say(f"preset applied: {name}")
-
-    def _problem(self, name: str) -> str:
-        built_in = any(preset.name == name for preset in BUILT_IN)
-        return f"{name} comes with the program; choose another name" if built_in else super()._problem(name)

@@ -123,20 +123,14 @@ class Pictures:
             self._notices.say("there is no picture yet", error=True)
             return None
         name = f"{Path(state.scene).stem}-{state.draw.view.value}-{self._session.frame:04d}.png"
-        words = shlex.join(
-            ["shadowcull", *commands.words(state, self._session.scene, name, tuple(self._loader.folders))]
-        )
+        words = shlex.join(["shadowcull", *commands.words(state, self._session.scene, name, self._loader.folders)])
         try:
             words.encode()
         except UnicodeEncodeError:
             self._notices.say("not copied: the name of the scene's file is no text", error=True)
             return None
-        if state.warmup.unknown == BUILT:
-            self._notices.say(f"copied, but the picture may differ: {state.warmup.unknown}")
-        elif state.warmup.unknown:
-            self._notices.say(f"copied, but the picture may differ: {state.warmup.unknown} (Backspace forgets them)")
-        else:
-            self._notices.say(f"copied: {words}")
+        why, forgets = state.warmup.unknown, " (Backspace forgets them)" if state.warmup.unknown != BUILT else ""
+        self._notices.say(f"copied, but the picture may differ: {why}{forgets}" if why else f"copied: {words}")
         return words
 
     # --- as a file of its own -----------------------------------------------------------------------

@@ -21,7 +21,7 @@ from tracer.scene.limits import LARGEST, SMALLEST
 from tracer.scene.model import CONE, Progress, Quadrics, Scene
 from viewer.services.jobs import Job
 from viewer.services.motion import Motion
-from viewer.services.scene_loader import SceneLoader
+from viewer.services.scene_loader import Arrival, SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.session import Session
 
@@ -76,9 +76,9 @@ class Preview:
         shown = session.previewed
         if shown is not None and (traced or (waiting is None and session.scene is not shown)):
             self._leave()
-        if session.scene is None and waiting is not None and waiting[0] is not shown:
+        if session.scene is None and waiting is not None and waiting.waits is not shown:
             self._leave()
-            self._enter(*waiting)
+            self._enter(waiting)
         if self._job is not None and self._job.done:
             job, self._job = self._job, None
             if job.failure is not None:
@@ -87,10 +87,11 @@ class Preview:
             if self.geometry is not None:
                 self._motion.enter(tuple(self.geometry.box.tolist()))
 
-    def _enter(self, scene: Scene, time: float | None, camera: Camera | None) -> None:
-        if triangles_of(scene) > MOST_TRIANGLES:
+    def _enter(self, waiting: Arrival) -> None:
+        scene, place = waiting.waits, waiting.place
+        if scene is None or triangles_of(scene) > MOST_TRIANGLES:
             return
-        start = scene.time_range[0] if time is None else time
+        start, camera = (scene.time_range[0], None) if place is None else (place.time, place.camera)
         self._session.previewed, self._start = scene, camera
         self._session.change(camera=camera, time=start)
         self._job = Job("The preview", lambda progress: preview_geometry(scene, start, progress), self._wake)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from typing import Protocol
 
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
@@ -17,6 +16,12 @@ Warmup = tuple[tuple[float, Camera], ...]
 """Frames by time and camera."""
 Parts = Generator[tuple[Frame, Frame | None], None, None]
 """Frames of a picture, each with the same by a second method, if any."""
+Task = Callable[[Renderer, Callable[[], bool]], None]
+"""Long work with the renderer's world.  It ends soon after what it is given, `cancelled()`, turns true."""
+Spare = Callable[[Renderer, Callable[[], bool]], bool]
+"""A step of work for when nothing else is wanted, which leaves the renderer itself as it is.  It takes no longer than a
+frame, returns whether more are to come, and ends soon after `cancelled()` turns true, by raising Cancelled: the same
+step is then asked for again."""
 
 
 @dataclass(frozen=True)
@@ -100,17 +105,3 @@ class Traced:
     def full_size(self) -> tuple[int, int]:
         """The size whose aspect it has: its own, or what it is a coarser version of."""
         return self.frame.width * self.request.divisor, self.frame.height * self.request.divisor
-
-
-class Task(Protocol):
-    """Long work with the renderer's world.  It ends soon after `cancelled()` turns true, and raises nothing."""
-
-    def work(self, renderer: Renderer, cancelled: Callable[[], bool]) -> None: ...
-
-
-class Spare(Protocol):
-    """Work for when nothing else is wanted, which leaves the renderer itself as it is.  A step takes no longer than a
-    frame, returns whether more are to come, and ends soon after `cancelled()` turns true, by raising Cancelled: the
-    same step is then asked for again."""
-
-    def step(self, renderer: Renderer, cancelled: Callable[[], bool]) -> bool: ...

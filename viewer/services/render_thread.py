@@ -57,8 +57,8 @@ class RenderThread:
         self._finished: Traced | None = None
         self._learnt: list[Traced] = []  # frames that have set modes; the window takes them before it asks for the next
         self._fresh = True  # nothing is known of modes
-        self._failure: Failure | None = None  # of a frame
-        self._complaints: list[Failure] = []  # of all else
+        self._problems: list[Failure] = []
+        self._frame_failed = False
         self._thread = threading.Thread(target=self._run, name="shadowcull render", daemon=True)
         self._thread.start()
 
@@ -70,7 +70,8 @@ class RenderThread:
         `fresh` says that it knows nothing of modes yet."""
         with self._changed:
             self._renderer, self._fresh, self._cancel = renderer, fresh, True
-            self._waiting = self._finished = self._failure = self._placed_at = self._spare = None
+            self._waiting = self._finished = self._placed_at = self._spare = None
+            self._frame_failed = False
             self._learnt.clear()
             self._queries.cancel()
             self._changed.notify_all()
@@ -138,16 +139,11 @@ class RenderThread:
             learnt, self._learnt = self._learnt, []
             return learnt
 
-    def take_failure(self) -> Failure | None:
-        """Why a frame did not come, once."""
+    def take_problems(self) -> tuple[list[Failure], bool]:
+        """What has failed, each once, and whether a frame has: else frames come all the same."""
         with self._changed:
-            failed, self._failure = self._failure, None
-            return failed
-
-    def take_complaints(self) -> list[Failure]:
-        """What else has failed, as an answer, each once: frames come all the same."""
-        with self._changed:
-            told, self._complaints = self._complaints, []
+            told = self._problems, self._frame_failed
+            self._problems, self._frame_failed = [], False
             return told
 
     @property
@@ -171,7 +167,7 @@ class RenderThread:
 
     def _complain(self, problem: Exception, what: str) -> None:
         with self._changed:
-            self._complaints.append(failure(problem, what, _KNOWN))
+            self._problems.append(failure(problem, what, _KNOWN))
 
     def _next(self) -> Callable[[], None] | None:
         """What to do now, once there is something: a task before all, then a query, then a frame."""
@@ -216,7 +212,7 @@ class RenderThread:
         try:
             if reset:
                 self._forget(renderer)
-            task.work(renderer, lambda: self._cancel)
+            task(renderer, lambda: self._cancel)
         finally:
             with self._changed:
                 self._performing = False
@@ -227,11 +223,11 @@ class RenderThread:
 
         def wanted() -> bool:
             others = self._task is not None or self._waiting is not None or bool(self._queries)
-            return self._closing or self._reset or self._spare is not work or others
+            return self._closing or self._reset or self._spare != work or others
 
         more = False
         try:
-            more = work.step(renderer, wanted)
+            more = work(renderer, wanted)
         except Cancelled:
             more = True
         except Exception as problem:
@@ -240,7 +236,7 @@ class RenderThread:
             renderer.take_turn(moment)
         if not more:
             with self._changed:
-                self._spare = None if self._spare is work else self._spare
+                self._spare = None if self._spare == work else self._spare
             self._wake()
 
     def _answer(self, renderer: Renderer, query: Query, moved: bool = False) -> None:
@@ -272,7 +268,7 @@ class RenderThread:
     # --- a frame ----------------------------------------------------------------------------------
 
     def _trace(self, renderer: Renderer, request: RenderRequest, reset: bool) -> None:
-        failed = first = shown = None
+        first = shown = None
         try:
             if reset or request.warmup is not None:
                 self._forget(renderer)
@@ -291,13 +287,13 @@ class RenderThread:
         except Cancelled:
             pass
         except Exception as problem:
-            failed = failure(problem, "frame not traced", _KNOWN)
+            if renderer is self._renderer:
+                self._complain(problem, "frame not traced")
+                self._frame_failed = True
         with self._changed:
             self._running = None
-            if renderer is self._renderer:
-                self._failure = failed or self._failure
-                if shown is not None and not shown.whole:
-                    self._note_learnt(shown)
+            if renderer is self._renderer and shown is not None and not shown.whole:
+                self._note_learnt(shown)
         self._wake()
 
     def _warm_up(self, renderer: Renderer, request: RenderRequest) -> None:

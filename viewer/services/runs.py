@@ -19,7 +19,7 @@ from tracer.experiments import experiment, zoom
 from tracer.experiments.experiment import Experiment
 from tracer.experiments.hunt import Hunt
 from tracer.experiments.runner import STARTING, Run
-from tracer.experiments.zoom import Approach, Step, ZoomTest
+from tracer.experiments.zoom import Step, ZoomTest
 from tracer.method import in_order
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Scene
@@ -54,11 +54,6 @@ class RecordedZoomTest(ZoomTest):
     ) -> None:
         self.filmstrip = Filmstrip()
         super().__init__(scene, settings, start, factors, steps, ratio, self.filmstrip.record)
-
-
-def approaches_of(test: RecordedZoomTest) -> list[Approach]:
-    """Return the ways that a test has gone so far."""
-    return test.results.approaches if test.results is not None else []
 
 
 # --- in words -----------------------------------------------------------------------------------------
@@ -188,7 +183,7 @@ class Runs:
             run.watches = True
             self.current = run
             self._session.playing = False
-            self._perform(_Task(run, self._wake))
+            self._perform(_Task(run, self._wake).work)
             return True
         return False
 

@@ -6,6 +6,7 @@ is cancelled.  A second request to open takes the place of the first.
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -15,50 +16,105 @@ from pathlib import Path
 from typing import Any
 
 from tracer.compilation import can_draw, compiled_before, make_ready, ready_for, warm_up
-from tracer.scene.files import Stamp, stamp
+from tracer.renderer import Renderer, Settings
+from tracer.scene.files import Stamp, noting, stamp
+from tracer.scene.load import load_visible_scene, scene_info
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
-from tracer.scene.model import Camera, Progress, Scene
-from tracer.scene.studio import up_in_studio
+from tracer.scene.model import Progress, Scene
+from tracer.scene.studio import model_bounds, up_in_studio
 from viewer.output import capture
-from viewer.services import scene_files
 from viewer.services.jobs import Job
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
+from viewer.util import resources
 from viewer.views import paint
 
 LOOK_SECONDS = 0.35
 """From one look at a scene's files to the next."""
+SCENE_SUFFIXES = (".aff", ".nff", ".obj", ".ply", ".stl", ".gltf", ".glb")
+CAPTURE_SUFFIXES = (".png",)
 
 
 @dataclass(frozen=True)
-class Arrival:
-    """What has been opened: a scene, None where it is open already; the place in it to go to, if not where it begins;
-    and one line that says so.  `again` says that it is the scene that was open, read again: the place stays."""
+class Opened:
+    """A scene, the renderer that holds its trees, and what `scene_info` says of it."""
 
-    opened: scene_files.Opened | None
-    place: ViewState | None
-    text: str
-    again: bool = False
+    scene: Scene
+    renderer: Renderer
+    info: dict[str, Any]
+    seconds: float
+
+
+def is_capture(path: Path) -> bool:
+    return path.suffix.lower() in CAPTURE_SUFFIXES
+
+
+def refusal(path: Path) -> str | None:
+    """Why a path cannot be opened, in one line; None if it is worth trying."""
+    if path.is_dir():
+        return f"{path}: a folder; open a scene ({' '.join(SCENE_SUFFIXES)}) or a saved picture (.png)"
+    if path.suffix.lower() not in SCENE_SUFFIXES + CAPTURE_SUFFIXES:
+        return f"{path.name}: not a scene ({' '.join(SCENE_SUFFIXES)}) nor a saved picture (.png)"
+    return None if path.exists() else f"{path}: no such file"
+
+
+def find_scene(stored: str, picture: Path) -> Path | None:
+    """Where a saved picture's scene is now: at its old path, beside the picture, or among our own scenes."""
+    path = Path(stored)
+    candidates = [path, picture.parent / path.name]
+    embedded = resources.embedded_scenes().get(path.stem)
+    if embedded is not None and (stored == path.stem or path.parent.name == embedded.parent.name):
+        candidates.append(embedded)
+    return next((c for c in candidates if c.is_file()), None)
+
+
+def open_scene(
+    read: Callable[[], Scene],
+    settings: Settings,
+    ready: Callable[[], bool],
+    progress: Progress,
+    seen: Callable[[Scene], None] = lambda scene: None,
+) -> Opened:
+    """Build the trees of a scene once it is `read` and the tracer is `ready`.  A scene whose kernels are yet to be
+    compiled is `seen` before that.
+
+    Raises SceneError or Cancelled; runs on a thread of its own."""
+    started, scene = time.perf_counter(), read()
+    lights, accelerator = len(scene.lights), settings.accelerator
+    if not can_draw(lights, accelerator) and not compiled_before(lights, accelerator, certificates=False):
+        seen(scene)
+    while not ready():
+        progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
+        time.sleep(0.02)
+    if not can_draw(lights, accelerator):  # many lights need wider words, and kernels for them
+        warm_up(progress, lights, accelerator)
+    renderer, info, model = Renderer(scene, settings, progress), scene_info(scene), model_bounds(scene)
+    if model is not None:  # what the camera goes around is the model, not the floor
+        info["bounds"] = model.tolist()
+    return Opened(scene, renderer, info, time.perf_counter() - started)
 
 
 @dataclass
-class _Load:
-    """What is being read: the place to go to then, whether it is the scene that is open, and what of that had `changed`
-    where this is why; how meshes are read; the files that were come to, and the scene once it waits for kernels."""
+class Arrival:
+    """What is opened: a scene, None where it is open already; the place in it to go to, if not where it begins; and one
+    line that says so.  `again` says that it is the scene that was open, read again, and what of it had `changed` where
+    this is why: the place stays.  `meshes` says how meshes are read, `files` which were come to, and `waits` is a scene
+    that has been read and waits for kernels."""
 
-    job: Job[scene_files.Opened]
-    meshes: MeshOptions
+    meshes: MeshOptions = IN_STUDIO
     place: ViewState | None = None
     again: bool = False
     changed: str = ""
     files: dict[Path, Stamp] = field(default_factory=dict)
-    seen: list[Scene] = field(default_factory=list)
+    waits: Scene | None = None
+    opened: Opened | None = None
+    text: str = ""
 
 
 class SceneLoader:
-    """Runs `scene_files.open_scene` on threads; `take_finished` hands out what has come."""
+    """Runs `open_scene` on threads; `take_finished` hands out what has come."""
 
     def __init__(
         self,
@@ -77,28 +133,20 @@ class SceneLoader:
         self.folders: tuple[Path, ...] = ()  # besides a scene's own, that it may read files from
         self.meshes = IN_STUDIO  # how the next mesh is read
         self.watch = FileWatch()  # of what the newest scene was read from, or what was missed
-        self._load: _Load | None = None
+        self.load_job: Job[Opened] | None = None
+        self._coming = Arrival()  # of that job
         self._cancelled: list[Job] = []  # some end late, as within a library that reads a mesh
         self._restored: Arrival | None = None
         self._given: dict[str, Any] = {}  # settings from the command line, for what is opened first
 
     @property
-    def load_job(self) -> Job[scene_files.Opened] | None:
-        """The load that is under way."""
-        return self._load.job if self._load is not None else None
-
-    @property
     def busy(self) -> bool:
-        return self._load is not None or self._restored is not None or self.warm_up_job is not None
+        return any(one is not None for one in (self.load_job, self._restored, self.warm_up_job))
 
     @property
-    def waiting(self) -> tuple[Scene, float | None, Camera | None] | None:
-        """The scene that has been read and waits for kernels to be compiled, with the time and the camera that it is to
-        be seen at, where these are not its own."""
-        if self._load is None or not self._load.seen:
-            return None
-        scene, place = self._load.seen[0], self._load.place
-        return (scene, None, None) if place is None else (scene, place.time, place.camera)
+    def waiting(self) -> Arrival | None:
+        """What has been read and waits for kernels to be compiled."""
+        return self._coming if self._coming.waits is not None else None
 
     @property
     def ready(self) -> bool:
@@ -151,14 +199,14 @@ class SceneLoader:
         self._given = {}
         up = up_in_studio(scene)
         meshes = MeshOptions(up is not None, up)  # as far as it shows how it was read
-        self._start(f"Opening {scene.path.name}", lambda progress: scene, meshes)
+        self._start(f"Opening {scene.path.name}", lambda progress: scene, Arrival(meshes))
 
     def open(self, path: Path) -> None:
         """Open a scene, or restore what a saved picture shows; anything else is one line."""
-        refused = scene_files.refusal(path)
+        refused = refusal(path)
         if refused:
             self._notices.say(refused, error=True)
-        elif scene_files.is_capture(path):
+        elif is_capture(path):
             self._ask_first(path.name, lambda: self._restore_capture(path))
         else:
             self._ask_first(path.name, lambda: self._begin(path))
@@ -171,7 +219,7 @@ class SceneLoader:
 
     def reload_changed(self, allowed: bool) -> None:
         """Read the scene again where a file that it was read from has changed; once in each frame of the window."""
-        allowed = allowed and self._preferences.watch_scene and self._load is None
+        allowed = allowed and self._preferences.watch_scene and self.load_job is None
         if allowed and self._session.scene is not None and (changed := self.watch.changed()):
             self._begin(Path(self._session.scene.path), again=True, changed=changed)
 
@@ -196,13 +244,18 @@ class SceneLoader:
         except capture.CaptureError as error:
             self._notices.say(str(error), error=True)
             return
-        found, scene = scene_files.find_scene(state.scene, path), session.scene
+        found, scene = find_scene(state.scene, path), session.scene
         if found is None:
             self._notices.say(f"{path.name}: its scene was not found: {state.scene}", error=True)
-        elif scene is None or self._load is not None or state.meshes != session.meshes or not _is_at(scene, found):
+        elif (
+            scene is None
+            or self.load_job is not None
+            or state.meshes != session.meshes
+            or session.state.scene != str(found.absolute())
+        ):
             self._begin(found, state)
         else:
-            self._restored = Arrival(None, state, f"restored {path.name}")
+            self._restored = Arrival(place=state, text=f"restored {path.name}")
             self._wake()
 
     def _as_here(self, state: ViewState) -> ViewState:
@@ -230,39 +283,48 @@ class SceneLoader:
             meshes = (place or self._session).meshes
         elif meshes is None:
             meshes, self.meshes = self.meshes, replace(self.meshes, up=None)
-        meshes, files = meshes.of_file(path), dict[Path, Stamp]()
-        self._start(
-            f"Loading {path.name}",
-            lambda progress: scene_files.read_scene(path, progress, self.folders, meshes, files),
-            meshes, place=place, again=again, changed=changed, files=files,
-        )  # fmt: skip
+        coming = Arrival(meshes.of_file(path), place, again, changed)
 
-    def _start(self, title: str, read: Callable[[Progress], Scene], meshes: MeshOptions, **more: Any) -> None:
-        """Read a scene on a thread, and open it; `more` are fields of the load."""
+        def read(progress: Progress) -> Scene:
+            # A scene of a million pieces has no circles of objects, and Python's search for them would stop the window
+            # for up to a second each time.
+            gc.disable()
+            try:
+                with noting(coming.files):
+                    return load_visible_scene(path, progress, self.folders, coming.meshes)
+            finally:
+                gc.enable()
+
+        self._start(f"Loading {path.name}", read, coming)
+
+    def _start(self, title: str, read: Callable[[Progress], Scene], coming: Arrival) -> None:
+        """Read a scene on a thread, and open it."""
         self._give_up()
-        settings, seen = self._session.settings, list[Scene]()
+        settings, kernels = self._session.settings, self.warm_up_job
 
-        def work(progress: Progress) -> scene_files.Opened:
-            return scene_files.open_scene(lambda: read(progress), settings, self._kernels_ready, progress, seen.append)
+        def ready() -> bool:
+            return kernels is None or kernels.done or can_draw()
 
-        self._load = _Load(Job(title, work, self._wake), meshes, seen=seen, **more)
+        def work(progress: Progress) -> Opened:
+            def seen(scene: Scene) -> None:
+                coming.waits = scene
 
-    def _kernels_ready(self) -> bool:
-        job = self.warm_up_job
-        return job is None or job.done or can_draw()
+            return open_scene(lambda: read(progress), settings, ready, progress, seen)
+
+        self.load_job, self._coming = Job(title, work, self._wake), coming
 
     def cancel(self) -> None:
         """Give up the load that is under way; the scene that is open stays."""
-        if self._load is not None:
+        if self.load_job is not None:
             self._give_up()
             stays = ": the scene that was open stays" if self._session.scene is not None else ""
             self._notices.say(f"loading cancelled{stays}")
 
     def _give_up(self) -> None:
-        if self._load is not None:
-            self._load.job.cancel()
-            self._cancelled.append(self._load.job)
-            self._load = None
+        if self.load_job is not None:
+            self.load_job.cancel()
+            self._cancelled.append(self.load_job)
+            self.load_job, self._coming = None, Arrival()
 
     def close(self) -> list[Job]:
         """Ask everything to stop; returns the jobs, to be waited for."""
@@ -280,32 +342,27 @@ class SceneLoader:
             job, self.warm_up_job = self.warm_up_job, None
             self._report(job, "the tracer could not be compiled: ")
         arrival, self._restored = self._restored, None
-        load = self._load
-        if load is None or not load.job.done:
+        if self.load_job is None or not self.load_job.done:
             return arrival
-        self._load = None
-        if load.job.result is not None:
-            self.watch.files = load.files
-            return self._arrived(load, load.job.result)
-        if load.again:
-            self.watch.files = self.watch.files | load.files  # what was not come to may be mended too
-        self._report(load.job, after=" (the scene as it was stays)" if load.again else "")
+        load, came = self.load_job, self._coming
+        self.load_job, self._coming = None, Arrival()
+        if load.result is not None:
+            self.watch.files, came.opened = came.files, load.result
+            self._session.change(meshes=came.meshes)
+            came.text = _in_words(came, load.result)
+            return came
+        if came.again:
+            self.watch.files = self.watch.files | came.files  # what was not come to may be mended too
+        self._report(load, after=" (the scene as it was stays)" if came.again else "")
         return arrival
 
-    def _arrived(self, load: _Load, opened: scene_files.Opened) -> Arrival:
-        self._session.change(meshes=load.meshes)
-        up, count = up_in_studio(opened.scene), len(opened.scene.warnings)
-        text = f"{opened.scene.path.name} {'reloaded' if load.again else 'opened'} in {opened.seconds:.1f} s"
-        text += f", with {up} up" if up else ""
-        text += f", {count} warning{'s' * (count > 1)}" if count else ""
-        return Arrival(opened, load.place, f"{text}: {load.changed} changed" if load.changed else text, load.again)
 
-
-def _is_at(scene: Scene, path: Path) -> bool:
-    try:
-        return path.samefile(scene.path)
-    except OSError:
-        return False
+def _in_words(came: Arrival, opened: Opened) -> str:
+    up, count = up_in_studio(opened.scene), len(opened.scene.warnings)
+    text = f"{opened.scene.path.name} {'reloaded' if came.again else 'opened'} in {opened.seconds:.1f} s"
+    text += f", with {up} up" if up else ""
+    text += f", {count} warning{'s' * (count > 1)}" if count else ""
+    return f"{text}: {came.changed} changed" if came.changed else text
 
 
 def _warm_up(progress: Progress) -> None:

@@ -1,4 +1,5 @@
-"""A picture by its state: traced with the frames before it, drawn, and with what is kept of it.
+"""A picture by its state, or one by several methods: traced with the frames before it, drawn, and with what is kept of
+it.
 
 What the command `render`, films, figures and the window's own saved pictures have in common.
 """
@@ -8,6 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,18 +20,21 @@ from tracer import fingerprint
 from tracer.culling.modes import word_type
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
+from tracer.geometry.world import World
+from tracer.method import Method
 from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version
 from viewer.output import capture, commands
 from viewer.output.commands import by_one_thread
+from viewer.output.comparison import Comparison, Shown
 from viewer.output.overlays import with_caption, with_legend, with_savings
+from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
-from viewer.state.readings import can_record_lights, records_lights
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
+from viewer.state.views import View, can_record_lights, records_lights
 from viewer.views import colorize, legend_of
 from viewer.views.legend import lights_in_words
 
@@ -141,6 +147,49 @@ def fields_of(state: ViewState, scene: Scene) -> dict[str, Any]:
         "width": state.settings.width,
         "height": state.settings.height,
     }
+
+
+def trace_methods(
+    scene: Scene,
+    state: ViewState,
+    comparison: Comparison,
+    world: World,
+    on_frame: Callable[[str, int, int], None] = lambda method, done, total: None,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> Shown:
+    """Trace the frame of a state by each method, and by "none" as what is right, with modes of their own; the state's
+    own method does not count.  Raises Cancelled.
+
+    `on_frame` gets the method, and how many of its frames are done, of how many."""
+    frames: dict[str, Frame] = {}
+    for method in dict.fromkeys(("none", *comparison.methods)):
+        found = Method.parse(method)
+        wanted = state.with_settings(method=method)
+        if found.has_certificates:
+            wanted = wanted.with_settings(threads=1)  # which certificates are made depends on the turns of threads
+        if not (found.culls or state.settings.modes or state.draw.view.of_modes):  # it learns nothing
+            wanted = wanted.with_warmup(frames=())
+        renderer = Renderer(scene, wanted.settings, world=world)
+        frames[method] = trace(renderer, wanted, on_frame=partial(on_frame, method), cancelled=cancelled)
+    warmed = len(state.warmup.frames) + len(times_before(scene, state.time, state.warmup.of_path))
+    shown = {method: frames[method] for method in comparison.methods}
+    return Shown(scene, state, comparison, shown, frames["none"], warmed)
+
+
+def save_methods(shown: Shown, path: Path, text: str = "") -> None:
+    """Draw one frame by several methods as a figure, and write it with the text that it carries, its own by default;
+    raises OSError in one line."""
+    from viewer.output import comparison_figure  # loads matplotlib
+
+    state = shown.state
+    more = {
+        "figure": codec.to_json(shown.comparison),
+        "made": {"version": program_version(), "scene": fingerprint.of_scene(shown.scene)},
+    }
+    statistics = {method: frame.statistics.to_dict() for method, frame in shown.frames.items()}
+    number = Session(shown.scene).frame_at(state.time)
+    own = capture.metadata(state, shown.reference.camera, number, state.size, statistics, more)
+    comparison_figure.save(shown, path, text or own)
 
 
 def as_kept(state: ViewState) -> ViewState:

@@ -5,6 +5,7 @@ once each, one after another, for it to be done; and a script that does it for t
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -82,7 +83,8 @@ class Tour:
         """Return what to do in a step, as things are, with the keys that do it now, or what is being done."""
         if self.showing and step is self.step and step.shown:
             return step.shown
-        return (step.text if isinstance(step.text, str) else step.text(self._c)).format_map(_Keys(self._key))
+        text = step.text if isinstance(step.text, str) else step.text(self._c)
+        return re.sub(r"\{(.+?)\}", lambda name: self._key(name[1]), text)
 
     def toggle(self) -> None:
         """Begin the tour, or end it."""
@@ -139,17 +141,6 @@ class Tour:
         self.at = next((n for n in range(first, len(STEPS)) if n not in self.done), None)
 
 
-class _Keys(dict[str, str]):
-    """Keys by the names of their commands, for `str.format_map`."""
-
-    def __init__(self, key: Callable[[str], str]) -> None:
-        super().__init__()
-        self._key = key
-
-    def __missing__(self, name: str) -> str:
-        return self._key(name)
-
-
 # --- conditions ------------------------------------------------------------------------------------
 
 
@@ -182,7 +173,7 @@ def _shows(view: View) -> Condition:
 def _in_shadow(c: Controller) -> bool:
     """Return whether the pixel that was clicked is in the shadow of some light."""
     answer = c.inspector.answer if c.selection.picked is not None else None
-    return answer is not None and any(one.blocked_at is not None for one in answer.lights)
+    return answer is not None and any(one.blocker >= 0 for one in answer.reasons)
 
 
 def _tests(c: Controller) -> bool:
@@ -229,8 +220,8 @@ def _click_a_shadow(c: Controller, open_panel: OpenPanel) -> Script:
             continue
         yield lambda c: c.inspector.answer is not None
         answer = c.inspector.answer
-        for one in answer.lights if answer is not None else ():
-            if one.due and not one.reached and one.blocker not in (None, picked.primitive):
+        for one in answer.reasons if answer is not None else ():
+            if not one.lit and one.blocker not in (-1, picked.primitive):
                 c.settings.set_light(one.light)
                 yield SECONDS
                 return

@@ -2,8 +2,7 @@
 
 Nobody has to announce a change: the state is compared from one of the window's frames to the next.  Changes that belong
 together are one step: all of a drag, all of a flight until the camera rests, all turns of the wheel until it does.
-Time by itself, and what a run does, are no steps.  How a mesh is read is one, which takes a while to be brought
-back: the mesh is read again."""
+Time by itself, and what a run does, are no steps.  A mesh that is read in another way is another scene."""
 
 from __future__ import annotations
 
@@ -11,12 +10,10 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from tracer.scene.mesh_options import MeshOptions
 from viewer.services.motion import Motion
-from viewer.state.changes import CAMERA, changes
 from viewer.state.notices import Notices
 from viewer.state.session import Session
-from viewer.state.view_state import ViewState
+from viewer.state.view_state import CAMERA, ViewState, changes
 
 MOST_STEPS = 200
 _BY_STROKES = {"draw.tone.exposure", "draw.tone.white", "draw.zoom"}  # changed little by little, by the wheel or a key
@@ -35,19 +32,9 @@ class Step:
 class Undo:
     """See the module.  `held` is to be set while the user holds something, as in a drag."""
 
-    def __init__(
-        self,
-        session: Session,
-        motion: Motion,
-        notices: Notices,
-        locked: Callable[[], bool],
-        read_as: Callable[[MeshOptions], None] = lambda meshes: None,
-        reading: Callable[[], bool] = lambda: False,
-    ) -> None:
-        """Nothing is brought back while `locked()`, which says so itself.  `read_as` begins to read the open mesh in
-        another way, and `reading()` says whether a scene is being read."""
+    def __init__(self, session: Session, motion: Motion, notices: Notices, locked: Callable[[], bool]) -> None:
+        """Nothing is brought back while `locked()`, which says so itself."""
         self._session, self._motion, self._notices, self._locked = session, motion, notices, locked
-        self._read_as, self._reading = read_as, reading
         self.held = False
         self.clear()
 
@@ -56,7 +43,6 @@ class Undo:
         self._steps: list[Step] = []
         self._at = 0  # the step whose state is shown, which is kept up to date
         self._open: set[str] = set()  # what has changed in the newest step, where that may go on
-        self._coming: tuple[int, str] | None = None  # where we are once the mesh is read for it, and what to say then
         self._changed_at = 0.0
         self._named = "", False
 
@@ -84,13 +70,11 @@ class Undo:
 
     def note_changes(self) -> None:
         """Take up what has changed since the last frame of the window."""
-        if self._coming is not None:
-            if self._reading():
-                return
-            self._arrive(*self._coming)
         now = self._state()
         if now is None:
             return
+        if self._steps and self._steps[0].state.meshes != now.meshes:
+            self.clear()
         if not self._steps:
             self._steps = [Step("", now)]
         last = self._steps[self._at].state
@@ -122,7 +106,7 @@ class Undo:
     # --- inside ----------------------------------------------------------------------------------
 
     def _go(self, by: int, way: str) -> None:
-        if self._locked() or self._coming is not None:
+        if self._locked():
             return
         self.note_changes()
         self._close()
@@ -130,29 +114,17 @@ class Undo:
         if not 0 <= to < len(self._steps):
             self._notices.say(f"there is nothing to {way}")
             return
-        said, meshes = f"{way}ne: {self._steps[max(to, self._at)].name}", self._steps[to].state.meshes
-        if meshes == self._session.meshes:
-            self._arrive(to, said)
-        else:
-            self._coming = to, said
-            self._read_as(meshes)
-
-    def _arrive(self, to: int, said: str) -> None:
-        """Show the state of a step, or stay where its mesh could not be read."""
-        self._coming = None
-        session, wanted, with_time = self._session, self._steps[to].state, self._steps[max(to, self._at)].with_time
-        if wanted.meshes != session.meshes:
-            return
+        session, wanted, done = self._session, self._steps[to].state, self._steps[max(to, self._at)]
         start, playing = session.camera, session.playing
         self._motion.halt()
-        session.restore(wanted if with_time else replace(wanted, time=session.time))
+        session.restore(wanted if done.with_time else replace(wanted, time=session.time))
         session.change(compare=wanted.compare)
-        session.playing = playing and not with_time
+        session.playing = playing and not done.with_time
         if wanted.camera is not None and wanted.camera != start:
             self._motion.glide(wanted.camera, start)
         self._at = to
         self._keep_up()
-        self._notices.say(said)
+        self._notices.say(f"{way}ne: {done.name}")
 
     def _add(self, step: Step) -> None:
         self._steps = [*self._steps[: self._at + 1], step][-MOST_STEPS - 1 :]

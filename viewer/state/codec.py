@@ -10,13 +10,16 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import fields
+from functools import reduce
+from operator import getitem
 from typing import Any, TypeVar, get_args, get_origin
 
 import msgspec
 import numpy as np
 
-from tracer.setting import NEVER, PICTURES, kinds_in_words, settings_of
+from tracer.setting import NEVER, PICTURES, Setting, kinds_in_words, settings_of
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 
@@ -37,22 +40,14 @@ def from_json(data: Any, kind: type[T], what: str = "it") -> T:
     except (msgspec.ValidationError, OverflowError, RecursionError) as error:
         said, _, place = str(error).partition(" - at ")
         where = place.strip("`").removeprefix("$").lstrip(".")
-        said = re.sub(r"`(.*?)`", kinds_in_words, said[:1].lower() + said[1:]).replace(
-            "invalid enum value", "there is no"
-        )
+        said = re.sub(r"`(.*?)`", kinds_in_words, said[:1].lower() + said[1:])
+        said = said.replace("invalid enum value", "there is no")
         raise ValueError(f"{what} is damaged: {f'{where}: ' if where else ''}{said}") from None
 
 
 def text(value: Any, indent: int | None = None) -> str:
     """Return a value as the text of JSON; infinities are written as Python does."""
     return json.dumps(to_json(value), indent=indent)
-
-
-def patched(value: T, data: Any, what: str = "it") -> T:
-    """Return a value with what stored data says of it; raises ValueError, in one line."""
-    if not isinstance(data, Mapping):
-        raise ValueError(f"{what} is damaged")
-    return from_json(_onto(to_json(value), data), type(value), what)
 
 
 def forgiven(data: Any, kind: Any, default: Any) -> Any:
@@ -113,7 +108,8 @@ def state_from_json(data: Any, onto: ViewState | None = None) -> ViewState:
         raise ValueError("no saved state in it")
     today = _of_today(data) if "draw" not in data and "view" in data else data
     stored = {name: value for name, value in today.items() if name != "compare"}
-    return patched(onto or ViewState(), _without(stored, (NEVER,)), "its saved state").validated()
+    whole = _onto(to_json(onto or ViewState()), _without(stored, (NEVER,)))
+    return from_json(whole, ViewState, "its saved state").validated()
 
 
 def state_from_file(data: Any) -> ViewState:
@@ -157,13 +153,10 @@ def picture_from_json(data: Mapping[str, Any]) -> ViewState:
 
 def remembered(state: ViewState) -> dict[str, Any]:
     """Return what a window that is started later takes over of a state."""
-    found = to_json(state)
-    data: dict[str, Any] = {}
+    found, data = to_json(state), dict[str, Any]()
     for one in _REMEMBERED:
-        outer, inner = found, data
-        for name in one.within:
-            outer, inner = outer[name], inner.setdefault(name, {})
-        inner[one.name] = outer[one.name]
+        value = reduce(getitem, _names(one), found)
+        data = _onto(data, _nested(one, value))
     return data
 
 
@@ -171,26 +164,27 @@ def recalled(data: Any) -> ViewState:
     """Return the state that a window starts with; what is wrong with what is stored has its default."""
     state = ViewState.in_window()
     for one in _REMEMBERED:
-        part = data
-        for name in (*one.within, one.name):
-            part = part.get(name, _NOTHING) if isinstance(part, Mapping) else _NOTHING
-        if part is not _NOTHING:
-            nested = part
-            for name in (one.name, *reversed(one.within)):
-                nested = {name: nested}
-            try:
-                state = state_from_json(nested, state)
-            except ValueError:
-                continue
+        with suppress(ValueError, LookupError, TypeError):  # what is stored may be anything
+            state = state_from_json(_nested(one, reduce(getitem, _names(one), data)), state)
     return state
 
 
-_NOTHING = object()
 _REMEMBERED = tuple(one for one in settings_of(ViewState) if one.remembered and one.stored != NEVER)
 
 
+def _names(one: Setting) -> tuple[str, ...]:
+    return (*one.within, one.name)
+
+
+def _nested(one: Setting, value: Any) -> dict[str, Any]:
+    """Return a value of a setting as it stands in a state."""
+    for name in reversed(_names(one)):
+        value = {name: value}
+    return value
+
+
 def _without(data: dict[str, Any], stored: tuple[str, ...]) -> dict[str, Any]:
-    """A state without the settings that are stored like this."""
+    """Return a state without the settings that are stored like this."""
     for one in settings_of(ViewState):
         inner: Any = data
         for name in one.within:

@@ -1,14 +1,20 @@
-"""Methods as the viewer chooses among them; what each can do is `tracer.method`'s to say."""
+"""Methods as the viewer chooses among them, and what is said where one has nothing to show; what each can do is
+`tracer.method`'s to say."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
-from tracer.fit import lamps_in, remark, says_nothing, too_few
+from tracer.fit import lamps_in, remark, too_few
+from tracer.frame import Frame
+from tracer.geometry.accelerators import BVH8, LAZY
+from tracer.geometry.world import LARGE
 from tracer.method import DEFAULT_METHOD, Kind, Method, additions, bases
 from tracer.scene.lights import Light
 from tracer.settings import Settings
-from viewer.state.views import View
+from viewer.state.views import MOST_RECORDED, TREE, TREE_IS_GONE, View, can_draw, can_record_lights
+from viewer.util.numbers import count
 
 NO_CULLING, BY_MODES, CERTIFIED, ADAPTIVE = "none", "paper", "certified", "auto"
 """What is chosen to see every ray traced, the paper's modes at work, certificates, and whatever is quickest."""
@@ -23,24 +29,18 @@ SHOWN_BY = {
 
 
 def default_for(view: View) -> str:
-    """The method for one picture in a view: the default one, or else one that has something to show there."""
+    """Return the method for one picture in a view: the default one, or else one that has something to show there."""
     return SHOWN_BY.get(view, DEFAULT_METHOD)
 
 
 def groups() -> list[tuple[str, list[Kind]]]:
-    """The methods to choose from, those that are never wrong first."""
+    """Return the methods to choose from, those that are never wrong first."""
     exact, other = ([kind for kind in bases() if kind.exact is never] for never in (True, False))
     return [("Exact: the picture is that of none", exact), ("With errors", other)]
 
 
-def with_additions(method: str, more: Iterable[str]) -> str:
-    """The method with these additions besides its own."""
-    parsed = Method.parse(method)
-    return _named(parsed.base, {*parsed.additions, *more})
-
-
 def is_method(name: str) -> bool:
-    """Whether there is a method of this name."""
+    """Return whether there is a method of this name."""
     try:
         Method.parse(name)
     except ValueError:
@@ -49,45 +49,80 @@ def is_method(name: str) -> bool:
 
 
 def with_base(method: str, base: str) -> str:
-    """The method with another base and the same additions, but what is the base now."""
+    """Return the method with another base and the same additions, but what is the base now."""
     return _named(base, Method.parse(method).additions)
 
 
+def with_additions(method: str, more: Iterable[str]) -> str:
+    """Return the method with these additions besides its own."""
+    parsed = Method.parse(method)
+    return _named(parsed.base, {*parsed.additions, *more})
+
+
 def toggled(method: str, addition: str) -> str:
-    """The method with an addition that it lacks, or without one that it has."""
+    """Return the method with an addition that it lacks, or without one that it has."""
     parsed = Method.parse(method)
     return _named(parsed.base, set(parsed.additions) ^ {addition})
 
 
 def _named(base: str, chosen: Iterable[str]) -> str:
-    """The name of a method with these additions, in their usual order."""
+    """Return the name of a method with these additions, in their usual order."""
     wanted = set(chosen)
     return "+".join([base, *(kind.name for kind in additions(base, measures=True) if kind.name in wanted)])
 
 
-# --- in a scene that has just been opened -----------------------------------------------------------
-
-_OF_LIGHTS = (
-    *(View.SHADOW, View.CERTIFICATE, View.PENUMBRA, View.LIGHTS, View.CUTS, View.VOXELS, View.CELL_LIGHTS),
-    *(View.SAVED, View.DIFFERENCE, View.FATE, View.MOVING_SHADOW),
-)
-_OF_METHODS = (View.CERTIFICATE, View.VOXELS)  # views of what a method knows of single lights
-
-
-def fitting_view(view: View, settings: Settings, lights: tuple[Light, ...]) -> tuple[View, str]:
-    """The view to show a scene with these lights in: the picture where the chosen one would be of one colour; and what
-    is to be said of it, or of what the method leaves to tracing, in a sentence."""
+def remark_on(lights: tuple[Light, ...], settings: Settings) -> str:
+    """Return what the method leaves to tracing in a scene with these lights, in a sentence; nothing where it leaves
+    none."""
     method = Method.parse(settings.method)
     lamps, samples = lamps_in(lights, settings.lamp_radius, settings.lamp_samples)
     few = too_few(method, len(lights), samples)
-    if not lights and view in _OF_LIGHTS:
-        return View.COLOR, f"{_instead(view)}, as there are no lights."
-    if few and view is View.CUTS:
-        return View.COLOR, f"{_instead(view)}, as {few}."
-    if lights and says_nothing(method, len(lights), lamps) and view in _OF_METHODS:
-        return View.COLOR, f"{_instead(view)}, as {method} knows nothing of lamps of several samples."
-    return view, f"The method {few}." if few else remark(method, len(lights), lamps)
+    return f"The method {few}." if few else remark(method, len(lights), lamps)
 
 
-def _instead(view: View) -> str:
-    return f"The view is {View.COLOR.label}, not {view.label}"
+# --- where there is nothing to see -------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Missing:
+    """Why there is nothing to see, in a sentence or two, and which base of methods, or which structure, would show
+    something; nothing where none helps."""
+
+    text: str
+    base: str = ""
+    accelerator: str = ""
+
+
+def missing(view: View, frame: Frame, more: bool = False) -> Missing | None:
+    """Return what to say over a frame in this view; None where there is something to see, or soon will be.  `more` says
+    that frames follow."""
+    method, decision, drawn = Method.parse(frame.settings.method), frame.statistics.decision, can_draw(frame, view)
+    if frame.lights == 0 and (view.of_light or view in SHOWN_BY or view.needs_lights):
+        return Missing("The scene has no lights.")
+    if view in SHOWN_BY and not drawn:
+        if view is View.CERTIFICATE and decision and method.has_certificates and not method.clusters:
+            comes = method.adaptive and frame.statistics.certificates > 0 and more
+            return Missing(f"{decision}{' More are made and tried while nothing moves.' if comes else ''}", CERTIFIED)
+        if view is View.CUTS and decision and method.clusters:
+            return Missing(decision)
+        return Missing(f"The method {method} has nothing for the view {view.label}; {SHOWN_BY[view]} has.",
+                       SHOWN_BY[view])  # fmt: skip
+    if view is View.TREE and not drawn:
+        if TREE in frame.structures:
+            return Missing(f"There is nothing to see: {TREE_IS_GONE}.")
+        built = f"All of the tree was built before rays came ({frame.settings.accelerator})."
+        lazy = f"{BVH8} with more than {count(LARGE)} primitives that never move"
+        return Missing(f"{built} {LAZY} builds it where they arrive, and so does {lazy}.", accelerator=LAZY)
+    if view.needs_verify and method.exact and not method.uses_modes:
+        why = "is exact" if method.kind.culls else "traces every shadow ray"
+        text = f"The method {method.base} {why}: no answer can be wrong. The paper's method is sometimes wrong."
+        return Missing(text, BY_MODES)
+    if view.needs_fates and method.clusters:
+        return Missing(f"The method {method.base} shades by clusters of lights: single lights have no rays.", BY_MODES)
+    if (view is View.LIGHTS or view.needs_fates) and not can_record_lights(frame.primitive.size, frame.lights):
+        text = f"There is no memory to look at {count(frame.lights)} lights at each pixel of a picture of this size"
+        most = count(MOST_RECORDED // frame.lights)
+        return Missing(f"{text}, but at up to {most} pixels: give it a smaller size in the panel Rendering.")
+    if view.of_modes and not drawn:
+        return Missing(f"This run keeps no modes with the method {method}.")
+    return None

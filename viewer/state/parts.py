@@ -6,7 +6,6 @@ All is kept as arrays over primitives, as a scene may have millions of these.
 from __future__ import annotations
 
 import weakref
-from collections import OrderedDict
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,7 +16,6 @@ from tracer.scene.model import CONE, Scene
 from tracer.scene.things import things
 
 KINDS = ("triangle", "sphere", "cone")
-_KEPT = 2  # scenes whose parts are remembered
 
 
 @dataclass(frozen=True)
@@ -55,16 +53,15 @@ class Parts:
         return np.flatnonzero(self.part_of == part)
 
 
-_known: OrderedDict[int, tuple[weakref.ref[Scene], Parts]] = OrderedDict()
+_known: dict[int, tuple[weakref.ref[Scene], Parts]] = {}  # by the identity of scenes that are in use
 
 
 def parts_of(scene: Scene) -> Parts:
-    """The parts of a scene as it was read, found once."""
-    known = _known.get(id(scene))
+    """Return the parts of a scene as it was read, found once."""
+    key = id(scene)
+    known = _known.get(key)
     if known is None or known[0]() is not scene:
-        known = _known[id(scene)] = weakref.ref(scene), _found(scene)
-        while len(_known) > _KEPT:
-            _known.popitem(last=False)
+        known = _known[key] = weakref.ref(scene, lambda _: _known.pop(key, None)), _found(scene)
     return known[1]
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from tracer.frame import Frame
 from tracer.frame_in_progress import OF_MODES
-from tracer.geometry.accelerators import BVH8, KD_TREE, LAZY
 from tracer.method import Method
 from tracer.settings import Settings
 from tracer.statistics import ShadowCounts
@@ -86,14 +85,6 @@ def phase(name: str, settings: Settings) -> tuple[str, str]:
     if name in OF_MODES and settings.modes_beside:
         return f"{label} ({FOR_DISPLAY})", f"{tip}: {WHY_FOR_DISPLAY}"
     return label, tip
-
-
-TREES = {
-    BVH8: "the fast one",
-    KD_TREE: "the paper's, whose steps are those that it counts",
-    LAZY: "a kd-tree that is built where rays arrive",
-}
-"""What rays are traced through, and what it is."""
 
 
 def traced_shadow_rays(shadow: ShadowCounts) -> str:

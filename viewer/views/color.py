@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from viewer.state.draw_options import DrawOptions
+from viewer.state.draw_options import DrawOptions, Tone, clipped, toned
 from viewer.state.palette import hex_color
-from viewer.state.tone import Tone, clipped, toned
 from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words
 from viewer.views.legend import Entry, Legend
@@ -33,10 +32,10 @@ class Color(FrameView):
         """Say how much of the picture the screen cuts off, where that is marked."""
         if not draw.clipping:
             return None
-        found, words = clipped(frame.color, draw.tone), draw.tone.in_words()
+        (bright, black), words = clipped(frame.color, draw.tone), draw.tone.in_words()
         rows = (
-            ("too bright", TOO_BRIGHT, found.bright, "red, green or blue is brighter than the screen's"),
-            ("black", BLACK, found.black, "no channel is brighter than nothing"),
+            ("too bright", TOO_BRIGHT, bright, "red, green or blue is brighter than the screen's"),
+            ("black", BLACK, black, "no channel is brighter than nothing"),
         )
         entries = tuple(
             Entry(name, color, (percent(n, frame.primitive.size),), f"{meaning}: {count(n)} pixels")
@@ -56,10 +55,10 @@ def displayed(color: NDArray[np.float32], draw: DrawOptions) -> NDArray[np.float
     """Return traced colours (h, w, 3) by their tone, with stripes where the screen cuts them off if that is marked."""
     shown = toned(color, draw.tone)
     if draw.clipping:
-        found, shown = clipped(color, draw.tone), shown.copy()
-        stripes = checkered(found.bright.shape, STRIPE) == 0
-        shown[found.bright & stripes] = TOO_BRIGHT
-        shown[found.black & stripes] = BLACK
+        (bright, black), shown = clipped(color, draw.tone), shown.copy()
+        stripes = checkered(bright.shape, STRIPE) == 0
+        shown[bright & stripes] = TOO_BRIGHT
+        shown[black & stripes] = BLACK
     return shown
 
 

@@ -15,17 +15,7 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import WRONG
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
-from viewer.views.base import (
-    FrameView,
-    Lights,
-    Pixels,
-    Values,
-    Words,
-    is_shaded,
-    once,
-    shaded_pixels,
-    single,
-)  # fmt: skip
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, is_shaded, once, shaded_pixels, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Note, NoteKind, fact
 from viewer.views.paint import by_color, in_bytes
@@ -77,7 +67,7 @@ def legend_of_wrong(frame: Frame, label: str, name: str, colored: bool) -> Legen
     largest, seen = verified.largest_difference(frame)
     of_pixels = (
         fact("of them look otherwise", count(seen), _LOOK_OTHERWISE),
-        fact("largest difference", verified.difference_in_words(largest), _LARGEST),
+        fact("largest difference", f"{255.0 * largest:.3g} of 255", _LARGEST),
     )
     cuts = statistics.cuts
     if cuts is not None and cuts.errors is not None:

@@ -10,17 +10,7 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
-from viewer.views.base import (
-    FrameView,
-    Lights,
-    Pixels,
-    Values,
-    Words,
-    is_shaded,
-    once,
-    shaded_pixels,
-    single,
-)  # fmt: skip
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, is_shaded, once, shaded_pixels, single
 from viewer.views.legend import Entry, Legend, Note, Scale, fact
 from viewer.views.paint import by_number, in_range
 

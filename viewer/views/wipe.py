@@ -8,37 +8,31 @@ from tracer.frame import Frame
 from viewer.state import verified
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import WIPE_LINE, WRONG
-from viewer.state.views import Record
 from viewer.views import color
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words
+from viewer.views.base import Highlight, Lights, Pixels, Values, Words
 from viewer.views.color import displayed
-from viewer.views.difference import Mark, legend_of_wrong, wrong_marks
+from viewer.views.difference import Difference, Mark, legend_of_wrong, wrong_marks
 from viewer.views.legend import Legend
 from viewer.views.paint import by_color, in_bytes
 
 
-class Wipe(FrameView):
+class Wipe(Difference):
     label = "Wipe"
     key = "9"
     help = (
         "Left of the line is the traced picture, right of it the picture with every shadow answer right. Drag the line."
     )
-    records = Record.VERIFY
-    shows_picture = shows_clipped = everywhere = True
-
-    def can_draw(self, frame: Frame, light: int = 0) -> bool:
-        return frame.wrong is not None
+    shows_clipped = True
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         return self.highlighted(frame, draw, Highlight())
 
     def highlighted(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
-        marks, column = wrong_marks(frame, draw.magnified), wipe_column(frame.width, draw.wipe)
-        right = verified.known(frame.reference)
+        column, right = wipe_column(frame.width, draw.wipe), verified.known(frame.reference)
         both = displayed(np.concatenate([frame.color[:, :column], right[:, column:]], axis=1), draw)
         pixels = by_color(frame, draw, both, everywhere=True)
         if draw.mark_wrong:  # the pixels inside a ring stay as they are
-            pixels[marks == Mark.RING] = in_bytes(WRONG)
+            pixels[wrong_marks(frame, draw.magnified) == Mark.RING] = in_bytes(WRONG)
         if highlight.line:
             pixels[:, column : column + 1] = in_bytes(WIPE_LINE)
         return pixels

@@ -9,17 +9,17 @@ from tracer.method import Kind, Method, additions, bases
 from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
 from viewer.state.comparison import CompareMode
+from viewer.state.draw_options import NEUTRAL, brighter
 from viewer.state.methods import toggled, with_base
 from viewer.state.pixels import MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.scene_rows import Level
-from viewer.state.tone import NEUTRAL, brighter
 from viewer.state.views import View
 from viewer.views import view_of
 from viewer.window.actions import FindState, copy_command, fit, offer, pointed_at, zoom_by
-from viewer.window.camera_commands import camera, time
 from viewer.window.command import Command, Condition, scene_open, switch
 from viewer.window.panels import what_if
+from viewer.window.panels.camera import camera_commands, time_commands
 from viewer.window.setting_rows import setting_command
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
@@ -28,7 +28,7 @@ _STOPS = 0.5  # of exposure by a key
 
 def build(ui: Ui) -> list[Command]:
     """Return all commands, in the order of the menus."""
-    menus = (_file, _edit, _view, _picture, _compare, camera, time, _culling, _run, _help)
+    menus = (_file, _edit, _view, _picture, _compare, camera_commands, time_commands, _culling, _run, _help)
     return [command for menu in menus for command in menu(ui)]
 
 

@@ -6,7 +6,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, Protocol
 
 import moderngl
 import numpy as np
@@ -14,6 +15,8 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
+from viewer.state.pixels import Zoom
+from viewer.util.resources import shader_source
 from viewer.views import AS_SAVED, Highlight, Pixels, colorize
 from viewer.views.compare import Difference, signed_picture
 
@@ -34,6 +37,10 @@ class InWindow:
 
 
 PLAIN = InWindow()
+THUMBNAIL = 128
+"""Pixels of height of small recorded pictures."""
+BROUGHT_IN_A_FRAME = 6
+"""Recorded pictures brought to the GPU in one of the window's frames, at most."""
 
 
 class PictureTexture:
@@ -90,8 +97,6 @@ class Display(PictureTexture):
         self.frame: Frame | None = None
         self.part_of: NDArray[np.int32] | None = None
         """(primitives,) the part of the scene that each primitive belongs to, needed while one is selected."""
-        self.selected = -1
-        """The primitive that is drawn as selected."""
         self._drawn: tuple[Frame, object] | None = None
         self._failed: tuple[Frame, object] | None = None
 
@@ -116,7 +121,7 @@ class Display(PictureTexture):
         if window.selected >= 0:
             pixels[_selected_border(frame, window, self.part_of)] = 255
         self.write(pixels, window.smooth and draw.view.shows_clipped)
-        self._drawn, self._failed, self.selected = wanted, None, window.selected
+        self._drawn, self._failed = wanted, None
 
     def shows(self, draw: DrawOptions, window: InWindow = PLAIN) -> bool:
         """Return whether the frame is drawn like this."""
@@ -150,6 +155,106 @@ class Compared:
         self.a.release()
         self.difference.release()
         self._drawn = None
+
+
+class Recorded(Protocol):
+    """A picture that is kept, (h, w, 3) uint8, and the same so many pixels high at most."""
+
+    def pixels(self) -> Pixels: ...
+
+    def thumbnail(self, height: int) -> Pixels: ...
+
+
+class TextureCache:
+    """Recorded pictures as textures: only those that the window shows, brought to the GPU a few at a time.
+
+    Panels ask and get what is there; what they asked for is brought before the widgets of the next frame.  Needs a
+    current GL context for all but `texture_id`."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._textures: dict[tuple[Recorded, bool], PictureTexture] = {}
+        self._wanted: set[tuple[Recorded, bool]] = set()
+
+    def texture_id(self, shot: Recorded, small: bool) -> int | None:
+        """Name of the GL texture of a picture, or of its thumbnail; None until it is there."""
+        self._wanted.add((shot, small))
+        found = self._textures.get((shot, small))
+        return found.texture_id if found is not None else None
+
+    def update(self) -> None:
+        """Keep, or bring, what was asked for since the last time, and nothing else."""
+        for key in self._textures.keys() - self._wanted:
+            self._textures.pop(key).release()
+        for shot, small in list(self._wanted - self._textures.keys())[:BROUGHT_IN_A_FRAME]:
+            self._textures[shot, small] = texture = PictureTexture(self._context)
+            texture.write(
+                shot.thumbnail(THUMBNAIL) if small else shot.pixels(), smooth=small
+            )  # a lone wrong pixel stays
+        self._wanted.clear()
+
+    def release(self) -> None:
+        """Free everything on the GPU."""
+        self._wanted.clear()
+        self.update()
+
+
+class Magnifier:
+    """Enlarged copies of pictures with crisp pixels, by name, as ImGui itself always smooths what it enlarges.  Each
+    stays until another is asked for under its name."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._targets: dict[str, Any] = {}
+        self._shown: dict[str, tuple[Any, ...]] = {}
+
+    @cached_property
+    def _triangle(self) -> Any:
+        """One that covers all, with the shader: compiled when it is first needed."""
+        vertex, fragment = (
+            "#version 330 core\n" + shader_source(name) for name in ("fullscreen.vert", "magnified.frag")
+        )
+        return self._context.vertex_array(self._context.program(vertex_shader=vertex, fragment_shader=fragment), [])
+
+    def draw(self, name: str, source: Any, version: object, zoom: Zoom, size: tuple[int, int]) -> None:
+        """Enlarge as much of a texture as the zoom shows to a size in pixels, unless it is there; `version` is another
+        one whenever the texture's contents are."""
+        wanted = source.glo, zoom, size, source.size, version
+        if self._shown.get(name) == wanted:
+            return
+        window = self._context.detect_framebuffer()
+        try:
+            target = self._targets.get(name)
+            if target is None or target.size != size:
+                self.drop(name)
+                target = self._targets[name] = self._context.framebuffer([self._context.texture(size, 4)])
+            left, top, right, bottom = zoom.shown()
+            program = self._triangle.program
+            program["part"], program["size"] = (left, top, right - left, bottom - top), size
+            source.use(0)
+            target.use()
+            self._context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+            self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        finally:
+            window.use()
+        self._shown[name] = wanted
+
+    def texture_of(self, name: str, source: int, zoom: Zoom, size: tuple[int, int]) -> int | None:
+        """Name of the GL texture with that part of that source in that size; None while there is none."""
+        there = self._shown.get(name, ())[:3] == (source, zoom, size)
+        return self._targets[name].color_attachments[0].glo if there else None
+
+    def drop(self, name: str) -> None:
+        """Free a copy, if there is one."""
+        target = self._targets.pop(name, None)
+        self._shown.pop(name, None)
+        if target is not None:
+            target.color_attachments[0].release()
+            target.release()
+
+    def release(self) -> None:
+        for name in list(self._targets):
+            self.drop(name)
 
 
 def _selected_border(frame: Frame, window: InWindow, part_of: NDArray[np.int32] | None) -> NDArray[np.bool_]:

@@ -8,16 +8,14 @@ import moderngl
 
 from viewer.services.controller import Controller
 from viewer.services.runs import missing_in
-from viewer.state.missing import missing
+from viewer.state.methods import missing
 from viewer.state.parts import parts_of
 from viewer.state.savings import comparison_in_words
 from viewer.state.views import View
 from viewer.views.base import Highlight
-from viewer.window.display import Compared, Display, InWindow
-from viewer.window.magnifier import Magnifier
+from viewer.window.display import Compared, Display, InWindow, Magnifier, TextureCache
 from viewer.window.panels import legend, savings, sides
 from viewer.window.preview import PreviewDisplay
-from viewer.window.texture_cache import TextureCache
 from viewer.window.ui import CaptureKind, Ui
 
 
@@ -142,5 +140,5 @@ def _why_none(c: Controller) -> str:
         return f"the {run.name} {lacks}"
     if run is None and (c.scheduler.awaits or c.renderer.busy):
         return ""
-    found = missing(view, frame, c.session.draw.shares)
+    found = missing(view, frame)
     return found.text if found is not None else ""

@@ -20,13 +20,11 @@ from viewer.services.tour import Tour
 from viewer.state.preferences import default_screenshot_folder
 from viewer.state.views import View
 from viewer.window.command import Command
-from viewer.window.display import Compared, Display
+from viewer.window.display import Compared, Display, Magnifier, TextureCache
 from viewer.window.gl_window import FullScreen
 from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard, Keymap, is_key
-from viewer.window.magnifier import Magnifier
 from viewer.window.preview import PreviewDisplay
-from viewer.window.texture_cache import TextureCache
 
 
 class CaptureKind(Enum):

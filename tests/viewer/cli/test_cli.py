@@ -150,7 +150,7 @@ def test_a_light_among_too_many_is_looked_at_alone(
     for output in (tmp_path / "all.png", tmp_path / "alone.png"):
         assert render(capfd, room, "-o", output, "--view", "penumbra:1", "--lamp-radius", "0.5")[0] == 0
         shown.append(pixels(output))
-        monkeypatch.setattr("viewer.state.readings.MOST_TOGETHER", 1)
+        monkeypatch.setattr("viewer.state.views.MOST_TOGETHER", 1)
     assert np.array_equal(*shown) and len(np.unique(shown[0].reshape(-1, 3), axis=0)) > 50
 
 
@@ -357,9 +357,9 @@ def test_figure_1_of_a_frame(room: Path, tmp_path: Path, capfd: pytest.CaptureFi
         (["--view", "heat"], "'heat' is not a view; the views are color, occlusion, shadow"),
         (["--view", "certificat"], "'certificat' is not a view: did you mean certificate:LIGHT?"),
         (["--view", "fate:0", "--method", "lightcuts"], "single lights have no rays; give --method paper"),
-        (["--view", "cuts", "--method", "auto"], "auto makes no clusters of lights; give --method light"),
+        (["--view", "cuts", "--method", "auto"], "the method auto has nothing for it; give --method lightcuts"),
         (["--view", "tree"], "bvh8 builds all of its tree before rays come; give --accelerator kdtree-lazy"),
-        (["--view", "voxels", "--method", "none"], "not with the method none; give --method voxels"),
+        (["--view", "voxels", "--method", "none"], "the method none has nothing for it; give --method voxels"),
         (["--view", "cell-lights", "--method", "paper"], "give --method lie-exact"),
         (["--view", "shadow:7"], "lights are 0 to 1"),
         (["--view", "depth:1"], "is not a view"),

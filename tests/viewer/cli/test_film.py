@@ -113,7 +113,10 @@ def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: p
         (("-o", "d", "--caption", "{sceen}"), "the caption has no field {sceen}"),
         (("-o", "d", "--view", "shadow:7"), "the scene's lights are 0 to 1"),
         (("-o", "d", "--view", "certificate:0", "--method", "paper"), "give --method certified"),
-        (("-o", "d", "--view", "voxels", "--method", "paper"), "not with the method paper; give --method voxels"),
+        (
+            ("-o", "d", "--view", "voxels", "--method", "paper"),
+            "nothing for it; give --method voxels",
+        ),
         (("-o", "d", "--view", "cuts", "--method", "none"), "give --method lightcuts"),
         (("-o", "d", "--view", "tree"), "bvh8 builds all of its tree before rays come"),
     ]

@@ -74,13 +74,16 @@ def test_the_stages_are_those_of_the_paper_with_the_frames_numbers():
     assert f"{s.mode_changes.units['fully_rendered']:,} of {sum(s.mode_changes.units.values()):,}" in figure.next_frame
 
 
-def test_stages_have_their_parts_of_the_time():
-    frame = frame_by("paper")
+def test_stages_have_their_parts_of_the_time_and_a_part_of_a_picture_is_said():
+    frame = frame_by("paper", verify=True)
     phases = {"place": 0.01, "primary": 0.02, "occlusion testing": 0.03, "surfaces": 0.05, "shading": 0.25}
     frame.statistics.phases, frame.statistics.seconds = phases | {"mode setting": 0.04}, 0.5
     figure = figure_of(frame)
     assert [stage.share for stage in figure.stages] == pytest.approx([0.02, 0.04, 0.06, 0.6, 0.0, 0.0, 0.08])
-    assert figure.stages[3].time == "300.0 ms, 60.0 %"
+    assert figure.stages[3].time == "300.0 ms, 60.0 %" and not figure.notes
+    assert flows_of(figure)["wrong answers"].number == frame.statistics.wrong.answers
+    frame.statistics.part = 0.38
+    assert any("38 % of pixels shaded" in note for note in figure_of(frame).notes)
 
 
 def test_what_would_be_culled_is_outlined_where_nothing_is():
@@ -109,16 +112,6 @@ def test_certificates_stand_in_the_place_of_modes():
     assert flows_of(figure)["dynamic only"].number == shadow.dynamic_only > 0
     certificates = next(stage for stage in figure.stages if stage.name == "Certificates")
     assert certificates.view is View.CERTIFICATE
-
-
-def test_a_picture_of_which_a_part_is_shaded_says_so_and_wrong_answers_are_counted():
-    frame = frame_by("paper", verify=True)
-    frame.statistics.part = 0.38
-    figure = figure_of(frame)
-    assert any("38 % of pixels shaded" in note for note in figure.notes)
-    assert flows_of(figure)["wrong answers"].number == frame.statistics.wrong.answers
-    frame.statistics.part = 1.0
-    assert not figure_of(frame).notes
 
 
 @pytest.mark.parametrize("method", ["cells", "cache", "lightcuts", "voxels", "lie-exact", "lightbuffer", "auto"])

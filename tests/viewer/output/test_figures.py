@@ -21,9 +21,8 @@ from viewer.output.comparison import Comparison, Crop, Shown
 from viewer.output.comparison_figure import figure
 from viewer.output.figures import COLUMNS, chosen_steps, film_figure
 from viewer.output.filmstrip import Filmstrip
-from viewer.state.draw_options import DrawOptions
+from viewer.state.draw_options import DrawOptions, Tone
 from viewer.state.palette import WRONG
-from viewer.state.tone import Tone
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
 from viewer.views.difference import Mark, ringed, wrong_marks
@@ -80,16 +79,11 @@ def test_wrong_answers_have_a_panel_where_there_are_any() -> None:
 
 
 @pytest.mark.parametrize(
-    ("verified", "wrong", "said"),
-    [
-        (False, 0, "frames 5 to 8 of 20, answers not verified"),
-        (True, 0, "frames 5 to 8 of 20, no wrong answer"),
-        (True, 2, "frames 5 to 8 of 20"),
-    ],
+    ("verified", "wrong", "said"), [(False, 0, ", answers not verified"), (True, 0, ", no wrong answer"), (True, 2, "")]
 )
 def test_the_title_tells_scene_size_frames_and_whether_it_was_verified(verified: bool, wrong: int, said: str) -> None:
     figure = figures.savings_figure(results(wrong=(wrong, 0, 0, 0)), verified)
-    assert figure.get_suptitle().endswith(f"\nhall.aff, 320 × 200, {said}")
+    assert figure.get_suptitle().endswith(f"\nhall.aff, 320 × 200, frames 5 to 8 of 20{said}")
 
 
 def test_methods_differ_in_colour_and_dashes_and_their_names_are_on_the_page() -> None:
@@ -102,18 +96,13 @@ def test_methods_differ_in_colour_and_dashes_and_their_names_are_on_the_page() -
         assert box.x0 > panel.bbox.x1 - 1.0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0.0
 
 
-def test_one_frame_that_saves_nothing_can_be_drawn() -> None:
-    one = results()
+def test_one_frame_can_be_drawn_and_nothing_to_compare_is_said() -> None:
+    one, alone = results(), results()
     one.frames = [5]
     one.methods = {m: {key: values[:1] for key, values in of.items()} for m, of in one.methods.items()}
     for panel in figures.savings_figure(one, verified=True).axes:
         assert named(panel) == ["paper, average 0.0%\nmost 0.0%, frame 5"]
-        low, high = panel.get_ylim()
-        assert low <= 0.0 < high
-
-
-def test_nothing_to_compare_is_said() -> None:
-    alone = results()
+        assert panel.get_ylim()[0] <= 0.0 < panel.get_ylim()[1]
     del alone.methods["paper"]
     for nothing in (alone, experiment.Results("s", (1, 1), methods={"none": {}, "paper": {}})):
         with pytest.raises(ValueError, match="nothing to plot"):
@@ -204,26 +193,17 @@ def test_however_long_the_way_memory_is_bounded(frame: Frame, limit: dict[str, i
     assert film.nearest(4.0, 199).number == numbers[0][-1] and film.nearest(5.0, 3) is None
 
 
-def test_the_figure_draws_first_last_and_where_something_happens(frame: Frame):
+def test_a_film_draws_first_last_and_where_something_happens_as_far_as_it_went(frame: Frame):
     film = Filmstrip()
-    for number in range(30):
-        film.record(4.0, number, frame)
-    approach = Approach(4.0, [step(n, wrong=int(11 <= n < 14)) for n in range(30)])
-    chosen = chosen_steps(zoom_results(approach), list(range(30)))
-    assert len(chosen) == COLUMNS and {0, 11, 14, 29} <= set(chosen) and chosen == sorted(chosen)
-    figure = film_figure(film, zoom_results(approach))
-    assert len(figure.axes) == COLUMNS
-    np.testing.assert_array_equal(figure.axes[0].images[0].get_array(), film.of(4.0)[0].pixels())
-
-
-def test_a_way_that_was_stopped_early_is_drawn_as_far_as_it_went(frame: Frame):
-    film = Filmstrip()
-    for factor, steps in ((4.0, 5), (16.0, 2)):
+    for factor, steps in ((4.0, 30), (16.0, 2)):
         for number in range(steps):
             film.record(factor, number, frame)
-    approaches = [Approach(4.0, [step(n) for n in range(5)]), Approach(16.0, [step(0)]), Approach(64.0)]
-    figure = film_figure(film, zoom_results(*approaches))
-    assert [len(panel.images) for panel in figure.axes] == [1, 1, 1, 1, 1, 1, 0, 0, 0, 0]
+    long = Approach(4.0, [step(n, wrong=int(11 <= n < 14)) for n in range(30)])
+    chosen = chosen_steps(zoom_results(long), list(range(30)))
+    assert len(chosen) == COLUMNS and {0, 11, 14, 29} <= set(chosen) and chosen == sorted(chosen)
+    figure = film_figure(film, zoom_results(long, Approach(16.0, [step(0)]), Approach(64.0)))
+    assert [len(panel.images) for panel in figure.axes] == [1] * COLUMNS + [1] + [0] * (COLUMNS - 1)
+    np.testing.assert_array_equal(figure.axes[0].images[0].get_array(), film.of(4.0)[0].pixels())
     with pytest.raises(ValueError, match="no step"):
         film_figure(Filmstrip(), zoom_results(Approach(4.0)))
 
@@ -242,16 +222,11 @@ def shown(view: View) -> Shown:
     return Shown(make_scene(), state, compared, {"none": right, "paper": other}, right)
 
 
-def test_differences_are_counted() -> None:
+def test_differences_are_counted_of_what_was_traced_and_pictures_have_the_tone() -> None:
     drawn = shown(View.COLOR)
-    assert drawn.differing("none") == 0 and drawn.differing("paper") == 1
     found = drawn.difference("paper")
     assert found[1, 2] > 0.0 and np.count_nonzero(found) == 1
-    assert dict(drawn.counts("paper"))["pixels that differ"] == "1"
-
-
-def test_pictures_have_the_tone_and_differences_are_of_what_was_traced() -> None:
-    drawn = shown(View.COLOR)
+    assert dict(drawn.counts("paper"))["pixels that differ"] == "1" and drawn.differing("none") == 0
     bright = replace(drawn, state=drawn.state.with_draw(tone=Tone(1.0)))
     assert (bright.pictures["none"] != drawn.pictures["none"]).any()
     assert np.array_equal(bright.difference("paper"), drawn.difference("paper"))

@@ -12,7 +12,6 @@ import tracer
 from tests.commands import complaint, run
 from tracer.culling.lightbuffer.tell import listed
 from tracer.methods.lightbuffer import LightBuffer
-from viewer.output import light_cube
 from viewer.output.light_cube import (
     COVERED,
     FEW,
@@ -22,19 +21,8 @@ from viewer.output.light_cube import (
     seen,
     unfolded,
 )
-from viewer.state.palette import BACKGROUND, GREY, color_map
+from viewer.state.palette import GREY
 from viewer.util import resources
-
-
-def cell_at(side: int, x: int, y: int) -> tuple[int, int, int] | None:
-    """(face, row, column) of the cell in a column and a row of the cross; None beside it."""
-    face = light_cube._CROSS.get((y // side, x // side))
-    if face is None:
-        return None
-    ways = light_cube._ways(face, side)[y % side, x % side]
-    axis = "xyz".index(face[1])
-    across, along = (int((ways[k] + 1.0) * (0.5 * side)) for k in range(3) if k != axis)
-    return 2 * axis + (face[0] == "-"), along, across
 
 
 def test_neighbours_on_the_cube_are_neighbours_on_the_cross():
@@ -71,26 +59,13 @@ def test_the_cube_of_a_light_is_drawn_and_told_cell_by_cell():
     counts = drawn.counts
     assert sum(counts.values()) == 6 * 64 * 64 and min(counts[ONE], counts[FEW]) > 0
     assert drawn.longest == max(2, drawn.lengths.max())
-    side, colors = cube.side, np.round(color_map() * 255).astype(int)
-    left = picture_of(cube)[:, : 4 * side].astype(int)
-    met = set()
-    for y in range(0, 3 * side, 3):
-        for x in range(0, 4 * side, 3):
-            cell = cell_at(side, x, y)
-            if cell is None:
-                assert (left[y, x] == np.round(np.array(BACKGROUND) * 255)).all()
-                continue
-            length, names = int(drawn.lengths[cell]), listed(cube, *cell)
-            if length > 0:
-                expected = colors[(length - 1) * 255 // (drawn.longest - 1)]
-                assert len(names) == length
-            else:
-                shades = {True: NOTHING_THERE, False: COVERED if drawn.covered[cell] else GREY}
-                expected = np.round(np.array(shades[length == 0]) * 255)
-                assert len(names) == (1 if drawn.covered[cell] else 0)
-            assert np.abs(left[y, x] - expected).max() <= 1, (x, y)
-            met.add(min(length, 1))
-    assert met == {-1, 0, 1} or met == {-1, 1}
+    side = cube.side
+    for face in np.ndindex(6, 4, 4):  # some cells
+        cell = face[0], 16 * face[1] + 5, 16 * face[2] + 9
+        length, color = int(drawn.lengths[cell]), drawn.list_colors()[cell]
+        known = NOTHING_THERE if length == 0 else COVERED if drawn.covered[cell] else GREY
+        assert len(listed(cube, *cell)) == (length if length > 0 else int(drawn.covered[cell]))
+        assert length > 0 or np.allclose(color, known)
     lists, depths = drawn.list_legend("light 0"), drawn.depth_legend()
     assert lists.scale is not None and lists.scale.high == str(drawn.longest)
     assert depths.scale is not None and depths.scale.low == f"{drawn.depths.min():.3g}"

@@ -10,8 +10,8 @@ from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
 from viewer.state.comparison import CompareMode, Source
+from viewer.state.draw_options import Curve, Tone
 from viewer.state.frame_rows import beside
-from viewer.state.tone import Curve, Tone
 from viewer.state.views import View
 from viewer.views.compare import GAP, composed, signed_picture
 from viewer.views.wipe import wipe_column

@@ -11,7 +11,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
-from viewer.services import scene_files
+from viewer.services import scene_loader
 from viewer.state.notices import QUIET_AFTER
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
@@ -69,7 +69,7 @@ def failing(d: Driver) -> None:
     notices.dismiss_faults()
 
     # Panels, with tables, children and plots open: one says what is wrong with it, and is shown again when told to.
-    for label, module, name in (("Statistics", statistics, "_milliseconds"), ("Plots", plots, "_stack")):
+    for label, module, name in (("Statistics", statistics, "right"), ("Plots", plots, "_stack")):
         d.ui.show_panel(label)
         d.frames(3)
         good = getattr(module, name)
@@ -116,10 +116,10 @@ def failing(d: Driver) -> None:
     renderer.refine = refine
     d.press(KEY.t)
     d.settle()
-    read, scene_files.load_visible_scene = scene_files.load_visible_scene, fail
+    read, scene_loader.load_visible_scene = scene_loader.load_visible_scene, fail
     d.drop(embedded_scenes()["figure4"])
     noticed("Loading figure4.aff failed")
-    scene_files.load_visible_scene = read
+    scene_loader.load_visible_scene = read
 
     # All of it is in the log, with what the status bar has said.
     d.ui.show_panel("Log")

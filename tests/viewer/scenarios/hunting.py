@@ -9,6 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tests.viewer.driver import Driver
 from tests.viewer.marbles import LAST, STEP, write_marbles
 from viewer.state.picking import wrong_at
+from viewer.window.panels.inspector import wrong_beyond
 from viewer.window.panels.plots import PlotsState
 
 KEY = imgui.Key
@@ -104,11 +105,11 @@ def _to_a_find(d: Driver) -> None:
     left, top, right, bottom = c.session.draw.zoom.shown()
     assert right - left < 0.3 and left < find.x / 96 < right and top < find.y / 96 < bottom, "its pixel is too small"
     d.wait(lambda: c.inspector.why is not None, "what the lights do there", 20.0)
-    reasons, answer = c.inspector.why.reasons, c.inspector.answer
-    assert sum(one.wrong for one in reasons) + answer.wrong_beyond == c.frame.wrong[find.y, find.x]
+    reasons = c.inspector.why.reasons
+    assert sum(one.wrong for one in reasons) + wrong_beyond(c.inspector.why) == c.frame.wrong[find.y, find.x]
     if find.bounces == 0:
-        one, truth = reasons[find.light], answer.lights[find.light]
-        assert one.wrong == 1 and (one.lit > 0) == find.lit and (truth.reached > 0) != find.lit
+        one = reasons[find.light]
+        assert one.wrong == 1 and (one.lit > 0) == find.lit and (one.blocker < 0) != find.lit
     d.context.item_click(f"//Hunt/**/{icons.ICON_FA_CODE_BRANCH}  Rays")
     d.wait(lambda: c.inspector.tree is not None, "its rays", 20.0)
     assert any(ray.shadows is not None and ray.shadows.wrong.any() for ray in c.inspector.tree.rays)

@@ -15,7 +15,7 @@ from tests.viewer.driver import Driver
 from tests.viewer.previews import colors_of
 from tracer.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Progress
-from viewer.services import scene_files, scene_loader
+from viewer.services import scene_loader
 
 KEY = imgui.Key
 _compiled = threading.Event()
@@ -36,13 +36,11 @@ def first_start() -> Iterator[None]:
         return lambda *arguments, **options: _compiled.is_set() and known(*arguments, **options)
 
     with mock.patch.object(scene_loader, "warm_up", slowly):
-        for module in (scene_loader, scene_files):
-            module.can_draw, module.compiled_before = after(can_draw), after(compiled_before)
+        scene_loader.can_draw, scene_loader.compiled_before = after(can_draw), after(compiled_before)
         try:
             yield
         finally:
-            for module in (scene_loader, scene_files):
-                module.can_draw, module.compiled_before = can_draw, compiled_before
+            scene_loader.can_draw, scene_loader.compiled_before = can_draw, compiled_before
 
 
 def previewing(d: Driver) -> None:

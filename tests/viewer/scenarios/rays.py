@@ -17,7 +17,7 @@ def rays(d: Driver) -> None:
     """A click on a pixel lists its rays."""
     d.settle()
     c, state = d.c, d.ui.state(RaysState)
-    assert panel.listed(d.ui) is None, "they are folded at first"
+    assert not panel.are_listed(d.ui), "they are folded at first"
     c.settings.change(method="paper")
     d.settle()
     for _ in range(2):
@@ -65,7 +65,7 @@ def rays(d: Driver) -> None:
     d.press(KEY.escape)
     d.frames(3)
     assert c.inspector.tree is None
-    assert panel.listed(d.ui) is None
+    assert not panel.are_listed(d.ui)
 
 
 def _shaded(d: Driver) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from viewer.output import capture
 from viewer.state.comparison import CompareMode
-from viewer.state.tone import Curve, Tone
+from viewer.state.draw_options import Curve, Tone
 from viewer.state.views import View
 from viewer.views.compare import composed
 from viewer.window.panels import saving
@@ -60,7 +60,7 @@ def _nothing_to_save(d: Driver) -> None:
         d.frames(2)
         assert d.ui.capture_wanted is None
         said = d.c.notices.message
-        assert said.error and "Certificates" in said.text and "The method paper makes no certificates" in said.text
+        assert said.error and "The method paper has nothing for the view Certificates" in said.text
         d.press(KEY._1)
         d.settle()
         assert not d.c.captures.busy

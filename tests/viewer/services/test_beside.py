@@ -24,32 +24,32 @@ SIZE = Settings(width=16, height=8)
 
 
 class Timed:
-    """A renderer whose frames take, in turn, the seconds that were given for the method; `made` are certificates."""
+    """A renderer whose frames take, in turn, the seconds that were given for the method; `made` are certificates.
+
+    Those beside it note in the same `order` who traced, and in `taught` whose modes they were given."""
+
+    settings = SIZE
+    failing: Exception | None = None
 
     def __init__(self, seconds: dict[str, list[float]], made: dict[str, list[int]] | None = None) -> None:
-        self.seconds, self.made, self.settings = seconds, made or {}, SIZE
-        self.failing: Exception | None = None
+        self.seconds, self.made = seconds, made or {}
         self.order: list[str] = []
         self.taught: list[object] = []
-        self.asked: list[Settings] = []
 
     def beside(self) -> Timed:
         other = Timed(self.seconds, self.made)
-        other.order, other.asked, other.taught, other.failing = self.order, self.asked, self.taught, self.failing
+        other.order, other.taught, other.failing = self.order, self.taught, self.failing
         return other
 
     def take_modes(self, other: object) -> None:
         self.taught.append(other)
 
     def render(self, time=0.0, camera=None, cancel=None) -> Frame:
-        if cancel is not None and cancel():
-            raise Cancelled()
         if self.failing is not None:
             raise self.failing
         method = self.settings.method
         number = self.order.count(method)
         self.order.append(method)
-        self.asked.append(self.settings)
         frame = make_frame(self.settings, time, camera)
         times, made = self.seconds[method], self.made.get(method, [])
         frame.statistics.seconds = times[number % len(times)]
@@ -57,15 +57,17 @@ class Timed:
         return frame
 
 
-def subject(*methods: str) -> Subject:
-    return Subject(1.0, CAMERA, replace(SIZE, method="none"), methods)
+def rounds_of(*methods: str) -> Rounds:
+    return Rounds(Subject(1.0, CAMERA, replace(SIZE, method="none"), methods))
 
 
-def run(rounds: Rounds, renderer: Timed) -> int:
-    steps = 1
-    while rounds.step(renderer, lambda: False):
-        steps += 1
-    return steps
+def step(rounds: Rounds, renderer: Timed, most: int = 10_000) -> int:
+    """Go so many steps at most; returns how many there were."""
+    return next((n for n in range(1, most + 1) if not rounds.step(renderer, never)), most)
+
+
+def never() -> bool:
+    return False
 
 
 def test_medians_quartiles_and_the_margin():
@@ -80,34 +82,29 @@ def test_medians_quartiles_and_the_margin():
 
 
 def test_methods_take_turns_after_frames_that_do_not_count_and_stop_once_it_is_known():
-    renderer = Timed({"none": [9.0] * FIRST + [0.2], "paper": [9.0] * FIRST + [0.1]})
-    renderer.seconds = {name: times[:FIRST] + times[FIRST:] * 60 for name, times in renderer.seconds.items()}
-    rounds = Rounds(subject("none", "paper"))
-    assert run(rounds, renderer) == 2 * (FIRST + LEAST)
+    renderer = Timed({"none": [9.0] * FIRST + [0.2] * 60, "paper": [9.0] * FIRST + [0.1] * 60})
+    rounds = rounds_of("none", "paper")
+    assert step(rounds, renderer) == 2 * (FIRST + LEAST)
     assert renderer.order[: 2 * FIRST] == ["none"] * FIRST + ["paper"] * FIRST
     counted = renderer.order[2 * FIRST :]
     assert counted == ["none", "paper", "paper", "none"] * (LEAST // 2), "who is first changes"
-    found = rounds.so_far
-    assert found.settled and found.speed("paper", "none").median == pytest.approx(2.0)
+    assert rounds.so_far.settled and rounds.so_far.speed("paper", "none").median == pytest.approx(2.0)
     assert renderer.taught == [renderer] * 2, "each begins with the modes that the window has"
-    assert not rounds.step(renderer, lambda: False) and len(renderer.order) == 2 * (FIRST + LEAST)
+    assert not rounds.step(renderer, never) and len(renderer.order) == 2 * (FIRST + LEAST)
 
 
 def test_where_the_numbers_go_up_and_down_it_ends_after_so_many_rounds():
-    renderer = Timed({"none": [0.1, 0.3, 0.2], "paper": [0.25, 0.1, 0.15, 0.3]})
-    rounds = Rounds(subject("none", "paper"))
-    run(rounds, renderer)
+    rounds = rounds_of("none", "paper")
+    step(rounds, Timed({"none": [0.1, 0.3, 0.2], "paper": [0.25, 0.1, 0.15, 0.3]}))
     assert rounds.so_far.count == MOST and rounds.so_far.settled
 
 
 def test_nothing_counts_before_the_method_has_made_what_it_makes():
     renderer = Timed({"none": [0.1], "certified": [0.1]}, {"certified": [90, 50, 20, 3]})
-    rounds = Rounds(subject("none", "certified"))
-    for _ in range(FIRST + 5):
-        assert rounds.so_far.prepares
-        rounds.step(renderer, lambda: False)
-    rounds.step(renderer, lambda: False)
-    rounds.step(renderer, lambda: False)
+    rounds = rounds_of("none", "certified")
+    step(rounds, renderer, FIRST + 5)
+    assert rounds.so_far.prepares
+    step(rounds, renderer, 2)
     assert not rounds.so_far.prepares and rounds.so_far.count == 1
 
 
@@ -128,92 +125,65 @@ def test_none_keeps_no_modes_and_nobody_records_or_verifies():
     assert subject_of(traced("paper"), "none").methods == ("none", "paper")
 
 
-class Thread:
-    """What it is given to do in spare time."""
+class Spare:
+    """A baseline, the clock that it reads, and what it has given the thread to do in spare time."""
 
     def __init__(self) -> None:
-        self.works: list[Rounds | None] = []
+        self.now, self.works = 0.0, list[Rounds | None]()
+        self.baseline = Baseline(lambda step: self.works.append(step and step.__self__), lambda: self.now)
+
+    def see(self, newest: Traced, moving: bool = False, busy: bool = False) -> Rounds | None:
+        """Show a picture for one of the window's frames; returns what the thread does then."""
+        self.baseline.update(newest, "", moving, busy)
+        return self.works[-1] if self.works else None
+
+    def rest(self, newest: Traced) -> Rounds | None:
+        """Show a picture for long."""
+        self.see(newest)
+        self.now += 2.0 * STILL
+        return self.see(newest)
 
 
 def test_it_begins_at_rest_stops_at_once_and_goes_on_where_it_stopped():
-    now, thread, paper = [0.0], Thread(), traced("paper")
-    baseline = Baseline(thread.works.append, lambda: now[0])
-
-    def follow(newest=paper, moving=False, busy=False):
-        baseline.update(newest, "", moving, busy)
-
-    follow()
-    assert not thread.works and baseline.measured is None
-    now[0] = 2.0 * STILL
-    follow()
-    first = thread.works[-1]
+    spare, paper = Spare(), traced("paper")
+    baseline = spare.baseline
+    assert spare.see(paper) is None and baseline.measured is None
+    first = spare.rest(paper)
     assert first.subject.methods == ("none", "paper") and baseline.measured is first.so_far
-    follow(busy=True)
-    assert thread.works == [first, None] and baseline.measured is first.so_far, "what is known stays"
-    follow()
-    now[0] = 4.0 * STILL
-    follow()
-    assert thread.works[-1] is first
-    renderer = Timed({"none": [0.1], "paper": [0.2]})
-    for _ in range(2 * FIRST + 2):
-        first.step(renderer, lambda: False)
-    follow(moving=True)
-    assert thread.works[-1] is None and baseline.measured is None and baseline.moving
-    for at in (4.5, 5.75):
-        now[0] = at * STILL
-        follow()
-    again = thread.works[-1]
+    assert spare.see(paper, busy=True) is None and baseline.measured is first.so_far, "what is known stays"
+    assert spare.rest(paper) is first
+    step(first, Timed({"none": [0.1], "paper": [0.2]}), 2 * FIRST + 2)
+    assert spare.see(paper, moving=True) is None and baseline.measured is None and baseline.moving
+    again = spare.rest(paper)
     assert again is not first, "renderers, with all they have learnt, are not kept while pictures change"
     assert baseline.measured is again.so_far and again.so_far.count == 1, "what they have measured is"
-    other = traced("certified")
-    for at in (6.0, 8.0):
-        now[0] = at * STILL
-        follow(other)
-    second = thread.works[-1]
+    second = spare.rest(traced("certified"))
     assert second is not again and second.subject.methods == ("none", "certified")
-    follow(paper)
-    assert thread.works[-1] is again, "of the same picture, what is known of another method is known still"
-    elsewhere = traced("paper", at=2.0)
-    follow(elsewhere)
-    assert thread.works[-1] not in (again, second)
-    follow(paper)
-    assert thread.works[-1] not in (again, second), "of another picture it is not"
+    assert spare.see(paper) is again, "of the same picture, what is known of another method is known still"
+    spare.rest(traced("paper", at=2.0))
+    assert spare.rest(paper) not in (again, second), "of another picture it is not"
     baseline.forget()
-    assert thread.works[-1] is None and baseline.measured is None
+    assert spare.works[-1] is None and baseline.measured is None
 
 
 def test_no_tree_is_built_for_a_figure():
-    thread = Thread()
-    baseline = Baseline(thread.works.append, lambda: 1e9)
-    for _ in range(2):
-        baseline.update(traced(accelerator="kdtree-lazy"), "", False, False)
-    assert not thread.works and "built" in baseline.why_not
+    spare = Spare()
+    assert spare.rest(traced(accelerator="kdtree-lazy")) is None and "built" in spare.baseline.why_not
 
 
 def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
-    now, thread = [0.0], Thread()
-    baseline = Baseline(thread.works.append, lambda: now[0])
-
-    def rest(newest: Traced) -> None:
-        for _ in range(2):
-            now[0] += 2.0 * STILL
-            baseline.update(newest, "", False, False)
-
-    rest(traced())
-    begun, renderer = thread.works[-1], Timed({"none": [0.1], "paper": [0.1]})
+    spare = Spare()
+    begun, renderer = spare.rest(traced()), Timed({"none": [0.1], "paper": [0.1]})
     renderer.failing = MemoryError()
     with pytest.raises(MemoryError):
-        begun.step(renderer, lambda: False)
-    assert not begun.step(renderer, lambda: False)
-    rest(traced())
-    assert "out of memory" in baseline.why_not
-    baseline.update(traced(), "", True, False)
-    given = len([work for work in thread.works if work is not None])
-    rest(traced())
-    assert "out of memory" in baseline.why_not
-    assert len([work for work in thread.works if work is not None]) == given == 1
-    rest(traced(at=2.0))
-    assert thread.works[-1] is not None and not baseline.why_not, "another picture is tried"
+        begun.step(renderer, never)
+    assert not begun.step(renderer, never)
+    for moving in (False, True):
+        spare.see(traced(), moving=moving)
+        spare.rest(traced())
+        assert "out of memory" in spare.baseline.why_not
+    assert [work for work in spare.works if work is not None] == [begun]
+    assert spare.rest(traced(at=2.0)) is not None and not spare.baseline.why_not, "another picture is tried"
 
 
 class Work:
@@ -238,7 +208,7 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
         return bool(came) and came[-1].frame.time == at
 
     thread.use(renderer)
-    thread.in_spare_time(work)
+    thread.in_spare_time(work.step)
     for number, at in enumerate((1.0, 2.0)):
         assert work.begun == number, "not before a picture is there"
         thread.submit(RenderRequest(at, CAMERA, SIZE))
@@ -253,7 +223,7 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
     until(lambda: work.begun == 3)
     thread.in_spare_time(None)
     until(lambda: work.ended == 3 and len(renderer.turns) == 3)
-    thread.in_spare_time(work)
+    thread.in_spare_time(work.step)
     until(lambda: work.begun == 4)
     assert thread.close(PATIENCE), "the thread hangs"
 
@@ -284,10 +254,6 @@ def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
         assert len(beside.state.histories) == histories, "no modes of other sizes, and none where none are kept"
     after, expected = window.render(1.0), alone.render(1.0)
     assert np.array_equal(after.modes, expected.modes) and after.statistics.shadow == expected.statistics.shadow
-
-
-def never() -> bool:
-    return False
 
 
 @pytest.mark.parametrize("keeps_modes", [True, False])

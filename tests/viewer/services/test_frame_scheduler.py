@@ -147,10 +147,12 @@ def test_what_a_view_needs_is_traced_once_and_for_such_views_alone(
 ):
     verifies = doing == "verifying"
     desk.c.session.set_draw(view=view)
+    before = len(desk.renderer.asked)
     advance(desk.c, SIZE)
     assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "it is not there yet"
     assert doing in desk.c.scheduler.title
-    assert desk.rest() == [verifies]
+    desk.rest()
+    assert [settings.verify for _, settings in desk.renderer.asked[before:]] == [verifies]
     assert desk.c.frame.settings.record_work is not verifies and (desk.c.frame.wrong is not None) is verifies
     assert desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
     for other in others:

@@ -12,18 +12,17 @@ import pytest
 
 from tests.viewer.desk import Desk
 from tracer.culling.fate import Fate
-from tracer.explanation import NO_CERTIFICATE, Explanation, explain
+from tracer.explanation import explain
 from tracer.frame import Frame
+from tracer.reasons import Reason, Rule, Why
 from tracer.renderer import Renderer
 from tracer.told_rays import RayTree
 from tracer.why_in_words import Link
 from viewer.output.ray_rows import Filter
 from viewer.services import inspector as module
-from viewer.services.inspector import MOST_LIGHTS, MOST_OCCLUDERS, Inspection, drawn_lights
 from viewer.state import navigation
-from viewer.window.panels.inspector import summary, unanswered
+from viewer.window.panels.inspector import summary, unanswered, wrong_beyond
 from viewer.window.panels.links import go_to
-from viewer.window.panels.overlays import BLOCKER, LIT, OCCLUDER, STOPPED, shadow_lines
 from viewer.window.panels.rays import ray_lines
 from viewer.window.ui import Ui
 
@@ -47,13 +46,12 @@ class PixelDesk(Desk):
 
         super().until(holds)
 
-    def answered(self) -> Inspection:
-        frame = self.c.frame
-        self.until(lambda: self.answer is not None and self.answer.frame is frame)
+    def answered(self) -> Why:
+        self.until(lambda: self.answer is not None and self.answer.tree.frame.primitive is self.c.frame.primitive)
         return self.answer
 
     @property
-    def answer(self) -> Inspection | None:
+    def answer(self) -> Why | None:
         return self.c.inspector.answer
 
     def _place(self, lit: bool) -> tuple[float, float]:
@@ -74,17 +72,18 @@ def desk(tiny_scene_file: Path, tmp_path: Path):
     assert desk.c.close()
 
 
-def blocked(answer: Inspection) -> bool:
-    return any(one.blocked_at is not None for one in answer.lights)
+def blocked(answer: Why) -> bool:
+    return any(one.blocker >= 0 for one in answer.reasons)
 
 
 def test_the_pointer_is_followed_and_nothing_is_traced_for_it(desk: PixelDesk):
     assert desk.answer is None
     traced = desk.c.history.frames
     desk.c.selection.hovered = desk.shadow
-    answer = desk.answered()
-    here = pixel(desk.c.frame, desk.shadow)
-    assert blocked(answer) and answer.lights == explain(desk.renderer, desk.c.frame, *here)
+    answer, here = desk.answered(), pixel(desk.c.frame, desk.shadow)
+    truth = [one.blocker for one in explain(desk.renderer, desk.c.frame, *here)]
+    assert (answer.x, answer.y) == here and blocked(answer)
+    assert [one.blocker for one in answer.reasons] == [-1 if blocker is None else blocker for blocker in truth]
     desk.c.selection.hovered = desk.lit
     desk.until(lambda: not blocked(desk.answer))
     desk.c.selection.hovered = (0.5, 0.01)  # background
@@ -100,10 +99,9 @@ def test_another_time_is_another_answer(desk: PixelDesk):
     desk.c.selection.select(desk.shadow)
     first = desk.answered()
     desk.c.motion.step(3)
-    desk.until(lambda: not desk.c.active and desk.c.frame.time > first.frame.time)
-    assert desk.answered().frame.time == desk.c.frame.time
+    desk.until(lambda: not desk.c.active and desk.c.frame.time > first.tree.frame.time)
+    assert desk.answered().tree.frame.time == desk.c.frame.time
     desk.c.motion.move(navigation.look(desk.c.session.camera, 2.5, 0.0, desk.c.motion.world_up))
-    desk.until(lambda: not desk.c.active)
     desk.until(lambda: not desk.c.active and desk.answer is None)
     inspector = desk.c.inspector
     assert inspector.why is inspector.tree is None, "of what is not visible from here, nothing is said"
@@ -117,16 +115,12 @@ def test_nothing_is_proven_by_a_method_that_is_not_chosen_any_more(desk: PixelDe
     desk.c.settings.change(method="certified")
     desk.until(lambda: not desk.c.active, ticks=20)
     desk.c.selection.select(desk.shadow)
-    assert {one.certificate for one in desk.answered().lights} - {NO_CERTIFICATE}
-    old = desk.answer
+    old = desk.answered()
+    assert {one.method for one in old.reasons} == {"certified"}
     desk.c.settings.change(method="paper")
-    desk.until(lambda: desk.answer is not None and desk.answer is not old)
-    assert {one.certificate for one in desk.answer.lights} == {NO_CERTIFICATE}
-    desk.c.motion.toggle_play()
-    desk.until(lambda: desk.c.session.frame >= 3)
-    desk.c.motion.toggle_play()
-    desk.until(lambda: not desk.c.active)
-    assert {one.certificate for one in desk.answered().lights} == {NO_CERTIFICATE}
+    desk.until(lambda: desk.answer is not old)
+    desk.until(lambda: desk.answer is not None)
+    assert {one.method for one in desk.answer.reasons} == {"paper"}
 
 
 def test_a_run_has_the_world_to_itself(desk: PixelDesk):
@@ -140,30 +134,15 @@ def test_a_run_has_the_world_to_itself(desk: PixelDesk):
     assert blocked(desk.answered())
 
 
-def test_every_named_occluder_is_drawn_up_to_a_number_and_what_blocks_stands_out(desk: PixelDesk):
-    desk.renderer.explain = lambda primitive, point, light: ("CANDIDATES", (0, 1) * 10)
-    desk.c.selection.select(desk.shadow)
-    answer = desk.answered()
-    stopped = next(one for one in answer.lights if one.blocked_at is not None)
-    assert stopped.certificate == "CANDIDATES" and stopped.named == (0, 1)
-    colors = [color for color, _, light, _ in shadow_lines(answer, desk.c.frame) if light == stopped.light]
-    assert colors == [*[BLOCKER] * 3, OCCLUDER, OCCLUDER, LIT, STOPPED]
-    many = replace(answer, lights=(replace(stopped, blocker=2, named=tuple([2] + [0] * 30)),))
-    drawn = [color for color, _, _, _ in shadow_lines(many, desk.c.frame)]
-    assert drawn.count(OCCLUDER) == MOST_OCCLUDERS - 1
-
-
-def test_reasons_come_with_the_answer_and_say_what_the_frame_did(desk: PixelDesk):
+def test_reasons_say_what_the_frame_did(desk: PixelDesk):
     desk.c.settings.change(method="paper")
     desk.until(lambda: not desk.c.active)
     desk.c.selection.select(desk.shadow)
-    answer = desk.answered()
-    assert answer.why is not None and answer.why is desk.c.inspector.why
-    tree = answer.why.tree
-    assert tree is desk.c.inspector.tree is not None and (tree.x, tree.y) == desk.c.selection.pixel
-    assert [one.lit for one in answer.why.reasons] == [one.reached for one in answer.lights]
-    assert [one.fate is not Fate.FACES_AWAY for one in answer.why.reasons] == [one.due for one in answer.lights]
-    assert answer.wrong_beyond == 0
+    answer, truth = desk.answered(), explain(desk.renderer, desk.c.frame, *desk.c.selection.pixel)
+    assert answer is desk.c.inspector.why and wrong_beyond(answer) == 0
+    assert answer.tree is desk.c.inspector.tree and (answer.tree.x, answer.tree.y) == desk.c.selection.pixel
+    assert [one.lit for one in answer.reasons] == [one.reached for one in truth]
+    assert [one.fate is not Fate.FACES_AWAY for one in answer.reasons] == [one.due for one in truth]
     desk.c.selection.picked = None
     desk.until(lambda: desk.c.inspector.why is None)
 
@@ -172,10 +151,10 @@ def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: PixelDesk):
     """In motion the reasons stay until the next come, but their pixels are elsewhere by then."""
     desk.c.selection.select(desk.shadow)
     answer, first, ui = desk.answered(), desk.c.frame, Ui(desk.c)
-    neighbour = Link("the right neighbour", pixel=(answer.why.x + 1, answer.why.y))
+    neighbour = Link("the right neighbour", pixel=(answer.x + 1, answer.y))
     desk.c.motion.move(navigation.look(desk.c.session.camera, 0.02, 0.0, desk.c.motion.world_up))
     desk.until(lambda: desk.c.frame is not first, ticks=1)
-    assert desk.c.inspector.why is answer.why and not desk.c.inspector.names_pixels_of(desk.c.frame)
+    assert desk.c.inspector.why is answer and not desk.c.inspector.names_pixels_of(desk.c.frame)
     before = desk.c.selection.picked
     go_to(ui, neighbour)
     assert desk.c.selection.picked is before, "it would be another pixel"
@@ -186,22 +165,12 @@ def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: PixelDesk):
     assert (desk.c.selection.picked.x, desk.c.selection.picked.y) == neighbour.pixel
 
 
-def _explained(light: int, samples: int = 16, reached: int = 16, due: bool = True, far: float = 1.0) -> Explanation:
-    place = (far, 0.0, 0.0)
-    return Explanation(light, due, due and reached > 0, NO_CERTIFICATE, None, (), place, (0.0, 0.0, 0.0), None,
-                       samples=samples, reached=reached)  # fmt: skip
-
-
 def test_lights_are_summed_up_by_the_samples_that_arrive():
-    lights = [_explained(0), _explained(1, 16, 3), _explained(2, due=False), _explained(3, 16, 0), _explained(4, 4, 0)]
-    assert summary(lights) == "1 lit, 1 in part, 2 in shadow, 1 facing away"
-
-
-def test_of_many_lights_the_nearest_are_drawn():
-    lights = tuple(_explained(i, due=i % 3 > 0, far=1000.0 - i) for i in range(300))
-    drawn = drawn_lights(lights)
-    assert len(drawn) == MOST_LIGHTS and all(one.due for one in drawn) and min(one.light for one in drawn) >= 240
-    assert drawn_lights(lights[:30]) == tuple(one for one in lights[:30] if one.due)
+    samples = ((16, 16), (16, 3), (16, 0), (4, 0))
+    lights = [Reason(0, Rule.OFF, Fate.TRACED, samples=many, lit=lit) for many, lit in samples]
+    assert summary([*lights, Reason(4, Rule.FACES_AWAY, Fate.FACES_AWAY)]) == (
+        "1 lit, 1 in part, 2 in shadow, 1 facing away"
+    )
 
 
 # --- what fails, and what takes long ----------------------------------------------------------------
@@ -213,7 +182,7 @@ def test_an_answer_that_fails_is_one_line_in_the_panel_and_stops_no_film(
     def fail(*_: object) -> None:
         raise ValueError("no such light")
 
-    monkeypatch.setattr(module, "explain", fail)
+    monkeypatch.setattr(module, "why", fail)
     desk.c.motion.toggle_play()
     desk.c.selection.select(desk.shadow)
     desk.until(lambda: desk.c.inspector.problem == "no such light")

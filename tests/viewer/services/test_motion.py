@@ -13,6 +13,7 @@ from tracer.scene.model import Camera
 from viewer.services import preview
 from viewer.services.motion import IDLE_AFTER, Motion
 from viewer.services.preview import Preview
+from viewer.services.scene_loader import Arrival
 from viewer.state.navigation import SHORTEST_FLIGHT
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -113,7 +114,7 @@ def test_spheres_and_cones_count_where_a_scene_is_too_large_for_a_preview(monkey
     scene, notices = make_scene(), Notices()
     for most, there in ((preview.triangles_of(scene), True), (scene.triangle_count, False)):
         monkeypatch.setattr(preview, "MOST_TRIANGLES", most)
-        session, loader = Session(), SimpleNamespace(waiting=(scene, None, None))
+        session, loader = Session(), SimpleNamespace(waiting=Arrival(waits=scene))
         motion = Motion(session, Preferences(), notices, lambda: False)
         Preview(session, loader, motion, notices, lambda: None).update(traced=False)
         assert (session.previewed is not None) == there

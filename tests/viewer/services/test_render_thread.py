@@ -113,10 +113,10 @@ def test_errors_are_one_line_and_the_thread_lives_on(thread):
     thread.use(renderer)
     thread.submit(request(0.0))
     idle(thread)
-    failed = thread.take_failure()
-    assert failed is not None and "first line second line" in failed.text and "\n" not in failed.text
+    (failed,), of_frame = thread.take_problems()
+    assert of_frame and "first line second line" in failed.text and "\n" not in failed.text
     assert not failed.expected and "Traceback" in failed.details
-    assert thread.take_failure() is None
+    assert thread.take_problems() == ([], False)
     renderer.failing = None
     thread.submit(request(1.0))
     assert taken(thread).frame.time == 1.0
@@ -155,7 +155,7 @@ class FakeTask:
 
 def test_a_task_has_the_thread_to_itself_and_the_newest_request_waits(thread):
     renderer, task = held_at(thread, request(0.0)), FakeTask()
-    thread.perform(task)
+    thread.perform(task.work)
     assert task.started.wait(PATIENCE)
     assert renderer.cancelled == [0.0], "what was under way is cut short"
     renderer.go.set()
@@ -175,9 +175,9 @@ def test_a_task_that_waits_while_the_scene_changes_gets_its_own_renderer_and_end
     held = Event()
     first.work = lambda renderer, cancelled: (first.started.set(), held.wait(PATIENCE))
     thread.use(old)
-    thread.perform(first)
+    thread.perform(first.work)
     assert first.started.wait(PATIENCE)
-    thread.perform(task)
+    thread.perform(task.work)
     thread.use(new)
     held.set()
     assert task.started.wait(PATIENCE)
@@ -304,7 +304,7 @@ def test_what_is_shown_can_be_asked_about_though_a_later_frame_has_failed(thread
     frame = shown(thread, 1.0)
     renderer.failing = OSError("the disk is full")
     thread.submit(request(2.0))
-    until(thread.take_failure)
+    until(lambda: thread.take_problems()[1])
     turns = len(renderer.turns)
     assert thread.query(column, frame, 1).result(PATIENCE)[1] is frame
     assert len(renderer.turns) == turns + 1, "the world was put back for it"
@@ -315,9 +315,17 @@ def test_an_error_is_in_the_future_and_told_in_one_line_but_is_no_failed_frame(t
     frame = shown(thread, 1.0)
     assert isinstance(thread.query(failing, frame).exception(PATIENCE), ValueError)
     told: list[Failure] = []
-    until(lambda: told.extend(thread.take_complaints()) or told)
+    of_frame = False
+
+    def tells() -> bool:
+        nonlocal of_frame
+        problems, of_frame = thread.take_problems()
+        told.extend(problems)
+        return bool(told)
+
+    until(tells)
     assert [one.text for one in told] == ["no answer: no such light"]
-    assert thread.take_failure() is None
+    assert not of_frame
     shown(thread, 3.0)
 
 

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import gc
 import json
-import threading
 import time
 import weakref
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,10 +16,8 @@ from tests.viewer.desk import ELSEWHERE, SIZE, Desk, is_the_same_picture
 from tests.viewer.fakes import FakeRenderer, make_scene
 from tracer.experiments import experiment
 from tracer.experiments.experiment import Experiment
-from tracer.frame import Frame, Settings
-from tracer.scene.model import Camera, Cancelled
+from tracer.frame import Settings
 from viewer.services.controller import Controller
-from viewer.services.render_request import Traced
 from viewer.services.runs import described, duration, shown_of
 from viewer.state.preferences import Preferences
 from viewer.state.views import View
@@ -95,65 +91,58 @@ def test_the_last_frame_of_a_run_is_shown_though_the_window_was_late(desk: Desk)
 
 
 def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
-    session = desk.c.session
-    renderer = desk.c.renderer._renderer
+    c, session, renderer = desk.c, desk.c.session, desk.c.renderer._renderer
     histories = {size: history.words.copy() for size, history in renderer.state.histories.items()}
     desk.runs.experiment_plan.frames = 5000
     desk.runs.start_experiment()
     desk.until(lambda: desk.runs.experiment.traced > 2)
-    before = (session.camera, session.time, session.settings, session.playing, session.on_path)
-    asked: list[object] = []
+    before, asked = session.state, []
     renderer.refine = lambda *arguments: asked.append(arguments)
     for disturb in (
-        lambda: desk.c.motion.move(ELSEWHERE),
-        lambda: desk.c.motion.glide(ELSEWHERE),
-        lambda: desk.c.motion.follow_path(False),
-        lambda: desk.c.motion.toggle_play(),
-        lambda: desk.c.motion.step(3),
-        lambda: desk.c.settings.change(depth=2),
-        lambda: desk.c.settings.toggle_culling(),
-        lambda: desk.c.reset_modes(),
+        lambda: c.motion.move(ELSEWHERE),
+        lambda: c.motion.glide(ELSEWHERE),
+        lambda: c.motion.follow_path(False),
+        lambda: c.motion.toggle_play(),
+        lambda: c.motion.step(3),
+        lambda: c.settings.change(depth=2),
+        lambda: c.settings.toggle_culling(),
+        lambda: c.reset_modes(),
     ):
-        desk.c.notices.message = None
+        c.notices.message = None
         disturb()
         assert desk.said == "the experiment is still under way; stop it first"
         desk.tick()
-        assert (session.camera, session.time, session.settings, session.playing, session.on_path) == before
-    desk.runs.start_experiment()
-    assert desk.said == "the experiment is still under way"
-    desk.runs.start_zoom_test()
-    assert desk.said == "the experiment is still under way" and desk.runs.zoom_test is None
-    desk.c.scheduler.trace_again()
+        assert session.state == before and not session.playing
+    for start in (desk.runs.start_experiment, desk.runs.start_zoom_test):
+        start()
+        assert desk.said == "the experiment is still under way"
+    c.scheduler.trace_again()
     many = desk.runs.experiment.traced + 10
     desk.until(lambda: desk.runs.experiment.traced > many)
-    assert not asked, "a frame was traced beside the run"
+    assert not asked and desk.runs.zoom_test is None, "a frame was traced beside the run"
     del renderer.refine
     assert all(np.array_equal(history.words, histories[size]) for size, history in renderer.state.histories.items())
     desk.runs.stop()
     desk.run_to_its_end()
-    desk.c.motion.move(ELSEWHERE)
+    c.motion.move(ELSEWHERE)
     desk.rest()
-    assert desk.c.frame.camera == ELSEWHERE
+    assert c.frame.camera == ELSEWHERE
 
 
 def test_a_plan_that_is_no_good_is_one_line(desk: Desk) -> None:
-    desk.runs.experiment_plan.size = (0, 10)
-    desk.runs.start_experiment()
-    assert desk.c.notices.message.error and "width is a whole number" in desk.said
+    runs = desk.runs
     desk.c.selection.select((0.5, 0.5))
-    desk.runs.experiment_plan.size = desk.runs.zoom_plan.size = (64, 4097)
-    for start in (desk.runs.start_experiment, desk.runs.start_zoom_test):
-        desk.c.notices.message = None
+    for start, plan, wrong, said in (
+        (runs.start_experiment, runs.experiment_plan, {"size": (0, 10)}, "width is a whole number"),
+        (runs.start_experiment, runs.experiment_plan, {"size": (64, 4097)}, "64 x 4097 is too large for a run"),
+        (runs.start_zoom_test, runs.zoom_plan, {"size": (64, 4097)}, "64 x 4097 is too large for a run"),
+        (runs.start_zoom_test, runs.zoom_plan, {"size": (32, 24), "factors": "four"}, "'four' are not zoom factors"),
+        (runs.start_zoom_test, runs.zoom_plan, {"factors": "4", "ratio": 0.5, "steps": 500}, "500 steps of 0.5 end"),
+    ):
+        vars(plan).update(wrong)
         start()
-        assert desk.c.notices.message.error and "64 x 4097 is too large for a run" in desk.said
-    desk.runs.zoom_plan.size = (32, 24)
-    desk.runs.zoom_plan.factors = "four"
-    desk.runs.start_zoom_test()
-    assert desk.c.notices.message.error and "'four' are not zoom factors" in desk.said
-    desk.runs.zoom_plan = replace(desk.runs.zoom_plan, factors="4", ratio=0.5, steps=500)
-    desk.runs.start_zoom_test()
-    assert desk.c.notices.message.error and desk.said.startswith("500 steps of 0.5 end nearer than")
-    assert desk.runs.experiment is None and desk.runs.current is None
+        assert desk.c.notices.message.error and said in desk.said
+    assert runs.experiment is None and runs.current is None
 
 
 @pytest.mark.parametrize(
@@ -203,41 +192,18 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
     assert controller.close()
 
 
-def test_stopped_before_its_first_frame_a_run_leaves_nothing_and_what_it_cut_short_is_traced(desk: Desk) -> None:
-    renderer, begun = desk.c.renderer._renderer, threading.Event()
-
-    def never(_time: float, _camera: Camera, cancel: Callable[[], bool], *_how: object) -> Iterator[Frame]:
-        begun.set()
-        while not cancel():
-            time.sleep(0.001)
-        yield from ()
-        raise Cancelled()
-
-    renderer.refine = never
-    desk.c.scheduler.trace_again()
-    desk.tick()
-    assert begun.wait(20.0)
-    desk.came.clear()
+def test_stopped_before_its_first_frame_a_run_leaves_nothing(desk: Desk) -> None:
     desk.runs.start_experiment()
     desk.runs.stop()
-    del renderer.refine
     desk.run_to_its_end()
-    assert desk.runs.experiment.results is None
-    assert desk.said == "experiment stopped after 0 of 5 frames"
-    assert {(frame.width, frame.height) for frame in desk.came} == {SIZE}
+    assert desk.runs.experiment.results is None and desk.said == "experiment stopped after 0 of 5 frames"
 
 
 def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> None:
-    scene, frames = weakref.ref(desk.c.session.scene), []
-    show = desk.c.scheduler.show
-
-    def showing(traced: Traced) -> None:
-        frames.append(weakref.ref(traced.frame))
-        show(traced)
-
-    desk.c.scheduler.show = showing
+    scene = weakref.ref(desk.c.session.scene)
     desk.runs.start_experiment()
     desk.run_to_its_end()
+    frames = [weakref.ref(frame) for frame in desk.came]
     desk.came.clear()
     assert desk.runs.experiment.whole and frames
     desk.open(embedded_scenes()["figure4"])

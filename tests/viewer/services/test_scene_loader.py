@@ -139,7 +139,7 @@ def test_a_cancelled_load_is_gone_at_once_though_it_cannot_stop(door: Door, tiny
         deaf.wait(60.0)
         raise SceneError("no more")
 
-    monkeypatch.setattr("viewer.services.scene_files.open_scene", waits)
+    monkeypatch.setattr("viewer.services.scene_loader.open_scene", waits)
     door.session.open(opened)
     door.loader.open(tiny_scene_file)
     end = time.monotonic() + 20.0

@@ -8,19 +8,18 @@ from dataclasses import replace
 import pytest
 
 from tests.viewer.fakes import make_scene
-from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
+from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Camera
 from viewer.services.motion import IDLE_AFTER, Motion
-from viewer.services.settings_controller import SettingsController
-from viewer.services.undo import MOST_STEPS, Undo
+from viewer.services.undo import Undo
 from viewer.state import codec
-from viewer.state.comparison import CompareMode
+from viewer.state.comparison import CompareMode, Source
+from viewer.state.draw_options import Tone
 from viewer.state.navigation import LONGEST_FLIGHT, SHORTEST_FLIGHT
 from viewer.state.notices import Notices
 from viewer.state.pixels import Zoom
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
-from viewer.state.tone import Tone
 from viewer.state.views import View
 
 AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
@@ -32,21 +31,11 @@ class Desk:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now = 100.0
         monkeypatch.setattr(time, "monotonic", lambda: self.now)
-        self.preferences, self.notices = Preferences(), Notices()
+        self.notices, self.locked = Notices(), False
         self.session = Session(state=codec.recalled({}))
         self.session.open(make_scene(lights=3))
-        self.locked = False
-        lock = lambda: self.locked  # noqa: E731
-        self.settings = SettingsController(self.session, self.preferences, self.notices, lock)
-        self.motion = Motion(self.session, self.preferences, self.notices, lock)
-        self.read: list[MeshOptions] = []  # what undo has asked for
-        self.reading = False
-
-        def read_as(meshes: MeshOptions) -> None:
-            self.read.append(meshes)
-            self.reading = True
-
-        self.undo = Undo(self.session, self.motion, self.notices, lock, read_as, lambda: self.reading)
+        self.motion = Motion(self.session, Preferences(), self.notices, lambda: self.locked)
+        self.undo = Undo(self.session, self.motion, self.notices, lambda: self.locked)
         self.frame()
 
     def frame(self, seconds: float = 0.02) -> None:
@@ -59,12 +48,9 @@ class Desk:
         self.frame(IDLE_AFTER + LONGEST_FLIGHT)
         self.frame()
 
-    def arrive(self, meshes: MeshOptions) -> None:
-        """The mesh has been read so, and is seen from its first camera."""
-        self.reading = False
-        self.session.open(self.session.scene)
-        self.session.change(meshes=meshes)
-        self.frame()
+    @property
+    def depth(self) -> int:
+        return self.session.settings.depth
 
     @property
     def said(self) -> str:
@@ -76,20 +62,20 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Desk:
     return Desk(monkeypatch)
 
 
-def compare(desk: Desk, **fields: object) -> None:
-    desk.session.change(compare=replace(desk.session.state.compare, **fields))
+def compare(session: Session, **fields: object) -> None:
+    session.change(compare=replace(session.state.compare, **fields))
 
 
 CHANGES = {
-    "method certified": lambda desk: desk.settings.change(method="certified"),
-    "view Depth": lambda desk: desk.session.set_draw(view=View.DEPTH),
-    "light 1": lambda desk: desk.settings.set_light(1),
-    "range changed": lambda desk: desk.session.change(draw=desk.session.draw.with_span((1.0, 2.0), View.DEPTH)),
-    "mark clipped pixels on": lambda desk: desk.session.set_draw(clipping=True),
-    "exposure +0.5 EV": lambda desk: desk.session.set_draw(tone=Tone(0.5)),
-    "zoom to 2 x": lambda desk: desk.session.set_draw(zoom=Zoom(2.0)),
-    "comparison: side by side": lambda desk: compare(desk, on=True, mode=CompareMode.SIDE),
-    "A in the view of B": lambda desk: compare(desk, same_view=True),
+    "method certified": lambda session: session.set_settings(method="certified"),
+    "view Depth": lambda session: session.set_draw(view=View.DEPTH),
+    "light 1": lambda session: session.set_draw(light=1),
+    "range changed": lambda session: session.change(draw=session.draw.with_span((1.0, 2.0), View.DEPTH)),
+    "mark clipped pixels on": lambda session: session.set_draw(clipping=True),
+    "exposure +0.5 EV": lambda session: session.set_draw(tone=Tone(0.5)),
+    "zoom to 2 x": lambda session: session.set_draw(zoom=Zoom(2.0)),
+    "comparison: side by side": lambda session: compare(session, on=True, mode=CompareMode.SIDE),
+    "A by another method": lambda session: compare(session, source=Source.METHOD),
 }
 
 
@@ -97,7 +83,7 @@ def test_each_change_is_a_step_with_a_name_and_comes_back(desk: Desk):
     held = []
     for name, change in CHANGES.items():
         held.append(desk.session.state)
-        change(desk)
+        change(desk.session)
         desk.frame()
         assert (desk.undo.undoes, desk.undo.redoes) == (name, "")
     held.append(desk.session.state)
@@ -109,7 +95,7 @@ def test_each_change_is_a_step_with_a_name_and_comes_back(desk: Desk):
         desk.undo.redo()
         assert desk.said == f"redone: {name}" and desk.session.state == after
     desk.undo.undo()
-    desk.settings.change(depth=3)
+    desk.session.set_settings(depth=3)
     desk.frame()
     desk.undo.redo()
     assert desk.undo.redoes == "" and desk.said == "there is nothing to redo", "another way was taken"
@@ -121,13 +107,13 @@ def test_a_drag_is_one_step_whatever_it_passes_and_none_if_it_comes_back(
 ):
     desk.undo.held = True
     for depth in depths:
-        desk.settings.change(depth=depth)
+        desk.session.set_settings(depth=depth)
         desk.frame(1.0)
     desk.undo.held = False
     desk.frame()
     assert desk.undo.undoes == name
     desk.undo.undo()
-    assert desk.session.settings.depth == 10 and desk.undo.undoes == ""
+    assert desk.depth == 10 and desk.undo.undoes == ""
 
 
 def test_a_flight_is_one_step_and_glides_back(desk: Desk):
@@ -165,96 +151,52 @@ def test_a_view_chosen_in_flight_is_a_step_of_its_own_and_a_step_is_undone_while
     assert desk.session.on_path and desk.undo.redoes == "camera"
 
 
-def test_time_is_no_step_and_stays(desk: Desk):
-    desk.settings.set_light(1)
+def test_time_is_no_step_and_stays_unless_a_step_has_gone_to_another(desk: Desk):
+    desk.session.set_draw(light=1)
     desk.frame()
     desk.session.change(time=5.0)
     desk.frame()
-    assert desk.undo.undoes == "light 1"
-    desk.undo.undo()
-    assert desk.session.time == 5.0
+    desk.undo.begin_step("going there", with_time=True)
+    desk.session.change(time=7.0)
+    desk.frame()
+    for name, time_then in (("going there", 5.0), ("light 1", 5.0)):
+        assert desk.undo.undoes == name
+        desk.undo.undo()
+        assert desk.session.time == time_then
+    desk.undo.redo()
+    desk.undo.redo()
+    assert desk.session.time == 7.0
 
 
 def test_what_is_named_is_one_step_and_a_name_for_nothing_names_nothing_else(desk: Desk):
-    desk.undo.begin_step("preset mine")
-    desk.settings.change(method="certified", depth=2)
-    desk.session.set_draw(view=View.DEPTH)
-    desk.frame()
-    assert desk.undo.undoes == "preset mine"
-    desk.undo.undo()
-    assert (desk.session.settings.method, desk.session.settings.depth) == ("paper", 10)
-    desk.undo.begin_step("preset mine")
-    desk.frame()
-    desk.settings.change(depth=2)
+    for change in ({"method": "certified", "depth": 2}, {}):
+        desk.undo.begin_step("preset mine")
+        desk.session.set_settings(**change)
+        desk.frame()
+        assert desk.undo.undoes == ("preset mine" if change else "")
+        desk.undo.undo()
+        assert (desk.session.settings.method, desk.depth) == ("paper", 10)
+    desk.session.set_settings(depth=2)
     desk.frame()
     assert desk.undo.undoes == "bounces 2"
 
 
-def test_nothing_is_undone_while_it_is_locked_and_another_scene_forgets_all(desk: Desk):
-    desk.settings.change(depth=2)
-    desk.frame()
+def test_nothing_is_undone_while_it_is_locked_and_another_scene_forgets_all(desk: Desk, monkeypatch):
+    monkeypatch.setattr("viewer.services.undo.MOST_STEPS", 2)
+    for depth in (4, 3, 2):
+        desk.session.set_settings(depth=depth)
+        desk.frame()
     desk.locked = True
     desk.undo.undo()
-    assert desk.session.settings.depth == 2
+    assert desk.depth == 2
     desk.locked = False
-    desk.undo.clear()
-    desk.session.open(make_scene(path="other.aff"))
-    desk.frame()
-    assert desk.undo.undoes == ""
-    desk.undo.undo()
-    assert desk.said == "there is nothing to undo" and desk.session.settings.depth == 2
-
-
-def test_how_a_mesh_is_read_comes_back_with_what_was_seen_of_it(desk: Desk):
-    desk.arrive(IN_STUDIO)
-    desk.undo.clear()
-    desk.frame()
-    desk.session.change(camera=AWAY)
-    desk.rest()
-    for meshes, name in (
-        (MeshOptions(True, "x"), "x up"),
-        (MeshOptions(True, "x", 20.0), "crease angle 20°"),
-        (MeshOptions(False, "x", 20.0), "studio off"),
-    ):
-        desk.arrive(meshes)
-        assert desk.undo.undoes == name and desk.session.state.camera is None
-    desk.undo.undo()
-    desk.frame()
-    desk.undo.undo()  # while it is being read: too early
-    desk.settings.change(depth=3)
-    desk.arrive(MeshOptions(True, "x", 20.0))
-    assert desk.read == [MeshOptions(True, "x", 20.0)] and desk.said == "undone: studio off"
-    assert desk.undo.redoes == "studio off" and desk.undo.undoes == "crease angle 20°"
-    desk.undo.undo()
-    desk.arrive(MeshOptions(True, "x"))
-    desk.undo.undo()
-    desk.arrive(IN_STUDIO)
-    desk.rest()
-    assert desk.said == "undone: x up" and desk.session.state.camera == AWAY and desk.undo.undoes == "camera"
-    desk.undo.redo()
-    desk.arrive(MeshOptions(True, "x"))
-    desk.rest()
-    assert desk.said == "redone: x up" and desk.session.state.camera is None
-
-
-def test_a_mesh_that_could_not_be_read_again_leaves_the_steps_as_they_were(desk: Desk):
-    desk.arrive(IN_STUDIO)
-    steps = desk.undo.undoes, desk.undo.redoes
-    assert steps[0] == "studio on"
-    desk.undo.undo()
-    desk.reading = False
-    desk.frame()
-    assert (desk.undo.undoes, desk.undo.redoes) == steps and desk.session.meshes == IN_STUDIO
-
-
-def test_memory_is_bounded(desk: Desk):
-    for number in range(MOST_STEPS + 20):
-        desk.settings.change(depth=number % 50)
-        desk.frame()
-    for _ in range(MOST_STEPS):
-        assert desk.undo.undoes
+    for depth in (3, 4, 4):
         desk.undo.undo()
-    assert desk.undo.undoes == ""
+        assert desk.depth == depth, "two steps are kept"
+    desk.session.change(meshes=IN_STUDIO)
+    desk.frame()
+    desk.undo.redo()
+    assert desk.said == "there is nothing to redo" and desk.undo.undoes == "", "a mesh read anew is another scene"
 
 
 def test_turns_of_the_wheel_are_one_step_and_a_rest_begins_another(desk: Desk):

@@ -16,7 +16,7 @@ import runpy
 from types import SimpleNamespace
 from viewer.cli import pictures, render
 from viewer.output import commands
-from viewer.state import changes, codec
+from viewer.state import codec, view_state
 from viewer.state.view_state import ViewState
 from viewer.window import setting_rows
 
@@ -40,7 +40,7 @@ assert "--sparkle" in commands.words(shown, None, "a.png"), "the command that is
 stored = codec.state_to_json(shown, of_picture=True)
 assert stored["draw"]["sparkle"] is True and codec.state_from_json(stored).draw.sparkle, "a saved picture"
 assert codec.recalled(codec.remembered(shown)).draw.sparkle, "the next window"
-assert changes.changes(state, shown) == {"draw.sparkle": "sparkle on"}, "undo"
+assert view_state.changes(state, shown) == {"draw.sparkle": "sparkle on"}, "undo"
 assert "| Sparkle (`draw.sparkle`) | Let light sparkle. |" in runpy.run_path("tools/settings_table.py")["page"]()
 print("seen everywhere")
 """

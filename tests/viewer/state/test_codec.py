@@ -10,8 +10,7 @@ import pytest
 from tracer.scene.camera import Camera
 from tracer.scene.edits import Edits
 from viewer.state import codec
-from viewer.state.draw_options import DrawOptions, Slice
-from viewer.state.tone import Curve, Tone
+from viewer.state.draw_options import Curve, DrawOptions, Slice, Tone
 from viewer.state.view_state import ViewState, Warmup, WarmupFrame
 from viewer.state.views import View
 

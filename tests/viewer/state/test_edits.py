@@ -12,9 +12,8 @@ from tracer.scene.edits import NO_EDITS, Edits, edited
 from tracer.scene.lights import light_in_words, named_light, number_of
 from viewer.cli.options import add_edits, edits_of, light_index
 from viewer.state import codec
-from viewer.state.changes import edits_in_words, one_by_one
 from viewer.state.session import Session
-from viewer.state.view_state import ViewState
+from viewer.state.view_state import ViewState, edits_in_words, one_by_one
 
 ALL_KINDS = Edits(
     lights_off=frozenset({1}),

@@ -10,8 +10,8 @@ import pytest
 
 from viewer.state import codec
 from viewer.state import preferences as prefs
+from viewer.state.draw_options import Tone
 from viewer.state.preferences import NamedState, Preferences, load_preferences, merged, save_preferences
-from viewer.state.tone import Tone
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
 

@@ -39,72 +39,58 @@ def said(frame: Frame, **standing) -> str:
     return in_words(sentence(frame, Standing(**standing)))
 
 
-def test_the_sentence_in_full():
-    frame = frame_by("paper", verify=True, culled=180, dynamic_only=116, wrong=1)
-    words = said(frame, measured=in_turn("paper", 1.08))
-    assert words == (
-        "paper: 29.6 % of shadow rays saved, 15 % fewer steps, 0.1 % wrong, 1.08 × as fast as none (± 0.01)"
-    )
+def in_kdtree(frame: Frame) -> Frame:
+    return replace(frame, settings=replace(frame.settings, accelerator="kdtree"))
+
+
+PAPER, CERTIFIED = frame_by("paper", culled=100), frame_by("certified", culled=340)
+TELLS, SAVES_MORE = in_turn("paper", 1.5), in_turn("certified", 1.0, saved=400)
+FEW = replace(TELLS, rounds=TELLS.rounds[: LEAST - 1], settled=False)
+SAVED = "paper: 10.0 % of shadow rays saved, "
 
 
 @pytest.mark.parametrize(
-    ("speed", "steps", "noise", "expected"),
+    ("frame", "standing", "told"),
     [
-        (0.75, (1030, 1000), 0.0, "3 % more steps, not verified, 0.75 × as fast as none (± 0.01)"),
-        (1.0, (1001, 1000), 0.0, "as many steps, not verified, as fast as none (within noise)"),
-        (1.05, (500, 1000), 0.2, "50 % fewer steps, not verified, as fast as none (within noise)"),
-        (0.2, (3000, 1000), 0.0, "200 % more steps, not verified, 0.20 × as fast as none (± 0.01)"),
+        (frame_by("paper", verify=True, culled=180, dynamic_only=116, wrong=1), {"measured": in_turn("paper", 1.08)},
+         "paper: 29.6 % of shadow rays saved, 15 % fewer steps, 0.1 % wrong, 1.08 × as fast as none (± 0.01)"),
+        (PAPER, {"measured": in_turn("paper", 0.75, (1030, 1000))},
+         f"{SAVED}3 % more steps, not verified, 0.75 × as fast as none (± 0.01)"),
+        (PAPER, {"measured": in_turn("paper", 1.0, (1001, 1000))},
+         f"{SAVED}as many steps, not verified, as fast as none (within noise)"),
+        (PAPER, {"measured": in_turn("paper", 1.05, (500, 1000), noise=0.2)},
+         f"{SAVED}50 % fewer steps, not verified, as fast as none (within noise)"),
+        (PAPER, {"moving": True, "measured": TELLS}, f"{SAVED}not verified, speed not measurable while moving"),
+        (PAPER, {"measured": FEW}, f"{SAVED}15 % fewer steps, not verified, measuring speed ..."),
+        (PAPER, {}, f"{SAVED}not verified, speed is measured once the picture rests"),
+        (PAPER, {"why_not": "no"}, f"{SAVED}not verified, speed not measured"),
+        (in_kdtree(PAPER), {"measured": in_turn("paper", 1.2)},
+         f"{SAVED}15 % fewer steps, not verified, 1.20 × as fast as none in the kdtree (± 0.01)"),
+        (frame_by("paper", part=0.25, culled=100), {"moving": True},
+         "paper: 10.0 % of shadow rays saved (of the 25 % shaded), not verified, speed not measurable while moving"),
+        (CERTIFIED, {"proves": "proving: 7 made in the last", "measured": in_turn("certified", 1.5, saved=340)},
+         "certified: 34.0 % of shadow rays saved, 15 % fewer steps, exact, proving: 7 made in the last"),
+        (CERTIFIED, {"measured": replace(SAVES_MORE, settled=False)},  # steps of other frames than the saved share
+         "certified: 34.0 % of shadow rays saved, exact, as fast as none (within noise, proofs not counted)"),
+        (CERTIFIED, {"run": "experiment", "moving": True},  # its panel has the speed
+         "Experiment, certified: 34.0 % of shadow rays saved, exact"),
+        (frame_by("paper"), {}, "paper: nothing saved yet, speed is measured once the picture rests"),
+        (frame_by("paper", due=0), {}, "paper: no shadow ray is due here"),
     ],
-)
-def test_more_work_and_noise_are_no_gains(speed, steps, noise, expected):
-    words = said(frame_by("paper", culled=100), measured=in_turn("paper", speed, steps, noise))
-    assert words == f"paper: 10.0 % of shadow rays saved, {expected}"
+)  # fmt: skip
+def test_the_sentence(frame: Frame, standing: dict[str, object], told: str):
+    assert said(frame, **standing) == told
 
 
-def test_what_is_not_known_is_said_and_no_figure_is_given():
-    frame = frame_by("paper", culled=100)
-    assert said(frame, moving=True).endswith("not verified, speed not measurable while moving")
-    measured = in_turn("paper", 1.5)
-    few = replace(measured, rounds=measured.rounds[: LEAST - 1], settled=False)
-    words = said(frame, measured=few)
-    assert "15 % fewer steps" in words and words.endswith("measuring speed ..."), "counters need one frame only"
-    assert "fast" not in said(frame, measured=InTurn(("none", "paper"))) and "steps" not in said(frame, moving=True)
-    proving = said(frame_by("certified", culled=1), proves="proving: 7 made in the last", measured=measured)
-    assert proving.endswith("proving: 7 made in the last") and "fast" not in proving
-    assert said(frame, why_not="no").endswith("speed not measured")
-    tip = sentence(frame, Standing(moving=True))[-1].tip
-    assert "Experiment" in tip and "bench" in tip and "at rest" in tip, "where there is a figure"
-
-
-def test_steps_are_those_of_frames_that_save_as_much():
-    frame, other = frame_by("certified", culled=340), in_turn("certified", 1.0, saved=400)
-    assert "steps" not in said(frame, measured=replace(other, settled=False)), "of other frames than the saved share"
-    assert "15 % fewer steps" in said(frame, measured=replace(in_turn("certified", 1.0, saved=340), settled=False))
-    steps = next(one for one in sentence(frame, Standing(measured=other)) if "steps" in one.text)
+def test_tips_say_what_a_figure_leaves_out():
+    steps = next(one for one in sentence(CERTIFIED, Standing(measured=SAVES_MORE)) if "steps" in one.text)
     assert "40.0 %" in steps.tip, "no others will come: it is said of which they are"
-
-
-def test_a_run_is_named():
-    words = said(frame_by("certified", culled=340), run="experiment", measured=in_turn("certified", 1.2), moving=True)
-    assert words == "Experiment, certified: 34.0 % of shadow rays saved, exact", "its panel has the speed"
-
-
-def test_what_a_figure_leaves_out_stands_beside_it():
-    certified = said(frame_by("certified", culled=250), measured=in_turn("certified", 0.84))
-    assert certified.endswith("exact, 0.84 × as fast as none (± 0.01, proofs not counted)")
-    frame = frame_by("paper", culled=100)
-    frame = replace(frame, settings=replace(frame.settings, accelerator="kdtree"))
-    assert said(frame, measured=in_turn("paper", 1.2)).endswith("1.20 × as fast as none in the kdtree (± 0.01)")
-    assert said(frame_by("paper", part=0.25, culled=100)).startswith("paper: 10.0 % of shadow rays saved (of the 25 %")
-
-
-def test_nothing_is_praised_that_culls_nothing():
+    tip = sentence(PAPER, Standing(moving=True))[-1].tip
+    assert "Experiment" in tip and "bench" in tip and "at rest" in tip, "where there is a figure"
     frame = frame_by("auto")
     frame.statistics.decision = "none: few lights"
-    words = said(frame, measured=in_turn("auto", 1.0, (1000, 1000)))
-    assert words == "auto: culls nothing here, as fast as none (within noise)"
-    assert said(frame_by("paper")).startswith("paper: nothing saved yet")
-    assert said(frame_by("paper", due=0)) == "paper: no shadow ray is due here"
+    first = sentence(frame, Standing(measured=in_turn("auto", 1.0, (1000, 1000))))[0]
+    assert (first.text, first.tip) == ("auto: culls nothing here", "none: few lights")
 
 
 def test_without_culling_the_bar_is_what_would_be_culled():
@@ -189,5 +175,3 @@ def test_a_frame_that_was_not_verified_says_nothing_and_is_refused() -> None:
 def test_the_largest_difference_is_that_of_wrong_pixels() -> None:
     largest, seen = verified.largest_difference(make_frame(Settings(width=16, height=8, verify=True)))
     assert largest == pytest.approx(0.1) and seen == 2
-    assert verified.difference_in_words(largest) == "26 of 255"
-    assert verified.difference_in_words(0.001) == "0.26 of 255" and verified.difference_in_words(0.0) == "0 of 255"

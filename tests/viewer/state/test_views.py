@@ -14,7 +14,7 @@ from tracer.culling.fate import Fate
 from tracer.frame import Settings
 from viewer.services.history import Plots, counters
 from viewer.state import palette
-from viewer.state.tone import MOST_EXPOSURE, Curve, Tone, brighter, clipped, toned
+from viewer.state.draw_options import MOST_EXPOSURE, Curve, Tone, brighter, clipped, toned
 from viewer.state.views import View
 from viewer.views import penumbra
 from viewer.views.difference import Mark, wrong_marks
@@ -167,8 +167,8 @@ def test_curves_rise_from_black_to_the_white_point(curve, white):
     assert shown[0].max() == pytest.approx(0.0, abs=1e-6) and (np.diff(shown[:, 0, 0]) > 0.0).all()
     at_white = toned(np.full((1, 1, 3), white, np.float32), Tone(0.0, white, curve))
     assert at_white == pytest.approx(1.0, abs=1e-6)
-    found = clipped(GREYS, Tone(0.0, white, curve))
-    assert np.array_equal(found.bright[:, 0], GREYS[:, 0, 0] > white * (1.0 + 1e-6))
+    bright, _ = clipped(GREYS, Tone(0.0, white, curve))
+    assert np.array_equal(bright[:, 0], GREYS[:, 0, 0] > white * (1.0 + 1e-6))
 
 
 def test_a_stop_of_exposure_doubles_colours_and_has_limits():
@@ -193,5 +193,5 @@ def test_known_values_of_the_curves():
 
 def test_what_is_negative_is_black_and_a_single_channel_clips():
     color = np.array([[[-1.0, -0.5, 0.0], [0.0, 1.5, 0.2], [0.0, 0.0, 0.01]]], np.float32)
-    found = clipped(color, Tone())
-    assert found.black.tolist() == [[True, False, False]] and found.bright.tolist() == [[False, True, False]]
+    bright, black = clipped(color, Tone())
+    assert black.tolist() == [[True, False, False]] and bright.tolist() == [[False, True, False]]

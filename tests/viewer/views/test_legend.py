@@ -29,8 +29,7 @@ from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.overlays import with_legend
 from viewer.state.draw_options import Slice
 from viewer.state.palette import FATE_NAMES, OCCLUSION_COLORS, WRONG
-from viewer.state.readings import can_draw
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.util.numbers import count, percent
 from viewer.util.resources import embedded_scenes
 from viewer.views.legend import (
@@ -252,7 +251,7 @@ def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame
     assert wrong.facts[2].values[0].startswith("3 (")
     assert (wrong.entries[0].name, wrong.facts[2].name) == ("wrong pixels", "wrong answers")
     assert of(frame, View.WIPE, mark_wrong=False).entries[0].color is None
-    assert [fact.values for fact in wrong.facts[:2]] == [("2",), ("26 of 255",)]
+    assert [fact.values for fact in wrong.facts[:2]] == [("2",), ("25.5 of 255",)]
     found, known = frame.statistics.wrong, frame.statistics
     known.wrong = replace(found, samples=4)
     assert of(frame, View.DIFFERENCE).entries[0].name == "wrong pixels, 4 samples"

@@ -1,15 +1,22 @@
-"""The camera: where it is, how it is moved, and places to come back to."""
+"""The camera: where it is, how it is moved, and places to come back to; and the menus Camera and Time."""
 
 from __future__ import annotations
 
+import json
+import math
+from collections.abc import Callable
 from dataclasses import replace
 
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.window.camera_commands import focus
+from tracer.scene.model import Camera
+from viewer.state import navigation
+from viewer.state.picking import extent_at, part_points, point_at, primitive_points
+from viewer.window.command import Command, Condition, scene_open, switch
 from viewer.window.panels import named_states
-from viewer.window.setting_rows import ALL, setting_row
+from viewer.window.panels.named_states import KEYED_BOOKMARKS
+from viewer.window.setting_rows import ALL, setting_command, setting_row
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, heading, paragraph, properties, row, same_line_for, tooltip, wide_button
 
@@ -74,3 +81,118 @@ def _moving(ui: Ui) -> None:
             setting_row(ui, ALL["speed"])
             if ui.controller.session.animated:
                 setting_row(ui, ALL["playback_rate"])
+
+
+# --- what it does, and the menus -------------------------------------------------------------------
+
+
+def camera_commands(ui: Ui) -> list[Command]:
+    """The menu Camera."""
+    c, p = ui.controller, ui.controller.preferences
+    here = scene_open(c)
+    some = Condition(lambda: bool(c.bookmarks.all), "this scene has no bookmarks")
+
+    def mode(name: str) -> Callable[[], None]:
+        return lambda: setattr(p, "navigation", name)
+
+    marks, text = "Camera/Bookmarks", "Camera/Copy and paste"
+    return [
+        Command("Fly", "Camera", mode("fly"), "G", checked=lambda: p.navigation == "fly"),
+        Command("Orbit", "Camera", mode("orbit"), "O", checked=lambda: p.navigation == "orbit"),
+        Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True),
+        Command("Reset camera", "Camera", c.motion.reset_camera, "R", enabled=here),
+        Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.on_path), "P",
+                checked=lambda: c.session.on_path, enabled=here),
+        Command("Copy camera", text, lambda: _copy(ui), "Ctrl+Shift+C", enabled=here, separated=True,
+                tip="as JSON, which `shadowcull render --camera` takes"),
+        Command("Paste camera", text, lambda: _paste(ui), "Ctrl+Shift+V", enabled=here, tip="JSON from the clipboard"),
+        Command("Add bookmark", marks, c.bookmarks.add, "Ctrl+B", enabled=here),
+        Command("Next bookmark", marks, lambda: c.next_bookmark(1), "PageDown", enabled=some),
+        Command("Previous bookmark", marks, lambda: c.next_bookmark(-1), "PageUp", enabled=some),
+        *[_bookmark(ui, index) for index in range(KEYED_BOOKMARKS)],
+    ]  # fmt: skip
+
+
+def time_commands(ui: Ui) -> list[Command]:
+    """The menu Time."""
+    c, p = ui.controller, ui.controller.preferences
+    moves = Condition(lambda: c.session.animated, "nothing moves in this scene")
+
+    def to_end() -> None:
+        if c.session.scene is not None:
+            c.motion.step(c.session.scene.frames)
+
+    return [
+        Command("Play", "Time", c.motion.toggle_play, "Space", checked=lambda: c.session.playing, enabled=moves),
+        Command("Step forward", "Time", lambda: c.motion.step(1), "RightArrow", enabled=moves, repeats=True),
+        Command("Step back", "Time", lambda: c.motion.step(-1), "LeftArrow", enabled=moves, repeats=True),
+        Command("First frame", "Time", lambda: c.motion.step(-c.session.frame), "Home", enabled=moves),
+        Command("Last frame", "Time", to_end, "End", enabled=moves),
+        switch("Loop", "Time", p, "loop", separated=True),
+        setting_command(ui, "pace.every_frame", "Time"),
+    ]
+
+
+def focus(ui: Ui) -> None:
+    """Turn to what is under the pointer, else to what is selected, and go near it; orbits turn around it then."""
+    c = ui.controller
+    at, pixel = c.selection.hovered, c.selection.pixel
+    if at is None and pixel is not None and c.selection.part is None and c.frame is not None:
+        at = (pixel[0] + 0.5) / c.frame.width, (pixel[1] + 0.5) / c.frame.height
+    if at is None and c.selection.picked is not None:
+        fly_to_selected(ui)
+    elif at is None or c.frame is None:
+        c.notices.say("point at something, or click it, to focus on it")
+    else:
+        point, extent = point_at(c.frame, *at), extent_at(c.frame, *at)
+        if point is None or extent is None:
+            c.notices.say("there is nothing to focus on here")
+            return
+        ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
+        c.motion.glide(navigation.focus(c.session.camera, ui.picture.pivot, extent, c.motion.world_up))
+
+
+def fly_to_selected(ui: Ui) -> None:
+    """Go near what is selected, whether or not it is seen from here; orbits turn around it then."""
+    c = ui.controller
+    now, picked, part = c.session.edited, c.selection.picked, c.selection.part
+    if now is None or picked is None:
+        return
+    time = c.session.time
+    points = primitive_points(now.scene, picked.primitive, time) if part is None else part_points(now, part, time)
+    if not len(points):
+        c.notices.say("the selection is not in the scene at this time")
+        return
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, y, z = (0.5 * (low + high)).tolist()
+    ui.picture.pivot = x, y, z
+    radius = 0.5 * math.dist(low, high)
+    c.motion.glide(navigation.focus(c.session.camera, ui.picture.pivot, radius, c.motion.world_up))
+
+
+def _copy(ui: Ui) -> None:
+    ui.desktop.copy(json.dumps(ui.controller.session.camera.to_json()))
+    ui.controller.notices.say("camera copied as JSON")
+
+
+def _paste(ui: Ui) -> None:
+    """Fly to the camera on the clipboard; what its JSON leaves out stays as it is."""
+    c = ui.controller
+    try:
+        data = c.session.camera.to_json() | {"position": None} | json.loads(ui.desktop.paste() or "")
+        c.motion.glide(Camera.from_json(data))
+    except (TypeError, ValueError, RecursionError):
+        c.notices.say("no camera pasted: the clipboard holds no camera as JSON", error=True)
+    else:
+        c.notices.say("camera pasted")
+
+
+def _bookmark(ui: Ui, index: int) -> Command:
+    c, marks = ui.controller, ui.controller.bookmarks
+
+    def title() -> str:
+        return f"{index + 1}  {marks.all[index].name}" if index < len(marks.all) else ""
+
+    there = Condition(lambda: index < len(marks.all), "this scene has fewer bookmarks")
+    return Command(f"Go to bookmark {index + 1}", "Camera/Bookmarks", lambda: c.go_to_bookmark(index),
+                   f"Alt+{index + 1}", enabled=there, title=title, separated=index == 0)  # fmt: skip

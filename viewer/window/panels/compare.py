@@ -76,16 +76,13 @@ def _controls(ui: Ui) -> None:
             row("Show", f"How A and B are shown.{f' Hold {held} to see A.' if held else ''}")
             _mode(ui)
             if comparing.seen is not None and comparing.seen.difference is not None:
-                _limit(ui)
                 row("Rings", f"Draw rings around pixels that differ{ui.key('Mark wrong pixels')}.")
                 checkbox("##rings", session.draw.mark_wrong, lambda on: session.set_draw(mark_wrong=on))
     if state.source is Source.KEPT and kept is None:
         paragraph("Nothing is kept yet. Keep a picture, change anything, and compare.", QUIET)
     elif state.source is Source.KEPT and kept is not None:
         size = f"{kept.frame.width} x {kept.frame.height}"
-        paragraph(f"kept: {kept.scene}, frame {kept.number}, {kept.method}, {kept.view_in_words}, {size}", QUIET)
-        tip = "Show A in the view of B, not in the one in which it was kept, where its frame has what that needs."
-        checkbox("A in the view of B", state.same_view, lambda on: comparing.change(same_view=on), tip)
+        paragraph(f"kept: {kept.scene}, frame {kept.number}, {kept.method}, {size}", QUIET)
     if comparing.remark and (kept is not None or state.source is Source.METHOD):
         paragraph(comparing.remark, WARNING)
 
@@ -101,25 +98,6 @@ def _mode(ui: Ui) -> None:
             comparing.start(mode)
         tooltip(mode.help)
     imgui.end_combo()
-
-
-def _limit(ui: Ui) -> None:
-    """The range of the signed difference."""
-    comparing = ui.controller.comparing
-    found = comparing.seen.difference if comparing.seen is not None else None
-    if found is None or found.values.classes:
-        return
-    limit = comparing.limit(found)
-    row("Range", "How far the colours go to both sides of 0. Drag, or Ctrl+click to type a number.")
-    imgui.set_next_item_width(-em(4.2))
-    changed, limit = imgui.drag_float("##limit", limit, max(limit / 100.0, 1e-6), 1e-6, 1e9, "\u00b1 %.4g")
-    if changed and limit > 0.0:
-        comparing.change(limit=limit)
-    imgui.same_line(0.0, em(0.3))
-    imgui.begin_disabled(comparing.state.limit is None)
-    if imgui.button("Fit##limit", (-1.0, 0.0)):
-        comparing.change(limit=None)
-    imgui.end_disabled()
 
 
 def pairs(ui: Ui, a: Frame, b: Frame, timed: InTurn | None = None) -> list[tuple[Row, Row]]:

@@ -12,7 +12,7 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import portable_file_dialogs as native
 
-from viewer.services.scene_files import CAPTURE_SUFFIXES, SCENE_SUFFIXES, is_capture, is_scene, refusal
+from viewer.services.scene_loader import CAPTURE_SUFFIXES, SCENE_SUFFIXES, refusal
 from viewer.window.panels import command_palette, keys, named_states, saving
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, centred, clipped, em, paragraph
@@ -133,7 +133,7 @@ def names_in(folder: Path) -> list[str]:
 
 def is_openable(path: Path) -> bool:
     """Return whether it is called like something that can be opened."""
-    return is_scene(path) or is_capture(path)
+    return path.suffix.lower() in SCENE_SUFFIXES + CAPTURE_SUFFIXES
 
 
 def has_native_dialog() -> bool:

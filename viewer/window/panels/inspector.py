@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
+from numpy.typing import NDArray
 
 from tracer.culling import modes
+from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode
-from tracer.explanation import Explanation
 from tracer.frame import Frame
 from tracer.mode_origins import Origin
 from tracer.reasons import Reason, Rule, Why
 from tracer.scene.model import Material, Scene
 from tracer.why_in_words import Link, Words, plain
-from viewer.services.inspector import MOST_LIGHTS, nearest_first, with_origins
+from viewer.services.inspector import with_origins
 from viewer.state.palette import (
     FATE_COLORS,
     FATE_NAMES,
@@ -26,8 +28,7 @@ from viewer.state.palette import (
     Color,
 )
 from viewer.state.picking import Pick, shadow_mode_of, wrong_at
-from viewer.state.readings import can_draw
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.util.numbers import several
 from viewer.views import cell_lights
 from viewer.window.panels import lights, rays
@@ -51,6 +52,7 @@ from viewer.window.widgets import (
 )
 
 Pixel = tuple[int, int]
+_MOST_LIGHTS = 40  # that are listed at once
 
 
 def show(ui: Ui) -> None:
@@ -89,7 +91,7 @@ def _details(ui: Ui, pick: Pick, at: Pixel | None) -> None:
         if wrong:
             of = f"in its {frame.settings.samples} samples, at all bounces" if frame.settings.samples > 1 else ""
             paragraph(f"{several(wrong, 'wrong shadow answer')} at this pixel, {of or 'at all bounces'}.", ERROR)
-        _why(ui, scene)  # first, as it is what a click asks
+        _why(ui, pick, frame, scene)  # first, as it is what a click asks
         if frame.settings.keeps_modes:
             heading("Modes of its cell" if pick.in_cells else "Modes")
             _modes(ui, pick, frame, scene)
@@ -132,9 +134,9 @@ def _describe(m: Material) -> str:
 # --- why: a sentence for the chosen light, a line for each other one -----------------------------------
 
 
-def _why(ui: Ui, scene: Scene) -> None:
+def _why(ui: Ui, pick: Pick, frame: Frame, scene: Scene) -> None:
     """The sentences, the chosen light's first; nothing but what the answer waits for while they are not known."""
-    answer, found = ui.controller.inspector.answer, ui.controller.inspector.why
+    found = ui.controller.inspector.why
     if found is None:
         paragraph(unanswered(ui), QUIET)
         return
@@ -157,11 +159,12 @@ def _why(ui: Ui, scene: Scene) -> None:
         imgui.dummy(ImVec2(0.0, em(0.1)))
         told = chosen.occluded if chosen is not None and _says_what_hides(chosen) else None
         sentence(ui, words.coverage(found.coverage, told), "coverage")
-    if answer is not None and answer.wrong_beyond:
-        answers = several(answer.wrong_beyond, "shadow answer")
+    beyond = wrong_beyond(found)
+    if beyond:
+        answers = several(beyond, "shadow answer")
         paragraph(f"Also wrong: {answers} at what is reflected here or seen through it; Rays lists them.", ERROR)
-    if many and answer is not None:
-        _many(ui, words, found, answer.lights, number)
+    if many:
+        _many(ui, words, found, scene.light_positions(frame.time), pick.point)
 
 
 def unanswered(ui: Ui) -> str:
@@ -177,13 +180,19 @@ def unanswered(ui: Ui) -> str:
     return f"Answered after {before}." if before else "Tracing its shadow rays ..."
 
 
-def summary(known: Sequence[Explanation]) -> str:
+def summary(reasons: Sequence[Reason]) -> str:
     """How many lights get here, in full or in part."""
-    due = [one for one in known if one.due]
-    lit = sum(one.reached == one.samples for one in due)
-    dark = sum(one.reached == 0 for one in due)
-    parts = {"lit": lit, "in part": len(due) - lit - dark, "in shadow": dark, "facing away": len(known) - len(due)}
+    due = [one for one in reasons if one.fate is not Fate.FACES_AWAY]
+    lit = sum(one.lit == one.samples for one in due)
+    dark = sum(one.lit == 0 for one in due)
+    parts = {"lit": lit, "in part": len(due) - lit - dark, "in shadow": dark, "facing away": len(reasons) - len(due)}
     return ", ".join(f"{count(number)} {name}" for name, number in parts.items() if number)
+
+
+def wrong_beyond(found: Why) -> int:
+    """How many answers are wrong at what is mirrored at the pixel, or seen through it."""
+    rays = () if found.tree is None else found.tree.rays[1:]
+    return sum(int(ray.shadows.wrong.sum()) for ray in rays if ray.shadows is not None)
 
 
 def _with_origins(ui: Ui, found: Why) -> Why:
@@ -228,17 +237,16 @@ def _line(ui: Ui, words: Words, one: Reason) -> None:
     imgui.set_cursor_screen_pos(below)
 
 
-def _many(ui: Ui, words: Words, found: Why, known: Sequence[Explanation], chosen: int) -> None:
+def _many(ui: Ui, words: Words, found: Why, places: NDArray, point: Sequence[float] | None) -> None:
     """Those of many lights that are looked for, those that are answered wrongly and the nearest first."""
-    paragraph(summary(known), QUIET)
-    wanted = [known[light] for light in lights.found(ui, "inspector") if light < min(len(known), len(found.reasons))]
-    nearest = nearest_first(wanted)
-    nearest.sort(key=lambda one: not found.reasons[one.light].wrong)
-    for one in nearest[:MOST_LIGHTS]:
-        if one.light != chosen:
-            _line(ui, words, found.reasons[one.light])
-    if len(nearest) > MOST_LIGHTS:
-        paragraph(f"the nearest {MOST_LIGHTS} are listed and drawn", QUIET)
+    paragraph(summary(found.reasons), QUIET)
+    wanted = [found.reasons[light] for light in lights.found(ui, "inspector") if light < len(found.reasons)]
+    wanted.sort(key=lambda one: (not one.wrong, math.dist(places[one.light], point) if point is not None else 0.0))
+    for one in wanted[:_MOST_LIGHTS]:
+        if one.light != ui.controller.session.draw.light:
+            _line(ui, words, one)
+    if len(wanted) > _MOST_LIGHTS:
+        paragraph(f"the nearest {_MOST_LIGHTS} are listed", QUIET)
 
 
 # --- modes ----------------------------------------------------------------------------------------------

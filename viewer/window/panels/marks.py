@@ -46,20 +46,16 @@ class Pen:
         behind: float = 0.6,
         around: ImVec4 = SHADE,
         rim: float = 0.06,
-        hole: Point | None = None,
     ) -> None:
-        """Strokes with a rim `around` them; what lies behind something has the opacity `behind`, and nothing is drawn
-        within the ring around a `hole`."""
-        centre = self.to_screen(*hole) if hole is not None else None
+        """Draw strokes with a rim `around` them; what lies behind something has the opacity `behind`."""
         outer, inner = (  # of what lies behind something, and of what is seen
             [imgui.get_color_u32(with_alpha(one, alpha)) for alpha in (behind, 1.0)]
             for one in (with_alpha(around, color.w), color)
         )
         for stroke in strokes:
-            ends = self.to_screen(*stroke.start), self.to_screen(*stroke.end)
-            for a, b in [ends] if centre is None else _outside(*ends, centre, em(self.radius)):
-                self.draw.add_line(a, b, outer[stroke.seen], em(width + 2.0 * rim))
-                self.draw.add_line(a, b, inner[stroke.seen], max(1.0, em(width)))
+            a, b = self.to_screen(*stroke.start), self.to_screen(*stroke.end)
+            self.draw.add_line(a, b, outer[stroke.seen], em(width + 2.0 * rim))
+            self.draw.add_line(a, b, inner[stroke.seen], max(1.0, em(width)))
 
     def ring(self, at: Point, radius: float | None = None, alpha: float = 1.0) -> None:
         """A white ring, around a pixel unless it has another radius."""
@@ -95,22 +91,3 @@ def pen(area: Area, frame: Frame) -> Iterator[Pen]:
     made.draw.push_clip_rect(area.corner, area.end, True)
     yield made
     made.draw.pop_clip_rect()
-
-
-def _outside(start: ImVec2, end: ImVec2, centre: ImVec2, radius: float) -> list[tuple[ImVec2, ImVec2]]:
-    """The parts of a line that are not within so many pixels of a point."""
-    way = end.x - start.x, end.y - start.y
-    off = start.x - centre.x, start.y - centre.y
-    a = way[0] ** 2 + way[1] ** 2
-    b, c = off[0] * way[0] + off[1] * way[1], off[0] ** 2 + off[1] ** 2 - radius**2
-    root = b * b - a * c
-    if a <= 0.0 or root <= 0.0:
-        return [] if c < 0.0 else [(start, end)]
-    first, last = (-b - math.sqrt(root)) / a, (-b + math.sqrt(root)) / a
-
-    def at(part: float) -> ImVec2:
-        return ImVec2(start.x + part * way[0], start.y + part * way[1])
-
-    if last <= 0.0 or first >= 1.0:
-        return [(start, end)]
-    return [(start, at(first))] * (first > 0.0) + [(at(last), end)] * (last < 1.0)

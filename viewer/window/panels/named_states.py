@@ -10,13 +10,13 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.named_states import BUILT_IN, NamedStates
-from viewer.window.camera_commands import KEYED_BOOKMARKS
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import QUIET, centred, em, fitted, heading, paragraph, tooltip
 
 _ENTER = int(imgui.InputTextFlags_.enter_returns_true)
 _RENAMING = _ENTER | int(imgui.InputTextFlags_.auto_select_all)
 _MOST = 8  # lines that are seen at once
+KEYED_BOOKMARKS = 9
 
 
 @dataclass

@@ -1,105 +1,63 @@
 """Over the picture, for what was clicked: its rays to the lights and what blocks them, what hides it, and where it
-is itself."""
+is itself; and why a view has nothing to show."""
 
 from __future__ import annotations
 
-from imgui_bundle import ImVec2, ImVec4
+from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.culling.fate import Fate
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
 from tracer.reasons import Why
-from viewer.services.inspector import Inspection, drawn_primitives
+from viewer.state.methods import missing, with_base
 from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
 from viewer.state.picking import outline_of, part_points, primitive_points
-from viewer.state.projection import Stroke, place, strokes
+from viewer.state.projection import Stroke, strokes
 from viewer.window.panels import rays
 from viewer.window.panels.area import Area
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.marks import Pen, pen
 from viewer.window.ui import Ui
-from viewer.window.widgets import em
+from viewer.window.widgets import em, paragraph, tooltip
 
-LIT, STOPPED = SHADOW_COLORS[ShadowMode.NON_SHADOW], (0.34, 0.71, 0.91)
-BLOCKER, OCCLUDER = SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW], (0.90, 0.62, 0.0)
-"""Colours of a shadow ray as far as light comes, of its rest, of what blocks it, and of what a certificate names."""
-_FADED = 0.18  # opacity of other lights than the one that is pointed at
+_BLOCKER = ImVec4(*SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW], 1.0)
+_NAMED = ImVec4(0.90, 0.62, 0.0, 1.0)  # what the method's answer rests on
+_MOST_NAMED = 8  # of which so many are outlined
 _OUTLINE = 0.13  # width in ems
 _HIDER, _WHITE = ImVec4(*FATE_COLORS[Fate.PARTLY_OCCLUDED], 1.0), ImVec4(1.0, 1.0, 1.0, 1.0)
 _SAME, _MISSED = ImVec4(0.6, 0.64, 0.7, 1.0), ImVec4(0.3, 0.85, 0.95, 1.0)
 _SIDE = 0.5  # ems, of a pixel's square at least
+_NOTE, _LEAST = 26.0, 8.0  # in ems of width: of a note, and of a picture that has room for one
+_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
 
 
 def show(ui: Ui, area: Area) -> None:
     """Draw all that is to be seen of what was clicked, or is pointed at."""
-    c = ui.controller
-    state = ui.state(Pointed)
-    pointed, state.light = state.light, None  # the inspector says so in each frame
-    frame = c.frame
+    frame = ui.controller.frame
     if frame is None:
         return
     with pen(area, frame) as made:
-        picked, answer = c.selection.picked, c.inspector.answer
-        tree = rays.listed(ui)
-        if tree is not None:  # it has the same rays, and more
-            rays.draw(ui, made, frame, tree)
-        elif picked is not None and answer is not None and c.session.draw.rays:
-            _shadow_rays(ui, made, frame, answer, pointed)
+        rays.draw(ui, made, frame)
         _why(ui, made, frame)
         _occluded_selection(ui, made, frame)
-
-
-Line = tuple[tuple[float, float, float], float, int, list[Stroke]]
-"""Colour, width in ems, light and strokes."""
-
-
-def shadow_lines(answer: Inspection, frame: Frame) -> list[Line]:
-    """Outlines of what is named, then, for each light that is drawn, its ray to the point as far as it gets, and on."""
-    lines: list[Line] = []
-    for one in answer.drawn:
-        for number in drawn_primitives(one):
-            color, width = (BLOCKER, 0.16) if number == one.blocker else (OCCLUDER, 0.1)
-            lines += [(color, width, one.light, strokes(frame, line)) for line in answer.outlines[number]]
-    for one in answer.drawn:
-        end = one.point if one.blocked_at is None else one.blocked_at
-        lines.append((LIT, 0.13, one.light, strokes(frame, [one.light_position, end])))
-        if one.blocked_at is not None:
-            lines.append((STOPPED, 0.13, one.light, strokes(frame, [one.blocked_at, one.point])))
-    return lines
-
-
-def _shadow_rays(ui: Ui, made: Pen, frame: Frame, answer: Inspection, pointed: int | None) -> None:
-    """The lights' rays to the point, with a disc at each light and a cross where its ray ends before the point."""
-
-    def alpha(light: int) -> float:
-        return 1.0 if pointed in (None, light) else _FADED
-
-    point = place(frame, answer.lights[0].point) if answer.lights else None
-    lines: list[Line] = ui.cached("shadow rays", frame, answer, lambda: shadow_lines(answer, frame))
-    for color, width, light, pieces in lines:
-        made.strokes(pieces, ImVec4(*color, alpha(light)), width, hole=point)
-    for one in answer.drawn:
-        at = place(frame, one.light_position)
-        if at is not None:
-            made.disc(at, ImVec4(*LIT, alpha(one.light)), 0.3)
-        stop = place(frame, one.blocked_at) if one.blocked_at is not None else None
-        if stop is not None:
-            made.cross(stop, ImVec4(*BLOCKER, alpha(one.light)))
-    if point is not None:
-        made.ring(point)
 
 
 # --- why -------------------------------------------------------------------------------------------
 
 
 def _why(ui: Ui, made: Pen, frame: Frame) -> None:
-    """What hides the clicked primitive, where, the pixels that the clicked one is compared with, and what the pointer's
-    link stands for."""
+    """What blocks the chosen light, what hides the clicked primitive, the pixels that the clicked one is compared with,
+    and what the pointer's link stands for."""
     c = ui.controller
     state = ui.state(Pointed)
     link, state.link = state.link, None  # the panel says so in each frame
     found, in_place = c.inspector.why, c.inspector.names_pixels_of(frame)
     if c.selection.picked is not None and c.session.draw.rays and found is not None:
+        for one in found.reasons[c.session.draw.light : c.session.draw.light + 1]:  # of the light that is chosen
+            for number in one.named[:_MOST_NAMED]:
+                _outline(ui, made, frame, number, _NAMED, f"named {number}")
+            if one.blocker >= 0:
+                _outline(ui, made, frame, one.blocker, _BLOCKER, "blocker")
         by = None if found.coverage is None else found.coverage.occluded
         if by is not None and not by.at_edge and by.primitive >= 0:
             _outline(ui, made, frame, by.primitive, _HIDER, "occluder")
@@ -163,3 +121,27 @@ def _occluded_selection(ui: Ui, made: Pen, frame: Frame) -> None:
         return _projected(frame, outline_of(points if part is None else part_points(now, part, frame.time)))
 
     made.strokes(ui.cached("occluded selection", frame, (picked.primitive, part), lines), _WHITE, 0.12, behind=0.75)
+
+
+def show_missing(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
+    """Say why a view has nothing to show, in a note below the picture's upper third, and offer the method that has."""
+    c, run, room = ui.controller, ui.controller.runs.current, end.x - corner.x - em(2.0)
+    found = missing(c.session.draw.view, c.frame, c.renderer.busy) if c.frame is not None else None
+    if found is None or room < em(_LEAST):
+        return
+    width = min(em(_NOTE), room)
+    imgui.set_cursor_screen_pos(ImVec2((corner.x + end.x - width) / 2.0, corner.y + (end.y - corner.y) / 3.0))
+    imgui.push_style_color(imgui.Col_.child_bg, _BACK)
+    flags = imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.always_use_window_padding
+    if imgui.begin_child("missing", ImVec2(width, 0.0), int(flags)):
+        paragraph(found.text, _FRONT)
+        imgui.begin_disabled(run is not None)
+        if found.base and imgui.button(f"Use {found.base}##instead"):
+            c.settings.change(method=with_base(c.session.settings.method, found.base))
+        if found.accelerator and imgui.button(f"Use {found.accelerator}##instead"):
+            c.settings.change(accelerator=found.accelerator)
+        imgui.end_disabled()
+        if run is not None:
+            tooltip(f"Not while the {run.name} runs. Escape stops it.")
+    imgui.end_child()
+    imgui.pop_style_color()

@@ -19,7 +19,6 @@ from viewer.state.picking import point_at
 from viewer.util.numbers import whole_percent
 from viewer.window.panels import (
     legend,
-    missing,
     overlays,
     pixels,
     savings,
@@ -113,7 +112,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     lower = _title(ui, area)
     sides.show(ui, area, lower)
     legend.show(ui, area.corner, area.end)
-    missing.show(ui, area.corner, area.end)
+    overlays.show_missing(ui, area.corner, area.end)
     slicing.show(ui, area)
 
 

@@ -17,7 +17,7 @@ from viewer.state import terms
 from viewer.util.numbers import whole_percent
 from viewer.window.style import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, short
+from viewer.window.widgets import QUIET, clipped, count, em, paragraph, tooltip, tooltip_at
 
 
 @dataclass(frozen=True)
@@ -52,68 +52,56 @@ FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
 COLORS = (BLUE, ORANGE, GREEN, SKY, PINK, YELLOW)
+_PER_PIXEL = (
+    "Pictures have many sizes, and of those in motion only some pixels are shaded. So counts are per pixel: primary "
+    "rays and proofs of all pixels, all else of those that are shaded."
+)
 
 
 @dataclass
 class PlotsState:
-    """`per_pixel` says that counters are divided by pixels, `pointed` is the frame that the pointer was on last."""
+    """The frame that the pointer was on last."""
 
-    per_pixel: bool = True
     pointed: int | None = None
 
 
 def whole_numbers(first: float, last: float, width: float) -> None:
-    """Ticks along the x axis of a plot of `first` to `last`, so many pixels wide: at whole numbers, and none so near to
-    an edge that its label would be cut off."""
-    room = max(width - em(5.0), em(2.0))  # what the labels of the other axes leave, at least
+    """Put ticks along the x axis of a plot of `first` to `last`, so many pixels wide: at whole numbers, and none so
+    near to an edge that its label would be cut off."""
     label = imgui.calc_text_size(f"{last:.0f}").x
-    apart = (last - first) / room  # what one pixel is
-    power = 10 ** max(math.ceil(math.log10(2.5 * label * apart)) - 1, 0)
-    step = next((n * power for n in (1, 2, 5) if n * power >= 2.5 * label * apart), 10 * power)
-    least, most = math.ceil(first / step) * step, math.floor((last - 0.6 * label * apart) / step) * step
-    ticks = range(least, most + 1, step)
+    pixel = (last - first) / max(width - em(5.0), em(2.0))  # beside the labels of the other axes, at least
+    steps = (step * 10**power for power in range(12) for step in (1, 2, 5))
+    step = next(step for step in steps if step >= 2.5 * label * pixel)
+    ticks = range(math.ceil(first / step) * step, math.floor(last - 0.6 * label * pixel) + 1, step)
     implot.setup_axis_ticks(implot.ImAxis_.x1, [float(tick) for tick in ticks], [str(tick) for tick in ticks])
 
 
 def wrong_axis(most: int, condition: int) -> None:
-    """A right-hand axis y2 for bars of `most` at most, which stay in the lowest third; its ticks are whole numbers."""
-    step = max(1, most // 2)
+    """Set up a right-hand axis y2 for bars of `most` at most, which stay in the lowest third, with whole numbers."""
     implot.setup_axis(implot.ImAxis_.y2, "wrong", AXIS | int(implot.AxisFlags_.aux_default))
     implot.setup_axis_limits(implot.ImAxis_.y2, 0.0, 3.0 * max(most, 1), condition)
-    ticks = [0, step] if most < 2 else [0, step, most]
+    ticks = sorted({0, max(1, most // 2), max(1, most)})
     implot.setup_axis_ticks(implot.ImAxis_.y2, [float(tick) for tick in ticks], [count(tick) for tick in ticks])
 
 
 def show(ui: Ui) -> None:
     """Draw the panel: plots side by side, over the number of the frame."""
-    history, state = ui.controller.history, ui.state(PlotsState)
+    history = ui.controller.history
     if len(history) == 0:
         paragraph("Curves appear with the first frames.", QUIET)
         return
-    checkbox(
-        "Per pixel",
-        state.per_pixel,
-        lambda on: setattr(state, "per_pixel", on),
-        "Of frames of all sizes, and of those in motion, of which only some pixels are shaded: primary rays and proofs "
-        "are divided by all pixels, all else by those that are shaded.",
-    )
-    imgui.same_line()
     if imgui.small_button("Clear"):
         history.hide()
         return
     imgui.same_line()
-    said = f"the last {len(history)} pictures" if len(history) > 1 else "one picture so far"
-    if (history.shaded() < 1.0).any():
-        said += "; on a grey ground: only some pixels are shaded"
-    clipped(said, QUIET)
+    clipped(f"the last {len(history)} pictures" if len(history) > 1 else "one picture so far", QUIET)
+    tooltip(_PER_PIXEL)
     plots = [plot for plot in _PLOTS if not plot.only_if or history.values(plot.only_if).any()]
     room, spacing = imgui.get_content_region_avail(), imgui.get_style().item_spacing.x
-    if imgui.get_scroll_max_y() > 0.0:  # fewer rows may need no bar
-        room.x += imgui.get_style().scrollbar_size
-    fitting = min(int((room.x + spacing) / (em(_LEAST_WIDTH) + spacing)), len(plots))
-    rows = math.ceil(len(plots) / max(fitting, 1))
-    columns = math.ceil(len(plots) / rows)
-    size = ImVec2((imgui.get_content_region_avail().x + spacing) / columns - spacing, max(room.y, em(8.0)))
+    bar = imgui.get_style().scrollbar_size if imgui.get_scroll_max_y() > 0.0 else 0.0  # fewer rows may need none
+    columns = min(max(int((room.x + bar + spacing) / (em(_LEAST_WIDTH) + spacing)), 1), len(plots))
+    columns = math.ceil(len(plots) / math.ceil(len(plots) / columns))  # as many in each row
+    size = ImVec2((room.x + spacing) / columns - spacing, max(room.y, em(8.0)))
     for number, plot in enumerate(plots):
         if number % columns:
             imgui.same_line()
@@ -122,73 +110,45 @@ def show(ui: Ui) -> None:
 
 def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
     history = ui.controller.history
-    per_pixel = ui.state(PlotsState).per_pixel and plot.per_pixel
-    values_of = history.per_pixel if per_pixel else history.values  # contiguous float64, as ImPlot wants them
+    values_of = history.per_pixel if plot.per_pixel else history.values  # contiguous float64, as ImPlot wants them
     implot.push_style_var(implot.StyleVar_.legend_inner_padding, ImVec2(em(0.15), em(0.3)))
     implot.push_style_var(implot.StyleVar_.legend_spacing, ImVec2(em(0.2), 0.0))
-    shown = implot.begin_plot(f"{plot.title}{' per pixel' if per_pixel else ''}##{plot.title}", size, FLAGS)
+    shown = implot.begin_plot(f"{plot.title}{' per pixel' if plot.per_pixel else ''}##{plot.title}", size, FLAGS)
     implot.pop_style_var(2)
     if not shown:
         return
     curves = [(label, values_of(name), color) for label, name, color in plot.curves]
-    last = history.first + max(len(history) - 1, 10)
+    first, last = float(history.first), float(history.first + max(len(history) - 1, 10))
     top = float(values_of("due").max()) if plot.stacked else max(float(values.max()) for _, values, _ in curves)
+    limits = (0.0, 1.12 * top or 1.0)
     implot.setup_axes("", "", AXIS, AXIS)
-    whole_numbers(history.first, last, size.x)
+    whole_numbers(first, last, size.x)
     implot.setup_axis_format(implot.ImAxis_.y1, "%.4g")
     if plot.logarithmic:  # full frames and those in motion differ a hundredfold
         implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))
-        lowest, highest = 1.0, 10.0 * max(top, 1.0)
-    else:
-        lowest, highest = 0.0, 1.12 * top if top > 0.0 else 1.0
-    implot.setup_axes_limits(history.first, last, lowest, highest, int(imgui.Cond_.always))
-    if plot.logarithmic:
-        _label_decades(highest, size.y)
+        limits = (1.0, 10.0 * max(top, 1.0))
+    implot.setup_axes_limits(first, last, *limits, int(imgui.Cond_.always))
     implot.setup_legend(implot.Location_.south, LEGEND)
-    _mark_partly_shaded(float(history.first), history.shaded(), (lowest, highest))
     if plot.stacked:
-        _stack(curves, float(history.first))
+        _stack(curves, first)
     else:
         for label, values, color in curves:
-            implot.plot_line(label, values, 1.0, float(history.first), implot.Spec(line_color=color, line_weight=1.6))
+            implot.plot_line(label, values, 1.0, first, implot.Spec(line_color=color, line_weight=1.6))
     number = pointed_frame(history.first, history.first + len(history) - 1)
     implot.end_plot()
-    at = 0 if number is None else number - history.first
-    said = [
-        f"{label}: {values[at]:.3g}" if per_pixel else f"{label}: {short(values[at])}" for label, values, _ in curves
-    ]
-    _go_to_frame(ui, number, said)
-
-
-def _mark_partly_shaded(first: float, shaded: NDArray[np.float64], heights: tuple[float, float]) -> None:
-    """A grey ground behind the pictures that were shaded in part."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], shaded < 1.0, [0]]).astype(np.int8)))
-    look = implot.Spec(fill_color=GREY, fill_alpha=0.3)
-    look.flags = int(implot.ItemFlags_.no_legend)
-    for begin, end in edges.reshape(-1, 2).tolist():
-        across = np.array([first + begin - 0.5, first + end - 0.5])
-        implot.plot_shaded("##partly shaded", across, np.full(2, heights[0]), np.full(2, heights[1]), look)
-
-
-def _label_decades(highest: float, height: float) -> None:
-    """1, 10, 100, ... at the left edge; every second or third of them where the plot is low."""
-    decades = max(1, math.floor(math.log10(highest)))
-    room = max((height - em(5.0)) / (1.3 * imgui.get_text_line_height()), 1.0)
-    ticks = [10.0**k for k in range(0, decades + 1, math.ceil((decades + 1) / room))]
-    implot.setup_axis_ticks(implot.ImAxis_.y1, ticks, [f"{tick:.0f}" for tick in ticks])
+    if number is not None:
+        at = number - history.first
+        _go_to_frame(ui, number, [f"{label}: {values[at]:.3g}" for label, values, _ in curves])
 
 
 def _stack(curves: list[tuple[str, NDArray[np.float64], ImVec4]], first: float) -> None:
     """Areas one above the other, which together are all rays that were due; a fate that no ray had is left out."""
-    below = np.zeros(len(curves[0][1]))
-    frames = first + np.arange(len(below), dtype=np.float64)
-    if len(frames) == 1:  # is no area
-        frames = np.array([first, first + 1.0])
+    frames = first + np.arange(max(len(curves[0][1]), 2), dtype=np.float64)  # one frame is no area
+    below = np.zeros(len(frames))
     for number, (label, values, color) in enumerate(curves):
-        above = below + values
+        above = below + np.resize(values, len(frames))
         if values.any() or number == len(curves) - 1:
-            lower, upper = (np.resize(edge, len(frames)) for edge in (below, above))
-            implot.plot_shaded(label, frames, lower, upper, implot.Spec(fill_color=color, fill_alpha=0.85))
+            implot.plot_shaded(label, frames, below, above, implot.Spec(fill_color=color, fill_alpha=0.85))
         below = above
 
 
@@ -198,20 +158,17 @@ def pointed_frame(first: int, last: int, frames: Sequence[int] | None = None) ->
     if last < first or not implot.is_plot_hovered():
         return None
     x = implot.get_plot_mouse_pos().x
-    if frames is None:
-        found = at = min(max(round(x), first), last)
-    else:
-        found = int(np.argmin(np.abs(np.asarray(frames) - x)))
-        at = frames[found]
+    found = min(max(round(x), first), last) if frames is None else int(np.argmin(np.abs(np.asarray(frames) - x)))
+    at = found if frames is None else frames[found]
     implot.plot_inf_lines("##pointed", np.array([float(at)]), implot.Spec(line_color=GREY, line_weight=1.0))
     return found
 
 
-def _go_to_frame(ui: Ui, number: int | None, values: list[str]) -> None:
+def _go_to_frame(ui: Ui, number: int, values: list[str]) -> None:
     """After a plot: say which frame the pointer is on, and go there where that is clicked."""
     c = ui.controller
-    record = c.history.records.get(number) if number is not None else None
-    if number is None or record is None:
+    record = c.history.records.get(number)
+    if record is None:
         return
     ui.state(PlotsState).pointed = number
     width, height, part = record.settings.width, record.settings.height, c.history.shaded_of(number)
@@ -222,7 +179,7 @@ def _go_to_frame(ui: Ui, number: int | None, values: list[str]) -> None:
 
 
 def go_to_experiment_frame(ui: Ui, run: Experiment, results: Results, place: int | None, values: list[str]) -> None:
-    """The same for the frames of an experiment, by the method that it shows."""
+    """Do the same for the frames of an experiment, by the method that it shows."""
     c = ui.controller
     if place is None:
         return
@@ -230,7 +187,7 @@ def go_to_experiment_frame(ui: Ui, run: Experiment, results: Results, place: int
     if run.settings.verify:
         wrong = {m: figures["wrong"][place] for m, figures in results.methods.items() if m != REFERENCE}
         values = [*values, *(f"{method}: {many} wrong answers" for method, many in wrong.items())]
-    if _clicked([c.navigator.name_in_experiment(run, number), *values]):
+    if _clicked([f"frame {number} of the experiment, by {run.shown}", *values]):
         c.navigator.go_to_experiment(run, number)
 
 
@@ -238,7 +195,5 @@ def _clicked(lines: list[str]) -> bool:
     """Show what the pointer is told of a frame; returns whether it was clicked."""
     if imgui.is_mouse_clicked(imgui.MouseButton_.left):
         return True
-    if imgui.begin_tooltip():
-        imgui.text_unformatted("\n".join([*lines, "Click to go there."]))
-        imgui.end_tooltip()
+    tooltip_at("\n".join([*lines, "Click to go there."]))
     return False

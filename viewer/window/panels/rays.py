@@ -17,7 +17,8 @@ from tracer.told_rays import AWAY, TRACED, RayTree
 from viewer.output.ray_rows import Filter, RayRows, Row, Shown, totals, unfolded
 from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels import lights
-from viewer.window.panels.marks import SHADE, Pen, Point
+from viewer.window.panels.links import Pointed
+from viewer.window.panels.marks import SHADE, Pen
 from viewer.window.setting_rows import ALL, setting_switch
 from viewer.window.ui import RaysState, Ui
 from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip, tooltip_at
@@ -48,10 +49,10 @@ def section(ui: Ui) -> None:
     setting_switch(ui, ALL["draw.rays"])
 
 
-def listed(ui: Ui) -> RayTree | None:
-    """The rays that the panel lists now, None where it lists none."""
-    open_ = ui.state(RaysState).drawn >= imgui.get_frame_count() - 1  # the picture may be drawn first
-    return ui.controller.inspector.tree if open_ and ui.controller.selection.picked is not None else None
+def are_listed(ui: Ui) -> bool:
+    """Whether the panel lists the rays of a clicked pixel now."""
+    drawn_now = ui.state(RaysState).drawn >= imgui.get_frame_count() - 1  # the picture may be drawn first
+    return drawn_now and ui.controller.selection.picked is not None
 
 
 def rows(ui: Ui) -> list[tuple[int, Row]]:
@@ -164,11 +165,11 @@ class RayLine(NamedTuple):
     strokes: list[Stroke]
 
 
-def ray_lines(frame: Frame, tree: RayTree, shown: Filter) -> list[RayLine]:
+def ray_lines(frame: Frame, tree: RayTree, shown: Filter, further: bool = True) -> list[RayLine]:
     """The rays on their way and the shadow rays that a filter lets be seen, MOST_DRAWN of these at most: those of the
-    first points first, and of one point evenly."""
+    first points first, and of one point evenly.  Not `further`: those of the clicked point alone."""
     lines, left = [], MOST_DRAWN
-    for ray in tree.rays:
+    for ray in tree.rays if further else tree.rays[:1]:
         if ray.parent >= 0:
             length = ray.t if np.isfinite(ray.t) else FAR * tree.rays[0].t
             way = strokes(frame, [ray.origin, ray.origin + length * ray.direction])
@@ -201,19 +202,31 @@ def _shadow_lines(frame: Frame, tree: RayTree, number: int, place: int) -> list[
     ]
 
 
-def draw(ui: Ui, made: Pen, frame: Frame, tree: RayTree) -> None:
-    """Draw all rays, and those of the rows that are selected or pointed at over them."""
-    state = ui.state(RaysState)
-    selected = next((row for _, row in rows(ui) if row.key == state.selected), None)
-    picked_out = [row for row in (selected, state.pointed) if row is not None]
-    lines: list[RayLine] = ui.cached("rays", frame, (tree, state.shown), lambda: ray_lines(frame, tree, state.shown))
-    clicked = place(frame, tree.rays[0].end) if tree.rays[0].shadows is not None else None
+def draw(ui: Ui, made: Pen, frame: Frame) -> None:
+    """Draw the rays that are listed or, where none are, the shadow rays of the clicked point; those of the rows and of
+    the light that are selected or pointed at stand out."""
+    state, pointed, c = ui.state(RaysState), ui.state(Pointed), ui.controller
+    light, pointed.light = pointed.light, None  # the panel says so in each frame
+    tree, listed = c.inspector.tree, are_listed(ui)
+    if tree is None or c.selection.picked is None or not (listed or c.session.draw.rays):
+        return
+    shown = state.shown if listed else Filter()
+    lines: list[RayLine] = ui.cached(
+        "rays", frame, (tree, shown, listed), lambda: ray_lines(frame, tree, shown, listed)
+    )
+    selected = next((row for _, row in rows(ui) if row.key == state.selected), None) if listed else None
+    picked_out = [row for row in (selected, state.pointed) if row is not None and listed]
+    s = tree.rays[0].shadows
     for line in lines:
-        _line(made, line, clicked, _FADED if picked_out else 1.0, 0.55 if len(lines) > _MANY else 1.0)
+        of_light = (
+            light is not None and s is not None and line.ray == 0 and line.place >= 0 and s.light[line.place] == light
+        )
+        faded = picked_out or light is not None
+        _line(made, line, _FADED if faded and not of_light else 1.0, 0.55 if len(lines) > _MANY else 1.0)
     for number, row in enumerate(picked_out):
         for line in ui.cached(f"rays of row {number}", frame, row, partial(_of_row, tree, frame, lines, row)):
-            _line(made, line, clicked, 1.0)
-    _points(made, tree, frame, state.pointed or selected)
+            _line(made, line, 1.0)
+    _points(made, tree, frame, (state.pointed or selected) if listed else None, listed)
 
 
 def _of_row(tree: RayTree, frame: Frame, lines: Sequence[RayLine], row: Row) -> list[RayLine]:
@@ -224,16 +237,15 @@ def _of_row(tree: RayTree, frame: Frame, lines: Sequence[RayLine], row: Row) -> 
     return [line for number in wanted for line in _shadow_lines(frame, tree, row.ray, number)]
 
 
-def _line(made: Pen, line: RayLine, hole: Point | None, alpha: float, width: float = 1.0) -> None:
-    """All of it but what would cover the clicked pixel."""
+def _line(made: Pen, line: RayLine, alpha: float, width: float = 1.0) -> None:
     color, ems = line.part.value
     around = _PALE if line.part is Part.DARK else SHADE
-    made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around, hole=hole)
+    made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around)
 
 
-def _points(made: Pen, tree: RayTree, frame: Frame, chosen: Row | None) -> None:
+def _points(made: Pen, tree: RayTree, frame: Frame, chosen: Row | None, further: bool) -> None:
     """A ring around each point that is shaded, a larger one at the clicked one; a cross where the chosen ray ends."""
-    for ray in tree.rays:
+    for ray in tree.rays if further else tree.rays[:1]:
         at = place(frame, ray.end) if ray.shadows is not None else None
         if at is not None:
             alpha = 1.0 if chosen is None or chosen.ray == ray.number else 0.5

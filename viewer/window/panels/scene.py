@@ -44,18 +44,19 @@ def show(ui: Ui) -> None:
 
 
 def _recent(ui: Ui) -> None:
+    """The scenes that come with the program, and those that were open last."""
     if not imgui.begin_popup("recent"):
         return
-    for name, path in embedded_scenes().items():
+    loader, embedded = ui.controller.loader, embedded_scenes()
+    for name, path in embedded.items():
         if imgui.menu_item(f"{name}##embedded", "comes with Shadowcull", False, True)[0]:
-            ui.controller.loader.open(path)
-    recent = [r for r in ui.controller.preferences.recent if Path(r) not in embedded_scenes().values()]
-    if recent:
-        imgui.separator()
-    for text in recent:
-        if imgui.menu_item(f"{Path(text).name}##{text}", "", False, True)[0]:
-            ui.controller.loader.open(Path(text))
-        tooltip(text)
+            loader.open(path)
+    imgui.separator()
+    for text in ui.controller.preferences.recent:
+        if Path(text) not in embedded.values():
+            if imgui.menu_item(f"{Path(text).name}##{text}", "", False, True)[0]:
+                loader.open(Path(text))
+            tooltip(text)
     imgui.end_popup()
 
 
@@ -63,22 +64,23 @@ def _facts(ui: Ui) -> None:
     c = ui.controller
     scene, info = c.session.scene, c.info
     assert scene is not None
+    start, end = scene.time_range
+    facts = [
+        ("File", scene.path.name, str(scene.path)),
+        ("Triangles", count(info.get("triangles", 0)), ""),
+        (
+            "  dynamic",
+            count(info.get("dynamic_triangles", 0)),
+            "of objects that move: their shadow rays are never culled",
+        ),
+        ("Spheres, cones", f"{count(info.get('spheres', 0))}, {count(info.get('cones', 0))}", ""),
+        ("Objects", f"{len(scene.objects) - 1} dynamic" if len(scene.objects) > 1 else "all static", ""),
+        ("Materials", f"{len(scene.materials)}, {len(scene.textures)} textures", ""),
+        *([("Animation", f"{scene.frames} frames, {end - start:.4g} s", "")] if c.session.animated else []),
+    ]
     with properties("facts", 7.0) as shown:
-        if shown:
-            value("File", scene.path.name, str(scene.path))
-            value("Triangles", count(info.get("triangles", 0)))
-            value(
-                "  dynamic",
-                count(info.get("dynamic_triangles", 0)),
-                "triangles of objects that move: their shadow rays are never culled",
-            )
-            if info.get("spheres") or info.get("cones"):
-                value("Spheres, cones", f"{count(info.get('spheres', 0))}, {count(info.get('cones', 0))}")
-            value("Objects", f"{len(scene.objects) - 1} dynamic" if len(scene.objects) > 1 else "all static")
-            value("Materials", f"{len(scene.materials)}, {len(scene.textures)} textures")
-            if c.session.animated:
-                start, end = scene.time_range
-                value("Animation", f"{scene.frames} frames, {end - start:.4g} s")
+        for fact in facts if shown else ():
+            value(*fact)
 
 
 def _lights(ui: Ui) -> None:
@@ -91,11 +93,10 @@ def _lights(ui: Ui) -> None:
         paragraph("No lights: only ambient light shows, and there are no shadows to cull.", WARNING)
         return
     radius, samples = c.session.settings.lamp_radius, c.session.settings.lamp_samples
-
-    def look() -> str:
-        return overview(number, lamps_in(scene.lights, radius, samples)[0])
-
-    said = ui.cached("what methods do with the lights", scene, (radius, samples), look)
+    said = ui.cached(
+        "what methods do with the lights", scene, (radius, samples),
+        lambda: overview(number, lamps_in(scene.lights, radius, samples)[0]),
+    )  # fmt: skip
     if said:
         paragraph(f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} {said}", WARNING)
     lights.table(ui)

@@ -8,10 +8,9 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.runs import missing_in
-from viewer.state.readings import can_draw
-from viewer.state.tone import MID_GREY, NEUTRAL, Tone
+from viewer.state.draw_options import NEUTRAL
 from viewer.state.view_state import LONGEST_SIDE
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.window.panels import legend, lights, slicing
 from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
 from viewer.window.ui import Ui
@@ -38,7 +37,7 @@ def show(ui: Ui) -> None:
                     setting_row(ui, one, room=_BUTTON)
                     _reset_tone(ui)
                 elif one.kind is not bool:
-                    setting_row(ui, one, _mid_grey(draw.tone) if one.path == "draw.tone.curve" else "")
+                    setting_row(ui, one)
             _range(ui)
     setting_switches(ui, [one for one in settings if one.kind is bool])
     legend.in_panel(ui)
@@ -69,10 +68,6 @@ def _reset_tone(ui: Ui) -> None:
     if imgui.button(f"{icons.ICON_FA_ROTATE_LEFT}##reset tone", (-1.0, 0.0)):
         ui.controller.session.set_draw(tone=NEUTRAL)
     tooltip("Reset exposure, white and curve: colours as traced.")
-
-
-def _mid_grey(tone: Tone) -> str:
-    return f"\nMid grey, {MID_GREY:g}, becomes {tone.mid_grey:.2f} with exposure, white and curve as they are."
 
 
 def _views(ui: Ui) -> None:

@@ -8,19 +8,20 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
 from tracer.experiments.zoom import Approach, Results, Step
+from viewer.output.filmstrip import Shot
 from viewer.output.reports import STEPS, Column, changes_in_words, happenings
 from viewer.services.runs import RecordedZoomTest
-from viewer.window.panels import filmstrip
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
 from viewer.window.panels.runs import arrange, export_buttons, results_table, start_or_progress, whose
 from viewer.window.setting_rows import plan_rows
 from viewer.window.style import GREY, MARK
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, clipped, em, paragraph, properties, row, tooltip
+from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, paragraph, properties, row, tooltip
 
 _PLOT, _TABLE = 14.0, 15.0  # ems of width
 _LOW = 7.0  # ems of height below which a plot has no legend
 _FILM, _LEAST_FILM, _MOST_FILM = 0.45, 3.2, 9.0  # the filmstrips' part of the height, and ems of one
+_LARGE = 20.0  # ems of a picture that is pointed at
 
 
 def show(ui: Ui) -> None:
@@ -66,15 +67,52 @@ def _plan(ui: Ui) -> None:
 
 
 def _plot_and_films(ui: Ui, test: RecordedZoomTest, results: Results) -> None:
-    """A plot, and under it the recorded pictures, in a row for each factor."""
+    """A plot, and under it the recorded pictures as in the paper's Figure 4, in a row for each factor."""
     approaches, room = [a for a in results.approaches if a.steps], imgui.get_content_region_avail()
     films = min(max(_FILM * room.y, em(_LEAST_FILM)), len(approaches) * em(_MOST_FILM))
     _plot(ui, test, approaches, ImVec2(room.x, max(room.y - films - imgui.get_style().item_spacing.y, em(6.0))))
-    if imgui.begin_child("films", ImVec2(room.x, films)):
+    if imgui.begin_child("films", ImVec2(room.x, films), 0, int(imgui.WindowFlags_.horizontal_scrollbar)):
         height = max(imgui.get_content_region_avail().y / max(len(approaches), 1) - em(0.3), em(_LEAST_FILM))
         for approach in approaches:
-            filmstrip.strip(ui, test, approach, f"film {approach.factor:g}", ImVec2(0.0, height))
+            for shot in test.filmstrip.of(approach.factor):
+                if shot.number < len(approach.steps):
+                    _thumbnail(ui, test, shot, approach.steps[shot.number], height)
+                    imgui.same_line(0.0, em(0.15))
+            imgui.new_line()
     imgui.end_child()
+
+
+def _thumbnail(ui: Ui, test: RecordedZoomTest, shot: Shot, step: Step, height: float) -> None:
+    size = ImVec2(height * shot.width / shot.height, height)
+    if imgui.invisible_button(f"{shot.factor:g} step {shot.number}##shot", size):
+        ui.controller.go_to_step(step)
+    if not imgui.is_item_visible() or ui.graphics.textures is None:
+        return
+    start, end = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    draw, texture = imgui.get_window_draw_list(), ui.graphics.textures.texture_id(shot, small=True)
+    if texture is not None:
+        draw.add_image(imgui.ImTextureRef(texture), start, end)
+    color = ERROR if step.wrong_of_primitive else MARK if step.changes else None
+    if color is not None:
+        draw.add_rect(start, end, imgui.get_color_u32(color), 0.0, em(0.1))
+    if imgui.is_item_hovered():
+        _show_step(ui, test, shot.factor, step)
+
+
+def _show_step(ui: Ui, test: RecordedZoomTest, factor: float, step: Step) -> None:
+    """Beside the pointer: a step in numbers, and its picture as it was recorded, or the nearest that is kept."""
+    shot, textures = test.filmstrip.nearest(factor, step.number), ui.graphics.textures
+    if not imgui.begin_tooltip():
+        return
+    highest = f"highest count {count(step.highest)}" if step.highest else "not yet fully rendered"
+    imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {highest}")
+    wrong = f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture"
+    imgui.text_unformatted("\n".join([wrong, *changes_in_words(step.changes), "click to fly there"]))
+    texture = textures.texture_id(shot, small=False) if shot is not None and textures is not None else None
+    if shot is not None and texture is not None:
+        scale = em(_LARGE) / max(shot.width, shot.height)
+        imgui.image(imgui.ImTextureRef(texture), ImVec2(scale * shot.width, scale * shot.height))
+    imgui.end_tooltip()
 
 
 def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach], size: ImVec2) -> None:
@@ -100,7 +138,7 @@ def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach], size: ImVe
     implot.plot_line("pixels", numbers, pixels, implot.Spec(line_color=GREY, line_weight=1.8))
     if implot.is_plot_hovered():
         number = min(max(round(implot.get_plot_mouse_pos().x), 0), len(steps) - 1)
-        filmstrip.show_step(ui, test, approaches[0].factor, steps[number])
+        _show_step(ui, test, approaches[0].factor, steps[number])
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
             ui.controller.go_to_step(steps[number])
     implot.end_plot()
