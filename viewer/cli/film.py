@@ -83,7 +83,7 @@ def run(given: Namespace) -> int:
         takes = films.takes(scene, frames, _stops(scene, given), given.seconds, given.fps, given.camera)
         films.prepare(folder, video)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
-        film = films.FilmRun(scene, films.Script(takes, state, folder, video, given.fps))
+        film = films.FilmRun(scene, takes, state, folder, video, given.fps)
         work.perform(film, World(scene, takes[0].time, settings.accelerator, work.progress))
         if film.remark:
             work.note(film.remark)

@@ -12,9 +12,8 @@ from viewer.state.comparison import Compare, CompareMode, Side, Source
 from viewer.state.draw_options import DrawOptions, Slice
 from viewer.state.methods import BY_MODES, NO_CULLING
 from viewer.state.notices import Notices
-from viewer.state.readings import can_draw
 from viewer.state.session import Session
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.util.numbers import several, whole_percent
 from viewer.views import values_of
 from viewer.views.compare import Difference, difference_of
@@ -62,30 +61,24 @@ class Comparing:
     @property
     def b(self) -> Side | None:
         """The live picture."""
-        frame = self._scheduler.frame
-        return None if frame is None else self._side(frame, self._scheduler.drawn_view)
+        frame, session = self._scheduler.frame, self._session
+        if frame is None:
+            return None
+        name, number = session.scene.path.stem if session.scene else "", session.frame_at(frame.time)
+        return Side(frame, self._scheduler.drawn_view, session.draw.light, name, number, session.light_number)
 
     @property
     def a(self) -> Side | None:
-        """What it is compared with, as far as it is there."""
+        """What it is compared with, as far as it is there: in the view of B, or as a picture where its frame has
+        nothing for that, or no longer, as a tree is gone with its world."""
+        b, traced, found = self.b, self._scheduler.traced, self.kept
         if self.state.source is Source.METHOD:
-            traced = self._scheduler.traced
             second = traced.second if traced is not None else None
-            return None if second is None else self._drawable(self._side(second, self._scheduler.drawn_view))
-        kept, b = self.kept, self.b
-        if kept is not None and b is not None and self.state.same_view and can_draw(kept.frame, b.view, b.light):
-            return replace(kept, view=b.view, light=b.light, light_number=b.light_number)
-        return None if kept is None else self._drawable(kept)
-
-    def _side(self, frame: Frame, view: View) -> Side:
-        session = self._session
-        name = session.scene.path.stem if session.scene is not None else ""
-        return Side(frame, view, session.draw.light, name, session.frame_at(frame.time), session.light_number)
-
-    @staticmethod
-    def _drawable(side: Side) -> Side:
-        """Return it as a picture where it has nothing for its view, or no longer, as a tree is gone with its world."""
-        return side if can_draw(side.frame, side.view, side.light) else replace(side, view=View.COLOR)
+            found = replace(b, frame=second) if b is not None and second is not None else None
+        if b is None or found is None:
+            return None
+        view = b.view if can_draw(found.frame, b.view, b.light) else View.COLOR
+        return replace(found, view=view, light=b.light, light_number=b.light_number)
 
     def update(self) -> None:
         """Decide what is seen in this frame of the window."""
@@ -111,10 +104,8 @@ class Comparing:
         if a is None or b is None:
             kept = state.source is Source.KEPT
             return "Nothing is kept as A yet: choose Keep as A." if kept else f"Tracing by {state.second} as well ..."
-        if state.mode is CompareMode.DIFFERENCE and self.difference(a, b) is None:
-            return f"A has nothing for the view {b.view.label}: choose another view, or keep A in this one."
-        if state.source is Source.METHOD and a.view is not b.view:
-            return f"The frame by {a.method} has nothing for the view {b.view.label}: its picture is shown."
+        if a.view is not b.view:
+            return f"A has nothing for the view {b.view.label}: its picture is shown. Keep A again in this view."
         sizes = [f"{side.frame.width} x {side.frame.height}" for side in (a, b)]
         if sizes[0] != sizes[1]:
             coarse = self._scheduler.traced is not None and self._scheduler.traced.request.divisor > 1
@@ -137,8 +128,8 @@ class Comparing:
         return self._difference[1]
 
     def limit(self, found: Difference) -> float:
-        """Return the range of a difference, as chosen or as it fits."""
-        return self.state.limit or found.stats.limit
+        """Return the range of a difference: as it fits, and smaller with more exposure."""
+        return found.stats.limit * 2.0**-self._session.draw.tone.exposure
 
     def span(self, view: View) -> tuple[float, float] | None:
         """Return the range that maps of numbers have: chosen, or one for both pictures, so that a colour means the same

@@ -1,7 +1,6 @@
 """Films: each frame traced whole, at any size, as a numbered picture that says how it was made, and a video of them.
 
-Modes are learnt from frame to frame, as the camera flies.  The command `film` and the window's panel make a `Script`,
-and let a `FilmRun` do it.
+Modes are learnt from frame to frame, as the camera flies.  The command `film` and the window's panel make a `FilmRun`.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime
 from fractions import Fraction
 from pathlib import Path
@@ -41,34 +40,6 @@ VIDEO = ".mp4"
 QUALITY = "16"  # of x264: what the eye can hardly tell from the pictures
 FILMED = "its modes were learnt from the frames of its film before it"
 NEEDS_PYAV = "a video needs PyAV; install shadowcull[video] (pip install av), or give a folder for the pictures alone"
-
-
-@dataclass(frozen=True)
-class Script:
-    """What to film: the takes, how each is traced and drawn (`state`, whose caption has fields), the folder that the
-    pictures go to, the video if one is wanted, and its frames a second."""
-
-    takes: Sequence[Take]
-    state: ViewState
-    folder: Path
-    video: Path | None = None
-    fps: float = 25.0
-
-    @property
-    def paths(self) -> list[Path]:
-        """The picture of each take: by the number of its frame, or else they are counted from 0."""
-        of_path = [take.number for take in self.takes if take.number is not None]
-        numbers = of_path if len(of_path) == len(self.takes) else list(range(len(self.takes)))
-        digits = max(4, len(str(max(numbers))))
-        return [self.folder / f"{number:0{digits}d}.png" for number in numbers]
-
-    def state_of(self, take: Take, scene: Scene) -> ViewState:
-        """How to make a take again, alone: after as many frames of the scene's path, where these were before it."""
-        state = replace(self.state, time=take.time, camera=take.camera)
-        if needs_history(state) and not state.warmup.unknown:  # where chance has a part in it, nothing brings it back
-            unknown = take.warmup is None
-            state = state.with_warmup(unknown=FILMED) if unknown else state.with_warmup(of_path=take.warmup or 0)
-        return stills.with_caption_filled(state, scene)
 
 
 def places(output: Path) -> tuple[Path, Path | None]:
@@ -136,35 +107,54 @@ def stops_of(bookmarks: Sequence[NamedState], scene: Scene) -> list[Stop]:
 
 
 class FilmRun(FileRun):
-    """A film being traced and written, in the view in which it is drawn; `remark` says why there is no legend where one
-    was wanted."""
+    """A film being traced and written, in the view in which it is drawn.
+
+    `state` says how each take is traced and drawn, and its caption has fields; the pictures go to `folder`, and to
+    `video` with so many frames a second.  `remark` says why there is no legend where one was wanted."""
 
     name = "film"
 
-    def __init__(self, scene: Scene, script: Script) -> None:
-        self.script, self.view, self.remark = script, script.state.draw.view, ""
-        self.verifies = script.state.settings.verify or self.view.needs_verify
-        super().__init__(scene, len(script.takes))
-        self.output = script.video or script.folder
+    def __init__(
+        self, scene: Scene, takes: Sequence[Take], state: ViewState, folder: Path, video: Path | None, fps: float
+    ) -> None:
+        self.takes, self.state, self.folder, self.video, self.fps = takes, state, folder, video, fps
+        self.view, self.remark = state.draw.view, ""
+        self.verifies = state.settings.verify or self.view.needs_verify
+        super().__init__(scene, len(takes))
+        self.output = video or folder
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
-        script, add = self.script, None
-        renderer = Renderer(scene, script.state.settings, world=world)
+        renderer, add = Renderer(scene, self.state.settings, world=world), None
         with ExitStack() as stack:
-            for take, path in zip(script.takes, script.paths):
-                state = script.state_of(take, scene)
+            for take, path in zip(self.takes, self._paths()):
+                state = self._state_of(take, scene)
                 try:
                     frame = stills.trace(renderer, state.with_warmup(of_path=0), cancelled=cancel)
                 except Cancelled:
                     return  # the video ends with the last whole picture
                 pixels, self.remark = stills.draw(frame, scene, state)
                 capture.write(path, pixels, stills.text(pixels, frame, scene, state))
-                if script.video is not None:
+                if self.video is not None:
                     size = pixels.shape[1], pixels.shape[0]
-                    add = add or stack.enter_context(video(script.video, size, script.fps))
+                    add = add or stack.enter_context(video(self.video, size, self.fps))
                     add(pixels)
                 self.progressed(f"frame {self.traced + 1} of {self.frames}", frame)
-                yield script.folder
+                yield self.folder
+
+    def _paths(self) -> list[Path]:
+        """The picture of each take: by the number of its frame, or else they are counted from 0."""
+        of_path = [take.number for take in self.takes if take.number is not None]
+        numbers = of_path if len(of_path) == len(self.takes) else list(range(len(self.takes)))
+        digits = max(4, len(str(max(numbers))))
+        return [self.folder / f"{number:0{digits}d}.png" for number in numbers]
+
+    def _state_of(self, take: Take, scene: Scene) -> ViewState:
+        """How to make a take again, alone: after as many frames of the scene's path, where these were before it."""
+        state = replace(self.state, time=take.time, camera=take.camera)
+        if needs_history(state) and not state.warmup.unknown:  # where chance has a part in it, nothing brings it back
+            unknown = take.warmup is None
+            state = state.with_warmup(unknown=FILMED) if unknown else state.with_warmup(of_path=take.warmup or 0)
+        return stills.with_caption_filled(state, scene)
 
 
 class Films:
@@ -195,12 +185,12 @@ class Films:
         """Begin to film what is planned, with the view, the method and the settings that are chosen now."""
 
         def make(scene: Scene) -> FilmRun:
-            self.film = FilmRun(scene, self._script(scene))
+            self.film = self._planned(scene)
             return self.film
 
         self._runs.start(make)
 
-    def _script(self, scene: Scene) -> Script:
+    def _planned(self, scene: Scene) -> FilmRun:
         plan, state = self.plan, self._pictures.now()
         if state is None:
             raise ValueError("there is nothing to film yet")
@@ -219,7 +209,7 @@ class Films:
         folder = folder / f"{scene.path.stem}-film-{datetime.now():%Y-%m-%d-%H-%M-%S}"
         mp4 = folder.with_name(folder.name + VIDEO) if plan.video else None
         prepare(folder, mp4)
-        return Script(filmed, state, folder, mp4, plan.fps)
+        return FilmRun(scene, filmed, state, folder, mp4, plan.fps)
 
 
 # --- videos ------------------------------------------------------------------------------------------

@@ -41,7 +41,7 @@ class Refinement:
 
     def forget(self) -> None:
         """Start again: modes or certificates were lost, or the scene is another."""
-        self._considered: tuple[RenderRequest, bool] | None = None  # what was decided about last
+        self._considered: tuple[RenderRequest, bool, bool] | None = None  # what was decided about last
         self._settled: RenderRequest | None = None  # the view that `_left` speaks of
         self._left = 0  # frames of it that may still follow
         self.proves = self.ended_early = False
@@ -52,9 +52,11 @@ class Refinement:
             return False
         request, statistics = newest.request, newest.frame.statistics
         proves = _is_about_certificates(request, view)
-        if self._considered is not None and self._considered[0] is request and self._considered[1] >= proves:
+        before = self._considered
+        if before is not None and before[0] is request and before[1] >= proves and before[2] >= keep_tracing:
+            self._considered = request, before[1], keep_tracing
             return False
-        self._considered = request, proves
+        self._considered = request, proves, keep_tracing
         if request.divisor > 1:
             return keep_tracing
         if _view_of(request) != self._settled or proves > self.proves:

@@ -5,6 +5,7 @@ once each, one after another, for it to be done; and a script that does it for t
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -82,7 +83,8 @@ class Tour:
         """Return what to do in a step, as things are, with the keys that do it now, or what is being done."""
         if self.showing and step is self.step and step.shown:
             return step.shown
-        return (step.text if isinstance(step.text, str) else step.text(self._c)).format_map(_Keys(self._key))
+        text = step.text if isinstance(step.text, str) else step.text(self._c)
+        return re.sub(r"\{(.+?)\}", lambda name: self._key(name[1]), text)
 
     def toggle(self) -> None:
         """Begin the tour, or end it."""
@@ -137,17 +139,6 @@ class Tour:
     def _go_to(self, first: int) -> None:
         self._script = None
         self.at = next((n for n in range(first, len(STEPS)) if n not in self.done), None)
-
-
-class _Keys(dict[str, str]):
-    """Keys by the names of their commands, for `str.format_map`."""
-
-    def __init__(self, key: Callable[[str], str]) -> None:
-        super().__init__()
-        self._key = key
-
-    def __missing__(self, name: str) -> str:
-        return self._key(name)
 
 
 # --- conditions ------------------------------------------------------------------------------------

@@ -80,14 +80,11 @@ class Side:
 
 @dataclass(frozen=True)
 class Compare:
-    """Whether and how two pictures are compared: with `same_view` a kept A is shown in the view of B; `limit` is the
-    range of the difference, None for one that fits; `second` is the method that traces A, where it is not kept."""
+    """Whether and how two pictures are compared; `second` is the method that traces A, where it is not kept."""
 
     on: bool = False
     mode: CompareMode = CompareMode.WIPE
     source: Source = Source.KEPT
-    same_view: bool = False
-    limit: float | None = None
     second: str = ""
 
     def changes(self, after: Compare) -> dict[str, str]:
@@ -96,8 +93,6 @@ class Compare:
             "on": f"comparison: {after.mode.label.lower()}" if after.on else "comparison off",
             "source": "A by another method" if after.source is Source.METHOD else "A as it was kept",
             "second": f"second method {after.second}",
-            "same_view": "A in the view of B" if after.same_view else "A in its own view",
-            "limit": "range of the difference",
         }
         changed = {name for name in words if getattr(self, name) != getattr(after, name)}
         if self.mode is not after.mode:

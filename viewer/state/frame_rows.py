@@ -9,7 +9,7 @@ from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
 from tracer.statistics import RayCounts
-from viewer.state import terms, verified
+from viewer.state import terms
 from viewer.state.savings import InTurn
 from viewer.util.numbers import count, percent, whole_percent
 
@@ -129,8 +129,9 @@ def _shadow_rays(frame: Frame) -> Iterator[Row]:
         (terms.WRONG, wrong.answers if wrong and by_lights else None, wrong.due if wrong else 0),
         (of_pixels, wrong.pixels if wrong else None, wrong.shaded if wrong else 0),
     ):
-        label = name if wrong is None else verified.named(name, wrong)
-        yield Row(RAYS, label.capitalize(), found, terms.MEANINGS[name], whole, always=found is not None)
+        yield Row(RAYS, name.capitalize(), found, terms.MEANINGS[name], whole, always=found is not None)
+    samples = wrong.samples if wrong and wrong.samples > 1 else None
+    yield Row(RAYS, "  in samples", samples, "wrong answers are counted in all of them, all else in the first")
 
 
 def _work(frame: Frame) -> Iterator[Row]:

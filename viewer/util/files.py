@@ -32,7 +32,7 @@ def check_writable(path: Path) -> None:
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {path.parent if target == path else target.parent}")
     try:
-        probe = part_name(target)
+        probe = _part_name(target)
         probe.touch(exist_ok=False)
         probe.unlink(missing_ok=True)
     except OSError as error:
@@ -47,13 +47,21 @@ def whole_file(path: Path) -> Iterator[tuple[Path, BinaryIO]]:
     file, and what the block raises; then what was there before is left."""
     target = _target(path)
     try:
-        with part_file(target) as (part, file):
-            yield part, file
-            file.flush()
-            os.fsync(file.fileno())
-            if os.name == "nt":  # where open files keep their names
-                file.close()
-            os.replace(part, target)
+        _clear(target.parent)
+        part = _part_name(target)
+        with part.open("xb") as file:
+            try:
+                yield part, file
+                file.flush()
+                os.fsync(file.fileno())
+                if os.name == "nt":  # where open files keep their names
+                    file.close()
+                os.replace(part, target)
+            finally:
+                with suppress(OSError):
+                    file.close()
+                with suppress(OSError):  # what is kept has another name by now
+                    part.unlink(missing_ok=True)
     except OSError as error:
         raise OSError(f"{path}: not written: {error.strerror or error}") from None
 
@@ -84,7 +92,7 @@ def write_new(folder: Path, stem: str, ending: str, write: Callable[[Path], None
     except OSError as error:
         raise OSError(f"cannot write to {folder}: {error.strerror or error}") from None
     path, number = folder / f"{stem}{ending}", 1
-    part = part_name(path, ending)
+    part = _part_name(path, ending)
     try:
         write(part)
         while not _name(part, path):
@@ -151,27 +159,10 @@ _MACHINE = f"{zlib.crc32(socket.gethostname().encode()):08x}"
 _cleared: set[str] = set()
 
 
-def part_name(target: Path, ending: str = "") -> Path:
-    """Return a hidden name beside `target` that tells who writes it, and ends as told."""
+def _part_name(target: Path, ending: str = "") -> Path:
+    """A hidden name beside `target` that tells who writes it, and ends as told."""
     name = os.fsencode(target.name)[:_LONGEST].decode(errors="ignore")
     return target.with_name(f".{name}.{_MACHINE}-{os.getpid()}-{secrets.token_hex(4)}.part{ending}")
-
-
-@contextmanager
-def part_file(target: Path) -> Iterator[tuple[Path, BinaryIO]]:
-    """Make a new, empty file beside `target`, open for writing; it is removed at the end unless it has another name.
-
-    Raises OSError."""
-    _clear(target.parent)
-    path = part_name(target)
-    with path.open("xb") as file:
-        try:
-            yield path, file
-        finally:
-            with suppress(OSError):  # who wanted it on the disk has flushed it
-                file.close()
-            with suppress(OSError):
-                path.unlink(missing_ok=True)
 
 
 def _clear(folder: Path) -> None:

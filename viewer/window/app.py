@@ -91,7 +91,12 @@ class App:
         scene: Scene | None = None,
         on_frame: OnFrame | None = None,
     ) -> None:
-        """A `scene` that is given takes the place of a path; `on_frame` is told of each whole picture."""
+        """A window on a scene or a saved picture; without one on what was open last, where that is wanted, else on the
+        embedded room.
+
+        `settings` are fields of `tracer.Settings` that win over what is opened first; scenes may read files from
+        `folders` besides their own; `meshes` says how meshes are read.  A `scene` takes the place of a path; `on_frame`
+        is told of each whole picture."""
         style.forget()
         preferences, problem = load_preferences()
         self.controller = Controller(preferences)
@@ -314,15 +319,3 @@ def _configure_imgui() -> None:
     io.config_flags &= ~int(imgui.ConfigFlags_.nav_enable_keyboard)
     io.config_windows_move_from_title_bar_only = True
     configure_recovery()
-
-
-def run(
-    scene_path: Path | None = None,
-    settings: dict[str, Any] | None = None,
-    folders: Sequence[Path] = (),
-    meshes: MeshOptions = IN_STUDIO,
-) -> int:
-    """Open the viewer on a scene or a saved picture; without one on what was open last, where that is wanted, else on
-    the embedded room.  `settings` are fields of `tracer.Settings` that win over what is opened first; scenes may read
-    files from `folders` besides their own; `meshes` says how meshes are read.  Returns the exit code."""
-    return App(scene_path, settings, folders, meshes).run()

@@ -97,8 +97,6 @@ class Display(PictureTexture):
         self.frame: Frame | None = None
         self.part_of: NDArray[np.int32] | None = None
         """(primitives,) the part of the scene that each primitive belongs to, needed while one is selected."""
-        self.selected = -1
-        """The primitive that is drawn as selected."""
         self._drawn: tuple[Frame, object] | None = None
         self._failed: tuple[Frame, object] | None = None
 
@@ -123,7 +121,7 @@ class Display(PictureTexture):
         if window.selected >= 0:
             pixels[_selected_border(frame, window, self.part_of)] = 255
         self.write(pixels, window.smooth and draw.view.shows_clipped)
-        self._drawn, self._failed, self.selected = wanted, None, window.selected
+        self._drawn, self._failed = wanted, None
 
     def shows(self, draw: DrawOptions, window: InWindow = PLAIN) -> bool:
         """Return whether the frame is drawn like this."""

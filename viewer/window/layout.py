@@ -89,7 +89,6 @@ PANELS = {
 SIDES = tuple(label for label in PANELS if label != PICTURE)
 """All panels around the picture."""
 
-_TABS_AFTER = 3  # frames that ImGui needs to make the tabs of panels that come back
 _KEY_OWNER = 0x5C011  # any number that no widget has
 
 
@@ -100,8 +99,6 @@ class Layout:
         self._ui, self._docking = ui, params.docking_params
         self._size = (0.0, 0.0)
         self._to_front: set[str] = set()  # panels to be focused when they are drawn next
-        self._tabs: list[str] = []  # the panels that were to be seen before they were hidden
-        self._back_for = 0  # frames since they came back
         # Without the cross beside the tabs, which closes all of them; and not what Hello ImGui has by default, which
         # would give it a background whatever the style.
         self._docking.main_dock_space_node_flags = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button)
@@ -135,9 +132,8 @@ class Layout:
     # --- one frame -------------------------------------------------------------------------------
 
     def update(self) -> None:
-        """Keep shares and tabs as they were, before the panels are drawn."""
+        """Keep shares as they were, before the panels are drawn."""
         self._keep_shares()
-        self._keep_tabs()
         node, no_tabs = _node_of(PICTURE), int(imgui.internal.DockNodeFlagsPrivate_.no_tab_bar)
         if node is not None and not node.local_flags & no_tabs:  # it is always there, and needs the room
             node.set_local_flags(node.local_flags | no_tabs)
@@ -156,14 +152,6 @@ class Layout:
         for node in {node.id_: node for label in PANELS for node in _with_parents(_node_of(label))}.values():
             node.size_ref = ImVec2(node.size_ref.x * size.x / before[0], node.size_ref.y * size.y / before[1])
 
-    def _keep_tabs(self) -> None:
-        """Bring the tabs to the front that were there before the panels were hidden."""
-        self._back_for = 0 if self._ui.panels_hidden else self._back_for + 1
-        if self._back_for == _TABS_AFTER:
-            self._to_front.update(self._tabs)
-        elif self._back_for > _TABS_AFTER:
-            self._tabs = [label for label in SIDES if _seen(label)]
-
     # --- the panels ------------------------------------------------------------------------------
 
     def _window(self, panel: Panel) -> hello_imgui.DockableWindow:
@@ -179,6 +167,7 @@ class Layout:
         # What lies in the main window is on its background already.  Filling it once more for each panel is half of
         # all the work where a processor draws.
         flags = int(imgui.WindowFlags_.no_background) if _in_main_window(panel.label) else 0
+        flags |= int(imgui.WindowFlags_.no_focus_on_appearing)  # so that tabs come back as they were
         if is_picture:
             scrolling = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
             flags |= int(scrolling | imgui.WindowFlags_.no_collapse)
@@ -194,12 +183,6 @@ class Layout:
             imgui.end()
         if stays is False:
             self._docking.dockable_window_of_name(panel.label).is_visible = False
-
-
-def _seen(label: str) -> bool:
-    """Return whether a panel was drawn, and not behind another's tab."""
-    window = imgui.internal.find_window_by_name(label)
-    return window is not None and window.was_active and not window.hidden
 
 
 def _in_front(label: str) -> bool:

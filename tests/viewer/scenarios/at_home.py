@@ -40,7 +40,7 @@ def _palette(d: Driver) -> None:
     find(d, "bounces")
     d.press(KEY.enter)
     for typed, depth in (("500", 10), ("7", 7)):
-        d.context.key_chars(typed)
+        d.type(typed)
         d.press(KEY.enter)
         assert d.c.session.settings.depth == depth
         assert imgui.is_popup_open("", ANY_POPUP) == (typed == "500")
@@ -49,7 +49,7 @@ def _palette(d: Driver) -> None:
     assert imgui.is_popup_open("", ANY_POPUP) and "nothing to redo" in d.ui.state(Finder).problem
     d.press(KEY.escape)
     assert not imgui.is_popup_open("", ANY_POPUP)
-    d.press(CTRL | SHIFT | int(KEY.p))
+    d.press("Ctrl+Shift+P")
     assert [item.name for item in d.ui.state(Finder).found[:2]] == ["setting Bounces", "Occlusion mode"]
     d.press(KEY.down_arrow)
     d.press(KEY.up_arrow)
@@ -60,9 +60,8 @@ def _palette(d: Driver) -> None:
 
 def find(d: Driver, typed: str) -> None:
     """Open the palette and type."""
-    d.press(CTRL | SHIFT | int(KEY.p))
-    d.context.key_chars(typed)
-    d.frames(2)
+    d.press("Ctrl+Shift+P")
+    d.type(typed)
 
 
 def _undo(d: Driver) -> None:
@@ -75,36 +74,34 @@ def _undo(d: Driver) -> None:
     middle, shading = (0.5 * (slider.min.x + slider.max.x), 0.5 * (slider.min.y + slider.max.y)), 0.35
     d.drag(middle, (40.0, 0.0))
     assert d.c.session.draw.shading != shading and d.c.undo.undoes.startswith("shading")
-    d.context.menu_click("//##MainMenuBar/Edit/###Undo")
-    d.frames(2)
+    d.choose("Edit/###Undo")
     assert d.c.session.draw.shading == shading, "a drag is one step"
     assert d.c.notices.message.text.startswith("undone: shading") and d.c.undo.undoes == "camera"
     flights = 0
     while d.c.undo.undoes == "camera":  # several where the machine is slow: the camera rests between them
-        d.press(CTRL | int(KEY.z))
+        d.press("Ctrl+Z")
         flights += 1
     d.settle()
     assert d.c.session.camera == home
-    d.press(CTRL | int(KEY.y))
+    d.press("Ctrl+Y")
     assert d.c.undo.undoes == "camera" and d.c.motion.under_way
     for _ in range(3):
-        d.press(CTRL | int(KEY.z))
+        d.press("Ctrl+Z")
     d.settle()
     assert d.c.session.settings.depth == 10 and d.c.session.draw.view is View.COLOR and not d.c.undo.undoes
-    d.press(CTRL | SHIFT | int(KEY.z))
+    d.press("Ctrl+Shift+Z")
     assert d.c.session.draw.view is View.OCCLUSION
     d.settle()
 
 
 def _presets(d: Driver) -> None:
-    d.context.menu_click("//##MainMenuBar/Edit/Presets/Presets...")
-    d.frames(3)
-    d.context.item_click("//Presets/##new preset")
-    d.context.key_chars("mine")
+    d.choose("Edit/Presets/Presets...")
+    d.click("//Presets/##new preset")
+    d.type("mine")
     d.press(KEY.enter)
     assert [preset.name for preset in d.c.presets.all] == ["mine"]
     kept = d.c.session.settings
-    d.context.item_click("//Presets/As in the paper")
+    d.click("//Presets/As in the paper")
     d.settle()
     assert d.c.session.settings.method == "paper" and (d.c.frame.width, d.c.frame.height) == (512, 512)
     d.c.history.clear()
@@ -114,14 +111,13 @@ def _presets(d: Driver) -> None:
     d.settle()
     assert (d.c.history.values("pixels") == 512 * 512).all(), "each is traced in full, and learns from the one before"
     assert (d.c.history.values("culled") + d.c.history.values("dynamic_only") > 0)[1:].all()
-    d.context.item_click("//Presets/**/" + _PEN)
-    d.frames(2)
-    d.context.key_chars("ours")
+    d.click("//Presets/**/" + _PEN)
+    d.type("ours")
     d.press(KEY.enter)
     assert d.c.presets.all[0].name == "ours" and d.ui.state(NameFields).place is None
     d.press(KEY.escape)
     assert not d.ui.dialogs
-    d.context.menu_click("//##MainMenuBar/Edit/Presets/ours##preset 5")
+    d.choose("Edit/Presets/ours##preset 5")
     d.settle()
     assert d.c.session.settings == kept and d.c.undo.undoes == "preset ours"
 
@@ -130,16 +126,14 @@ _PEN = "\uf304"
 
 
 def _log(d: Driver) -> None:
-    d.ui.show_panel("Plots")
-    d.frames(3)
+    d.show_panel("Plots")
     d.c.notices.mark_read()
     d.c.notices.say("this could not be done", error=True)
     d.frames(2)
     assert len(d.c.notices.unread) == 1
     bar = imgui.internal.find_window_by_name("##MainStatusBar_8")
     assert bar is None or bar.active
-    d.ui.show_panel("Log")
-    d.frames(4)
+    d.show_panel("Log")
     assert not d.c.notices.unread, "seen"
 
 

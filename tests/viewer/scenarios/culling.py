@@ -8,14 +8,13 @@ from dataclasses import replace
 import numpy as np
 from imgui_bundle import imgui
 
-from tests.viewer.drawn import classes_in, picture
+from tests.viewer.drawn import classes_in
 from tests.viewer.driver import Driver
 from tracer.method import additions, bases
 from tracer.renderer import Renderer
 from viewer.state.views import View
 from viewer.views.tree import LAYERS
 from viewer.views.voxels import voxels_seen
-from viewer.window.keyboard import chord
 from viewer.window.panels import slicing
 from viewer.window.panels.light_buffer import CubeState, Unfolded
 from viewer.window.panels.links import Pointed
@@ -25,24 +24,18 @@ KEY = imgui.Key
 
 def culling(d: Driver) -> None:
     """Tracing again culls; the key switches it off and on; resetting forgets."""
-    d.c.settings.change(method="paper")
-    d.settle()
+    d.change(method="paper")
     first = d.c.frame.statistics.shadow
     assert first.due > 0 and first.culled == 0
-    d.press(KEY.t)
-    d.settle()
+    _press(d, "T")
     second = d.c.frame.statistics.shadow
-    assert second.saved > 0
-    assert second.due == first.due
-    d.press(KEY.c)
-    d.settle()
+    assert second.saved > 0 and second.due == first.due
+    _press(d, "C")
     assert d.c.frame.settings.method == "none" and d.c.frame.statistics.shadow.culled == 0
-    d.press(KEY.c)
-    d.settle()
-    d.press(KEY.backspace)
-    d.settle()
-    assert d.c.frame.statistics.shadow.culled == 0
-    d.context.item_click("//Culling/Symmetric occlusion test")
+    _press(d, "C")
+    _press(d, "Backspace")
+    assert d.c.frame.settings.method == "paper" and d.c.frame.statistics.shadow.culled == 0
+    d.click("//Culling/Symmetric occlusion test")
     d.settle()
     assert d.c.frame.settings.symmetric
 
@@ -54,147 +47,85 @@ def certifying(d: Driver) -> None:
     d.wait(lambda: d.c.loader.ready, "the kernels that make certificates")
     d.fix_resolution(240, 180)
     for base in ("certified", "none"):
-        d.c.settings.change(method=base)
-        d.settle()
+        d.change(method=base)
         traced = d.c.history.frames
-        for key, view in ((KEY._2, View.OCCLUSION), (KEY._3, View.SHADOW), (KEY._7, View.PIXEL_COUNT)):
-            d.press(key)
+        for view in (View.OCCLUSION, View.SHADOW, View.PIXEL_COUNT):
+            d.press(view.key)
             assert d.c.scheduler.drawn_view is view and d.c.history.frames == traced
-            assert np.abs(d.shown().astype(int) - picture(d.c.frame, view, d.c.session.draw.light)).max() <= 2
-        seen = [row.name for row in classes_in(d.c.frame, View.OCCLUSION) if row.pixels]
-        assert "fully rendered" in seen, seen
-        said = d.c.frame.statistics.by_modes_in_all
-        assert said.full_shadow + said.non_shadow > 0
-        d.press(KEY._8)
-        d.settle()
-        d.context.item_click("//Picture/**/Use paper##instead")
-        d.settle()
-        assert d.c.frame.settings.method == "paper"
-    d.press(KEY._0)
-    assert d.c.session.draw.view is View.CERTIFICATE and d.c.frame.certificates is None
-    assert d.c.scheduler.drawn_view is View.COLOR
+            d.expect_picture()
+        assert "fully rendered" in [row.name for row in classes_in(d.c.frame, View.OCCLUSION) if row.pixels]
+        _use(d, View.DIFFERENCE, "paper")
+    _press(d, View.CERTIFICATE.key)
+    assert d.c.frame.certificates is None and d.c.scheduler.drawn_view is View.COLOR
     d.certify()
-    d.context.item_click("//Picture/**/Use certified##instead")
-    d.settle()
-    assert d.c.frame.settings.method == "certified" and d.c.scheduler.drawn_view is View.CERTIFICATE
-    d.context.menu_click("//##MainMenuBar/Culling/Method certified")
-    d.context.item_click("//Culling/method/##method")
+    _use(d, View.CERTIFICATE, "certified")
+    d.choose("Culling/Method certified")
+    d.click("//Culling/method/##method")
     names = [*(kind.name for kind in bases()), *(f"+{kind.name}" for kind in additions("certified"))]
-    assert all(d.context.item_exists(f"//##Combo_00/{name}") for name in names), "all are listed"
-    d.context.item_click("//##Combo_00/+cache")
-    d.press(KEY.escape)
-    d.settle()
-    assert d.c.frame.settings.method == "certified+cache" == d.c.preferences.method
-    assert d.c.frame.certificates is not None
-    expected = picture(d.c.frame, View.CERTIFICATE, shading=d.c.session.draw.shading)
-    assert np.abs(d.shown().astype(int) - expected).max() <= 2
-    d.press(KEY.c)
-    d.settle()
-    assert d.c.frame.settings.method == "none"
-    d.press(KEY.c)
-    d.settle()
+    assert all(d.has(f"//##Combo_00/{name}") for name in names), "all are listed"
+    d.click("//##Combo_00/+cache")
+    _press(d, "Escape")
     assert d.c.frame.settings.method == "certified+cache"
+    assert d.c.frame.certificates is not None
+    d.expect_picture()
+    for method in ("none", "certified+cache"):
+        _press(d, "C")
+        assert d.c.frame.settings.method == method
     for key in ("H", "Shift+H"):
-        d.press(chord(key))
-        d.settle()
+        _press(d, key)
         assert d.c.scheduler.drawn_view is d.c.session.draw.view and not d.c.scheduler.outdated
     _clusters(d)
     _space(d)
 
 
+def _press(d: Driver, key: str) -> None:
+    d.press(key)
+    d.settle()
+
+
+def _use(d: Driver, view: View, method: str) -> None:
+    """Choose a view that has nothing to show, and press the button that gives it a method."""
+    _press(d, view.key)
+    d.click(f"//Picture/**/Use {method}##instead")
+    d.settle()
+    used = d.c.frame.settings
+    assert method in (used.accelerator, used.method.split("+")[0]) and d.c.scheduler.drawn_view is view
+
+
 def _clusters(d: Driver) -> None:
     """Methods by clusters of lights have a view, and their error and the most clusters can be chosen."""
-    d.press(chord(View.CUTS.key))
-    d.settle()
-    d.context.item_click("//Picture/**/Use lightcuts##instead")
-    d.c.settings.change(lamp_radius=0.3, lamp_samples=16)
-    d.settle()
-    assert d.c.frame.settings.method.startswith("lightcuts") and d.c.scheduler.drawn_view is View.CUTS
+    _use(d, View.CUTS, "lightcuts")
+    d.change(lamp_radius=0.3, lamp_samples=16)
     assert d.c.frame.statistics.cuts.most > 3
-    expected = picture(d.c.frame, View.CUTS)
-    assert np.abs(d.shown().astype(int) - expected).max() <= 2
-    d.context.item_input_value("//Culling/**/##lightcuts_error", 20.0)
+    d.expect_picture()
+    d.enter("//Culling/**/##lightcuts_error", 20.0)
     d.settle()  # the words above the sliders are of another length then, and the sliders elsewhere
-    d.context.item_input_value("//Culling/**/##lightcuts_nodes", 3)
+    d.enter("//Culling/**/##lightcuts_nodes", 3)
     d.settle()
-    assert (d.c.frame.settings.lightcuts_error, d.c.frame.settings.lightcuts_nodes) == (0.2, 3)
-    assert d.c.frame.statistics.cuts.most == 3
+    used = d.c.frame.settings
+    assert (used.lightcuts_error, used.lightcuts_nodes, d.c.frame.statistics.cuts.most) == (0.2, 3, 3)
 
 
 def _space(d: Driver) -> None:
-    """What methods keep of space: a slice through voxels, which keys and a slider move; cells by the lights that they
-    ask; and a light's cube in a panel."""
+    """What methods keep of space: slices through voxels and through a tree; cells by the lights that they ask; a
+    light's cube."""
     d.c.settings.change(lamp_radius=None, lamp_samples=None)
-    for view, name in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact")):
-        d.press(chord(view.key))
-        d.settle()
-        assert d.c.scheduler.drawn_view is View.COLOR, "the method has nothing to show"
-        d.context.item_click(f"//Picture/**/Use {name}##instead")
-        d.settle()
-        assert d.c.frame.settings.method.startswith(name) and d.c.scheduler.drawn_view is view
-        expected = picture(d.c.frame, view, beneath=d.c.session.draw.beneath, slice=d.c.session.draw.slice)
-        assert np.abs(d.shown().astype(int) - expected).max() <= 2
+    for view, method in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact"), (View.TREE, "kdtree-lazy")):
+        _use(d, view, method)
+        d.expect_picture()
         if view is View.VOXELS:
             _slice(d)
     _tree(d)
     _light_buffer(d)
 
 
-def _light_buffer(d: Driver) -> None:
-    """A line where the method has none; else the cube by lengths of lists, or by where full shadow begins."""
-    state = d.ui.state(CubeState)
-    d.ui.show_panel("Light buffer")
-    d.wait(lambda: isinstance(state.answer, str), "why there is none", 20.0)
-    d.c.settings.change(method="lightbuffer")
-    d.settle()
-    d.wait(lambda: isinstance(state.answer, Unfolded), "the cube", 20.0)
-    lists = state.answer
-    d.frames(3)
-    assert imgui.internal.find_window_by_name("Light buffer").draw_list.vtx_buffer.size() > 0
-    d.context.item_click("//Light buffer/distance at which full shadow begins")
-    # Whatever the picture is traced anew for meanwhile, its lists stay as they are.
-    d.wait(lambda: (state.answer.cross != lists.cross).any(), "where full shadow begins", 20.0)
-    assert state.depths
-
-
-def _tree(d: Driver) -> None:
-    """What rays have had built of a tree, also where the camera looks at nothing; keys go through it."""
-    d.press(chord(View.TREE.key))
-    d.settle()
-    d.context.item_click("//Picture/**/Use kdtree-lazy##instead")
-    d.settle()
-    assert d.c.frame.settings.accelerator == "kdtree-lazy" and d.c.scheduler.drawn_view is View.TREE
-    d.c.settings.change(method="none")
-    d.settle()
-    at = d.c.session.draw.slice
-    assert "all that has been seen" in d.c.pictures.now().warmup.unknown
-    expected = picture(
-        d.c.frame, View.TREE, shading=d.c.session.draw.shading, beneath=d.c.session.draw.beneath, slice=at
-    )
-    assert np.abs(d.shown().astype(int) - expected).max() <= 2
-    d.press(chord("Shift+RightBracket"))
-    assert d.c.session.draw.slice.layer(LAYERS) == at.layer(LAYERS) + 1
-    d.press(chord("Shift+LeftBracket"))
-    home = d.c.session.camera
-    x, y, z = home.direction
-    d.c.motion.move(replace(home, direction=(-x, -y, -z)))
-    d.settle()
-    assert (d.c.frame.primitive < 0).all() and d.c.scheduler.drawn_view is View.TREE
-    assert d.c.frame.statistics.built.primitives == 3, "what was built stays"
-    d.c.motion.move(home)
-    d.c.settings.change(accelerator="bvh8")
-    d.settle()
-
-
 def _slice(d: Driver) -> None:
     """Keys and the panel go from layer to layer, and say what the pointer is on."""
     sides, before = d.c.frame.structures["voxels"].shape, d.shown()
-    axis = d.c.session.draw.slice.axis
-    layer, traced = d.c.session.draw.slice.layer(sides[axis]), d.c.history.frames
-    d.press("Shift+RightBracket")
-    assert d.c.session.draw.slice.layer(sides[axis]) == layer + 1
-    d.press("Shift+LeftBracket")
-    assert d.c.session.draw.slice.layer(sides[axis]) == layer
+    cut, traced = d.c.session.draw.slice, d.c.history.frames
+    for key, step in (("Shift+RightBracket", 1), ("Shift+LeftBracket", 0)):
+        d.press(key)
+        assert d.c.session.draw.slice.layer(sides[cut.axis]) == cut.layer(sides[cut.axis]) + step
     d.click("//View/**/z##slice")
     d.enter("//View/**/##layer", sides[2] // 2)
     cut = d.c.session.draw.slice
@@ -206,56 +137,73 @@ def _slice(d: Driver) -> None:
         assert f", {sides[2] // 2}" in slicing.lines_at(d.ui, x, y)[0]
 
 
+def _tree(d: Driver) -> None:
+    """What rays have had built of a tree is seen also where the camera looks at nothing; keys go through it."""
+    d.change(method="none")
+    at, home = d.c.session.draw.slice, d.c.session.camera
+    d.press("Shift+RightBracket")
+    assert d.c.session.draw.slice.layer(LAYERS) == at.layer(LAYERS) + 1
+    x, y, z = home.direction
+    d.c.motion.move(replace(home, direction=(-x, -y, -z)))
+    d.settle()
+    assert (d.c.frame.primitive < 0).all() and d.c.scheduler.drawn_view is View.TREE
+    assert d.c.frame.statistics.built.primitives == 3, "what was built stays"
+    d.c.motion.move(home)
+    d.change(accelerator="bvh8")
+
+
+def _light_buffer(d: Driver) -> None:
+    """A line where the method has none; else the cube by lengths of lists, or by where full shadow begins."""
+    state = d.ui.state(CubeState)
+    d.show_panel("Light buffer")
+    d.wait(lambda: isinstance(state.answer, str), "why there is none", 20.0)
+    d.change(method="lightbuffer")
+    d.wait(lambda: isinstance(state.answer, Unfolded), "the cube", 20.0)
+    lists = state.answer
+    d.click("//Light buffer/distance at which full shadow begins")
+    d.wait(lambda: (state.answer.cross != lists.cross).any(), "where full shadow begins", 20.0)
+
+
 def explaining(d: Driver) -> None:
     """What the pointer is on, or was clicked, is explained beside the window's own frames; a key hides the lines."""
     d.settle()
-    explaining = d.c.inspector
-    assert explaining.answer is None
-    traced = d.c.history.frames
-    left, top, right, bottom = d.picture_edges()
+    inspector, traced = d.c.inspector, d.c.history.frames
+    assert inspector.answer is None
     shadow, lit = (_places(d, lit) for lit in (False, True))
-    d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
-    d.wait(lambda: explaining.answer is not None, "an answer about the pointer's pixel", 20.0)
-    blocked = [one for one in explaining.answer.reasons if one.blocker >= 0]
+    d.point(*shadow)
+    d.wait(lambda: inspector.answer is not None, "an answer about the pointer's pixel", 20.0)
+    blocked = [one for one in inspector.answer.reasons if one.blocker >= 0]
     assert blocked and not any(one.lit for one in blocked)
-    d.frames(3)
     hovering = _lines_drawn(d)
-    d.press(KEY.i)
+    d.press("I")
     assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
-    d.press(KEY.i)
-    d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
-    d.wait(lambda: all(one.blocker < 0 for one in explaining.answer.reasons), "an answer about another pixel", 20.0)
-    d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
-    d.context.mouse_click(0)
-    d.frames(3)
+    d.press("I")
+    d.point(*lit)
+    d.wait(lambda: all(one.blocker < 0 for one in inspector.answer.reasons), "an answer about another pixel", 20.0)
+    d.pick(*shadow)
     assert d.c.selection.picked is not None
-    d.context.mouse_move_to_pos((left + lit[0] * (right - left), top + lit[1] * (bottom - top)))
-    d.wait(lambda: explaining.answer is not None, "an answer about what was clicked", 20.0)
-    assert any(one.blocker >= 0 for one in explaining.answer.reasons), "it goes on following the pointer"
+    d.point(*lit)
+    d.wait(lambda: inspector.answer is not None, "an answer about what was clicked", 20.0)
+    assert any(one.blocker >= 0 for one in inspector.answer.reasons), "it goes on following the pointer"
     assert d.c.history.frames == traced, "asking has traced a frame"
-    point = explaining.tree.rays[0].end
+    point = inspector.tree.rays[0].end
     d.hold(KEY.d, 0.3)
     d.settle()
-    assert explaining.answer is not None and math.dist(explaining.tree.rays[0].end, point) < 0.2
-    d.context.mouse_move(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
-    d.frames(3)
+    assert inspector.answer is not None and math.dist(inspector.tree.rays[0].end, point) < 0.2
+    d.hover(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
     assert d.ui.state(Pointed).light == 0
-    d.context.mouse_move_to_pos((left + shadow[0] * (right - left), top + shadow[1] * (bottom - top)))
-    d.frames(3)
+    d.point(*shadow)
     drawn = _lines_drawn(d)
-    d.press(KEY.i)
+    d.press("I")
     assert not d.c.session.draw.rays and _lines_drawn(d) < drawn - 50
-    d.press(KEY.i)
+    d.press("I")
     assert _lines_drawn(d) == drawn
-    d.press(KEY.escape)
+    d.press("Escape")
     assert d.c.selection.picked is None and _lines_drawn(d) < drawn - 50, "Escape clears"
-    d.context.mouse_click(0)
-    d.frames(3)
+    d.pick(*shadow)
     assert d.c.selection.picked is not None
-    d.context.mouse_move_to_pos((left + 0.5 * (right - left), top + 0.02 * (bottom - top)))
-    d.context.mouse_click(0)
-    d.frames(3)
-    assert d.c.selection.picked is None and explaining.answer is None, "a click on nothing clears"
+    d.pick(0.5, 0.02)
+    assert d.c.selection.picked is None and inspector.answer is None, "a click on nothing clears"
 
 
 def _lines_drawn(d: Driver) -> int:

@@ -29,7 +29,7 @@ def filming(d: Driver) -> None:
     d.settle()
     assert d.c.questions.question is None, "whether to stop it is asked although it is done"
     assert films.film.whole and "film done: 5 frames" in d.c.notices.message.text
-    folder = films.film.script.folder
+    folder = films.film.folder
     assert folder.parent == pictures and len(list(folder.iterdir())) == 5
 
     d.context.item_click("//Film/**/###bookmarks")
@@ -50,5 +50,5 @@ def filming(d: Driver) -> None:
     d.press(KEY.escape)
     d.wait(lambda: runs.current is None, "the film to stop", 20.0)
     d.settle()
-    assert 3 < len(list(films.film.script.folder.iterdir())) < 3000
-    assert "is kept" in d.c.notices.message.text and str(films.film.script.folder) in d.c.notices.message.text
+    assert 3 < len(list(films.film.folder.iterdir())) < 3000
+    assert "is kept" in d.c.notices.message.text and str(films.film.folder) in d.c.notices.message.text

@@ -30,8 +30,7 @@ def fitting(d: Driver) -> None:
 
 def _check_panels(d: Driver, size: tuple[int, int]) -> None:
     for label in SIDES:
-        d.ui.show_panel(label)
-        d.frames(5)
+        d.show_panel(label)
         check_fit(d, f"{label} at {size}")
     d.ui.show_panel("Plots")
     # Frames of which the last has a tick of its own, on the plots' edge.

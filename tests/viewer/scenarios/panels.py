@@ -29,11 +29,10 @@ def panels(d: Driver) -> None:
     assert Dialog.KEYS in d.ui.dialogs
     d.frames(3)
     d.press(KEY.f1)
-    d.context.menu_click("//##MainMenuBar/Help/About Shadowcull")
-    d.frames(3)
+    d.choose("Help/About Shadowcull")
     assert Dialog.ABOUT in d.ui.dialogs
     d.ui.close(Dialog.ABOUT)
-    d.press(int(KEY.o) | int(KEY.mod_ctrl))
+    d.press("Ctrl+O")
     d.frames(4)
     assert d.ui.dialogs == [Dialog.OPEN_FILE]
     d.frames(2)
@@ -43,14 +42,12 @@ def panels(d: Driver) -> None:
     assert d.c.session.draw.view is before, "a key reached the window behind a dialog"
     d.press(KEY.escape)
     assert not d.ui.dialogs
-    d.context.menu_click("//##MainMenuBar/View/Depth")
-    d.frames(2)
+    d.choose("View/Depth")
     assert d.c.session.draw.view is View.DEPTH
-    d.c.session.set_pace(keep_tracing=True)
     traced = d.c.history.frames
-    d.c.scheduler.trace_again()
+    d.press("K")
     d.wait(lambda: d.c.history.frames >= traced + 3, "frames at idle")
-    d.c.session.set_pace(keep_tracing=False)
+    d.press("K")
 
 
 def closing_panels(d: Driver) -> None:
@@ -58,16 +55,14 @@ def closing_panels(d: Driver) -> None:
     d.settle()
     docking = d.app.params.docking_params
     closed = lambda: [w.label for w in docking.dockable_windows if not w.is_visible]  # noqa: E731
-    d.ui.show_panel("Camera")
-    d.frames(3)
+    d.show_panel("Camera")
     d.context.window_close("//Camera")
     d.frames(3)
     assert closed() == ["Camera"]
     for label in ("Scene", "View", "Plots", "Log"):
         docking.dockable_window_of_name(label).is_visible = False
     d.frames(3)
-    d.context.menu_click("//##MainMenuBar/View/Default layout")
-    d.frames(6)
+    d.choose("View/Default layout")
     assert not closed()
     docked = imgui.internal.find_window_by_name("Scene").dock_node
     assert docked is not None and imgui.internal.find_window_by_name("Camera").dock_id == docked.id_
@@ -85,23 +80,20 @@ def looks(d: Driver) -> None:
         return float(d.window()[6, -40:].mean())
 
     assert brightness() < 60.0
-    d.context.menu_click("//##MainMenuBar/View/Light theme")
-    d.frames(4)
+    d.choose("View/Light theme")
     assert p.theme == "light" and brightness() > 200.0
     for _ in range(3):
-        d.press(int(KEY.equal) | int(KEY.mod_ctrl))
+        d.press("Ctrl+Equal")
     d.frames(4)
     assert p.ui_scale == 1.5 and abs(imgui.get_font_size() - 1.5 * small) <= 1.0
-    d.press(int(KEY._0) | int(KEY.mod_ctrl))
+    d.press("Ctrl+0")
     d.frames(4)
     assert p.ui_scale == 1.0 and imgui.get_font_size() == small and d.c.session.draw.view is View.COLOR
-    d.press(int(KEY.minus) | int(KEY.mod_ctrl))
+    d.press("Ctrl+Minus")
     d.press(KEY._4)
     for answer, after in (("Keep them", "light"), ("Reset", "dark")):
-        d.context.menu_click("//##MainMenuBar/File/Reset settings...")
-        d.frames(3)
-        d.context.item_click(f"//Reset all settings?###question/{answer}")
-        d.frames(4)
+        d.choose("File/Reset settings...")
+        d.click(f"//Reset all settings?###question/{answer}")
         assert p.theme == after
     assert p.ui_scale == 1.0 and d.c.session.draw.view is View.COLOR and brightness() < 60.0
     assert p.recent and d.c.bookmarks.all[0].name == "here" and d.c.presets.all
@@ -112,8 +104,7 @@ def hiding(d: Driver) -> None:
     d.resize(1280, 800)
     d.settle()
     for label in ("Camera", "Experiment"):
-        d.ui.show_panel(label)
-        d.frames(4)
+        d.show_panel(label)
     docking = d.app.params.docking_params
     docking.dockable_window_of_name("Saving").is_visible = False
     d.frames(4)

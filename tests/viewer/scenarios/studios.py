@@ -7,7 +7,6 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from tracer.scene.studio import up_in_studio
-from viewer.window.keyboard import chord
 
 KEY = imgui.Key
 
@@ -22,7 +21,7 @@ def standing(d: Driver) -> None:
     d.settle()
     assert up_in_studio(d.c.session.scene) == "z" and "with z up" in d.c.notices.message.text
     assert d.c.info["bounds"][1][2] - d.c.info["bounds"][0][2] < 2.1  # the model's, not the floor's
-    d.press(chord("Ctrl+U"))
+    d.press("Ctrl+U")
     d.wait(lambda: up_in_studio(d.c.session.scene) == "x", "the model to lie")
     d.settle()
     assert d.c.session.camera.up == (1.0, 0.0, 0.0)
@@ -41,7 +40,7 @@ def standing(d: Driver) -> None:
     d.wait(lambda: up_in_studio(d.c.session.scene) == "x", "the picture's scene, as it stood")
     d.settle()
     assert studio.checked() and d.c.loader.meshes.studio is False
-    d.press(chord("Ctrl+U"))
+    d.press("Ctrl+U")
     d.wait(lambda: up_in_studio(d.c.session.scene) == "-y", "the model to lie otherwise")
     d.settle()
     assert d.c.session.camera.up == (0.0, -1.0, 0.0) and not d.c.undo.undoes

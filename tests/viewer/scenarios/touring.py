@@ -45,11 +45,9 @@ def _tour(d: Driver) -> None:
     assert tour.at == 1 and tour.done == {0}
     d.press(KEY._3)
     assert tour.at == 1 and tour.done == {0, 2}, "a later step that is done early counts"
-    d.c.settings.change(method="auto")
-    d.settle()
+    d.change(method="auto")
     assert not d.c.frame.statistics.shadow.dynamic_only and "Choose paper" in tour.text(tour.step)
-    d.c.settings.change(method="paper")
-    d.settle()
+    d.change(method="paper")
     assert tour.at == 1 and "Press C twice" in tour.text(tour.step)
     d.press(KEY.c)
     d.settle()
@@ -61,25 +59,23 @@ def _tour(d: Driver) -> None:
     d.context.mouse_click(0)  # the sky
     d.frames(5)
     assert tour.at == 3
-    d.context.item_click(show)
+    d.click(show)
     d.wait(lambda: tour.at == 4, "a shadow that was clicked", 60.0)
     assert d.c.selection.picked is not None
     chosen = d.c.inspector.why.reasons[d.c.session.draw.light]
     words = plain(Words(d.c.session.scene, d.c.inspector.why).answer(chosen))
     assert words.startswith("In shadow: blocked by "), f"it says which light is blocked, and by what: {words}"
     d.c.runs.zoom_plan.steps, d.c.runs.zoom_plan.size = 3, (32, 32)
-    d.context.item_click(show)
+    d.click(show)
     d.wait(lambda: tour.at is None, "the zoom test", 120.0)
     assert d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole
     assert all(one.seen_whole for one in d.c.runs.zoom_test.results.approaches), "else there is no limit to see"
     assert tour.over
     d.settle()
-    d.context.item_click("//Picture/**/Close")
-    d.frames(2)
+    d.click("//Picture/**/Close")
     assert not tour.over and not d.context.item_exists(show)
 
-    d.context.menu_click("//##MainMenuBar/Help/Tour")
-    d.frames(3)
+    d.choose("Help/Tour")
     assert tour.at == 0
     for size in ((1400, 900), (900, 600)):
         d.resize(*size)
@@ -87,26 +83,23 @@ def _tour(d: Driver) -> None:
         assert d.picture_edges()[3] <= button.min.y, f"the tour covers the picture at {size}"
         assert button.max.x < size[0] and button.max.y < size[1], f"the tour is cut off at {size}"
     camera = d.c.session.camera
-    d.context.item_click(show)
+    d.click(show)
     d.wait(lambda: tour.at == 1, "the flight that is shown", 90.0)
     assert d.c.session.camera != camera
-    d.c.settings.change(method="auto")
-    d.settle()  # there is more to read then, and the button lies higher
-    d.context.item_click(show)
+    d.change(method="auto")  # there is more to read then, and the button lies higher
+    d.click(show)
     d.wait(lambda: tour.at == 2, "culling off and on", 90.0)
     assert d.c.session.settings.method == "paper" and d.c.frame.statistics.shadow.dynamic_only > 0, "it stays so"
     d.frames(5)
     assert d.c.session.settings.method == "paper"
-    d.context.item_click(show)
+    d.click(show)
     d.wait(lambda: tour.at == 3, "the modes", 90.0)
     assert d.c.session.draw.view is View.COLOR
     d.frames(5)
     assert tour.at == 3
-    d.context.item_click(skip)
-    d.frames(2)
+    d.click(skip)
     assert tour.at == 4
-    d.context.item_click(finish)
-    d.frames(2)
+    d.click(finish)
     assert tour.at is None
     d.press(KEY.c)
     d.settle()

@@ -13,7 +13,7 @@ from tests.viewer.fakes import make_frame, with_tree
 from tracer.frame import Settings
 from tracer.geometry.accelerators import BVH8, LAZY
 from viewer.state.comparison import CompareMode, Side
-from viewer.state.draw_options import Slice
+from viewer.state.draw_options import Slice, Tone
 from viewer.state.views import View
 
 
@@ -40,8 +40,8 @@ def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
     found = seen.difference
     assert comparing.difference(seen.a, seen.b) is found, "found out once"
     assert np.array_equal(found.pixels != 0.0, (b.frame.color != color).any(axis=-1)) and found.stats.pixels
-    comparing.change(limit=0.25)
-    assert comparing.limit(found) == 0.25
+    desk.c.session.set_draw(tone=Tone(exposure=2.0))
+    assert comparing.limit(found) == found.stats.limit / 4.0, "brighter, smaller differences are seen"
     comparing.held = True
     comparing.update()
     assert comparing.seen.shows_a and comparing.seen.difference is None, "A alone while the key is held"
@@ -50,22 +50,16 @@ def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
     assert comparing.seen is None and comparing.a is None
 
 
-def test_a_keeps_its_view_unless_it_is_to_follow(desk: Desk) -> None:
+def test_a_is_seen_in_the_view_of_b_where_it_has_what_that_needs(desk: Desk) -> None:
     comparing = desk.c.comparing
     keep(desk, "paper")
-    comparing.start(CompareMode.FLIP)
-    desk.c.session.set_draw(view=View.COST)
-    desk.rest()
-    assert (comparing.a.view, comparing.b.view) == (View.COLOR, View.COST)
-    comparing.change(same_view=True)
-    assert comparing.a.view is View.COLOR, "what it has not recorded it cannot show"
     comparing.start(CompareMode.DIFFERENCE)
-    comparing.update()
-    assert comparing.seen.mode is CompareMode.FLIP and comparing.seen.difference is None
-    assert "keep A in this one" in comparing.remark
-    desk.c.session.set_draw(view=View.DEPTH)
-    desk.rest()
-    assert comparing.a.view is View.DEPTH and comparing.seen.difference is not None and comparing.remark == ""
+    for view, seen in ((View.COST, View.COLOR), (View.DEPTH, View.DEPTH)):
+        desk.c.session.set_draw(view=view)
+        desk.rest()
+        assert (comparing.a.view, comparing.b.view) == (seen, view)
+        assert (comparing.seen.difference is None) == (seen is not view) == ("its picture is shown" in comparing.remark)
+    assert comparing.seen.mode is CompareMode.DIFFERENCE
 
 
 def test_maps_of_both_have_one_range(desk: Desk) -> None:

@@ -28,7 +28,7 @@ def test_counts_are_exact_and_say_of_what_they_are_a_part():
     assert not {"Candidates", "Cache hits", "Wrong answers", "Certificates made"} & set(said), "what it has none of"
     wrong = WrongCounts(answers=3, due=4_000, untraced=9, pixels=2, shaded=128, samples=2)
     said = {row.name: (row.text(row.number), row.share) for row in rows(frame_by("paper", wrong=wrong))}
-    assert said["Wrong answers, 2 samples"] == ("3", "0.1 %") and said["Wrong pixels, 2 samples"] == ("2", "1.6 %")
+    assert said["Wrong answers"] == ("3", "0.1 %") and said["Wrong pixels"] == ("2", "1.6 %")
     of_clusters = with_cuts(frame_by("lightcuts", wrong=wrong))
     assert [row.name for row in rows(of_clusters) if "wrong" in row.name.lower()] == []
 

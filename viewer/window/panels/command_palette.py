@@ -39,28 +39,20 @@ def show(ui: Ui) -> None:
         imgui.open_popup(TITLE)
     if not imgui.is_popup_open(TITLE):
         return
-    viewport = imgui.get_main_viewport()
-    width = min(em(_WIDTH), 0.95 * viewport.work_size.x)
-    top = viewport.work_pos.y + 0.08 * viewport.work_size.y
-    imgui.set_next_window_pos(
-        ImVec2(viewport.work_pos.x + 0.5 * viewport.work_size.x, top), int(imgui.Cond_.always), ImVec2(0.5, 0.0)
-    )
-    imgui.set_next_window_size(ImVec2(width, 0.0))
+    area, size = imgui.get_main_viewport().work_pos, imgui.get_main_viewport().work_size
+    top = ImVec2(area.x + 0.5 * size.x, area.y + 0.08 * size.y)
+    imgui.set_next_window_pos(top, int(imgui.Cond_.always), ImVec2(0.5, 0.0))
+    imgui.set_next_window_size(ImVec2(min(em(_WIDTH), 0.95 * size.x), 0.0))
     if not imgui.begin_popup(TITLE):
         return
     preferences = ui.controller.preferences
     finder.update(items(ui), preferences.used)
-    taken = finder.aimed
+    aimed = finder.aimed
     entered = _line(finder)
-    clicked = None
-    if finder.setting is None:
-        clicked = _list(finder)
-    elif not finder.problem:
-        paragraph(finder.setting.hint, QUIET)
-    if finder.problem:
-        paragraph(finder.problem, ERROR)
-    elif taken is not None and not taken.enabled and taken.why_not:
-        paragraph(taken.why_not, QUIET)
+    clicked = _list(finder) if finder.setting is None else None
+    hint = finder.setting.hint if finder.setting is not None else aimed.why_not if aimed is not None else ""
+    if finder.problem or hint:
+        paragraph(finder.problem or hint, ERROR if finder.problem else QUIET)
     do = None
     if entered or clicked is not None:
         chosen = clicked or finder.aimed or finder.setting

@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.frame import Frame
-from viewer.state.comparison import CompareMode, Side, Source
+from viewer.state.comparison import CompareMode, Source
 from viewer.state.frame_rows import Row, beside, change
 from viewer.state.palette import LESS, MORE
 from viewer.state.savings import InTurn
@@ -19,7 +19,6 @@ from viewer.window.widgets import (
     WARNING,
     checkbox,
     clipped,
-    count,
     em,
     paragraph,
     properties,
@@ -76,16 +75,13 @@ def _controls(ui: Ui) -> None:
             row("Show", f"How A and B are shown.{f' Hold {held} to see A.' if held else ''}")
             _mode(ui)
             if comparing.seen is not None and comparing.seen.difference is not None:
-                _limit(ui)
                 row("Rings", f"Draw rings around pixels that differ{ui.key('Mark wrong pixels')}.")
                 checkbox("##rings", session.draw.mark_wrong, lambda on: session.set_draw(mark_wrong=on))
     if state.source is Source.KEPT and kept is None:
         paragraph("Nothing is kept yet. Keep a picture, change anything, and compare.", QUIET)
     elif state.source is Source.KEPT and kept is not None:
         size = f"{kept.frame.width} x {kept.frame.height}"
-        paragraph(f"kept: {kept.scene}, frame {kept.number}, {kept.method}, {kept.view_in_words}, {size}", QUIET)
-        tip = "Show A in the view of B, not in the one in which it was kept, where its frame has what that needs."
-        checkbox("A in the view of B", state.same_view, lambda on: comparing.change(same_view=on), tip)
+        paragraph(f"kept: {kept.scene}, frame {kept.number}, {kept.method}, {size}", QUIET)
     if comparing.remark and (kept is not None or state.source is Source.METHOD):
         paragraph(comparing.remark, WARNING)
 
@@ -101,25 +97,6 @@ def _mode(ui: Ui) -> None:
             comparing.start(mode)
         tooltip(mode.help)
     imgui.end_combo()
-
-
-def _limit(ui: Ui) -> None:
-    """The range of the signed difference."""
-    comparing = ui.controller.comparing
-    found = comparing.seen.difference if comparing.seen is not None else None
-    if found is None or found.values.classes:
-        return
-    limit = comparing.limit(found)
-    row("Range", "How far the colours go to both sides of 0. Drag, or Ctrl+click to type a number.")
-    imgui.set_next_item_width(-em(4.2))
-    changed, limit = imgui.drag_float("##limit", limit, max(limit / 100.0, 1e-6), 1e-6, 1e9, "\u00b1 %.4g")
-    if changed and limit > 0.0:
-        comparing.change(limit=limit)
-    imgui.same_line(0.0, em(0.3))
-    imgui.begin_disabled(comparing.state.limit is None)
-    if imgui.button("Fit##limit", (-1.0, 0.0)):
-        comparing.change(limit=None)
-    imgui.end_disabled()
 
 
 def pairs(ui: Ui, a: Frame, b: Frame, timed: InTurn | None = None) -> list[tuple[Row, Row]]:
@@ -139,11 +116,19 @@ def _columns(ui: Ui) -> None:
     room = ImVec2(0.0, max(imgui.get_content_region_avail().y, em(9.0)))
     if not imgui.begin_table("statistics of both", 5, int(flags | imgui.TableFlags_.no_host_extend_x), room):
         return
-    imgui.table_setup_scroll_freeze(0, 2)
+    imgui.table_setup_scroll_freeze(0, 1)
     imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(_NAMES))
     for name, width in (("A", 1.25), ("B", 1.25), ("difference", 1.0), ("per cent", 0.85)):
         imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
-    _heads(a, b)
+    imgui.table_next_row(int(imgui.TableRowFlags_.headers))
+    imgui.table_next_column()
+    for name, color in ((f"A  {a.named(b)}", LESS), (f"B  {b.named(a)}", MORE)):
+        imgui.table_next_column()
+        swatch(color)
+        clipped(name)
+    for name in ("B - A", "of A"):
+        imgui.table_next_column()
+        right(name)
     for group, found in groupby(pairs(ui, a.frame, b.frame, timed), lambda pair: pair[0].group):
         imgui.table_next_row()
         imgui.table_next_column()
@@ -157,29 +142,3 @@ def _columns(ui: Ui) -> None:
                 imgui.table_next_column()
                 right(text)
     imgui.end_table()
-
-
-def _heads(a: Side, b: Side) -> None:
-    """Two rows: which is which, and how large they are."""
-    header = int(imgui.TableRowFlags_.headers)
-    imgui.table_next_row(header)
-    imgui.table_next_column()
-    for name, color in ((f"A  {a.named(b)}", LESS), (f"B  {b.named(a)}", MORE)):
-        imgui.table_next_column()
-        swatch(color)
-        clipped(name)
-    for name in ("B - A", "of A"):
-        imgui.table_next_column()
-        right(name)
-    imgui.table_next_row(header)
-    imgui.table_next_column()
-    clipped("pixels", QUIET)
-    for side in (a, b):
-        imgui.table_next_column()
-        right(f"{side.frame.width} x {side.frame.height}", QUIET)
-    shaded = [round(side.frame.primitive.size * side.frame.statistics.part) for side in (a, b)]
-    if shaded[0] != shaded[1]:
-        imgui.table_next_column()
-        imgui.table_next_column()
-        right("not alike", WARNING)
-        tooltip(f"The figures are of {count(shaded[0])} shaded pixels of A and {count(shaded[1])} of B.")

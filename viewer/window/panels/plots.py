@@ -17,7 +17,7 @@ from viewer.state import terms
 from viewer.util.numbers import whole_percent
 from viewer.window.style import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, tooltip_at
+from viewer.window.widgets import QUIET, clipped, count, em, paragraph, tooltip, tooltip_at
 
 
 @dataclass(frozen=True)
@@ -53,16 +53,15 @@ AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
 COLORS = (BLUE, ORANGE, GREEN, SKY, PINK, YELLOW)
 _PER_PIXEL = (
-    "Of frames of all sizes, and of those in motion, of which only some pixels are shaded: primary rays and proofs are "
-    "divided by all pixels, all else by those that are shaded."
+    "Pictures have many sizes, and of those in motion only some pixels are shaded. So counts are per pixel: primary "
+    "rays and proofs of all pixels, all else of those that are shaded."
 )
 
 
 @dataclass
 class PlotsState:
-    """`per_pixel` says that counters are divided by pixels, `pointed` is the frame that the pointer was on last."""
+    """The frame that the pointer was on last."""
 
-    per_pixel: bool = True
     pointed: int | None = None
 
 
@@ -87,17 +86,16 @@ def wrong_axis(most: int, condition: int) -> None:
 
 def show(ui: Ui) -> None:
     """Draw the panel: plots side by side, over the number of the frame."""
-    history, state = ui.controller.history, ui.state(PlotsState)
+    history = ui.controller.history
     if len(history) == 0:
         paragraph("Curves appear with the first frames.", QUIET)
         return
-    checkbox("Per pixel", state.per_pixel, lambda on: setattr(state, "per_pixel", on), _PER_PIXEL)
-    imgui.same_line()
     if imgui.small_button("Clear"):
         history.hide()
         return
     imgui.same_line()
     clipped(f"the last {len(history)} pictures" if len(history) > 1 else "one picture so far", QUIET)
+    tooltip(_PER_PIXEL)
     plots = [plot for plot in _PLOTS if not plot.only_if or history.values(plot.only_if).any()]
     room, spacing = imgui.get_content_region_avail(), imgui.get_style().item_spacing.x
     bar = imgui.get_style().scrollbar_size if imgui.get_scroll_max_y() > 0.0 else 0.0  # fewer rows may need none
@@ -112,11 +110,10 @@ def show(ui: Ui) -> None:
 
 def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
     history = ui.controller.history
-    per_pixel = ui.state(PlotsState).per_pixel and plot.per_pixel
-    values_of = history.per_pixel if per_pixel else history.values  # contiguous float64, as ImPlot wants them
+    values_of = history.per_pixel if plot.per_pixel else history.values  # contiguous float64, as ImPlot wants them
     implot.push_style_var(implot.StyleVar_.legend_inner_padding, ImVec2(em(0.15), em(0.3)))
     implot.push_style_var(implot.StyleVar_.legend_spacing, ImVec2(em(0.2), 0.0))
-    shown = implot.begin_plot(f"{plot.title}{' per pixel' if per_pixel else ''}##{plot.title}", size, FLAGS)
+    shown = implot.begin_plot(f"{plot.title}{' per pixel' if plot.per_pixel else ''}##{plot.title}", size, FLAGS)
     implot.pop_style_var(2)
     if not shown:
         return
@@ -141,8 +138,7 @@ def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
     implot.end_plot()
     if number is not None:
         at = number - history.first
-        written = [f"{values[at]:.3g}" if per_pixel else count(values[at]) for _, values, _ in curves]
-        _go_to_frame(ui, number, [f"{label}: {text}" for (label, _, _), text in zip(curves, written, strict=True)])
+        _go_to_frame(ui, number, [f"{label}: {values[at]:.3g}" for label, values, _ in curves])
 
 
 def _stack(curves: list[tuple[str, NDArray[np.float64], ImVec4]], first: float) -> None:

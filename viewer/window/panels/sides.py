@@ -54,8 +54,7 @@ def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
     elif seen.difference is not None:
         compared.draw_difference(seen.difference, comparing.limit(seen.difference), options.mark_wrong)
     else:
-        spans = options.spans if seen.a.view is seen.b.view else ui.controller.session.draw.spans
-        of_a = replace(options, view=seen.a.view, light=seen.a.light, spans=spans)
+        of_a = replace(options, view=seen.a.view, light=seen.a.light)
         compared.a.draw(seen.a.frame, of_a, InWindow(smooth=smooth, highlight=Highlight(line=False)))
 
 

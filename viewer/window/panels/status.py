@@ -36,18 +36,16 @@ def show(ui: Ui) -> None:
     room, left = imgui.get_content_region_avail().x, imgui.get_cursor_pos_x()
     if width > 0.6 * room:  # a narrow window: what happens comes first
         right, width = "", 0.0
-    if imgui.begin_child("message", (max(em(4.0), room - width), imgui.get_text_line_height() + 2.0)):
-        if message is not None:
-            icon, _ = _ICONS[Level.ERROR if message.error else Level.NOTICE]
-            clipped(f"{icon}  {message.text}", ERROR if message.error else None)
-            if message.error and imgui.is_item_clicked():
-                c.notices.message = None
-        else:
-            text = doing(c)
-            clipped(text if text != IDLE else f"{text}   {_hints(ui)}", QUIET)
-    imgui.end_child()
+    if message is not None:
+        icon, _ = _ICONS[Level.ERROR if message.error else Level.NOTICE]
+        clipped(f"{icon}  {message.text}", ERROR if message.error else None, room - width)
+        if message.error and imgui.is_item_clicked():
+            c.notices.message = None
+    else:
+        text = doing(c)
+        clipped(text if text != IDLE else f"{text}   {_hints(ui)}", QUIET, room - width)
     if right:
-        imgui.same_line(left + max(0.0, room - width + em(0.5)))
+        imgui.same_line(left + room - width + em(0.5))
         imgui.text_colored(QUIET, right)
         tooltip(_SUMMARY)
 

@@ -35,10 +35,9 @@ def show(ui: Ui, width: float) -> None:
             begun = ui.controller.frame is not None or ui.graphics.preview is not None
             text = tour.text(step) if begun else "You can begin as soon as there is a picture."
             number, last = STEPS.index(step) + 1, step is STEPS[-1]
-            show_me = f"{icons.ICON_FA_PLAY}  Show me"
             _head(
                 f"Step {number} of {len(STEPS)}:  {step.title}",
-                (show_me, tour.show, "do this step for you"),
+                (f"{icons.ICON_FA_PLAY}  Show me", tour.show, "do this step for you"),
                 ("Finish" if last else "Skip", tour.skip, _AGAIN if last else "go on to the next step"),
                 (f"{icons.ICON_FA_XMARK}##end", tour.end, _AGAIN),
             )
@@ -56,9 +55,8 @@ def _head(title: str, *buttons: tuple[str, Callable[[], None], str]) -> None:
     imgui.align_text_to_frame_padding()
     left, width = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
     clipped(title, room=width - room)
-    imgui.same_line(left + width - room)
-    for label, run, tip in buttons:
-        imgui.same_line()
+    for number, (label, run, tip) in enumerate(buttons):
+        imgui.same_line(0.0 if number else left + width - room)
         if imgui.button(label):
             run()
         if tip:
