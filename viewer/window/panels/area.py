@@ -112,20 +112,20 @@ class Pen:
             self.draw.add_line(a, b, outer[stroke.seen], em(width + 2.0 * rim))
             self.draw.add_line(a, b, inner[stroke.seen], max(1.0, em(width)))
 
-    def ring(self, at: Pair, radius: float | None = None, alpha: float = 1.0) -> None:
+    def ring(self, at: tuple[float, float], radius: float | None = None, alpha: float = 1.0) -> None:
         """Draw a white ring, around a pixel unless it has another radius."""
         centre, size = self.to_screen(*at), em(self.radius if radius is None else radius)
         self.draw.add_circle(centre, size, imgui.get_color_u32(SHADE), 0, em(0.22))
         self.draw.add_circle(centre, size, imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, alpha)), 0, em(0.1))
 
-    def cross(self, at: Pair, color: ImVec4) -> None:
+    def cross(self, at: tuple[float, float], color: ImVec4) -> None:
         """Draw a cross, where light is blocked."""
         centre, shown, arm = self.to_screen(*at), imgui.get_color_u32(color), em(0.28)
         for way in (arm, -arm):
             a, b = ImVec2(centre.x - arm, centre.y - way), ImVec2(centre.x + arm, centre.y + way)
             self.draw.add_line(a, b, shown, em(0.14))
 
-    def square(self, middle: ImVec2, size: Pair, color: ImVec4) -> None:
+    def square(self, middle: ImVec2, size: tuple[float, float], color: ImVec4) -> None:
         """Draw the outline of a pixel around a point of the screen."""
         half = 0.5 * size[0] - 1.0, 0.5 * size[1] - 1.0
         a, b = ImVec2(middle.x - half[0], middle.y - half[1]), ImVec2(middle.x + half[0], middle.y + half[1])
