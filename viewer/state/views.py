@@ -102,75 +102,47 @@ class View(StrEnum):
     FATE = "fate"
     MOVING_SHADOW = "moving-shadow"
 
+    # What its file declares can be asked of the name.
+    label: str
+    key: str
+    help: str
+    records: Record | None
+    of_light: bool
+    of_modes: bool
+    has_range: bool
+    has_slice: bool
+    is_flat: bool
+    shows_picture: bool
+    shows_clipped: bool
+
+    if not TYPE_CHECKING:  # so that other names are found out
+
+        def __getattr__(self, name):
+            if name.startswith("_"):
+                raise AttributeError(name)
+            return getattr(self.declared, name)
+
     @property
     def declared(self) -> Declaration:
         """What its file in `viewer/views` declares."""
         return _declared(self.value)
 
     @property
-    def label(self) -> str:
-        return self.declared.label
-
-    @property
-    def key(self) -> str:
-        return self.declared.key
-
-    @property
-    def help(self) -> str:
-        return self.declared.help
-
-    @property
     def needs_verify(self) -> bool:
-        """Whether it can be drawn of verified frames alone."""
-        return self.declared.records is Record.VERIFY
+        """Whether it can be drawn of verified frames alone; and so for other records."""
+        return self.records is Record.VERIFY
 
     @property
     def needs_work(self) -> bool:
-        """Whether it can be drawn only of frames that recorded the work at each pixel."""
-        return self.declared.records is Record.WORK
+        return self.records is Record.WORK
 
     @property
     def needs_lights(self) -> bool:
-        """Whether it can be drawn only of frames that recorded what reaches each pixel."""
-        return self.declared.records is Record.LIGHTS
+        return self.records is Record.LIGHTS
 
     @property
     def needs_fates(self) -> bool:
-        """Whether it can be drawn only of frames that recorded what became of the shadow rays of each pixel."""
-        return self.declared.records is Record.FATES
-
-    @property
-    def needs_more(self) -> bool:
-        """Whether it can be drawn only of frames that were asked to record something."""
-        return self.declared.records is not None
-
-    @property
-    def of_light(self) -> bool:
-        return self.declared.of_light
-
-    @property
-    def of_modes(self) -> bool:
-        return self.declared.of_modes
-
-    @property
-    def has_range(self) -> bool:
-        return self.declared.has_range
-
-    @property
-    def has_slice(self) -> bool:
-        return self.declared.has_slice
-
-    @property
-    def is_flat(self) -> bool:
-        return self.declared.is_flat
-
-    @property
-    def shows_picture(self) -> bool:
-        return self.declared.shows_picture
-
-    @property
-    def shows_clipped(self) -> bool:
-        return self.declared.shows_clipped
+        return self.records is Record.FATES
 
 
 @cache
