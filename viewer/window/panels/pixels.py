@@ -15,7 +15,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state.comparison import Side
 from viewer.state.pixels import ALL, GRID_FROM, STEP, Point, Region, panned, pixels_shown, region_between
-from viewer.state.readings import can_draw
+from viewer.state.views import can_draw
 from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
