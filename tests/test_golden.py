@@ -150,7 +150,7 @@ def test_culling_that_never_looks_again_is_found_out() -> None:
 
 def test_culling_that_does_nothing_is_found_out() -> None:
     world = world_of("figure4")
-    frame = BEFORE.frame(world.scene, replace(SETTINGS, method="none"), world)
+    frame = BEFORE.frame(world.scene, replace(SETTINGS, method="none", modes=True), world)
     assert "color" in views_out_of_tolerance(BEFORE, frame)
 
 

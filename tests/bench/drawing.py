@@ -24,8 +24,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
 from viewer.state.draw_options import DrawOptions
-from viewer.state.readings import can_draw
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.util.resources import scene_path
 from viewer.views import colorize
 from viewer.views.base import forget

@@ -32,8 +32,7 @@ from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
 from viewer.output.light_cube import picture_of
 from viewer.state.draw_options import MIDDLE, Slice
-from viewer.state.readings import LIGHT_CUBES
-from viewer.state.views import View
+from viewer.state.views import LIGHT_CUBES, View
 from viewer.util.resources import embedded_scenes
 
 FOLDER = Path(__file__).resolve().parent

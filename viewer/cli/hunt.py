@@ -16,7 +16,7 @@ from tracer.scene.model import Cancelled, Scene
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, listed, print_table, working
-from viewer.output import commands
+from viewer.output import exports
 from viewer.output.reports import findings
 from viewer.services import hunts, stills
 from viewer.state import navigation
@@ -96,13 +96,13 @@ def run(given: Namespace) -> int:
 
 def _write(found: hunt.Results, scene: Scene, search: Search, world: World, given: Namespace, work: Work) -> list[Path]:
     """Write the files of all findings; once it was stopped the JSON alone, as figures take long."""
-    written, meshes = [], options.mesh_options(given)
+    written, meshes = [], options.mesh_options(given).of_file(Path(scene.path))
     for rank, find in enumerate(found.finds, 1):
         stem = given.output / f"find-{rank}"
-        hunts.save_json(find, found, scene, stem.with_suffix(".json"), commands.mesh_options(meshes))
+        state, figure = hunts.comparison_of(find, found, scene, search.settings, meshes)
+        hunts.save_json(find, found, scene, state, stem.with_suffix(".json"))
         if not work.stopped:
             work.count(f"figure {rank} of {len(found.finds)}", rank - 1, len(found.finds))
-            state, figure = hunts.comparison_of(find, found, scene, search.settings, meshes.of_file(Path(scene.path)))
             try:
                 shown = stills.trace_methods(scene, state, figure, world, cancelled=work.cancelled)
                 stills.save_methods(shown, stem.with_suffix(".png"))
@@ -110,5 +110,5 @@ def _write(found: hunt.Results, scene: Scene, search: Search, world: World, give
             except Cancelled:
                 work.note("cancelled: the figures from here on are not drawn")
         written.append(stem.with_suffix(".json"))
-    hunts.save_all(found, scene, given.output)
+    exports.write_json(given.output / hunts.ALL, found.to_dict(scene))
     return [*written, given.output / hunts.ALL]

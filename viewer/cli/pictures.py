@@ -22,9 +22,8 @@ from viewer.services.scene_loader import find_scene, is_capture
 from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
 from viewer.state.methods import BY_MODES, SHOWN_BY, default_for
-from viewer.state.readings import MOST_RECORDED
 from viewer.state.view_state import ViewState, Warmup
-from viewer.state.views import View
+from viewer.state.views import MOST_RECORDED, View
 
 _SPECIAL = {"view", "spans", "savings", "caption"}  # whose options are no plain values
 DRAWN = [one for one in settings_of(DrawOptions) if one.option and one.path not in _SPECIAL]

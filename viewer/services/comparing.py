@@ -12,9 +12,8 @@ from viewer.state.comparison import Compare, CompareMode, Side, Source
 from viewer.state.draw_options import DrawOptions, Slice
 from viewer.state.methods import BY_MODES, NO_CULLING
 from viewer.state.notices import Notices
-from viewer.state.readings import can_draw
 from viewer.state.session import Session
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.util.numbers import several, whole_percent
 from viewer.views import values_of
 from viewer.views.compare import Difference, difference_of

@@ -24,9 +24,8 @@ from viewer.services.render_request import RenderRequest, Traced, Warmup, as_ask
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
 from viewer.state.methods import NO_CULLING, with_base
-from viewer.state.readings import can_draw, records_fates, records_lights
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
+from viewer.state.views import View, can_draw, records_fates, records_lights
 
 
 @dataclass(frozen=True)
@@ -350,7 +349,7 @@ class FrameScheduler:
         if draw.view is view:
             return title
         settings = self.settings
-        comes = settings.record_fates if draw.view.needs_fates else draw.view.needs_more
+        comes = settings.record_fates if draw.view.needs_fates else draw.view.records is not None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
             return f"{draw.view.label}: none here, {view.label.lower()} shown"
         return f"{draw.view.label}: {'verifying' if draw.view.needs_verify else 'counting'} ..."

@@ -29,10 +29,9 @@ from viewer.services.undo import Undo
 from viewer.state.notices import Notices
 from viewer.state.picking import Pick
 from viewer.state.pixels import Point, Zoom
-from viewer.state.readings import has_modes_of_cells
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
+from viewer.state.views import View, has_modes_of_cells
 
 CAPACITY = 600
 """Frames in the plots."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,10 +13,8 @@ from tracer.experiments.hunt import Hunt, Search
 from tracer.frame import Settings
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Scene
-from tracer.setting import settings_of
 from tracer.version import program_version
-from viewer.output import exports
-from viewer.output.commands import scene_word
+from viewer.output import commands
 from viewer.output.comparison import Comparison, Crop
 from viewer.services.history import FrameNavigator
 from viewer.services.runs import Runs, check_size
@@ -76,34 +73,17 @@ def comparison_of(
     return state, shown.checked(state.size)
 
 
-def save_json(
-    find: Counterexample, found: hunt.Results, scene: Scene, path: Path, of_scene: Sequence[str] = ()
-) -> None:
-    """Write all about a counterexample, with the command that explains it; `of_scene` are that command's options on how
-    the scene is read.  Raises OSError in one line."""
+def save_json(find: Counterexample, found: hunt.Results, scene: Scene, state: ViewState, path: Path) -> None:
+    """Write all about a counterexample, whose picture has this state, with the command that explains it.
+
+    Raises OSError in one line."""
+    words = ["shadowcull", "explain", commands.scene_word(Path(state.scene))]
+    words += commands.options(replace(state, warmup=Warmup()))
+    words += ["--pixel", f"{find.x},{find.y}", "--before", path.name, "--only", "wrong"]
     told = counterexample.to_json(find, scene) | {"size": list(found.size), "method": found.method}
     told |= {"scene": found.scene, "settings": found.settings, "version": program_version()}
-    told["words"] = counterexample.in_words(find, scene)
-    told["explain"] = shlex.join([*_explaining(find, found, path.name), *of_scene])
+    told |= {"words": counterexample.in_words(find, scene), "explain": shlex.join(words)}
     write_text(path, json.dumps(told, indent=1))
-
-
-def save_all(found: hunt.Results, scene: Scene, folder: Path) -> None:
-    """Write one JSON with all counterexamples; raises OSError in one line."""
-    exports.write_json(folder / ALL, found.to_dict(scene))
-
-
-def _explaining(find: Counterexample, found: hunt.Results, before: str) -> list[str]:
-    """The words of the command that explains a counterexample; `before` is the file of the frames before it."""
-    width, height = found.size
-    words = ["shadowcull", "explain", scene_word(Path(found.scene)), f"--time={find.time!r}"]
-    words += ["--size", f"{width}x{height}", "--method", found.method, "--pixel", f"{find.x},{find.y}"]
-    if not find.own_camera:
-        words += ["--camera", json.dumps(find.camera.to_json())]
-    for one in settings_of(Settings):
-        if one.name in ("depth", "zoom_factor", "lamp_radius", "lamp_samples", "symmetric"):
-            words += one.words(found.settings.get(one.name, one.default))
-    return [*words, "--before", before, "--only", "wrong"]
 
 
 # --- in the window ------------------------------------------------------------------------------------

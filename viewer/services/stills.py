@@ -32,10 +32,9 @@ from viewer.output.comparison import Comparison, Shown
 from viewer.output.overlays import with_caption, with_legend, with_savings
 from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
-from viewer.state.readings import can_record_lights, records_lights
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
+from viewer.state.views import View, can_record_lights, records_lights
 from viewer.views import colorize, legend_of
 from viewer.views.legend import lights_in_words
 

@@ -13,8 +13,7 @@ from tracer.geometry.world import LARGE
 from tracer.method import DEFAULT_METHOD, Kind, Method, additions, bases
 from tracer.scene.lights import Light
 from tracer.settings import Settings
-from viewer.state.readings import MOST_RECORDED, TREE, TREE_IS_GONE, can_draw, can_record_lights
-from viewer.state.views import View
+from viewer.state.views import MOST_RECORDED, TREE, TREE_IS_GONE, View, can_draw, can_record_lights
 from viewer.util.numbers import count
 
 NO_CULLING, BY_MODES, CERTIFIED, ADAPTIVE = "none", "paper", "certified", "auto"

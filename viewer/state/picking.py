@@ -19,7 +19,7 @@ from viewer.state.navigation import Vector, ray
 from viewer.state.parts import parts_of
 from viewer.state.pixels import pixel_at
 from viewer.state.projection import HIDDEN, place
-from viewer.state.readings import has_modes_of_cells
+from viewer.state.views import has_modes_of_cells
 
 NEARBY = 2
 """Pixels from a point's place on the picture at which its surface still stands for it."""

@@ -1,9 +1,8 @@
-"""What the user set and expects to find again: one small JSON file, never half-written.
+"""What the user set and expects to find again: one small JSON file, never half-written, in the user's configuration
+folder (`SHADOWCULL_CONFIG_DIR` names another).
 
-The file lies in the user's configuration folder (`SHADOWCULL_CONFIG_DIR` names another).  It is
-written to a temporary file beside it that then takes its name, so a crash or a full disk leaves
-the old one whole.  Reading forgives: a value that is missing, of the wrong kind or out of range
-keeps its default, and a file that is no JSON is kept under another name and reported.
+Reading forgives: a value that is missing, of the wrong kind or out of range keeps its default, and a file that is no
+JSON is kept under another name and reported.
 """
 
 from __future__ import annotations
@@ -192,7 +191,7 @@ def _of_today(data: Mapping[str, Any]) -> Mapping[str, Any]:
     written = data.get("format", 1)
     if written == FORMAT:
         return data
-    method, state = data.get("method"), _nested(data, _MOVED)
+    method, state = data.get("method"), _nested(data)
     if written == 1 and isinstance(method, str) and is_method(method) and Method.parse(method).base == ADAPTIVE:
         method = with_base(method, DEFAULT_METHOD)
     state["settings"]["method"] = method if data.get("culling", True) else NO_CULLING
@@ -215,17 +214,17 @@ def _preset_of_today(data: Any) -> Any:
     choices = data.get("choices") if isinstance(data, Mapping) else None
     if not isinstance(choices, Mapping):
         return data
-    state, looks = _nested(looks if isinstance(looks := choices.get("looks"), Mapping) else {}, _MOVED), choices
+    state, looks = _nested(looks if isinstance(looks := choices.get("looks"), Mapping) else {}), choices
     state["draw"] |= {name: looks[name] for name in ("view", "light", "wipe", "tone", "clipping") if name in looks}
     return {"name": data.get("name"), "state": {**state, "settings": choices.get("settings", {})}}
 
 
-def _nested(data: Mapping[str, Any], places: Mapping[str, str]) -> dict[str, dict[str, Any]]:
+def _nested(data: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return what is stored of a state, as it is nested today."""
     state: dict[str, dict[str, Any]] = {"settings": {}, "draw": {}, "pace": {}}
-    for name, place in places.items():
-        if name in data:
-            part, _, field_name = place.partition(".")
-            state[part][field_name] = data[name]
+    for name in data.keys() & _MOVED.keys():
+        part, _, field_name = _MOVED[name].partition(".")
+        state[part][field_name] = data[name]
     return state
 
 

@@ -19,7 +19,7 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from viewer.state.parts import KINDS, parts_of
-from viewer.state.readings import has_modes_of_cells
+from viewer.state.views import has_modes_of_cells
 from viewer.util.numbers import count
 
 UNKNOWN, SEVERAL = -1, 4  # beside the four modes

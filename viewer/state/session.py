@@ -198,11 +198,7 @@ class Session:
 
     def advance_frame(self, loop: bool) -> None:
         """Go on by one frame of the path; at the end start again or stop."""
-        if self.scene is None or not self.animated:
-            self.playing = False
-        elif self.frame + 1 < self.scene.frames:
-            self.go_to_frame(self.frame + 1)
-        elif loop:
-            self.go_to_frame(0)
-        else:
-            self.playing = False
+        last = self.scene is None or not self.animated or self.frame + 1 >= self.scene.frames
+        self.playing = self.animated and (loop or not last)
+        if self.playing:
+            self.go_to_frame(0 if last else self.frame + 1)

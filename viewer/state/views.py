@@ -15,6 +15,20 @@ if TYPE_CHECKING:
     from tracer.frame import Frame
 
 
+MOST_RECORDED = 1 << 28
+"""Pixels times lights, at most, of which all samples are recorded: a gigabyte of memory."""
+
+MOST_TOGETHER = 32
+"""Lights, at most, that are recorded together for a view of one: of more, the one is looked at alone, which is done
+soon and asks for no other frame."""
+
+CUT_NODES, CUT_BOUND = "cut nodes", "cut bound"  # layers of methods that shade by cuts of lights
+CELL_LIGHTS = "cell lights"  # that of methods whose cells know which lights they must look at
+VOXELS, LIGHT_CUBES = "voxels", "light cubes"  # structures of methods
+TREE = "tree"  # that rays have built
+TREE_IS_GONE = "the frame's tree was freed with its world"
+
+
 class Record(Enum):
     """What a frame must have been asked to record for a view."""
 
@@ -88,78 +102,76 @@ class View(StrEnum):
     FATE = "fate"
     MOVING_SHADOW = "moving-shadow"
 
+    # What its file declares can be asked of the name.
+    label: str
+    key: str
+    help: str
+    records: Record | None
+    of_light: bool
+    of_modes: bool
+    has_range: bool
+    has_slice: bool
+    is_flat: bool
+    shows_picture: bool
+    shows_clipped: bool
+
+    if not TYPE_CHECKING:  # so that other names are found out
+
+        def __getattr__(self, name):
+            if name.startswith("_"):
+                raise AttributeError(name)
+            return getattr(self.declared, name)
+
     @property
     def declared(self) -> Declaration:
         """What its file in `viewer/views` declares."""
         return _declared(self.value)
 
     @property
-    def label(self) -> str:
-        return self.declared.label
-
-    @property
-    def key(self) -> str:
-        return self.declared.key
-
-    @property
-    def help(self) -> str:
-        return self.declared.help
-
-    @property
     def needs_verify(self) -> bool:
-        """Whether it can be drawn of verified frames alone."""
-        return self.declared.records is Record.VERIFY
+        """Whether it can be drawn of verified frames alone; and so for other records."""
+        return self.records is Record.VERIFY
 
     @property
     def needs_work(self) -> bool:
-        """Whether it can be drawn only of frames that recorded the work at each pixel."""
-        return self.declared.records is Record.WORK
+        return self.records is Record.WORK
 
     @property
     def needs_lights(self) -> bool:
-        """Whether it can be drawn only of frames that recorded what reaches each pixel."""
-        return self.declared.records is Record.LIGHTS
+        return self.records is Record.LIGHTS
 
     @property
     def needs_fates(self) -> bool:
-        """Whether it can be drawn only of frames that recorded what became of the shadow rays of each pixel."""
-        return self.declared.records is Record.FATES
-
-    @property
-    def needs_more(self) -> bool:
-        """Whether it can be drawn only of frames that were asked to record something."""
-        return self.declared.records is not None
-
-    @property
-    def of_light(self) -> bool:
-        return self.declared.of_light
-
-    @property
-    def of_modes(self) -> bool:
-        return self.declared.of_modes
-
-    @property
-    def has_range(self) -> bool:
-        return self.declared.has_range
-
-    @property
-    def has_slice(self) -> bool:
-        return self.declared.has_slice
-
-    @property
-    def is_flat(self) -> bool:
-        return self.declared.is_flat
-
-    @property
-    def shows_picture(self) -> bool:
-        return self.declared.shows_picture
-
-    @property
-    def shows_clipped(self) -> bool:
-        return self.declared.shows_clipped
+        return self.records is Record.FATES
 
 
 @cache
 def _declared(name: str) -> Declaration:
     found: Declaration = import_module(f"viewer.views.{name.replace('-', '_')}").VIEW
     return found
+
+
+def can_record_lights(pixels: int, lights: int) -> bool:
+    """Return whether there is memory for what each light sends to each pixel."""
+    return pixels * lights <= MOST_RECORDED
+
+
+def records_lights(view: View, pixels: int, lights: int) -> bool:
+    """Return whether frames of so many pixels are to record all lights for this view."""
+    few = lights <= MOST_TOGETHER or not view.of_light
+    return view.needs_lights and few and can_record_lights(pixels, lights)
+
+
+def records_fates(view: View, pixels: int, lights: int) -> bool:
+    """Return whether frames of so many pixels are to record what becomes of all shadow rays for this view."""
+    return view.needs_fates and can_record_lights(pixels, lights)
+
+
+def has_modes_of_cells(frame: Frame) -> bool:
+    """Return whether what carries modes are virtual cells."""
+    return frame.cells is not None and frame.certificates is None
+
+
+def can_draw(frame: Frame, view: View, light: int = 0) -> bool:
+    """Return whether the frame holds what the view shows, of this light where it is about one."""
+    return view.declared.can_draw(frame, light)

@@ -9,8 +9,7 @@ from typing import cast
 
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
-from viewer.state.readings import can_draw
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words
 from viewer.views.legend import Legend, lights_in_words
 

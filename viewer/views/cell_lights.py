@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.frame import Frame
-from viewer.state.readings import CELL_LIGHTS
+from viewer.state.views import CELL_LIGHTS
 from viewer.util.numbers import count
 from viewer.views.base import Words
 from viewer.views.kinds import CountView

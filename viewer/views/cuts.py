@@ -7,7 +7,7 @@ import numpy as np
 from tracer.fit import lights_in_words, too_few
 from tracer.frame import Frame
 from tracer.method import Method
-from viewer.state.readings import CUT_BOUND, CUT_NODES
+from viewer.state.views import CUT_BOUND, CUT_NODES
 from viewer.util.numbers import percent
 from viewer.views.base import Words
 from viewer.views.kinds import CountView

@@ -19,7 +19,7 @@ from tracer.method import Method
 from viewer.state import terms
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY, Color
-from viewer.state.readings import has_modes_of_cells
+from viewer.state.views import has_modes_of_cells
 from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, once, single
 from viewer.views.legend import Entry, Legend, Note, NoteKind, Scale, fact

@@ -13,7 +13,7 @@ from tracer.frame import EVERYWHERE, Frame, Region
 from tracer.geometry.tree_parts import NOWHERE, PartsAt, TreeParts, nothing_at
 from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import BACKGROUND, hex_color
-from viewer.state.readings import TREE
+from viewer.state.views import TREE
 from viewer.util.numbers import count, percent, several
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
 from viewer.views.color import dimmed

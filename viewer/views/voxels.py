@@ -11,7 +11,7 @@ from tracer.culling.voxels.tell import STATE_NAMES, VoxelStates, index_of
 from tracer.frame import Frame
 from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import GREY, SHADOW_COLORS, Color
-from viewer.state.readings import VOXELS
+from viewer.state.views import VOXELS
 from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words, once, single
 from viewer.views.color import dimmed

@@ -11,7 +11,6 @@ from rapidfuzz import fuzz
 RECENT_BONUS = 15.0
 """For what was run last; less for what was run before."""
 _OTHER_KINDS = 4.0  # which a command goes before, where both fit alike
-_EXACT, _WHOLE, _PREFIX, _INITIALS, _INSIDE, _ELSEWHERE = 25.0, 100.0, 80.0, 60.0, 50.0, 30.0
 _MISTYPED, _ALIKE = -1000.0, 75.0  # to which is added how alike the words are, of 100, and that is at least so much
 
 
@@ -50,28 +49,27 @@ class Item:
 def match(typed: str, label: str, also: str = "") -> float | None:
     """How well a label fits what was typed; words may also be found in `also`, for less.  None if one is in neither.
 
-    Words count as they stand, by their beginnings, as initials of the label's words, or, much less, mistyped."""
-    label, also = label.lower(), also.lower()
+    Words count as they stand (100), by their beginnings (80), as initials of the label's words (60), anywhere in it
+    (50), in `also` (30), or, much less, mistyped; a shorter label before a longer one."""
+    label, also, words = label.lower(), also.lower(), typed.lower().split()
     starts = [i for i, letter in enumerate(label) if letter.isalnum() and (i == 0 or not label[i - 1].isalnum())]
-    initials, words, score = "".join(label[i] for i in starts), typed.lower().split(), -0.1 * len(label)
+    initials, score = "".join(label[i] for i in starts), -0.1 * len(label) + 25.0 * (" ".join(words) == label)
     for word in words:
-        at = label.find(word)
         start = next((i for i in starts if label.startswith(word, i)), -1)
         if start >= 0:
             whole = not label[start + len(word) : start + len(word) + 1].isalnum()
-            score += (_WHOLE if whole else _PREFIX) - 0.05 * start
+            score += (100.0 if whole else 80.0) - 0.05 * start
         elif len(word) > 1 and initials.startswith(word):
-            score += _INITIALS
-        elif at >= 0:
-            score += _INSIDE - 0.05 * at
+            score += 60.0
+        elif word in label:
+            score += 50.0 - 0.05 * label.find(word)
         elif word in also:
-            score += _ELSEWHERE
-        else:
-            alike = fuzz.partial_ratio(word, label, score_cutoff=_ALIKE) if len(word) > 3 else 0.0
-            if not alike:
-                return None
+            score += 30.0
+        elif len(word) > 3 and (alike := fuzz.partial_ratio(word, label, score_cutoff=_ALIKE)):
             score += _MISTYPED + alike
-    return score + (_EXACT if " ".join(words) == label else 0.0)
+        else:
+            return None
+    return score
 
 
 def find(typed: str, items: Sequence[Item], used: Sequence[str]) -> list[Item]:

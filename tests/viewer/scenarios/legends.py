@@ -9,8 +9,7 @@ from PIL import Image
 from tests.viewer.driver import Driver
 from viewer.output import capture
 from viewer.state.preferences import load_preferences
-from viewer.state.readings import can_draw
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.window.panels.legend import LegendState
 
 KEY = imgui.Key

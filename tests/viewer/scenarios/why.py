@@ -22,8 +22,8 @@ ROOM = Path(__file__).resolve().parents[3] / "assets" / "scenes" / "default.aff"
 
 
 def why(d: Driver) -> None:
-    """A culled shadow, a primitive that is partially occluded, and one at the screen's edge: each click is answered by
-    one sentence, at the top of the Inspector, and the names in it are links."""
+    """A culled shadow, and a primitive that is partially occluded: each click is answered by one sentence, at the top
+    of the Inspector, and the names in it are links."""
     d.settle()
     d.c.settings.change(method="paper")
     d.fix_resolution(400, 250)
@@ -35,7 +35,6 @@ def why(d: Driver) -> None:
         d.settle()
     _culled(d)
     _occluded(d)
-    _at_the_edge(d)
     _taught(d)
     _in_motion(d)
 
@@ -81,15 +80,6 @@ def _occluded(d: Driver) -> None:
     d.context.item_click(f"//Inspector/reason/{link.text}##1")
     d.frames(3)
     assert (d.c.selection.picked.x, d.c.selection.picked.y) == by.pixel
-
-
-def _at_the_edge(d: Driver) -> None:
-    one = _click(
-        d, _of(d, PARTLY) & _at_border(d), lambda one: one.rule is Rule.PARTLY_OCCLUDED and one.occluded.at_edge
-    )
-    d.c.settings.set_light(one.light)
-    d.frames(3)
-    assert "clipped by the screen's edge at " in _said(d, one)
 
 
 def _taught(d: Driver) -> None:

@@ -16,10 +16,9 @@ from viewer.services.frame_budget import PARTS, Cost, FrameBudget
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.refinement import LampSamples, has_lamps
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.state.readings import MOST_RECORDED
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
+from viewer.state.views import MOST_RECORDED, View
 
 FIXED, RAY, PIXEL = 5e-3, 1e-7, 1e-6
 

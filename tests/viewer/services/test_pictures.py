@@ -23,9 +23,8 @@ from viewer.output import capture
 from viewer.output.commands import BUILT, needs_history
 from viewer.services import stills
 from viewer.state.draw_options import Curve, DrawOptions, Tone
-from viewer.state.readings import can_draw
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 
 ODD = 'it\'s "odd"; $HOME & -c\tüñ.aff'
 

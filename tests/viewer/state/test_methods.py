@@ -33,9 +33,8 @@ from viewer.state.methods import (
     toggled,
     with_base,
 )
-from viewer.state.readings import MOST_RECORDED, can_draw
 from viewer.state.session import Session
-from viewer.state.views import View
+from viewer.state.views import MOST_RECORDED, View, can_draw
 from viewer.views import penumbra
 
 

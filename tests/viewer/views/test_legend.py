@@ -29,8 +29,7 @@ from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.overlays import with_legend
 from viewer.state.draw_options import Slice
 from viewer.state.palette import FATE_NAMES, OCCLUSION_COLORS, WRONG
-from viewer.state.readings import can_draw
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.util.numbers import count, percent
 from viewer.util.resources import embedded_scenes
 from viewer.views.legend import (

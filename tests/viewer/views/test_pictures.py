@@ -208,7 +208,7 @@ def test_parts_of_a_tree_have_the_colours_of_their_levels_and_what_waits_has_str
 
 def test_what_a_frame_has_not_is_not_drawn(plain: Frame) -> None:
     for view in View:
-        if view.needs_more or view in (View.CERTIFICATE, View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.TREE):
+        if view.records or view in (View.CERTIFICATE, View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.TREE):
             with pytest.raises(ValueError, match=f"nothing for the view {view.label}"):
                 picture(plain, view)
             assert legend_in(plain, view) is None and words_in(plain, view, 0, 0, 0) == ()

@@ -14,8 +14,7 @@ from tracer.frame import Frame, Settings
 from tracer.geometry.camera import pinhole
 from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.methods import missing
-from viewer.state.readings import can_draw
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.views import tree, voxels
 from viewer.views.tree import share_built, tree_of, tree_seen
 from viewer.views.voxels import voxels_of, voxels_seen

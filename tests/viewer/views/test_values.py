@@ -30,8 +30,7 @@ from viewer.state.pixels import (
     region_between,
     zoomed,
 )
-from viewer.state.readings import can_draw
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.views.base import histogram
 
 FRAME = with_cuts(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from tracer.geometry.accelerators import ACCELERATORS
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
 from viewer.window import commands
@@ -48,11 +47,6 @@ def test_what_is_meant_is_found_first(ui, typed: str, meant: str | None):
     assert first.name == meant if meant else first.kind is Kind.SCENE
 
 
-@pytest.mark.parametrize("typed", ["culled", "traced", "dynamic", "why"])
-def test_views_of_fates_are_found_by_what_they_show(ui, typed: str):
-    assert "Fate of shadow rays" in [item.name for item in look_for(ui, typed)[:8]]
-
-
 def test_what_was_used_last_comes_first(ui):
     ui.controller.preferences.used = ["Zoom test", "Depth"]
     assert [item.name for item in look_for(ui, "")[:2]] == ["Zoom test", "Depth"]
@@ -68,13 +62,6 @@ def test_what_cannot_be_run_says_why_and_stays_open(ui):
     assert finder.enter(play) is None and "nothing moves" in finder.problem
 
 
-def test_ticks_are_those_of_the_commands(ui):
-    by_name = {item.name: item for item in items(ui)}
-    assert by_name["Colour"].checked and by_name["Depth"].checked is False and by_name["Open..."].checked is None
-    by_name["Depth"].run()
-    assert {item.name: item for item in items(ui)}["Depth"].checked
-
-
 def test_a_setting_is_typed(ui):
     finder, c = Finder(), ui.controller
     finder.begin()
@@ -86,16 +73,6 @@ def test_a_setting_is_typed(ui):
         assert finder.enter(None) is None and "0 to 100" in finder.problem and c.session.settings.depth == 10
     finder.type("3")
     assert finder.enter(None) is not None and c.session.settings.depth == 3
-
-
-def test_each_tree_is_found_and_chosen(ui):
-    trees = [item for item in look_for(ui, "tree") if item.name.startswith("setting Tree ")]
-    assert {item.label for item in trees} == {f"Tree: {name}" for name in ACCELERATORS}
-    (lazy,) = (item for item in trees if item.label == "Tree: kdtree-lazy")
-    assert not lazy.checked and lazy.path == "Rendering"
-    Finder().enter(lazy)()
-    assert ui.controller.session.settings.accelerator == "kdtree-lazy"
-    assert next(item for item in look_for(ui, "kdtree-lazy") if item.name == lazy.name).checked
 
 
 def test_lines_are_stepped_through_around_the_end(ui):

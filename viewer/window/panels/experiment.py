@@ -76,32 +76,30 @@ def _method_ticks(plan: ExperimentPlan, lights: tuple[int, int]) -> None:
     for heading, kinds in groups():
         imgui.separator_text(heading)
         for kind in kinds:
-            _tick(plan, kind.name, kind, lights)
+            if kind.name == REFERENCE:
+                imgui.begin_disabled()
+                _tick(kind.name, True, kind, lights)
+                imgui.end_disabled()
+            elif _tick(kind.name, kind.name in plan.methods, kind, lights):
+                plan.methods ^= {kind.name}
     imgui.separator_text("And each of these with")
-    bases = [method for method in plan.methods if "+" not in method and method != REFERENCE]
+    bases = [method for method in plan.methods if "+" not in method]
     for kind in additions():
-        mine = {f"{base}+{kind.name}" for base in bases if base != kind.name}
-        before = bool(mine) and mine <= plan.methods
-        now = _tick(plan, f"+{kind.name}", kind, lights, before)
-        if now != before:
-            plan.methods = plan.methods | mine if now else plan.methods - mine
+        combined = {f"{base}+{kind.name}" for base in bases if base != kind.name}
+        there = bool(combined) and combined <= plan.methods
+        if _tick(f"+{kind.name}", there, kind, lights):
+            plan.methods = plan.methods - combined if there else plan.methods | combined
 
 
-def _tick(plan: ExperimentPlan, method: str, kind: Kind, lights: tuple[int, int], now: bool | None = None) -> bool:
-    """A tick of a method, which changes the plan, or else of what is `now`; returns what it is after that."""
-    ticked = now if now is not None else method == REFERENCE or method in plan.methods
-    imgui.begin_disabled(method == REFERENCE)
-    if not kind.fits(*lights):
-        imgui.push_style_color(imgui.Col_.text, pale())
+def _tick(label: str, now: bool, kind: Kind, lights: tuple[int, int]) -> bool:
+    """A tick of a method, pale where that has nothing to say of so many lights; returns whether it was clicked."""
+    color = imgui.get_style_color_vec4(imgui.Col_.text) if kind.fits(*lights) else pale()
+    imgui.push_style_color(imgui.Col_.text, color)
     with outlined():
-        changed, ticked = imgui.checkbox(method, ticked)
-    if not kind.fits(*lights):
-        imgui.pop_style_color()
-    imgui.end_disabled()
+        clicked = imgui.checkbox(label, now)[0]
+    imgui.pop_style_color()
     tooltip(said_of(kind, lights))
-    if changed and now is None:
-        plan.methods ^= {method}
-    return ticked
+    return clicked
 
 
 def _table(ui: Ui, run: Experiment, results: Results) -> None:

@@ -112,13 +112,9 @@ def _said(ui: Ui, table: SceneTable, listing: Listing) -> None:
     if listing.problem and listing.order == table.order:
         paragraph(listing.problem, ERROR)
         return
-    found, rows = len(listing.rows), listing.table.rows
-    said, row, edits = (
-        several(rows, listing.table.level.value.lower()[:-1]),
-        table.selected,
-        ui.controller.session.edits,
-    )
-    said = said if found == rows else f"{count(found)} of {said}"
+    found, rows, row = len(listing.rows), listing.table.rows, table.selected
+    edits, noun = ui.controller.session.edits, listing.table.level.value.lower()[:-1]
+    said = several(rows, noun) if found == rows else f"{count(found)} of {several(rows, noun)}"
     if row >= 0 and _place_of(ui, listing, row) is None:
         said += "; the selection is not among them"
     paragraph(said, QUIET)

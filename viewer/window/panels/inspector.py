@@ -28,8 +28,7 @@ from viewer.state.palette import (
     Color,
 )
 from viewer.state.picking import Pick, shadow_mode_of, wrong_at
-from viewer.state.readings import can_draw
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.util.numbers import several
 from viewer.views import cell_lights
 from viewer.window.panels import lights, rays

@@ -12,7 +12,7 @@ from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from viewer.output.light_cube import cross_of, seen
 from viewer.services.queries import Newest
-from viewer.state.readings import LIGHT_CUBES
+from viewer.state.views import LIGHT_CUBES
 from viewer.window.panels import legend, lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, em, paragraph

@@ -15,7 +15,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state.comparison import Side
 from viewer.state.pixels import ALL, GRID_FROM, STEP, Point, Region, panned, pixels_shown, region_between
-from viewer.state.readings import can_draw
+from viewer.state.views import can_draw
 from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
@@ -27,7 +27,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
 
 _FLYING = tuple(name for name in HELD if name.startswith("Fly"))
-_PLOT = 5.4  # ems, the least height of the histogram
+_FIGURES, _PLOT = 20.0, 5.4  # ems: the width of the figures, and the least height of the histogram
 _OF_CHANNELS = (ImVec4(0.92, 0.33, 0.31, 1.0), ImVec4(0.25, 0.70, 0.35, 1.0), ImVec4(0.35, 0.58, 0.96, 1.0))
 _OF_VALUES = (ImVec4(0.42, 0.65, 0.93, 1.0),)
 _GRID, _BACK = ImVec4(0.5, 0.5, 0.5, 0.45), ImVec4(0.03, 0.04, 0.05, 0.66)
@@ -108,16 +108,19 @@ def _histogram(ui: Ui) -> None:
     if found.pixels < found.of or difference is not None:
         what = "have a value" if difference is None else "differ"
         paragraph(f"{count(found.pixels)} of {count(found.of)} pixels {what}; these are counted here", QUIET)
-    _figures(found, values.names)
     ranged = view.has_range and not (view.needs_work and c.session.draw.shares)
     if difference is None and ranged and imgui.small_button("Use as the range of colours"):
         span = min(found.least), max(max(found.largest), min(found.least) + 1e-6)
         c.session.change(draw=c.session.draw.with_span(span, view))
+    room = imgui.get_content_region_avail().x
+    _figures(found, values.names, em(_FIGURES) if room > 2.0 * em(_FIGURES) else room)
+    if room > 2.0 * em(_FIGURES):
+        imgui.same_line()
     _plot(found, values.names)
 
 
-def _figures(found: Histogram, names: tuple[str, ...]) -> None:
-    width = imgui.get_content_region_avail().x - em(0.3)  # columns of figures at the right are a little wider by parts
+def _figures(found: Histogram, names: tuple[str, ...], width: float) -> None:
+    width -= em(0.3)  # columns of figures at the right are a little wider by parts
     if imgui.begin_table("figures", 4, int(imgui.TableFlags_.sizing_stretch_same), ImVec2(width, 0.0)):
         for text in ("", "least", "mean", "largest"):
             imgui.table_next_column()

@@ -9,9 +9,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.runs import missing_in
 from viewer.state.draw_options import NEUTRAL
-from viewer.state.readings import can_draw
 from viewer.state.view_state import LONGEST_SIDE
-from viewer.state.views import View
+from viewer.state.views import View, can_draw
 from viewer.window.panels import legend, lights, slicing
 from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
 from viewer.window.ui import Ui

@@ -17,28 +17,26 @@ from tracer.scene.edits import Edited
 from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
 from viewer.state.comparison import CompareMode, Source
-from viewer.state.frame_rows import RAYS, change
 from viewer.state.picking import same_place
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.view_state import one_by_one
 from viewer.window.command import Command, Condition
 from viewer.window.panels import lights
-from viewer.window.panels.compare import pairs
-from viewer.window.panels.marks import SHADE
+from viewer.window.panels.area import SHADE
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
     checkbox,
     clipped,
+    count,
     em,
     fitted,
     heading,
     paragraph,
-    right,
     tooltip,
     tooltip_at,
     wide_button,
-)
+)  # fmt: skip
 
 _ROWS = 12  # of the list of lights that are seen at once
 _MOST_MARKS = 64  # of lights: more would hide the picture
@@ -227,24 +225,10 @@ def _changed(ui: Ui) -> None:
             comparing.kept = before
             comparing.change(source=Source.KEPT)
             comparing.start(CompareMode.DIFFERENCE)
-    if imgui.begin_table("counters", 4):
-        for name, width in (("name", 1.5), ("before", 1.0), ("now", 1.0), ("change", 1.1)):
-            imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
-        table = [("Rays", "before", "now", "change", "")]
-        for one, other in pairs(ui, before.frame, frame):
-            if one.group == RAYS:
-                apart, share = change(one, other)
-                table.append((one.name, one.text(one.number), other.text(other.number), apart, f"{one.tip} ({share})"))
-        for name, *numbers, tip in table:
-            imgui.table_next_row()
-            imgui.table_next_column()
-            clipped(name, QUIET)
-            if tip:
-                tooltip(tip)
-            for number in numbers:
-                imgui.table_next_column()
-                right(number, None if tip else QUIET)
-        imgui.end_table()
+    then, now = before.frame.statistics.shadow, frame.statistics.shadow
+    for name in ("due", "saved", "traced"):
+        old, new = count(getattr(then, name)), count(getattr(now, name))
+        clipped(f"Shadow rays {name}: {old} {icons.ICON_FA_ARROW_RIGHT} {new}")
 
 
 # --- over the picture --------------------------------------------------------------------------------
