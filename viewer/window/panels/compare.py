@@ -7,11 +7,9 @@ from itertools import groupby
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.frame import Frame
 from viewer.state.comparison import CompareMode, Source
-from viewer.state.frame_rows import Row, beside, change
+from viewer.state.frame_rows import beside, change
 from viewer.state.palette import LESS, MORE
-from viewer.state.savings import InTurn
 from viewer.window.panels.culling import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -99,12 +97,6 @@ def _mode(ui: Ui) -> None:
     imgui.end_combo()
 
 
-def pairs(ui: Ui, a: Frame, b: Frame, timed: InTurn | None = None) -> list[tuple[Row, Row]]:
-    """Return the rows of two frames, found once."""
-    found: list[tuple[Row, Row]] = ui.cached("pairs", a, (b, timed), lambda: beside(a, b, timed))
-    return found
-
-
 def _columns(ui: Ui) -> None:
     """The statistics of A and B, and what B has more or less."""
     c = ui.controller
@@ -129,11 +121,12 @@ def _columns(ui: Ui) -> None:
     for name in ("B - A", "of A"):
         imgui.table_next_column()
         right(name)
-    for group, found in groupby(pairs(ui, a.frame, b.frame, timed), lambda pair: pair[0].group):
+    found = ui.cached("pairs", a.frame, (b.frame, timed), lambda: beside(a.frame, b.frame, timed))
+    for group, pairs in groupby(found, lambda pair: pair[0].group):
         imgui.table_next_row()
         imgui.table_next_column()
         clipped(group)
-        for one, other in found:
+        for one, other in pairs:
             imgui.table_next_row()
             imgui.table_next_column()
             clipped(" / ".join(dict.fromkeys(filter(None, (one.name, other.name)))), QUIET)

@@ -18,7 +18,6 @@ _POINTER = (
     ("Wheel", "flying speed (fly); come nearer (orbit)"),
     ("Shift", "while flying: faster"),
     ("Ctrl + wheel, Ctrl + left drag", "zoom into the picture itself around the pointer; move it"),
-    ("Shift + left drag", "choose a region, whose values the panel Pixels counts"),
     ("Drag the wipe's line", "compare the picture with the right one, or A with B"),
     ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
     ("Click", "inspect a pixel, and draw its shadow rays; click the background to clear the selection"),
