@@ -121,8 +121,7 @@ def _numbers(d: Driver) -> None:
     _point_at(d, 0.45, 0.55)
     _wheel(d, 12)
     for view in (View.COLOR, View.OCCLUSION):
-        d.c.session.set_draw(view=view)
-        d.settle()
+        d.see(view)
         d.c.preferences.pixel_values = False
         d.frames(3)
         without = d.window()
@@ -147,19 +146,17 @@ def _region(d: Driver) -> None:
     region = pixels.region(d.ui)
     assert region is not None and d.c.session.camera == camera
     assert np.allclose((region.left, region.top, region.right, region.bottom), (0.25, 0.3, 0.75, 0.7), atol=0.01)
-    d.c.session.set_draw(view=View.DEPTH)
-    d.settle()
+    d.see(View.DEPTH)
     rows, columns = region.pixels(d.c.frame)
     depth = d.c.frame.depth[rows, columns]
     depth = depth[np.isfinite(depth)]
-    d.context.item_click("//Pixels/**/Use as the range of colours")
-    d.frames(3)
+    d.click("//Pixels/**/Use as the range of colours")
     assert np.allclose(d.c.session.draw.span, (depth.min(), depth.max()))
     expected = picture(d.c.frame, View.DEPTH, span=d.c.session.draw.span)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.c.session.set_draw(spans=())
     d.c.session.set_draw(view=View.COLOR)
-    d.context.item_click("//Pixels/\uf00d##region")
+    d.click("//Pixels/\uf00d##region")
     assert pixels.region(d.ui) is None
     d.settle()
 
@@ -175,8 +172,7 @@ def _exposed(d: Driver) -> None:
     d.press(KEY.left_bracket)
     d.press(int(KEY.m) | SHIFT)
     assert d.c.session.draw.tone.exposure == 0.5
-    d.context.menu_click("//##MainMenuBar/Picture/Colours as traced")
-    d.frames(2)
+    d.choose("Picture/Colours as traced")
     assert d.c.session.draw.tone.neutral and np.array_equal(d.shown(), picture(d.c.frame)), "bit for bit as it was"
     d.press(int(KEY.z) | CTRL)
     assert d.c.session.draw.tone.exposure == 0.5, "colours as traced can be undone"
