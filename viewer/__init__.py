@@ -61,13 +61,20 @@ def show(
     Settings(**settings).validated()
     if not has_display():
         raise OSError(f"{no_display_reason()}; tracer.Renderer needs none")
-    try:
-        from viewer.window import app
-    except ImportError as error:
-        raise OSError(f"no window can be opened, as a library is missing ({error})") from error
     own = isinstance(scene, Scene)
     path = None if own else resources.scene_path(str(scene))
-    opened = app.App(path, settings, scene=scene if own else None, on_frame=on_frame)  # type: ignore[arg-type]
+    opened = window_module().App(path, settings, scene=scene if own else None, on_frame=on_frame)  # type: ignore[arg-type]
     opened.ui.tour.end()
     opened.run()
     return opened.controller.frame
+
+
+def window_module() -> Any:
+    """Return `viewer.window.app`, which needs GL and ImGui; raises OSError, in one line, where a library is missing."""
+    try:
+        from viewer.window import app
+    except ImportError as error:
+        raise OSError(
+            f"no window can be opened, as a library is missing ({error}); 'shadowcull render' needs none"
+        ) from error
+    return app

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from viewer import window_module
 from viewer.cli import main as command_line
 
 if TYPE_CHECKING:
@@ -23,13 +24,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _open_window(scene: Path | None, settings: dict[str, Any], folders: Sequence[Path], meshes: MeshOptions) -> int:
-    """Open the viewer with some settings; raises OSError, in one line, where a library that it needs is missing."""
-    try:
-        from viewer.window.app import App
-    except ImportError as error:
-        why = f"no window can be opened, as a library is missing ({error}); 'shadowcull render' needs none"
-        raise OSError(why) from error
-    return App(scene, settings, folders, meshes).run()
+    return int(window_module().App(scene, settings, folders, meshes).run())
 
 
 if __name__ == "__main__":

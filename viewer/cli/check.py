@@ -131,7 +131,7 @@ class Checker:
     def __init__(self, given: Namespace, work: Work) -> None:
         self._given, self._work = given, work
         self._scene: Scene | None = None
-        self._read, self._world = lru_cache(1)(self._read_scene), lru_cache(1)(self._make_world)
+        self._read = lru_cache(1)(self._read_scene)
 
     def verdict(self, path: Path, data: Mapping[str, Any], kept: NDArray[Any]) -> Verdict:
         """Make it again and compare; raises SceneError, ValueError or OSError, in one line, where that cannot be."""
@@ -170,13 +170,13 @@ class Checker:
             raise ValueError(_not_again(wanted))
         # What nobody can learn again may not show: then it is the picture with every shadow ray traced.
         traced = replace(wanted.with_settings(method=NO_CULLING), warmup=Warmup()) if unknown else wanted
-        scene, traced, world = self._prepared(path, traced, (traced.settings.method,))
+        scene, traced = self._prepared(path, traced, (traced.settings.method,))
         stills.check_light(traced, scene)
 
         def tell(done: int, frames: int) -> None:
             self._work.count(f"{path.name}, frame {done + 1} of {frames}", done, frames)
 
-        renderer = Renderer(scene, traced.settings, world=world)
+        renderer = Renderer(scene, traced.settings, self._work.progress)
         frame = stills.trace(renderer, traced, on_frame=tell, cancelled=self._work.cancelled)
         pixels = frame.color.astype(kept.dtype) if linear else stills.draw(frame, scene, traced)[0]
         if unknown and not np.array_equal(pixels, kept):
@@ -187,7 +187,8 @@ class Checker:
         """The file of a figure, made again."""
         state = codec.picture_from_json(data)
         wanted = comparison_of(data["figure"], state.size)
-        scene, state, world = self._prepared(path, state, wanted.methods)
+        scene, state = self._prepared(path, state, wanted.methods)
+        world = World(scene, state.time, state.settings.accelerator, self._work.progress)
 
         def tell(method: str, done: int, frames: int) -> None:
             self._work.count(f"{path.name}, {method}, frame {done + 1} of {frames}", done, frames)
@@ -199,8 +200,8 @@ class Checker:
             stills.save_methods(shown, again, json.dumps(data))
             return again.read_bytes()
 
-    def _prepared(self, path: Path, wanted: ViewState, methods: tuple[str, ...]) -> tuple[Scene, ViewState, World]:
-        """The scene, the state with the path that it has now, and the world; raises ValueError where it is gone."""
+    def _prepared(self, path: Path, wanted: ViewState, methods: tuple[str, ...]) -> tuple[Scene, ViewState]:
+        """The scene, and the state with the path that it has now; raises ValueError where it is gone."""
         found = find_scene(str(wanted.scene), path)
         if found is None:
             raise ValueError(f"its scene is gone: {wanted.scene}")
@@ -210,15 +211,10 @@ class Checker:
         if not start <= wanted.time <= end:
             raise ValueError(f"its time, {wanted.time:g} s, is none of the scene's any more")
         wanted = wanted.with_settings(threads=wanted.settings.threads or self._given.threads)
-        world = self._world(found, wanted.meshes, wanted.edits, wanted.settings.accelerator)
-        return scene, replace(wanted, scene=str(found)), world
+        return scene, replace(wanted, scene=str(found))
 
     def _read_scene(self, path: Path, meshes: MeshOptions, edits: Edits) -> Scene:
         return edited(load_visible_scene(path, self._work.progress, self._given.folder, meshes), edits).scene
-
-    def _make_world(self, path: Path, meshes: MeshOptions, edits: Edits, accelerator: str) -> World:
-        scene = self._read(path, meshes, edits)
-        return World(scene, scene.time_range[0], accelerator, self._work.progress)
 
     def _since(self, data: Mapping[str, Any], kept: NDArray[np.uint8] | None) -> str:
         """What has changed since a file was made, in words; `kept` are the pixels of one that says their code."""

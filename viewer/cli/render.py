@@ -9,17 +9,17 @@ from __future__ import annotations
 import shlex
 from argparse import Namespace
 from dataclasses import replace
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from rich.table import Table
 
-from tracer.frame import Settings
+from tracer.frame import Frame, Settings
 from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
-from tracer.statistics import FrameStatistics
 from viewer.cli import options, pictures
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import print_table, titled, working
@@ -27,7 +27,8 @@ from viewer.output import capture, commands, exr, figure1_drawing, other_program
 from viewer.output.exr import buffers
 from viewer.services import stills
 from viewer.services.refinement import has_lamps
-from viewer.state import terms, verified
+from viewer.state import terms
+from viewer.state.frame_rows import rows
 from viewer.state.view_state import ViewState
 from viewer.util.files import check_writable, write_whole
 from viewer.util.messages import printable
@@ -135,7 +136,7 @@ def run(given: Namespace) -> int:
     title = f"{given.path.name}, {wanted.time:.3f} s, {frame.width} × {frame.height}, method {settings.method}"
     by_beams = terms.asks_by_beams(frame, has_lamps(scene.lights, frame.settings))
     remarks = " ".join(filter(None, (terms.BY_BEAMS if by_beams else "", _first(wanted))))
-    print_table(_statistics_table(frame.statistics, title, frame.settings, remarks))
+    print_table(_statistics_table(frame, title, remarks))
     for written in (given.output, given.buffers, given.figure1):
         if written is not None:
             print(printable(written))
@@ -161,42 +162,15 @@ def _check_outputs(given: Namespace) -> None:
         check_writable(path)
 
 
-def _statistics_table(statistics: FrameStatistics, title: str, settings: Settings, remarks: str) -> Table:
-    """Show the counters of a frame, primary, secondary and shadow rays apart, and what is wrong where it was
-    verified."""
-    table = titled(title, "\n".join(filter(None, (statistics.decision, remarks))))
-    for name in ("", "primary", "secondary", "shadow"):
-        table.add_column(name, justify="right" if name else "left")
-    kinds = (statistics.primary, statistics.secondary, statistics.shadow)
-    shadow, wrong, made = statistics.shadow, statistics.wrong, terms.made(settings.method)[0]
-    table.add_row("rays traced", *(f"{rays:,}" for rays in (kinds[0].rays, kinds[1].rays, shadow.traced)))
-    table.add_row("traversal steps", *(f"{kind.traversal_steps:,}" for kind in kinds))
-    table.add_row("intersection tests", *(f"{kind.intersection_tests:,}" for kind in kinds), end_section=True)
-
-    def add(name: str, number: int, of: int = 0, digits: int = 1, shown: bool = True) -> None:
-        if shown:
-            table.add_row(name, f"{number / of:.{digits}%}" if of else "", "", f"{number:,}")
-
-    due = max(shadow.due, 1)
-    add(f"shadow rays {terms.DUE}", shadow.due)
-    add(f"  {terms.SAVED}", shadow.saved, due)
-    add(f"    {terms.CULLED}", shadow.culled, due)
-    add(f"    {terms.DYNAMIC_ONLY}", shadow.dynamic_only, due)
-    add(f"  {terms.CANDIDATES_ONLY}", shadow.candidates_only, due, shown=shadow.candidates_only > 0)
-    add(f"  {terms.CACHE_HITS}", shadow.cache_hits, due, shown=shadow.cache_hits > 0)
-    add(f"  {terms.TRACED}", shadow.traced, due)
-    if wrong is not None:
-        exact = statistics.cuts is None
-        add(verified.named(terms.WRONG, wrong), wrong.answers, max(wrong.due, 1), 3, exact)
-        name = verified.named(terms.WRONG_PIXELS if exact else terms.BEYOND, wrong)
-        add(name, wrong.pixels, max(wrong.shaded, 1), 3)
-    add(f"samples {terms.PASSED_OVER}", shadow.passed_over, shown=shadow.passed_over > 0)
-    if statistics.certificates and made:
-        add(made, statistics.certificates)
-        add("  traversal steps", statistics.certificate_steps)
-        add("  intersection tests", statistics.certificate_tests)
-    table.add_row("occlusion tests", f"{statistics.occlusion_tests:,}", "", "", end_section=True)
-    for name, seconds in statistics.phases.items():
-        table.add_row(terms.phase(name, settings)[0], f"{1000.0 * seconds:,.1f} ms", "", "")
-    table.add_row("frame", f"{1000.0 * statistics.seconds:,.1f} ms", "", "")
+def _statistics_table(frame: Frame, title: str, remarks: str) -> Table:
+    """Show the numbers of a frame, as the panel Statistics does."""
+    table = titled(title, "\n".join(filter(None, (frame.statistics.decision, remarks))))
+    for justify in ("left", "right", "right"):
+        table.add_column("", justify=justify)  # type: ignore[arg-type]
+    table.show_header = False
+    for group, found in groupby(rows(frame), lambda row: row.group):
+        table.add_row(group, style="bold")
+        for row in found:
+            table.add_row(row.name, row.text(row.number), row.share)
+        table.add_section()
     return table

@@ -29,7 +29,6 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState, as_options
 from viewer.state.views import View
 from viewer.util import resources
-from viewer.views.wipe import wipe_column
 
 CHANCE = "what is certified depends on time and threads"
 BUILT = "what rays have had built depends on all that has been seen"
@@ -113,15 +112,9 @@ def _view(state: ViewState) -> list[str]:
     """The view with its light, its line or its shares."""
     draw, view = state.draw, state.draw.view
     light = f":{state.edits.light_number(draw.light)}" if view.of_light else ""
-    line = f":{_line(draw.wipe, state.settings.width)}" if view is View.WIPE else ""
+    line = f":{draw.wipe!r}" if view is View.WIPE else ""
     shares = ":share" if view.needs_work and draw.shares else ""
     return [] if view is View.COLOR else ["--view", f"{view.value}{light}{line}{shares}"]
-
-
-def _line(wipe: float, width: int) -> str:
-    """The place of a wipe's line, as few digits as may be for the same column."""
-    column = wipe_column(width, wipe)
-    return "1" if column >= width else f"{(column + 0.5) / width:.9f}"
 
 
 def mesh_options(meshes: MeshOptions) -> list[str]:
@@ -134,15 +127,8 @@ def mesh_options(meshes: MeshOptions) -> list[str]:
 def scene_word(path: Path) -> str:
     """Return what names a scene on the command line: of one that comes with the program its name, else where its file
     is."""
-    own = next((name for name, file in resources.embedded_scenes().items() if _same(file, path)), None)
-    return own or str(path.absolute())
-
-
-def _same(one: Path, other: Path) -> bool:
-    try:
-        return one.samefile(other)
-    except OSError:
-        return False
+    own = {file.resolve(): name for name, file in resources.embedded_scenes().items()}
+    return own.get(path.resolve()) or str(path.absolute())
 
 
 def _moment(time: float, scene: Scene | None) -> list[str]:

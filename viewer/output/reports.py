@@ -193,7 +193,7 @@ STEPS: tuple[Column[Step], ...] = (
     Column(
         "wrong", WRONG_PIXELS, lambda step: f"{step.wrong_of_primitive:,}", lambda step: step.wrong_of_primitive > 0
     ),
-    Column("modes from there on", "modes that change there", lambda step: modes_in_words(step.changes), text=True),
+    Column("modes", "modes from that step on, where they change", lambda step: modes_in_words(step.changes), text=True),
     Column("in picture", "wrong pixels of the whole picture", lambda step: f"{step.wrong:,}"),
     Column("highest", "highest pixel count so far", lambda step: f"{step.highest:,}"),
     Column("distance", "from the camera to the primitive", lambda step: f"{step.distance:.4g}"),

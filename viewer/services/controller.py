@@ -87,7 +87,6 @@ class Controller:
         self.films = Films(session, preferences, runs, pictures, bookmarks)
         self.hunts = Hunts(session, runs, navigator, notices)
         self.reloaded = False
-        self._bookmark = -1  # the one that was gone to last
         self.info: dict[str, Any] = {}
         self.drawn_seconds = 0.0
 
@@ -246,21 +245,11 @@ class Controller:
         if self.runs.refuses():
             return
         state, start = self.bookmarks.find(index), self.session.camera
-        self._bookmark = index
         if state is not None:
             self.undo.begin_step(f"going to {self.bookmarks.all[index].name}")
             self.restore(state)
             if state.camera is not None:
                 self.motion.glide(state.camera, start)
-
-    def next_bookmark(self, step: int) -> None:
-        """Go to the next bookmark of the list, or with -1 to the one before; past the last comes the first."""
-        count = len(self.bookmarks.all)
-        if count:
-            self._bookmark = (self._bookmark + step) % count if self._bookmark < count else 0
-            self.go_to_bookmark(self._bookmark)
-        else:
-            self.notices.say("this scene has no bookmarks")
 
     def go_to_step(self, step: Step) -> None:
         """Glide to where a step of the zoom test stood, at the test's time."""

@@ -64,7 +64,6 @@ class FrameScheduler:
         self._frozen: tuple[object, Warmup] | None = None  # what stays as it was found, and the frames before it
         self._refines = False  # whether the last frame was asked for to refine what is known
         self._asked: RenderRequest | None = None
-        self._coarse_first = False  # what should be seen is another picture than the last
         self._new = False  # the scene
         self._failed: RenderRequest | None = None
 
@@ -80,7 +79,6 @@ class FrameScheduler:
         if traced is None:
             return None
         if self.traced is None or self.traced.request is not traced.request:
-            self._coarse_first = False
             if not traced.request.refinement_seconds:  # else it took its time for certificates, not for its pixels
                 pixels = traced.frame.width * traced.frame.height
                 self.budget.observe(traced.first, pixels, self.lamps.most(traced.request.settings))
@@ -149,15 +147,11 @@ class FrameScheduler:
             self._new = False
             self._wake()
             return
-        at_rest = not inputs.moving and not inputs.playing
-        if at_rest and not self.refines_lamps and self._should_refine():
+        if self._at_rest and not self.refines_lamps and self._should_refine():
             self._serial += 1
             self._refines = True
-        if at_rest and self._asked is not None and not self._is_of_inputs(self._asked):
-            self._coarse_first = True
-        coarse = inputs.moving or self._coarse_first
-        self._refines = self._refines and not coarse and not inputs.playing
-        wanted = self._next_request(coarse)
+        self._refines = self._refines and self._at_rest
+        wanted = self._next_request()
         made = self._asked
         if made is None and self.traced is not None and self.samples_shown >= wanted.samples:
             made = self.traced.request  # it holds what is wanted already
@@ -172,9 +166,13 @@ class FrameScheduler:
             return False
         return self.refinement.wants_another(self.traced, state.draw.view, state.pace.keep_tracing)
 
-    def _next_request(self, coarse: bool) -> RenderRequest:
-        now, lamp_samples = self.inputs, self._next_lamp_samples(coarse)
-        plan = self._plan(coarse, lamp_samples)
+    @property
+    def _at_rest(self) -> bool:
+        return not self.inputs.moving and not self.inputs.playing
+
+    def _next_request(self) -> RenderRequest:
+        now, lamp_samples = self.inputs, self._next_lamp_samples()
+        plan = self._plan(lamp_samples)
         width, height = divided(*self.full_size, plan.divisor)
         settings, samples = replace(self.settings, width=width, height=height, samples=1), self.samples_wanted
         if lamp_samples < self.lamps.wanted:
@@ -182,17 +180,16 @@ class FrameScheduler:
         return RenderRequest(
             now.state.time, now.camera, settings, plan.divisor, self._serial,
             refinement.SECONDS if self._refines else 0.0, samples, self._until_ready(now.second),
-            parts=plan.parts, quick=coarse or now.playing, focus=now.focus,
+            parts=plan.parts, quick=not self._at_rest, focus=now.focus,
             warmup=self._frozen[1] if self._frozen is not None and self.is_frozen else None,
         )  # fmt: skip
 
-    def _plan(self, coarse: bool, lamp_samples: int) -> Plan:
+    def _plan(self, lamp_samples: int) -> Plan:
         """Return how the frame comes about: at once where it refines what is shown, and where each is to be whole."""
-        playing = self.inputs.playing
-        adds_lamp_samples = not coarse and not playing and lamp_samples > self.lamps.first
-        if self._refines or adds_lamp_samples or self._each_is_whole:
+        now = self.inputs
+        if self._refines or (self._at_rest and lamp_samples > self.lamps.first) or self._each_is_whole:
             return AT_ONCE
-        return self.budget.plan(*self.full_size, self._frame_seconds, coarse, playing, lamp_samples)
+        return self.budget.plan(*self.full_size, self._frame_seconds, now.moving, now.playing, lamp_samples)
 
     @property
     def _each_is_whole(self) -> bool:
@@ -211,11 +208,10 @@ class FrameScheduler:
         waits = bool(method) and not self.inputs.ready and Method.parse(method).has_certificates
         return with_base(method, NO_CULLING) if waits else method
 
-    def _next_lamp_samples(self, coarse: bool) -> int:
+    def _next_lamp_samples(self) -> int:
         """Return how many samples lamps have in the next frame: all of them once a picture with fewer is there."""
         shown = self.traced is not None and self.traced.whole and self._is_of_inputs(self.traced.request)
-        adds = shown and not coarse and not self.inputs.playing
-        return self.lamps.wanted if adds or self._each_is_whole else self.lamps.first
+        return self.lamps.wanted if (shown and self._at_rest) or self._each_is_whole else self.lamps.first
 
     @property
     def settings(self) -> Settings:

@@ -151,14 +151,11 @@ class Plots:
         shaded, every = (np.maximum(self.values(pixels), 1.0) for pixels in ("pixels", "all_pixels"))
         return (self.values(name) - of_all) / shaded + of_all / every
 
-    def shaded(self) -> NDArray[np.float64]:
-        """The part of each frame's pixels that is shaded, 0 to 1."""
-        return self.values("pixels") / np.maximum(self.values("all_pixels"), 1.0)
-
     def shaded_of(self, number: int) -> float:
-        """That part of one frame by its number; 1 for one that is no longer plotted."""
+        """The part of a frame's pixels that is shaded, 0 to 1, by its number; 1 for one that is no longer plotted."""
         place = number - self.first
-        return float(self.shaded()[place]) if 0 <= place < len(self) else 1.0
+        kept = self._counters[place] if 0 <= place < len(self) else {}
+        return kept["pixels"] / max(kept["all_pixels"], 1.0) if kept else 1.0
 
 
 class FrameHistory(Plots):

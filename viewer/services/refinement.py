@@ -29,8 +29,6 @@ SECONDS = 0.4
 FIRST_LAMP_SAMPLES = 4
 MOST_RADII = 16
 """Radii of lamps whose samples are known at once."""
-OFFERED = (1, 4, 16, 64, 256)
-"""Samples of lamps to choose from; the scene may say any other number."""
 
 
 class Refinement:

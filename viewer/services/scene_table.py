@@ -42,7 +42,7 @@ class Source:
         """Whether the tables of another would be the same: further samples of a picture count nothing."""
         names = ("primitive", "modes", "cells", "saved", "due_rays", "wrong")
         same = all(getattr(self.frame, name) is getattr(other.frame, name) for name in names)
-        return same and (self.now is other.now and self.light == other.light)
+        return same and self.now is other.now and self.light == other.light
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,11 +145,9 @@ class SceneTable:
         self._editing.change(edits)
 
     def _object_of(self, row: int) -> str:
-        """The name of a row's object, "" where no scene is open."""
-        original = self._session.original
-        if original is None:
-            return ""
-        parts = parts_of(original)
+        """The name of a row's object; a scene must be open."""
+        assert self._session.original is not None
+        parts = parts_of(self._session.original)
         return parts.names[row if self.level is Level.OBJECTS else int(parts.part_of[row])]
 
     def save(self) -> None:

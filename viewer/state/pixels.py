@@ -1,5 +1,5 @@
 """Places of the picture, 0 to 1 from left and top, which mean the same at every resolution: what part of it is looked
-at closely, and a region of it."""
+at closely."""
 
 from __future__ import annotations
 
@@ -90,33 +90,3 @@ def pixels_shown(zoom: Zoom, width: int, height: int) -> tuple[range, range]:
     left, top, right, bottom = zoom.shown()
     columns = range(max(0, math.floor(left * width)), min(width, math.ceil(right * width)))
     return columns, range(max(0, math.floor(top * height)), min(height, math.ceil(bottom * height)))
-
-
-# --- a region of which values are counted -------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Region:
-    """A rectangle of the picture."""
-
-    left: float
-    top: float
-    right: float
-    bottom: float
-
-    def pixels(self, frame: Frame) -> tuple[slice, slice]:
-        """Rows and columns of the pixels that it touches; one at least."""
-        left, top = pixel_at(frame, self.left, self.top)
-        right, bottom = pixel_at(frame, self.right, self.bottom)
-        return slice(top, bottom + 1), slice(left, right + 1)
-
-
-ALL = Region(0.0, 0.0, 1.0, 1.0)
-
-
-def region_between(start: Point, end: Point) -> Region:
-    """The rectangle from one corner to the other, as far as it lies in the picture."""
-    (left, right), (top, bottom) = (
-        sorted(min(max(place, 0.0), 1.0) for place in pair) for pair in zip(start, end, strict=True)
-    )
-    return Region(left, top, right, bottom)

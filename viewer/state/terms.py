@@ -31,10 +31,6 @@ BY_BEAMS = (
 )
 """What is said of the tests where certificates cull rays of lamps."""
 
-SAMPLES_DUE = "due"
-SAMPLES_REACHED = "reaching"
-PENUMBRA = "penumbra"
-
 MEANINGS = {
     DUE: "one towards each light on the visible side of a surface, at all bounces",
     CULLED: "known to be in shadow, or else known for certain: nothing was asked",
@@ -49,8 +45,6 @@ MEANINGS = {
     WRONG_PIXELS: "with a wrong answer to any light, at any bounce, in any sample so far",
     BEYOND: "pixels that differ from the picture by all lights by more than clusters of lights may be wrong by",
 }
-
-ALL_RAYS = "of all kinds; rays as the view Rays traced counts them"
 
 MADE = {
     "certificates made": "proofs for parts of surfaces, made in this frame",

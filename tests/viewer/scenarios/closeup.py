@@ -1,4 +1,4 @@
-"""Looking closely at the picture: zoom, exact pixels, and the values of a region."""
+"""Looking closely at the picture: zoom, exact pixels, and how their values lie."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from imgui_bundle import imgui
 
 from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
+from viewer.state.pixels import around, pixels_shown
 from viewer.state.views import View
-from viewer.window.panels import pixels
 
 KEY = imgui.Key
 CTRL, SHIFT = int(KEY.mod_ctrl), int(KEY.mod_shift)
@@ -50,7 +50,7 @@ def closeup(d: Driver) -> None:
     d.press(KEY.minus, 3)
     assert d.c.session.draw.zoom.fits
     _numbers(d)
-    _region(d)
+    _range(d)
     _exposed(d)
     d.settle()
 
@@ -135,30 +135,22 @@ def _numbers(d: Driver) -> None:
     d.settle()
 
 
-def _region(d: Driver) -> None:
-    """A drag with Shift chooses a region, of which the panel shows a histogram."""
-    camera, (left, top, right, bottom) = d.c.session.camera, d.picture_edges()
-    d.context.key_down(KEY.mod_shift)
-    start = left + 0.25 * (right - left), top + 0.3 * (bottom - top)
-    d.drag(start, (0.5 * (right - left), 0.4 * (bottom - top)))
-    d.context.key_up(KEY.mod_shift)
-    d.frames(3)
-    region = pixels.region(d.ui)
-    assert region is not None and d.c.session.camera == camera
-    assert np.allclose((region.left, region.top, region.right, region.bottom), (0.25, 0.3, 0.75, 0.7), atol=0.01)
-    d.see(View.DEPTH)
-    rows, columns = region.pixels(d.c.frame)
-    depth = d.c.frame.depth[rows, columns]
+def _range(d: Driver) -> None:
+    """The panel has a histogram of the pixels that are seen, which give the colours their range."""
+    d.c.session.set_draw(view=View.DEPTH, zoom=around(0.5, 0.6, 3.0))
+    d.settle()
+    d.show_panel("Pixels")
+    columns, rows = pixels_shown(d.c.session.draw.zoom, d.c.frame.width, d.c.frame.height)
+    depth = d.c.frame.depth[rows.start : rows.stop, columns.start : columns.stop]
     depth = depth[np.isfinite(depth)]
     d.click("//Pixels/**/Use as the range of colours")
+    d.press(int(KEY.f) | SHIFT)
+    d.frames(3)
     assert np.allclose(d.c.session.draw.span, (depth.min(), depth.max()))
     expected = picture(d.c.frame, View.DEPTH, span=d.c.session.draw.span)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.c.session.set_draw(spans=())
-    d.c.session.set_draw(view=View.COLOR)
-    d.click("//Pixels/\uf00d##region")
-    assert pixels.region(d.ui) is None
-    d.settle()
+    d.see(View.COLOR)
 
 
 def _exposed(d: Driver) -> None:

@@ -7,7 +7,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
-from tests.viewer.marbles import LAST, STEP, write_marbles
+from tests.viewer.fakes import LAST, STEP, write_marbles
 from viewer.state.picking import wrong_at
 from viewer.window.panels.inspector import wrong_beyond
 from viewer.window.panels.plots import PlotsState

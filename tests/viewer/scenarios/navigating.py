@@ -37,7 +37,7 @@ def _bookmarks(d: Driver) -> None:
     d.press(ALT | int(KEY._1))
     assert d.c.motion.under_way
     d.wait(lambda: d.c.session.camera == places[0], "the flight to the first bookmark", 30.0)
-    d.press(KEY.page_down)
+    d.press(ALT | int(KEY._2))
     d.wait(lambda: d.c.session.camera == places[1], "the flight to the next one", 30.0)
     d.show_panel("Camera")
     d.click(f"//Camera/**/{id(marks[1])}/\uf304")

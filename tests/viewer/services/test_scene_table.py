@@ -50,16 +50,6 @@ def known(desk: Desk) -> Listing:
     return table.listing
 
 
-def test_nothing_is_counted_unless_somebody_looks(desk: Desk) -> None:
-    desk.rest()
-    assert desk.c.table.listing is None and not desk.c.frame.settings.record_work
-    desk.c.table.watch()
-    desk.until(lambda: desk.c.table.busy or desk.c.table.listing is not None)
-    assert desk.c.session.counting
-    desk.rest()
-    assert not desk.c.session.counting
-
-
 def test_pixels_and_rays_are_those_of_the_picture(desk: Desk, table: SceneTable) -> None:
     listing, frame = known(desk), desk.c.frame
     assert frame.settings.record_work, "rays are counted while the table is looked at, in any view"

@@ -1,4 +1,4 @@
-"""Lines of the world and words on the picture: where they are, what is cut off, and what is hidden."""
+"""Lines of the world on the picture: where they are, what is cut off, and what is hidden."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
 from viewer.state.picking import point_at
 from viewer.state.projection import place, strokes
-from viewer.window.panels.area import Rect, beside
 
 CAMERA = Camera((1.0, 2.0, 3.0), (0.3, -0.2, -1.0), (0.1, 1.0, 0.0), 50.0)
 
@@ -90,27 +89,3 @@ def test_lines_on_what_is_seen_are_seen():
     frame = frame_of(depth)
     points = [point_at(frame_of(5.0), 0.1 + 0.39 * k / 5, 0.4) for k in range(6)]
     assert all(stroke.seen for stroke in strokes(frame, points))
-
-
-SIZE, GAPS, ROOM = (40.0, 20.0), (12.0, 6.0), (0.0, 0.0, 200.0, 100.0)
-
-
-@pytest.mark.parametrize(
-    ("at", "taken", "place"),
-    [
-        ((50.0, 50.0), None, (62.0, 62.0)),
-        ((170.0, 50.0), None, (124.0, 62.0)),
-        ((50.0, 90.0), None, (62.0, 64.0)),
-        ((195.0, 95.0), None, (149.0, 69.0)),
-        ((50.0, 50.0), (100.0, 70.0, 200.0, 100.0), (4.0, 62.0)),  # a legend on the right
-        ((60.0, 50.0), (0.0, 65.0, 200.0, 100.0), (72.0, 24.0)),  # and one below
-        ((50.0, 50.0), (62.0, 82.0, 200.0, 100.0), (62.0, 62.0)),  # which it only touches
-        ((50.0, 50.0), (0.0, 0.0, 200.0, 100.0), (62.0, 62.0)),  # all is taken
-    ],
-)
-def test_words_stand_where_they_hide_nothing(at: tuple[float, float], taken: Rect | None, place: tuple[float, float]):
-    assert beside(at, SIZE, GAPS, ROOM, taken) == place
-
-
-def test_words_that_fit_nowhere_begin_where_they_can_be_read():
-    assert beside((50.0, 50.0), (300.0, 20.0), GAPS, ROOM) == (0.0, 24.0)

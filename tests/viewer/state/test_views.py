@@ -7,8 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from tests.viewer.colors import luminance
-from tests.viewer.drawn import classes_in
+from tests.viewer.drawn import classes_in, luminance
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.culling.fate import Fate
 from tracer.frame import Settings
@@ -143,7 +142,6 @@ def test_a_picture_that_is_shaded_in_part_counts_for_each_pixel_as_a_whole_one()
     assert list(history.per_pixel("steps")) == [72.0, 72.0]
     assert list(history.per_pixel("shadow_steps")) == [42.0, 42.0]
     assert list(history.values("shadow_steps")) == [12 * pixels, 42 * pixels], "the work that was done"
-    assert list(history.shaded()) == [0.25, 1.0]
     assert [history.shaded_of(number) for number in (0, 1, 7)] == [0.25, 1.0, 1.0]
 
 

@@ -9,8 +9,7 @@ import pytest
 
 from tests.scenes import loaded
 from tests.tracing.nasty_worlds import nasty_walk
-from tests.viewer.colors import luminance
-from tests.viewer.drawn import legend_in
+from tests.viewer.drawn import legend_in, luminance
 from tests.viewer.fakes import (
     in_part,
     make_frame,

@@ -1,4 +1,4 @@
-"""The exact value of a pixel, as a number and in words; regions, and zooming into the picture."""
+"""The exact value of a pixel, as a number and in words; and zooming into the picture."""
 
 from __future__ import annotations
 
@@ -20,14 +20,11 @@ from tests.viewer.fakes import (
 )
 from tracer.frame import Settings
 from viewer.state.pixels import (
-    ALL,
     FIT,
     MOST,
-    Region,
     Zoom,
     panned,
     pixels_shown,
-    region_between,
     zoomed,
 )
 from viewer.state.views import View, can_draw
@@ -81,15 +78,7 @@ def test_every_view_has_values_and_words_for_every_pixel(view):
             values_in(bare, view, 1)
 
 
-def test_a_region_is_of_whole_pixels():
-    region = region_between((0.62, 0.9), (0.2, -3.0))
-    assert region == Region(0.2, 0.0, 0.62, 0.9)
-    assert region.pixels(FRAME) == (slice(0, 8), slice(3, 10))
-    assert ALL.pixels(FRAME) == (slice(0, 8), slice(0, 16))
-    assert region_between((0.5, 0.5), (0.5, 0.5)).pixels(FRAME) == (slice(4, 5), slice(8, 9))
-
-
-def test_a_histogram_counts_the_region_and_nothing_else():
+def test_a_histogram_counts_its_pixels_and_nothing_else():
     color = np.random.default_rng(3).random((8, 16, 3)).astype(np.float32)
     frame = replace(FRAME, color=color)
     rows, columns = slice(2, 5), slice(4, 12)

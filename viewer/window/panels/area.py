@@ -1,22 +1,24 @@
-"""Where the picture is shown: a rectangle of the screen, with the zoom in it; and words on it."""
+"""Where the picture is shown: a rectangle of the screen, with the zoom in it; words on it, and a pen
+that draws over it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from tracer.frame import Frame
 from viewer.state.pixels import Zoom
+from viewer.state.projection import Stroke
 from viewer.window.widgets import em
 
 _BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
-_GAPS = 1.2, 0.6  # ems from the point: to the right of it or below it, and on its other sides
 _PAD = 0.4  # ems around words
-
-Pair = tuple[float, float]
-Rect = tuple[float, float, float, float]
-"""Left, upper, right and lower edge."""
+SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
+"""Around what is drawn, so that it is seen on any picture."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class Area:
         return ImVec2(corner.x + u * size.x, corner.y + v * size.y)
 
 
-def size_of(lines: Sequence[str]) -> Pair:
+def size_of(lines: Sequence[str]) -> tuple[float, float]:
     """The size of a few lines with the ground that they are written on."""
     width = max(imgui.calc_text_size(text).x for text in lines)
     return width + 2.0 * em(_PAD), imgui.get_text_line_height() * len(lines) + 2.0 * em(_PAD)
@@ -76,26 +78,65 @@ def pointer() -> ImVec2:
     return ImVec2(mouse.x + 0.5, mouse.y + 0.5)
 
 
-def write_beside(lines: Sequence[str], at: ImVec2, room: Rect, taken: Rect | None) -> None:
-    """Write a few lines beside a point, inside the room and not over what is taken, if that can be."""
-    corner = beside((at.x, at.y), size_of(lines), (em(_GAPS[0]), em(_GAPS[1])), room, taken)
-    write_lines(lines, ImVec2(*corner))
+class Pen:
+    """Draws over the picture of a frame: points are 0 to 1 from left and top, widths in ems.  `radius` is that of a
+    ring around a pixel which covers none of it."""
+
+    def __init__(self, area: Area, frame: Frame) -> None:
+        self.area, self.draw = area, imgui.get_window_draw_list()
+        self._corner, self._size = area.whole, area.whole_size  # asked for once, as there are thousands of strokes
+        self.pixel = self._size.x / frame.width, self._size.y / frame.height
+        self.radius = max(0.4, 0.5 * math.hypot(*self.pixel) / em(1.0) + 0.2)
+
+    def to_screen(self, u: float, v: float) -> ImVec2:
+        """Return the point of the screen that shows a point of the picture."""
+        return ImVec2(self._corner.x + u * self._size.x, self._corner.y + v * self._size.y)
+
+    def strokes(
+        self,
+        strokes: Iterable[Stroke],
+        color: ImVec4,
+        width: float,
+        behind: float = 0.6,
+        around: ImVec4 = SHADE,
+        rim: float = 0.06,
+    ) -> None:
+        """Draw strokes with a rim `around` them; what lies behind something has the opacity `behind`."""
+        edge = ImVec4(around.x, around.y, around.z, around.w * color.w)
+        outer, inner = (  # of what lies behind something, and of what is seen
+            [imgui.get_color_u32(ImVec4(one.x, one.y, one.z, one.w * alpha)) for alpha in (behind, 1.0)]
+            for one in (edge, color)
+        )
+        for stroke in strokes:
+            a, b = self.to_screen(*stroke.start), self.to_screen(*stroke.end)
+            self.draw.add_line(a, b, outer[stroke.seen], em(width + 2.0 * rim))
+            self.draw.add_line(a, b, inner[stroke.seen], max(1.0, em(width)))
+
+    def ring(self, at: tuple[float, float], radius: float | None = None, alpha: float = 1.0) -> None:
+        """Draw a white ring, around a pixel unless it has another radius."""
+        centre, size = self.to_screen(*at), em(self.radius if radius is None else radius)
+        self.draw.add_circle(centre, size, imgui.get_color_u32(SHADE), 0, em(0.22))
+        self.draw.add_circle(centre, size, imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, alpha)), 0, em(0.1))
+
+    def cross(self, at: tuple[float, float], color: ImVec4) -> None:
+        """Draw a cross, where light is blocked."""
+        centre, shown, arm = self.to_screen(*at), imgui.get_color_u32(color), em(0.28)
+        for way in (arm, -arm):
+            a, b = ImVec2(centre.x - arm, centre.y - way), ImVec2(centre.x + arm, centre.y + way)
+            self.draw.add_line(a, b, shown, em(0.14))
+
+    def square(self, middle: ImVec2, size: tuple[float, float], color: ImVec4) -> None:
+        """Draw the outline of a pixel around a point of the screen."""
+        half = 0.5 * size[0] - 1.0, 0.5 * size[1] - 1.0
+        a, b = ImVec2(middle.x - half[0], middle.y - half[1]), ImVec2(middle.x + half[0], middle.y + half[1])
+        self.draw.add_rect(a, b, imgui.get_color_u32(ImVec4(0.03, 0.04, 0.05, 0.9)), 0.0, max(3.0, em(0.2)))
+        self.draw.add_rect(a, b, imgui.get_color_u32(color), 0.0, max(1.0, em(0.1)))
 
 
-def beside(at: Pair, size: Pair, gaps: Pair, room: Rect, taken: Rect | None = None) -> Pair:
-    """The left and the upper edge of what is so large and stands beside a point.
-
-    It stands to the right and below by the first of the gaps, or else to the left or above by the second, wherever it
-    fits into the room and covers nothing that is taken; where all of that would, it covers it all the same."""
-    (x, y), (width, height), (after, before) = at, size, gaps
-    lefts, tops = (x + after, x - before - width), (y + after, y - before - height)
-    left, upper, right, lower = room
-    places = [(a, b) for b in tops for a in lefts if left <= a <= right - width and upper <= b <= lower - height]
-    if not places:
-        return max(lefts[1], left), max(tops[1], upper)
-    return next((place for place in places if taken is None or not _meets(place, size, taken)), places[0])
-
-
-def _meets(place: Pair, size: Pair, taken: Rect) -> bool:
-    left, upper, right, lower = taken
-    return place[0] < right and place[0] + size[0] > left and place[1] < lower and place[1] + size[1] > upper
+@contextmanager
+def pen(area: Area, frame: Frame) -> Iterator[Pen]:
+    """Return a pen that leaves what is around the picture alone."""
+    made = Pen(area, frame)
+    made.draw.push_clip_rect(area.corner, area.end, True)
+    yield made
+    made.draw.pop_clip_rect()

@@ -90,7 +90,6 @@ def camera_commands(ui: Ui) -> list[Command]:
     """The menu Camera."""
     c, p = ui.controller, ui.controller.preferences
     here = scene_open(c)
-    some = Condition(lambda: bool(c.bookmarks.all), "this scene has no bookmarks")
 
     def mode(name: str) -> Callable[[], None]:
         return lambda: setattr(p, "navigation", name)
@@ -107,8 +106,6 @@ def camera_commands(ui: Ui) -> list[Command]:
                 tip="as JSON, which `shadowcull render --camera` takes"),
         Command("Paste camera", text, lambda: _paste(ui), "Ctrl+Shift+V", enabled=here, tip="JSON from the clipboard"),
         Command("Add bookmark", marks, c.bookmarks.add, "Ctrl+B", enabled=here),
-        Command("Next bookmark", marks, lambda: c.next_bookmark(1), "PageDown", enabled=some),
-        Command("Previous bookmark", marks, lambda: c.next_bookmark(-1), "PageUp", enabled=some),
         *[_bookmark(ui, index) for index in range(KEYED_BOOKMARKS)],
     ]  # fmt: skip
 

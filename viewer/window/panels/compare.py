@@ -7,11 +7,9 @@ from itertools import groupby
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.frame import Frame
-from viewer.state.comparison import CompareMode, Side, Source
-from viewer.state.frame_rows import Row, beside, change
+from viewer.state.comparison import CompareMode, Source
+from viewer.state.frame_rows import beside, change
 from viewer.state.palette import LESS, MORE
-from viewer.state.savings import InTurn
 from viewer.window.panels.culling import method_list
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -19,7 +17,6 @@ from viewer.window.widgets import (
     WARNING,
     checkbox,
     clipped,
-    count,
     em,
     paragraph,
     properties,
@@ -100,12 +97,6 @@ def _mode(ui: Ui) -> None:
     imgui.end_combo()
 
 
-def pairs(ui: Ui, a: Frame, b: Frame, timed: InTurn | None = None) -> list[tuple[Row, Row]]:
-    """Return the rows of two frames, found once."""
-    found: list[tuple[Row, Row]] = ui.cached("pairs", a, (b, timed), lambda: beside(a, b, timed))
-    return found
-
-
 def _columns(ui: Ui) -> None:
     """The statistics of A and B, and what B has more or less."""
     c = ui.controller
@@ -117,30 +108,11 @@ def _columns(ui: Ui) -> None:
     room = ImVec2(0.0, max(imgui.get_content_region_avail().y, em(9.0)))
     if not imgui.begin_table("statistics of both", 5, int(flags | imgui.TableFlags_.no_host_extend_x), room):
         return
-    imgui.table_setup_scroll_freeze(0, 2)
+    imgui.table_setup_scroll_freeze(0, 1)
     imgui.table_setup_column("name", int(imgui.TableColumnFlags_.width_fixed), em(_NAMES))
     for name, width in (("A", 1.25), ("B", 1.25), ("difference", 1.0), ("per cent", 0.85)):
         imgui.table_setup_column(name, int(imgui.TableColumnFlags_.width_stretch), width)
-    _heads(a, b)
-    for group, found in groupby(pairs(ui, a.frame, b.frame, timed), lambda pair: pair[0].group):
-        imgui.table_next_row()
-        imgui.table_next_column()
-        clipped(group)
-        for one, other in found:
-            imgui.table_next_row()
-            imgui.table_next_column()
-            clipped(" / ".join(dict.fromkeys(filter(None, (one.name, other.name)))), QUIET)
-            tooltip(one.tip or other.tip)
-            for text in (one.text(one.number), other.text(other.number), *change(one, other)):
-                imgui.table_next_column()
-                right(text)
-    imgui.end_table()
-
-
-def _heads(a: Side, b: Side) -> None:
-    """Two rows: which is which, and how large they are."""
-    header = int(imgui.TableRowFlags_.headers)
-    imgui.table_next_row(header)
+    imgui.table_next_row(int(imgui.TableRowFlags_.headers))
     imgui.table_next_column()
     for name, color in ((f"A  {a.named(b)}", LESS), (f"B  {b.named(a)}", MORE)):
         imgui.table_next_column()
@@ -149,15 +121,17 @@ def _heads(a: Side, b: Side) -> None:
     for name in ("B - A", "of A"):
         imgui.table_next_column()
         right(name)
-    imgui.table_next_row(header)
-    imgui.table_next_column()
-    clipped("pixels", QUIET)
-    for side in (a, b):
+    found = ui.cached("pairs", a.frame, (b.frame, timed), lambda: beside(a.frame, b.frame, timed))
+    for group, pairs in groupby(found, lambda pair: pair[0].group):
+        imgui.table_next_row()
         imgui.table_next_column()
-        right(f"{side.frame.width} x {side.frame.height}", QUIET)
-    shaded = [round(side.frame.primitive.size * side.frame.statistics.part) for side in (a, b)]
-    if shaded[0] != shaded[1]:
-        imgui.table_next_column()
-        imgui.table_next_column()
-        right("not alike", WARNING)
-        tooltip(f"The figures are of {count(shaded[0])} shaded pixels of A and {count(shaded[1])} of B.")
+        clipped(group)
+        for one, other in pairs:
+            imgui.table_next_row()
+            imgui.table_next_column()
+            clipped(" / ".join(dict.fromkeys(filter(None, (one.name, other.name)))), QUIET)
+            tooltip(one.tip or other.tip)
+            for text in (one.text(one.number), other.text(other.number), *change(one, other)):
+                imgui.table_next_column()
+                right(text)
+    imgui.end_table()

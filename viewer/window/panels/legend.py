@@ -9,7 +9,6 @@ from imgui_bundle import ImVec2, imgui
 from viewer.views import legend_of
 from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, Swatch, fitting, lay_out
 from viewer.window.panels import sides
-from viewer.window.panels.area import Rect
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, tooltip_at
 
@@ -20,10 +19,9 @@ _MOST = 0.62  # of the picture's width, and of its height
 
 @dataclass
 class LegendState:
-    """Whether the picture shows its legend, where that is on the screen, and where the pointer holds it."""
+    """Whether the picture shows its legend, and where the pointer holds it."""
 
     shown: bool = False
-    place: Rect | None = None
     held: tuple[float, float] = (0.0, 0.0)
 
 
@@ -68,7 +66,7 @@ def draw(legend: Legend) -> None:
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     """Over the picture from `corner` to `end`: where it was put, and always inside."""
     state = ui.state(LegendState)
-    state.shown, state.place = False, None
+    state.shown = False
     legend, options = of_picture(ui), ui.controller.session.draw
     if legend is None or not options.legend:
         return
@@ -86,7 +84,6 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     imgui.set_cursor_screen_pos(at)
     imgui.invisible_button("legend", ImVec2(layout.width, layout.height))
     _drag(ui, at, least, room)
-    state.place = at.x, at.y, at.x + layout.width, at.y + layout.height
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(corner, end, True)
     draw_layout(draw, layout, at)

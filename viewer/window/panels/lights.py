@@ -14,7 +14,6 @@ from imgui_bundle import imgui
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.scene.lights import Light, as_lamps, number_of
 from tracer.scene.model import Scene
-from viewer.services.refinement import OFFERED
 from viewer.window.setting_rows import ALL
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph, row, tooltip
@@ -56,7 +55,7 @@ def lamp_rows(ui: Ui) -> None:
     row(samples.label, samples.help + _SAMPLES)
     imgui.begin_disabled(c.scheduler.lamps.wanted == 1 and not c.scheduler.lamps.any)
     if imgui.begin_combo("##lamp-samples", str(s.lamp_samples or _SCENE_SAYS)):
-        for number in (None, *OFFERED):
+        for number in (None, 1, 4, 16, 64, 256):
             if imgui.selectable(str(number or _SCENE_SAYS), s.lamp_samples == number)[0]:
                 c.settings.change(lamp_samples=number)
         imgui.end_combo()

@@ -14,9 +14,8 @@ from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
 from viewer.state.picking import outline_of, part_points, primitive_points
 from viewer.state.projection import Stroke, strokes
 from viewer.window.panels import rays
-from viewer.window.panels.area import Area
+from viewer.window.panels.area import Area, Pen, pen
 from viewer.window.panels.links import Pointed
-from viewer.window.panels.marks import Pen, pen
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, paragraph, tooltip
 

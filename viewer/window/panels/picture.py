@@ -113,7 +113,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     sides.show(ui, area, lower)
     legend.show(ui, area.corner, area.end)
     overlays.show_missing(ui, area.corner, area.end)
-    slicing.show(ui, area)
+    slicing.show(ui)
 
 
 def _fitted(shape: tuple[int, int], room: ImVec2, count: int = 1, gap: float = 0.0) -> tuple[float, float, ImVec2]:
@@ -182,8 +182,6 @@ def _title(ui: Ui, area: Area) -> float:
         return area.corner.y
     frame, request, draw = c.traced.frame, c.traced.request, c.session.draw
     parts = [c.scheduler.title, f"{frame.width} x {frame.height}"]
-    if request.divisor > 1:
-        parts.append(f"1/{request.divisor}")
     if frame.statistics.part < 1.0:
         parts.append(f"{whole_percent(frame.statistics.part)} shaded")
     elif request.samples > 1:

@@ -1,7 +1,7 @@
 """Exact values: the picture itself is looked at closely, with the values of its pixels in them, and the panel says how
-the values of a region lie.
+those lie that are seen.
 
-The wheel with Ctrl zooms around the pointer, a drag with Ctrl pans, and a drag with Shift chooses a region.
+The wheel with Ctrl zooms around the pointer, and a drag with Ctrl pans.
 """
 
 from __future__ import annotations
@@ -11,56 +11,40 @@ from dataclasses import dataclass
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
-from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.state.comparison import Side
-from viewer.state.pixels import ALL, GRID_FROM, STEP, Point, Region, panned, pixels_shown, region_between
+from viewer.state.pixels import GRID_FROM, STEP, panned, pixels_shown
 from viewer.state.views import can_draw
 from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
 from viewer.window import actions
-from viewer.window.keyboard import HELD
 from viewer.window.panels import sides
 from viewer.window.panels.area import Area, pointer
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right, tooltip
+from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right
 
-_FLYING = tuple(name for name in HELD if name.startswith("Fly"))
 _FIGURES, _PLOT = 20.0, 5.4  # ems: the width of the figures, and the least height of the histogram
 _OF_CHANNELS = (ImVec4(0.92, 0.33, 0.31, 1.0), ImVec4(0.25, 0.70, 0.35, 1.0), ImVec4(0.35, 0.58, 0.96, 1.0))
 _OF_VALUES = (ImVec4(0.42, 0.65, 0.93, 1.0),)
 _GRID, _BACK = ImVec4(0.5, 0.5, 0.5, 0.45), ImVec4(0.03, 0.04, 0.05, 0.66)
-_FRONT, _DARK = ImVec4(0.97, 0.97, 0.98, 1.0), ImVec4(0.03, 0.04, 0.05, 0.9)
-_REGION = ImVec4(0.42, 0.70, 0.96, 1.0)
+_FRONT = ImVec4(0.97, 0.97, 0.98, 1.0)
 _SMALLEST = 0.62  # of the usual size of letters, for the numbers in pixels
 _MOST_NUMBERS = 1500  # pixels whose values are written at once
 
 
 @dataclass
 class PixelsState:
-    """The region whose values are counted, None for the whole picture, and the scene that it is of; what a drag does
-    that moves no camera, and where in the picture it began."""
+    """Whether a drag on the picture pans it."""
 
-    region: Region | None = None
-    path: object = None
-    gesture: str = ""
-    gesture_at: Point = (0.0, 0.0)
-
-
-def region(ui: Ui) -> Region | None:
-    """The chosen region of the scene that is open."""
-    state, scene = ui.state(PixelsState), ui.controller.session.scene
-    if scene is not None and state.path != scene.path:
-        state.region, state.path = None, scene.path
-    return state.region
+    pans: bool = False
 
 
 # --- the panel ----------------------------------------------------------------------------------------
 
 
 def show(ui: Ui) -> None:
-    """How closely the picture is looked at, how the values of the region lie, and the range of colours from them."""
+    """How closely the picture is looked at, how the values that are seen lie, and the range of colours from them."""
     p, zoom = ui.controller.preferences, ui.controller.session.draw.zoom
     tip = "numbers in the pixels, and a grid, where the picture is enlarged enough"
     checkbox("Values in pixels", p.pixel_values, lambda on: setattr(p, "pixel_values", on), tip)
@@ -76,23 +60,16 @@ def show(ui: Ui) -> None:
 
 
 def _histogram(ui: Ui) -> None:
-    c, frame, chosen = ui.controller, ui.controller.frame, region(ui)
+    c, frame = ui.controller, ui.controller.frame
     options, seen = sides.draw_options(ui), c.comparing.seen
     difference = seen.difference if seen is not None else None
-    view = options.view
+    view, zoom = options.view, c.session.draw.zoom
     if frame is None or not can_draw(frame, view, options.light):
         return
     if difference is not None and difference.pixels.shape != frame.primitive.shape:
         return  # it is drawn of the frame before
-    rows, columns = (chosen or ALL).pixels(frame)
-    where = "the whole picture; Shift+drag for a part of it"
-    if chosen is not None:
-        wide, high = columns.stop - columns.start, rows.stop - rows.start
-        where = f"{wide} x {high} pixels from {columns.start}, {rows.start}"
-        if imgui.small_button(f"{icons.ICON_FA_XMARK}##region"):
-            ui.state(PixelsState).region = None
-        tooltip("count the whole picture again")
-        imgui.same_line()
+    x, y = pixels_shown(zoom, frame.width, frame.height)
+    where = "the whole picture" if zoom.fits else f"the {len(x)} x {len(y)} pixels that are seen"
     paragraph(f"{view.label if difference is None else f'B - A, {view.label.lower()}'}: {where}")
     if difference is not None:
         values = ui.cached("differing", difference, None, lambda: difference.differing)
@@ -101,7 +78,10 @@ def _histogram(ui: Ui) -> None:
     if values.classes:
         paragraph("Modes and numbers of primitives have no histogram; the legend counts them.", QUIET)
         return
-    found: Histogram | None = ui.cached("histogram", values, chosen, lambda: histogram(values, rows, columns))
+    found: Histogram | None = ui.cached(
+        "histogram", values, (x, y),
+        lambda: histogram(values, slice(y.start, y.stop), slice(x.start, x.stop)),
+    )  # fmt: skip
     if found is None:
         paragraph("No pixel here has a value." if difference is None else "No pixel differs here.", QUIET)
         return
@@ -172,27 +152,16 @@ def wheel(ui: Ui, area: Area) -> bool:
 
 
 def drag(ui: Ui, area: Area) -> bool:
-    """Pan with Ctrl, choose a region with Shift; whether the pointer, on ImGui's last item, does either."""
+    """Pan with Ctrl; whether the pointer, on ImGui's last item, does that."""
     state, io = ui.state(PixelsState), imgui.get_io()
-    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
-        flying = any(ui.keyboard.is_down(ui.keymap.of(name)) for name in _FLYING)  # then Shift flies faster
-        state.gesture = "pan" if io.key_ctrl else "region" if io.key_shift and not flying else ""
-        state.gesture_at = area.to_picture(*pointer())
-    released = imgui.is_item_deactivated()
-    if not state.gesture or not (imgui.is_item_active() or released):
+    if imgui.is_item_activated():
+        state.pans = io.key_ctrl and imgui.is_mouse_clicked(imgui.MouseButton_.left)
+    if not state.pans or not (imgui.is_item_active() or imgui.is_item_deactivated()):
         return False
-    if state.gesture == "pan":
-        session, by = ui.controller.session, io.mouse_delta
-        session.set_draw(zoom=panned(session.draw.zoom, by.x / area.size.x, by.y / area.size.y))
-        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
-    else:
-        start, here, frame = state.gesture_at, area.to_picture(*pointer()), ui.controller.frame
-        moved = frame is not None and (abs(start[0] - here[0]) * frame.width, abs(start[1] - here[1]) * frame.height)
-        state.region = region_between(start, here) if moved and max(moved) >= 0.5 else None
-        if released and state.region is not None:
-            actions.offer(ui, "Pixels")
-    if released:
-        state.gesture = ""
+    session, by = ui.controller.session, io.mouse_delta
+    session.set_draw(zoom=panned(session.draw.zoom, by.x / area.size.x, by.y / area.size.y))
+    imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+    state.pans = not imgui.is_item_deactivated()
     return True
 
 
@@ -200,22 +169,15 @@ def drag(ui: Ui, area: Area) -> bool:
 
 
 def draw(ui: Ui, area: Area, side: Side | None = None) -> None:
-    """Over the picture of a side, or what else is seen: a grid of pixels with their values, and the region."""
+    """Over the picture of a side, or what else is seen: a grid of pixels with their values."""
     found = sides.words(ui, sides.draw_options(ui), side)
-    if found is None:
+    if found is None or not ui.controller.preferences.pixel_values:
         return
     frame, words = found
-    made, chosen = imgui.get_window_draw_list(), region(ui)
+    made = imgui.get_window_draw_list()
     made.push_clip_rect(area.corner, area.end, True)
-    if ui.controller.preferences.pixel_values:
-        _grid(made, area, frame.width, frame.height)
-        _numbers(made, area, frame.width, frame.height, words)
-    if chosen is not None:
-        rows, columns = chosen.pixels(frame)
-        start = area.to_screen(columns.start / frame.width, rows.start / frame.height)
-        end = area.to_screen(columns.stop / frame.width, rows.stop / frame.height)
-        made.add_rect(start, end, imgui.get_color_u32(_DARK), 0.0, max(3.0, em(0.22)))
-        made.add_rect(start, end, imgui.get_color_u32(_REGION), 0.0, max(1.0, em(0.1)))
+    _grid(made, area, frame.width, frame.height)
+    _numbers(made, area, frame.width, frame.height, words)
     made.pop_clip_rect()
 
 

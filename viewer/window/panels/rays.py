@@ -17,8 +17,8 @@ from tracer.told_rays import AWAY, TRACED, RayTree
 from viewer.output.ray_rows import Filter, RayRows, Row, Shown, totals, unfolded
 from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels import lights
+from viewer.window.panels.area import SHADE, Pen
 from viewer.window.panels.links import Pointed
-from viewer.window.panels.marks import SHADE, Pen
 from viewer.window.setting_rows import ALL, setting_switch
 from viewer.window.ui import RaysState, Ui
 from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip, tooltip_at

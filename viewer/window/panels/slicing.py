@@ -8,10 +8,8 @@ from viewer.state.draw_options import AXES
 from viewer.state.pixels import pixel_at
 from viewer.state.views import View
 from viewer.views import view_of, words_at
-from viewer.window.panels.area import Area, write_beside
-from viewer.window.panels.legend import LegendState
 from viewer.window.ui import Ui
-from viewer.window.widgets import em, row
+from viewer.window.widgets import em, row, tooltip_at
 
 
 def rows(ui: Ui) -> None:
@@ -43,7 +41,7 @@ def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     return [] if words in (("-",), ("miss",)) else list(words)
 
 
-def show(ui: Ui, area: Area) -> None:
+def show(ui: Ui) -> None:
     """Beside the pointer, what is under it."""
     c = ui.controller
     at, frame = c.selection.hovered, c.frame
@@ -51,5 +49,4 @@ def show(ui: Ui, area: Area) -> None:
         return
     lines = lines_at(ui, *pixel_at(frame, *at))
     if lines:
-        room = area.corner.x, area.corner.y, area.end.x, area.end.y
-        write_beside(lines, imgui.get_io().mouse_pos, room, ui.state(LegendState).place)
+        tooltip_at("\n".join(lines))

@@ -22,7 +22,7 @@ from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.view_state import one_by_one
 from viewer.window.command import Command, Condition
 from viewer.window.panels import lights
-from viewer.window.panels.marks import SHADE
+from viewer.window.panels.area import SHADE
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,

@@ -19,7 +19,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, paragraph, properties, row, tooltip
 
 _PLOT, _TABLE = 14.0, 15.0  # ems of width
-_LOW = 7.0  # ems of height below which a plot has no legend
+_LOW = 8.5  # ems of height below which a plot has no legend
 _FILM, _LEAST_FILM, _MOST_FILM = 0.45, 3.2, 9.0  # the filmstrips' part of the height, and ems of one
 _LARGE = 20.0  # ems of a picture that is pointed at
 
