@@ -94,8 +94,8 @@ def _use(d: Driver, view: View, method: str) -> None:
 
 def _clusters(d: Driver) -> None:
     """Methods by clusters of lights have a view, and their error and the most clusters can be chosen."""
+    d.change(lamp_radius=0.3, lamp_samples=16)  # else there are too few lights to be clustered
     _use(d, View.CUTS, "lightcuts")
-    d.change(lamp_radius=0.3, lamp_samples=16)
     assert d.c.frame.statistics.cuts.most > 3
     d.expect_picture()
     d.enter("//Culling/**/##lightcuts_error", 20.0)
