@@ -43,9 +43,9 @@ from viewer.state.scene_rows import Level
 from viewer.util.messages import say
 from viewer.util.screen import has_display, no_display_reason
 from viewer.window import app as viewer_app
-from viewer.window.actions import FindState
 from viewer.window.app import FASTEST, FASTEST_BY_PROCESSOR, App
 from viewer.window.panels import find
+from viewer.window.panels.find import FindState
 
 CAMERA = Camera((0.6, 0.9, 2.6), (-0.2, -0.3, -0.93), angle=40.0)
 LIGHTS = [(1.6, 1.2, 0.4), (-2.0, 2.0, 1.5)]

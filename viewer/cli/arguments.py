@@ -39,9 +39,6 @@ CAMERA = '{"position": [0, 1, 3], "direction": [0, 0, -1], "angle": 40}'
 class Parser(argparse.ArgumentParser):
     """Options by their whole names; errors in one line, which names where help is."""
 
-    _unknown: Sequence[str] = ()
-    """Words of the last command line that are no arguments, about which there is an error."""
-
     def __init__(self, command: str, description: str, epilog: str) -> None:
         super().__init__(
             prog=f"shadowcull {command}".strip(),
@@ -51,11 +48,6 @@ class Parser(argparse.ArgumentParser):
             allow_abbrev=False,
         )
         self._negative_number_matcher = re.compile(r"-\.?\d|-[xyz]$")  # words that are values: -3, and -z of --up
-
-    def parse_known_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> Any:  # type: ignore[override]
-        self._unknown = ()
-        options, self._unknown = super().parse_known_args(args, namespace)
-        return options, self._unknown
 
     def _get_value(self, action: argparse.Action, text: str) -> Any:
         """Say what the function that reads a value says of a wrong one; argparse would say only that it is invalid."""
@@ -67,8 +59,8 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Ask about the first unknown word that is like an option; its dashes, which all have, do not count."""
         known = [name[2:] for name, action in self._option_string_actions.items() if action.help != argparse.SUPPRESS]
-        words = (word[2:].partition("=")[0] for word in self._unknown if word.startswith("--"))
-        meant = next(filter(None, (similar(word, known, 0.7) for word in words)), "")
+        unknown = re.findall(r" --([\w-]+)", message) if message.startswith("unrecognized arguments") else []
+        meant = next(filter(None, (similar(word, known, 0.7) for word in unknown)), "")
         hint = f": did you mean '--{meant}'?" if meant else ""
         say(f"{message}{hint} (see '{self.prog} --help')", ERROR)
         sys.exit(MISUSED)

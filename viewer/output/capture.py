@@ -54,15 +54,15 @@ class CaptureError(ValueError):
 
 
 def filled(template: str, values: dict[str, Any], now: datetime | None = None, what: str = "name template") -> str:
-    """The template with its fields filled in; raises CaptureError, naming what is wrong with it."""
+    """Return the template with its fields filled in; raises CaptureError, naming what is wrong with it."""
     now = now or datetime.now()
     known = values | {"date": now.strftime("%Y-%m-%d"), "time": now.strftime("%H-%M-%S")}
     try:
         for _, name, layout, _ in string.Formatter().parse(template):
             if name is not None and name not in FIELDS:
-                raise CaptureError(f"the {what} has no field {{{name}}}; it knows {', '.join(FIELDS)}")
+                raise ValueError(f"there is no field {{{name}}}, but {', '.join(FIELDS)}")
             if len(layout or "") > 6 or "{" in (layout or ""):
-                raise CaptureError(f"the {what} lays {{{name}}} out too wide")
+                raise ValueError(f"{{{name}}} is laid out too wide")
         return template.format(**known).strip()
     except (ValueError, IndexError, KeyError, AttributeError, TypeError) as error:
         raise CaptureError(f"the {what} {template!r} is wrong: {error}") from None

@@ -123,21 +123,16 @@ class Bookmarks(NamedStates):
 # --- presets ---------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class BuiltIn:
+@dataclass
+class BuiltIn(NamedState):
     """A preset that comes with the program: what its state says nothing of stays as it is."""
 
-    name: str
     tip: str
-    state: dict[str, dict[str, Any]]
 
 
 BUILT_IN = (
     BuiltIn(
         "As in the paper",
-        "The method paper, tested one way, with zoom factor 4, 10 bounces, one ray a pixel and point lights; every "
-        "frame of the animation is traced in full at 512 x 512. (The window always traces through its fast trees; the "
-        "command bench takes the paper's kd-tree.)",
         {
             "settings": {
                 "method": BY_MODES, "symmetric": False, "zoom_factor": 4.0, "depth": 10, "samples": 1, "verify": False,
@@ -148,36 +143,39 @@ BUILT_IN = (
                 "keep_tracing": False,
             },
         },
+        "The method paper, tested one way, with zoom factor 4, 10 bounces, one ray a pixel and point lights; every "
+        "frame of the animation is traced in full at 512 x 512. (The window always traces through its fast trees; the "
+        "command bench takes the paper's kd-tree.)",
     ),
     BuiltIn(
         "Every ray traced",
-        "No culling: the picture that all others are compared with.",
         {"settings": {"method": NO_CULLING, "verify": False}},
+        "No culling: the picture that all others are compared with.",
     ),
     BuiltIn(
         "Quick and exact",
-        "The method auto, which culls where that is quicker, in the size of the window, refined while nothing moves.",
         {
             "settings": {"method": ADAPTIVE, "verify": False, "samples": 16},
             "pace": {"fixed_size": False, "progressive": True, "every_frame": False},
         },
+        "The method auto, which culls where that is quicker, in the size of the window, refined while nothing moves.",
     ),
     BuiltIn(
         "What the paper gets wrong",
-        "The method paper with every culled ray traced as well, and pixels with a wrong shadow marked.",
         {
             "settings": {"method": BY_MODES, "verify": True},
             "draw": {"view": View.DIFFERENCE.value, "mark_wrong": True},
         },
+        "The method paper with every culled ray traced as well, and pixels with a wrong shadow marked.",
     ),
     BuiltIn(
         "What certificates prove",
-        "The method certified, which goes on proving while nothing moves, and the view of its certificates.",
         {
             "settings": {"method": CERTIFIED, "verify": False},
             "draw": {"view": View.CERTIFICATE.value},
             "pace": {"keep_tracing": True},
         },
+        "The method certified, which goes on proving while nothing moves, and the view of its certificates.",
     ),
 )  # fmt: skip
 OF_THE_MOMENT = {"spans", "zoom", "slice", "caption", "savings", "magnified"}
@@ -209,13 +207,9 @@ class Presets(NamedStates):
         return self._preferences.presets
 
     @property
-    def names(self) -> list[str]:
-        """Those of the program first."""
-        return list(self._states)
-
-    @property
-    def _states(self) -> dict[str, dict[str, Any]]:
-        return {one.name: one.state for one in BUILT_IN} | {one.name: one.state for one in self.all}
+    def states(self) -> dict[str, dict[str, Any]]:
+        """What each holds, by its name; those of the program first."""
+        return {one.name: one.state for one in (*BUILT_IN, *self.all)}
 
     def kept(self) -> dict[str, Any]:
         state = super().kept()
@@ -227,7 +221,7 @@ class Presets(NamedStates):
         if self._locked():
             return
         now = self._session.state
-        stored = self._states.get(name, {})
+        stored = self.states.get(name, {})
         try:
             parts = {part: stored[part] for part in ("settings", "draw", "pace") if part in stored}
             if not parts:

@@ -41,41 +41,25 @@ class Certificate(IntEnum):
     CANDIDATES = 3
 
 
-OCCLUSION_COLORS: dict[OcclusionMode, Color] = {
-    OcclusionMode.INIT: GREY,
-    OcclusionMode.PARTIALLY_OCCLUDED: hex_color("E69F00"),
-    OcclusionMode.FULLY_RENDERED: hex_color("009E73"),
-    OcclusionMode.DYNAMIC: hex_color("CC79A7"),
+_OCCLUSION: dict[OcclusionMode, tuple[Color, str]] = {
+    OcclusionMode.INIT: (GREY, "not seen yet, or to be examined again"),
+    OcclusionMode.PARTIALLY_OCCLUDED: (hex_color("E69F00"), "something hides a part of it in this frame"),
+    OcclusionMode.FULLY_RENDERED: (hex_color("009E73"), "fully rendered: culled by its shadow modes"),
+    OcclusionMode.DYNAMIC: (hex_color("CC79A7"), "it moves: never culled"),
 }
-
-SHADOW_COLORS: dict[ShadowMode, Color] = {
-    ShadowMode.INIT: GREY,
-    ShadowMode.FULL_SHADOW: hex_color("0072B2"),
-    ShadowMode.NON_SHADOW: hex_color("F0E442"),
-    ShadowMode.PARTIAL_SHADOW: hex_color("D55E00"),
-}
-
-CERTIFICATE_COLORS: dict[Certificate, Color] = {
-    Certificate.NONE: GREY,
-    Certificate.FULL: SHADOW_COLORS[ShadowMode.FULL_SHADOW],
-    Certificate.LIT: SHADOW_COLORS[ShadowMode.NON_SHADOW],
-    Certificate.CANDIDATES: SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW],
-}
-
-OCCLUSION_MEANING = {
-    OcclusionMode.INIT: "not seen yet, or to be examined again",
-    OcclusionMode.PARTIALLY_OCCLUDED: "something hides a part of it in this frame",
-    OcclusionMode.FULLY_RENDERED: "fully rendered: culled by its shadow modes",
-    OcclusionMode.DYNAMIC: "it moves: never culled",
-}
-
-SHADOW_MEANING = {
-    ShadowMode.INIT: "no shadow ray yet",
-    ShadowMode.FULL_SHADOW: "every shadow ray was blocked: culled once fully rendered",
-    ShadowMode.NON_SHADOW: "no shadow ray was blocked: tested against dynamic objects only once fully rendered",
-    ShadowMode.PARTIAL_SHADOW: "some were blocked: always traced",
-}
-
+_SHADOW: dict[ShadowMode, tuple[Color, str]] = {
+    ShadowMode.INIT: (GREY, "no shadow ray yet"),
+    ShadowMode.FULL_SHADOW: (hex_color("0072B2"), "every shadow ray was blocked: culled once fully rendered"),
+    ShadowMode.NON_SHADOW: (
+        hex_color("F0E442"), "no shadow ray was blocked: tested against dynamic objects only once fully rendered",
+    ),
+    ShadowMode.PARTIAL_SHADOW: (hex_color("D55E00"), "some were blocked: always traced"),
+}  # fmt: skip
+OCCLUSION_COLORS = {mode: color for mode, (color, _) in _OCCLUSION.items()}
+OCCLUSION_MEANING = {mode: meaning for mode, (_, meaning) in _OCCLUSION.items()}
+SHADOW_COLORS = {mode: color for mode, (color, _) in _SHADOW.items()}
+SHADOW_MEANING = {mode: meaning for mode, (_, meaning) in _SHADOW.items()}
+CERTIFICATE_COLORS = {found: SHADOW_COLORS[ShadowMode(found)] for found in Certificate}
 CERTIFICATE_MEANING = {
     Certificate.NONE: "nothing is proven, or the light is behind it: its shadow rays are traced",
     Certificate.FULL: "all of it is in the shadow of static geometry: its shadow rays are culled",
@@ -83,20 +67,45 @@ CERTIFICATE_MEANING = {
     Certificate.CANDIDATES: "only a few primitives can block the light: tested against these and dynamic objects",
 }
 
-FATE_COLORS: dict[Fate, Color] = {
-    Fate.NONE: UNKNOWN,
-    Fate.FACES_AWAY: FACES_AWAY,
-    Fate.CULLED: SHADOW_COLORS[ShadowMode.FULL_SHADOW],
-    Fate.DYNAMIC_ONLY: SHADOW_COLORS[ShadowMode.NON_SHADOW],
-    Fate.CANDIDATES: hex_color("56B4E9"),
-    Fate.CACHED: hex_color("8ACBF3"),
-    Fate.PARTLY_OCCLUDED: OCCLUSION_COLORS[OcclusionMode.PARTIALLY_OCCLUDED],
-    Fate.PARTIAL_SHADOW: SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW],
-    Fate.NOT_SEEN_WHOLE: OCCLUSION_COLORS[OcclusionMode.INIT],
-    Fate.DYNAMIC: OCCLUSION_COLORS[OcclusionMode.DYNAMIC],
-    Fate.TRACED: hex_color("D3D6DC"),
+_BY_PAPER = "with the paper's method, {} of a fully rendered primitive (§2.4)"
+# The colour of a shadow ray, its name, and what became of it; a fate that a mode brings about has the mode's colour.
+_FATES: dict[Fate, tuple[Color, str, str]] = {
+    Fate.NONE: (UNKNOWN, "not known yet", "this pixel has not been shaded yet"),
+    Fate.FACES_AWAY: (
+        FACES_AWAY, "faces away", "no shadow ray is due: the surface faces away from the light",
+    ),
+    Fate.CULLED: (
+        SHADOW_COLORS[ShadowMode.FULL_SHADOW], terms.CULLED,
+        f"answered without asking any geometry: {_BY_PAPER.format('FULL_SHADOW')}",
+    ),
+    Fate.DYNAMIC_ONLY: (
+        SHADOW_COLORS[ShadowMode.NON_SHADOW], terms.DYNAMIC_ONLY,
+        f"asked dynamic objects alone: {_BY_PAPER.format('NON_SHADOW')}",
+    ),
+    Fate.CANDIDATES: (
+        hex_color("56B4E9"), terms.CANDIDATES_ONLY,
+        "asked the few static primitives that can block it, and dynamic objects",
+    ),
+    Fate.CACHED: (hex_color("8ACBF3"), terms.CACHE_HITS, "blocked by what blocked the last ray from here"),
+    Fate.PARTLY_OCCLUDED: (
+        OCCLUSION_COLORS[OcclusionMode.PARTIALLY_OCCLUDED], f"{terms.TRACED}: partially occluded", "",
+    ),
+    Fate.PARTIAL_SHADOW: (SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW], f"{terms.TRACED}: partly in shadow", ""),
+    Fate.NOT_SEEN_WHOLE: (OCCLUSION_COLORS[OcclusionMode.INIT], f"{terms.TRACED}: not seen whole yet", ""),
+    Fate.DYNAMIC: (OCCLUSION_COLORS[OcclusionMode.DYNAMIC], f"{terms.TRACED}: dynamic", ""),
+    Fate.TRACED: (hex_color("D3D6DC"), terms.TRACED, "traced through the whole scene"),
+}  # fmt: skip
+FATE_COLORS = {fate: color for fate, (color, _, _) in _FATES.items()}
+FATE_NAMES = {fate: name for fate, (_, name, _) in _FATES.items()}
+"""Of shadow rays; TRACED also stands for all traced."""
+FATE_MEANING = {fate: meaning for fate, (_, _, meaning) in _FATES.items()}
+FATE_MEANING |= {fate: f"traced: {why}" for fate, why in WHY_NOT_CULLED.items()}
+FATE_WOULD: dict[Fate, str] = {
+    Fate.CULLED: "would be culled",
+    Fate.DYNAMIC_ONLY: "… dynamic only",
+    Fate.TRACED: "traced in any case",
 }
-"""Of a shadow ray; a fate that a mode brings about has the colour of this mode. TRACED also stands for all traced."""
+"""What fates that rays would have by the paper's method are called where nothing is culled."""
 
 
 def label_color(color: Color) -> Color:
@@ -122,41 +131,6 @@ def fate_palette(shown: Fate | None = None) -> list[Color]:
 
 OTHERS = 0.18
 """How much is left of the colours of other fates than the one that is to stand out."""
-
-FATE_NAMES: dict[Fate, str] = {
-    Fate.NONE: "not known yet",
-    Fate.FACES_AWAY: "faces away",
-    Fate.CULLED: terms.CULLED,
-    Fate.DYNAMIC_ONLY: terms.DYNAMIC_ONLY,
-    Fate.CANDIDATES: terms.CANDIDATES_ONLY,
-    Fate.CACHED: terms.CACHE_HITS,
-    Fate.PARTLY_OCCLUDED: f"{terms.TRACED}: partially occluded",
-    Fate.PARTIAL_SHADOW: f"{terms.TRACED}: partly in shadow",
-    Fate.NOT_SEEN_WHOLE: f"{terms.TRACED}: not seen whole yet",
-    Fate.DYNAMIC: f"{terms.TRACED}: dynamic",
-    Fate.TRACED: terms.TRACED,
-}
-
-FATE_WOULD: dict[Fate, str] = {
-    Fate.CULLED: "would be culled",
-    Fate.DYNAMIC_ONLY: "… dynamic only",
-    Fate.TRACED: "traced in any case",
-}
-"""What fates that rays would have by the paper's method are called where nothing is culled."""
-
-FATE_MEANING: dict[Fate, str] = {
-    Fate.NONE: "this pixel has not been shaded yet",
-    Fate.FACES_AWAY: "no shadow ray is due: the surface faces away from the light",
-    Fate.CULLED: "answered without asking any geometry: with the paper's method, FULL_SHADOW of a fully rendered "
-    "primitive (§2.4)",
-    Fate.DYNAMIC_ONLY: "asked dynamic objects alone: with the paper's method, NON_SHADOW of a fully rendered "
-    "primitive (§2.4)",
-    Fate.CANDIDATES: "asked the few static primitives that can block it, and dynamic objects",
-    Fate.CACHED: "blocked by what blocked the last ray from here",
-    **{fate: f"traced: {why}" for fate, why in WHY_NOT_CULLED.items()},
-    Fate.TRACED: "traced through the whole scene",
-}
-
 
 WRONG = hex_color("FF00FF")
 """A pixel with a wrong shadow answer: a colour of no other view, as pure as no shaded one gets."""

@@ -13,13 +13,14 @@ from viewer.state.draw_options import NEUTRAL, brighter
 from viewer.state.methods import toggled, with_base
 from viewer.state.pixels import MOST, STEP
 from viewer.state.preferences import SCALES
-from viewer.state.scene_rows import Level
 from viewer.state.views import View
 from viewer.views import view_of
-from viewer.window.actions import FindState, copy_command, fit, offer, pointed_at, zoom_by
 from viewer.window.command import Command, Condition, scene_open, switch
 from viewer.window.panels import what_if
 from viewer.window.panels.camera import camera_commands, time_commands
+from viewer.window.panels.find import FindState
+from viewer.window.panels.pixels import fit, pointed_at, zoom_by
+from viewer.window.panels.saving import copy_command
 from viewer.window.setting_rows import setting_command
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
@@ -85,18 +86,18 @@ def _models(ui: Ui) -> list[Command]:
         return session.scene is not None and session.scene.path.suffix.lower() in MESH_EXTENSIONS
 
     def in_studio() -> bool:
-        return (session.meshes if is_mesh() else loader.meshes).studio
+        return (session.state.meshes if is_mesh() else loader.meshes).studio
 
     def toggle() -> None:
         if is_mesh():
-            loader.read_as(replace(session.meshes, studio=not in_studio()))
+            loader.read_as(replace(session.state.meshes, studio=not in_studio()))
         else:
             loader.meshes = replace(loader.meshes, studio=not in_studio())
 
     def turn() -> None:
         up = shown_up()
         if up is not None:
-            loader.read_as(replace(session.meshes, up=TURNS[(TURNS.index(up) + 1) % len(TURNS)]))
+            loader.read_as(replace(session.state.meshes, up=TURNS[(TURNS.index(up) + 1) % len(TURNS)]))
 
     stands = Condition(
         lambda: loader.load_job is None and shown_up() is not None, "no model is in a studio, or one is being loaded"
@@ -111,11 +112,10 @@ def _models(ui: Ui) -> list[Command]:
 
 def _view(ui: Ui) -> list[Command]:
     c, p = ui.controller, ui.controller.preferences
-    views, table = list(View), ui.controller.table
+    views = list(View)
     lit = Condition(
         lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "the scene has no other light"
     )
-    listed = Condition(lambda: table.listing is not None, "there is no table yet: open the panel Find")
 
     def show(view: View) -> Command:
         return Command(view.label, "View", lambda: c.session.set_draw(view=view), view.key, also=view.declared.also,
@@ -130,13 +130,6 @@ def _view(ui: Ui) -> list[Command]:
     def find() -> None:
         ui.show_panel("Find")
         ui.state(FindState).focus = True
-
-    def rows(level: Level) -> Command:
-        def show() -> None:
-            table.level = level
-            ui.show_panel("Find")
-
-        return Command(f"Table of {level.value.lower()}", "View/Table", show, checked=lambda: table.level is level)
 
     return [
         *[show(view) for view in views],
@@ -154,9 +147,6 @@ def _view(ui: Ui) -> list[Command]:
         Command("Rays of the clicked pixel", "View", ui.show_rays, "X", separated=True),
         Command("Find objects and primitives", "View", find, "Ctrl+F",
                 tip="a table of all, with modes, pixels, rays saved and wrong answers"),
-        *[rows(level) for level in (Level.OBJECTS, Level.PRIMITIVES)],
-        Command("Save the table as CSV", "View/Table", table.save, enabled=listed, separated=True,
-                tip="the rows that the filter finds, in their order, into the folder of the pictures"),
         setting_command(ui, "draw.rays", "View", "I"),
         setting_command(ui, "draw.smooth", "View"),
         *_interface(ui),
@@ -249,7 +239,7 @@ def _compare(ui: Ui) -> list[Command]:
 
     def keep() -> None:
         comparing.keep()
-        offer(ui, "Compare")
+        ui.offer_panel("Compare")
 
     def by(mode: CompareMode) -> Command:
         return Command(mode.command, "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.help,

@@ -158,6 +158,11 @@ class Ui:
     def toggle(self, dialog: Dialog) -> None:
         (self.close if dialog in self.dialogs else self.open)(dialog)
 
+    def offer_panel(self, label: str) -> None:
+        """Open a panel, unless panels are hidden."""
+        if not self.panels_hidden:
+            self.show_panel(label)
+
     def light_name(self, light: int) -> str:
         """A light as every panel calls it: by its number in the scene as it was read, and its name if it has one."""
         scene = self.controller.session.scene

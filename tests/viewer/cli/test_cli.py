@@ -486,7 +486,7 @@ def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path, monkeypatch
     for said in ("out/first-light.png", "out/figure-1.svg", "traversal steps saved, average", "speed-up over none"):
         assert said in done.stdout
     assert pixels(tmp_path / "out/first-light.png").shape == (480, 640, 3)
-    due = re.search(r"shadow rays due\D*([\d,]+)", done.stdout)
+    due = re.search(r"Due\D*([\d,]+)", done.stdout)
     assert due is not None and due[1] in (tmp_path / "out/figure-1.svg").read_text()
     for name in set(os.environ) - set(without_display()):
         monkeypatch.delenv(name)

@@ -110,7 +110,10 @@ def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: p
         (("-o", "taken"), "numbered pictures in it already, 0002.png to 10000.png; give another folder"),
         (("-o", "file"), "no folder for the pictures"),
         (("-o", "gone/d"), "gone/d: there is no folder gone"),
-        (("-o", "d", "--caption", "{sceen}"), "the caption has no field {sceen}"),
+        (
+            ("-o", "d", "--caption", "{sceen}"),
+            "the caption '{sceen}' is wrong: there is no field {sceen}, but scene, view",
+        ),
         (("-o", "d", "--view", "shadow:7"), "the scene's lights are 0 to 1"),
         (("-o", "d", "--view", "certificate:0", "--method", "paper"), "give --method certified"),
         (

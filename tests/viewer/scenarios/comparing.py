@@ -10,6 +10,7 @@ from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
 from viewer.state.comparison import CompareMode
+from viewer.state.draw_options import Curve, Tone
 from viewer.state.frame_rows import beside
 from viewer.views.compare import GAP, composed, signed_picture
 from viewer.views.wipe import wipe_column
@@ -63,6 +64,12 @@ def comparing(d: Driver) -> None:
     d.frames(3)
     assert not comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.display
     _line(d, a, b)
+    d.c.session.set_draw(tone=Tone(-1.0, 1.0, Curve.SRGB))
+    d.frames(2)
+    toned = (picture(frame, tone=d.c.session.draw.tone) for frame in (kept, d.c.frame))
+    expected = composed(*toned, CompareMode.WIPE, d.c.session.draw.wipe, False)
+    assert np.abs(_saved(d, "toned.png").astype(int) - expected).max() <= 1, "both have the tone"
+    d.c.session.set_draw(tone=Tone())
     d.press(KEY._9)
     d.settle()
     assert not comparing.state.on and d.ui.graphics.compared.a.texture_id is None, "one line at a time"

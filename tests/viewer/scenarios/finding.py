@@ -8,8 +8,8 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.services.scene_table import Listing
 from viewer.state.scene_rows import Level
-from viewer.window.actions import FindState
 from viewer.window.menus import ANY_POPUP
+from viewer.window.panels.find import FindState
 
 KEY = imgui.Key
 ROWS_SEEN = 60  # at most, in a window of these sizes

@@ -295,30 +295,3 @@ def test_the_world_is_left_to_the_first_whatever_becomes_of_the_picture():
     with pytest.raises(ValueError, match="no"):
         list(pair.refine(asked, never))
     assert first.turns[-1] == "paper"
-
-
-def request(at: float, **kinds) -> RenderRequest:
-    return RenderRequest(at, CAMERA, Settings(width=8, height=8), **kinds)
-
-
-def come(thread: RenderThread, wanted) -> None:
-    until(lambda: (traced := thread.take()) is not None and wanted(traced))
-
-
-def test_the_thread_traces_both_for_each_request_and_stops_when_it_may():
-    thread = RenderThread()
-    renderer = FakeRenderer()
-    thread.use(renderer)
-    for at in (1.0, 2.0):
-        thread.submit(request(at, second="certified", parts=(4, 16)))
-        come(thread, lambda traced: traced.whole and traced.second is not None)
-    assert [moment for moment, _ in renderer.other.asked] == [1.0, 1.0, 2.0, 2.0]
-    assert {settings.method for _, settings in renderer.other.asked} == {"certified"}
-    other = renderer.other
-    thread.submit(request(2.0, second=""))
-    come(thread, lambda traced: traced.second is None)
-    assert len(other.asked) == 4, "one method again"
-    thread.submit(request(3.0, second="none"))
-    come(thread, lambda traced: traced.second is not None)
-    assert renderer.other is not other, "what it had learnt is gone"
-    assert thread.close(PATIENCE)

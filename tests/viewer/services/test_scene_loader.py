@@ -204,13 +204,6 @@ def test_all_that_a_scene_names_is_noted(tmp_path: Path, tiny_scene_file: Path):
     assert files == {p: stamp(p) for p in (tiny_scene_file, part, tmp_path / "there.png", tmp_path / "gone.png")}
     assert files[tmp_path / "gone.png"] is None
 
-    mesh, materials = tmp_path / "mesh.obj", tmp_path / "mesh.mtl"
-    materials.write_text("newmtl red\nKd 1 0 0\n")
-    mesh.write_text("mtllib mesh.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n")
-    files = {}
-    with noting(files):
-        load_scene(mesh)
-    assert {mesh, materials} <= files.keys()
     part.write_text("p nonsense\n")
     files = {}
     with noting(files), pytest.raises(SceneError):

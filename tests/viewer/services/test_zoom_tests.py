@@ -125,7 +125,7 @@ def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
     for _ in range(2):
         c.undo.undo()
         study.rest()
-    assert c.session.state == here and not c.session.pace.fixed_size
+    assert c.session.state == here and not c.session.state.pace.fixed_size
 
 
 def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(study: Desk, tiny_scene_file: Path) -> None:

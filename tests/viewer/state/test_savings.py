@@ -136,32 +136,34 @@ def statistics(part: float = 1.0, **found: int) -> FrameStatistics:
     return FrameStatistics(part=part, wrong=WrongCounts(**counts))
 
 
-def test_wrong_answers_have_their_share_their_pixels_and_their_samples() -> None:
-    assert verified.in_words(statistics(answers=3, pixels=2)) == "3 wrong answers (0.3 %) at 2 pixels"
-    assert verified.in_words(statistics(answers=1, pixels=1, samples=4)) == (
-        "1 wrong answer (0.1 %) at 1 pixel, in 4 samples"
-    )
-    several = statistics(answers=1, pixels=1, samples=4)
-    assert verified.in_short(several) == "1 wrong answer in 4 samples", "a number that grows with the samples says so"
-    assert verified.named("wrong", several.wrong) == "wrong, 4 samples"
-    assert verified.share(several.wrong) == "0.1 % of 1,000 due in 4 samples"
-    assert verified.in_short(statistics(answers=3, pixels=2)) == "3 wrong answers"
-    assert verified.is_wrong(statistics(answers=3, pixels=2)) and not verified.is_wrong(statistics())
+OF_CUTS = replace(statistics(answers=5, pixels=4), cuts=CutCounts(errors=CutErrors()))
 
 
-def test_where_nothing_is_wrong_it_is_said_of_how_much_that_holds() -> None:
-    assert verified.in_words(statistics()) == "None wrong of 200 answers known without tracing (20.0 %)"
-    assert verified.in_words(statistics(part=0.12, untraced=2)) == (
-        "None wrong of 2 answers known without tracing (0.2 %), in the 12.0 % of the picture that is shaded"
-    )
-    assert verified.in_words(statistics(untraced=0)) == verified.ALL_TRACED
+@pytest.mark.parametrize(
+    ("found", "words", "short"),
+    [
+        (statistics(answers=3, pixels=2), "3 wrong answers (0.3 %) at 2 pixels", "3 wrong answers"),
+        (statistics(answers=1, pixels=1, samples=4), "1 wrong answer (0.1 %) at 1 pixel, in 4 samples",
+         "1 wrong answer in 4 samples"),
+        (statistics(), "None wrong of 200 answers known without tracing (20.0 %)", "0 wrong answers"),
+        (statistics(part=0.12, untraced=2),
+         "None wrong of 2 answers known without tracing (0.2 %), in the 12.0 % of the picture that is shaded",
+         "0 wrong answers"),
+        (statistics(untraced=0), verified.ALL_TRACED, "0 wrong answers"),
+        (OF_CUTS, "4 pixels beyond the error", "4 pixels beyond the error"),
+        (replace(OF_CUTS, cuts=CutCounts(), part=0.5), verified.NOT_YET, ""),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_said_with_of_how_much_that_holds(found: FrameStatistics, words: str, short: str) -> None:
+    assert (verified.in_words(found), verified.in_short(found)) == (words, short)
+    assert verified.is_wrong(found) is (found.wrong.pixels > 0)
 
 
-def test_clusters_have_pixels_beyond_the_error_and_no_wrong_answers() -> None:
-    of_cuts = replace(statistics(answers=5, pixels=4), cuts=CutCounts(errors=CutErrors()))
-    assert verified.in_words(of_cuts) == "4 pixels beyond the error" == verified.in_short(of_cuts)
-    partly = replace(of_cuts, cuts=CutCounts(), part=0.5)
-    assert verified.in_words(partly) == verified.NOT_YET and verified.in_short(partly) == ""
+def test_numbers_that_grow_with_the_samples_say_so() -> None:
+    several = statistics(answers=1, pixels=1, samples=4).wrong
+    assert (verified.named("wrong", several), verified.share(several)) == (
+        "wrong, 4 samples", "0.1 % of 1,000 due in 4 samples",
+    )  # fmt: skip
 
 
 def test_a_frame_that_was_not_verified_says_nothing_and_is_refused() -> None:

@@ -10,7 +10,7 @@ from tracer.method import DEFAULT_METHOD
 from viewer.services.controller import Controller
 from viewer.state.preferences import SCALES, Preferences
 from viewer.state.views import View
-from viewer.window import actions, command, commands
+from viewer.window import command, commands
 from viewer.window.ui import Ui
 
 
@@ -44,10 +44,10 @@ def test_every_command_says_without_a_scene_whether_it_can_be_run_and_why_not(ui
 def test_no_panel_opens_by_itself_while_panels_are_hidden(ui):
     shown = []
     ui.show_panel, ui.panels_hidden = shown.append, True
-    actions.offer(ui, "Pixels")
+    ui.offer_panel("Pixels")
     assert shown == []
     ui.panels_hidden = False
-    actions.offer(ui, "Pixels")
+    ui.offer_panel("Pixels")
     assert shown == ["Pixels"]
 
 

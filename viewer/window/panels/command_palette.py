@@ -160,7 +160,7 @@ def _commands(ui: Ui) -> Iterator[Item]:
 def _others(ui: Ui) -> Iterator[Item]:
     """Return presets, panels, bookmarks and scenes."""
     c, own = ui.controller, embedded_scenes()
-    for name in c.presets.names:
+    for name in c.presets.states:
         yield Item(f"preset {name}", name, Kind.PRESET, partial(c.presets.apply, name), "Edit > Presets", also="apply")
     for label in ui.panel_labels:
         show = partial(ui.show_panel, label)

@@ -4,6 +4,8 @@ Only the rows that are seen are drawn, however many there are."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
@@ -13,7 +15,6 @@ from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.state.row_filter import HELP, HINT
 from viewer.state.scene_rows import COLUMNS, Column, Level
 from viewer.util.numbers import several
-from viewer.window.actions import FindState
 from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, count, em, paragraph, swatch, tooltip
@@ -28,6 +29,19 @@ _LEVEL_TIPS = {
     "its primitives",
     Level.PRIMITIVES: "one row for each triangle, sphere and cone",
 }
+
+
+@dataclass
+class FindState:
+    """`focus` asks for the keyboard above the table; `enters` says that Enter was pressed there, and the row that it
+    selects is to come.  `drawn` rows were drawn last, in the order `order`, and `serial` is of the selection whose row
+    has been shown."""
+
+    focus: bool = False
+    enters: bool = False
+    drawn: int = 0
+    order: object = None
+    serial: int = 0
 
 
 def show(ui: Ui) -> None:

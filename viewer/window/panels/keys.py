@@ -18,7 +18,6 @@ _POINTER = (
     ("Wheel", "flying speed (fly); come nearer (orbit)"),
     ("Shift", "while flying: faster"),
     ("Ctrl + wheel, Ctrl + left drag", "zoom into the picture itself around the pointer; move it"),
-    ("Shift + left drag", "choose a region, whose values the panel Pixels counts"),
     ("Drag the wipe's line", "compare the picture with the right one, or A with B"),
     ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
     ("Click", "inspect a pixel, and draw its shadow rays; click the background to clear the selection"),
@@ -107,7 +106,7 @@ def _groups(ui: Ui, conflicts: dict[str, list[str]]) -> None:
 
 def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
     keymap, waiting = ui.keymap, ui.keyboard.wanted_for == name
-    label = "press a key" if waiting else ui.key_label(name) or "-"
+    label = "press a key" if waiting else ui.key_label(name) or "none"
     left = imgui.get_cursor_pos_x()
     imgui.push_style_color(imgui.Col_.text, ERROR if conflicts else imgui.get_style_color_vec4(imgui.Col_.text))
     if imgui.selectable(f"{label}##key", waiting, 0, ImVec2(em(_KEY - 0.6), 0.0))[0]:

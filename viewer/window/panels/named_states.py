@@ -73,7 +73,7 @@ def show_presets(ui: Ui) -> None:
 def presets_menu(ui: Ui) -> None:
     """Those that can be applied, in the menu Edit."""
     presets, tips = ui.controller.presets, {preset.name: preset.tip for preset in BUILT_IN}
-    for number, name in enumerate(presets.names):
+    for number, name in enumerate(presets.states):
         if number in (0, len(BUILT_IN)):
             imgui.separator()
         if imgui.menu_item(f"{name}##preset {number}", "", False, True)[0]:

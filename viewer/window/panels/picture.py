@@ -80,7 +80,7 @@ def _picture(ui: Ui, room: ImVec2) -> None:
             imgui.set_cursor_pos(ImVec2(left, top))
             imgui.image(imgui.ImTextureRef(texture), size)
         elif _preview(ui, room):
-            _turn(ui, room.y, 0.0)
+            _drag(ui, room.y, 0.0)
         else:
             _placeholder(ui, room)
     elif texture is not None and c.session.scene is not None:
@@ -219,22 +219,34 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
         return
     if imgui.is_item_activated():
         _take_pivot(ui, (u, v))
-    if _turn(ui, area.size.y, CLICK_SLACK) and not ui.picture.dragged and ui.picture.pressed != RIGHT:
+    if _drag(ui, area.size.y, CLICK_SLACK) and not ui.picture.dragged and ui.picture.pressed != RIGHT:
         c.selection.select((u, v))
 
 
-def _turn(ui: Ui, height: float, slack: float) -> bool:
-    """Drag the camera by the last item, which is so high; a way of up to `slack` pixels is none.  Returns whether the
-    pointer has let go."""
-    picture, io = ui.picture, imgui.get_io()
+def _drag(ui: Ui, height: float, slack: float) -> bool:
+    """Move the camera by the pointer on the last item, which is so high; a way of up to `slack` pixels is none.
+    Returns whether the pointer has let go."""
+    c, picture, io = ui.controller, ui.picture, imgui.get_io()
     if imgui.is_item_activated():
         picture.dragged, picture.pressed_at = False, (io.mouse_pos.x, io.mouse_pos.y)
         picture.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), LEFT)
     released = imgui.is_item_deactivated()
-    if imgui.is_item_active() or released:  # a quick hand drags and lets go within one of our frames
-        picture.dragged |= math.dist(picture.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > slack
-        if picture.dragged:
-            _drag(ui, picture.pressed, io.mouse_delta.x / height, io.mouse_delta.y / height)
+    if not imgui.is_item_active() and not released:  # a quick hand drags and lets go within one of our frames
+        return False
+    picture.dragged |= math.dist(picture.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > slack
+    dx, dy = io.mouse_delta.x / height, io.mouse_delta.y / height
+    if not picture.dragged or (dx == 0.0 and dy == 0.0):
+        return released
+    camera, world, pivot = c.session.camera, c.motion.world_up, picture.pivot
+    orbiting, turn = c.preferences.navigation == "orbit" and pivot is not None, navigation.RADIANS_PER_HEIGHT
+    if picture.pressed == MIDDLE or (picture.pressed == RIGHT and orbiting):
+        distance = math.dist(pivot, camera.position) if pivot is not None else 4.0 * c.motion.pace
+        camera = navigation.pan(camera, dx, -dy, distance)
+    elif orbiting and pivot is not None:
+        camera = navigation.orbit(camera, pivot, 2.0 * dx * turn, -2.0 * dy * turn, world)
+    else:
+        camera = navigation.look(camera, dx * turn, -dy * turn, world)
+    c.motion.move(camera)
     return released
 
 
@@ -243,23 +255,6 @@ def _take_pivot(ui: Ui, at: tuple[float, float]) -> None:
     point = point_at(ui.controller.frame, *at) if ui.controller.frame is not None else None
     if point is not None:
         ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
-
-
-def _drag(ui: Ui, button: int, dx: float, dy: float) -> None:
-    """Move the camera by a drag of so many picture heights."""
-    if dx == 0.0 and dy == 0.0:
-        return
-    c = ui.controller
-    camera, world, pivot = c.session.camera, c.motion.world_up, ui.picture.pivot
-    orbiting = c.preferences.navigation == "orbit" and pivot is not None
-    turn = navigation.RADIANS_PER_HEIGHT
-    if button == MIDDLE or (button == RIGHT and orbiting):
-        distance = math.dist(pivot, camera.position) if pivot is not None else 4.0 * c.motion.pace
-        c.motion.move(navigation.pan(camera, dx, -dy, distance))
-    elif orbiting and pivot is not None:
-        c.motion.move(navigation.orbit(camera, pivot, 2.0 * dx * turn, -2.0 * dy * turn, world))
-    else:
-        c.motion.move(navigation.look(camera, dx * turn, -dy * turn, world))
 
 
 def _wheel(ui: Ui, notches: float) -> None:

@@ -13,12 +13,11 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from viewer.state.comparison import Side
-from viewer.state.pixels import GRID_FROM, STEP, panned, pixels_shown
+from viewer.state.pixels import FIT, GRID_FROM, STEP, Point, panned, pixels_shown, zoomed
 from viewer.state.views import can_draw
 from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
 from viewer.views.color import CHANNELS
-from viewer.window import actions
 from viewer.window.panels import sides
 from viewer.window.panels.area import Area, pointer
 from viewer.window.ui import Ui
@@ -53,7 +52,7 @@ def show(ui: Ui) -> None:
         clipped("Ctrl+wheel zooms into the picture, Ctrl+drag moves it", QUIET)
     else:
         if imgui.small_button("Fit"):
-            actions.fit(ui)
+            fit(ui)
         imgui.same_line()
         clipped(f"enlarged {zoom.scale:.3g} times", QUIET)
     _histogram(ui)
@@ -147,7 +146,7 @@ def wheel(ui: Ui, area: Area) -> bool:
     if io.mouse_wheel:
         mouse = pointer()
         at = (mouse.x - area.corner.x) / area.size.x, (mouse.y - area.corner.y) / area.size.y
-        actions.zoom_by(ui, STEP**io.mouse_wheel, at)
+        zoom_by(ui, STEP**io.mouse_wheel, at)
     return True
 
 
@@ -220,3 +219,25 @@ def _numbers(
         made.add_rect_filled(ImVec2(middle.x - half - pad, top), end, back, 2.0 * pad)
         for number, line in enumerate(lines):
             made.add_text(font, size, ImVec2(middle.x - halves[number], top + number * size), front, line)
+
+
+# --- zoom, which commands change as well ---------------------------------------------------------------
+
+
+def pointed_at(ui: Ui) -> tuple[float, float]:
+    """Return where the pointer is in the picture's room, else its middle."""
+    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.draw.zoom
+    if hovered is None:
+        return 0.5, 0.5
+    return (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale
+
+
+def zoom_by(ui: Ui, factor: float, at: Point = (0.5, 0.5)) -> None:
+    """Enlarge the picture; `at`, 0 to 1 in the room that it has, stays where it is."""
+    session = ui.controller.session
+    session.set_draw(zoom=zoomed(session.draw.zoom, factor, at))
+
+
+def fit(ui: Ui) -> None:
+    """Show all of the picture."""
+    ui.controller.session.set_draw(zoom=FIT)

@@ -8,7 +8,6 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.output import exr
 from viewer.services.film import Films
 from viewer.services.runs import duration
-from viewer.window.actions import copy_command
 from viewer.window.panels.runs import either, frames_row, start_or_progress
 from viewer.window.setting_rows import in_panel, plan_rows, setting_switch
 from viewer.window.ui import CaptureKind, Dialog, Ui
@@ -49,6 +48,13 @@ def show(ui: Ui) -> None:
     for one in in_panel(ui, "Saving"):
         setting_switch(ui, one)
     paragraph("A saved picture carries scene, camera, settings and statistics: open or drop it to come back.", QUIET)
+
+
+def copy_command(ui: Ui) -> None:
+    """Put the command that makes the picture on the clipboard."""
+    words = ui.controller.pictures.command()
+    if words is not None:
+        ui.desktop.copy(words)
 
 
 def show_dialog(ui: Ui) -> None:
