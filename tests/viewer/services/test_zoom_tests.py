@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.viewer.desk import ELSEWHERE, Desk, is_the_same_picture
-from tests.viewer.marbles import LAST, STEP, write_marbles
+from tests.viewer.fakes import LAST, STEP, write_marbles
 from tracer.experiments import zoom
 from viewer.state.picking import wrong_at
 from viewer.util.resources import embedded_scenes
