@@ -228,7 +228,7 @@ class Driver:
     # Eyes
 
     def text(self) -> str:
-        """Return all that the window writes, but for what is written over the picture: panels, menus, dialogs."""
+        """Return all that the window writes where it can be seen, but for what is written over the picture."""
         self._reading = found = []
         while not found:
             self.frames(1)

@@ -30,7 +30,7 @@ def panels(d: Driver) -> None:
     d.frames(3)
     d.press(KEY.f1)
     d.choose("Help/About Shadowcull")
-    assert Dialog.ABOUT in d.ui.dialogs
+    d.expect("A Shadow Culling Algorithm for Interactive Ray Tracing")
     d.ui.close(Dialog.ABOUT)
     d.press("Ctrl+O")
     d.frames(4)
