@@ -217,7 +217,7 @@ class User:
             d.context.mouse_down(0)
 
             def seen(primitive: int = primitive) -> bool:
-                drawn = self.app.ui.graphics.display._drawn  # a frame, and how: with options, and what the window adds
+                drawn: Any = self.app.ui.graphics.display._drawn  # a frame, with options, and what the window adds
                 return drawn is not None and drawn[1][1].selected == primitive and primitive in self.watch.rows
 
             self.watch.doing = "clicking"
