@@ -1,4 +1,4 @@
-"""Pictures of frames by a few options."""
+"""Pictures of frames by a few options, and what eyes make of colours."""
 
 from __future__ import annotations
 
@@ -67,3 +67,9 @@ def classes_in(frame: Frame, view: View, light: int = 0) -> list[Counted]:
 
 def _whole(text: str) -> int:
     return int(text.replace(",", ""))
+
+
+def luminance(color: Color) -> float:
+    """Relative luminance (WCAG 2)."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color]
+    return float(np.dot(linear, (0.2126, 0.7152, 0.0722)))

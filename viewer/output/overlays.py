@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from tracer.frame import Frame
 from viewer.state.palette import FATE_COLORS, Color, label_color
-from viewer.state.savings import PALE, bar_of, counters_in_words
+from viewer.state.savings import WOULD_OPACITY, bar_of, counters_in_words
 from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, TEXT, Legend, Swatch, fitting, wrapped
 from viewer.views.shadow import STRIPE
 
@@ -71,7 +71,7 @@ def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None
     top, pad = margin + len(lines) * step, round(0.35 * size)
     for part, left, right in bar.places(margin, width - margin):
         if right > left:
-            color, there = FATE_COLORS[part.fate], PALE if part.would else 1.0
+            color, there = FATE_COLORS[part.fate], WOULD_OPACITY if part.would else 1.0
             drawn = np.multiply(there, color) + np.multiply(1.0 - there, BACKDROP)
             draw.rectangle((left, top, right - 1, top + step - 1), in_bytes((drawn[0], drawn[1], drawn[2])))
             text = part.label(letters.getlength, right - left - 2 * pad)

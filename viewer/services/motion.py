@@ -65,7 +65,7 @@ class Motion:
     @property
     def under_way(self) -> bool:
         """Whether frames should come fast rather than fine."""
-        real_time = self._session.playing and not self._session.pace.every_frame
+        real_time = self._session.playing and not self._session.state.pace.every_frame
         return real_time or self.is_dragging
 
     @property
@@ -88,7 +88,7 @@ class Motion:
         now = time.monotonic()
         step, self._last = min(now - self._last, LONGEST_STEP), now
         session, preferences = self._session, self._preferences
-        if session.playing and not session.pace.every_frame:
+        if session.playing and not session.state.pace.every_frame:
             session.advance(step * preferences.playback_rate, preferences.loop)
         elif session.playing and shown == session.time:  # this frame has been traced
             session.advance_frame(preferences.loop)

@@ -250,7 +250,7 @@ class SceneLoader:
         elif (
             scene is None
             or self.load_job is not None
-            or state.meshes != session.meshes
+            or state.meshes != session.state.meshes
             or session.state.scene != str(found.absolute())
         ):
             self._begin(found, state)
@@ -280,7 +280,7 @@ class SceneLoader:
             place = place.with_settings(**self._given)
         self._given = {}
         if meshes is None and (place is not None or again):
-            meshes = (place or self._session).meshes
+            meshes = (place or self._session.state).meshes
         elif meshes is None:
             meshes, self.meshes = self.meshes, replace(self.meshes, up=None)
         coming = Arrival(meshes.of_file(path), place, again, changed)

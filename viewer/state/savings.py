@@ -26,7 +26,7 @@ from viewer.util.numbers import count, percent, whole_percent
 
 LONGEST = ": 29.6 % of shadow rays saved, 15 % fewer steps, not verified, 1.08 × as fast as none (± 0.02)"
 """As long as the sentence usually is, after the method's name: what room there should be for it."""
-PALE = 0.4
+WOULD_OPACITY = 0.4
 """Of a colour, where it stands for what would be."""
 TWO_ERRORS = 2.0 * 1.2533 / 1.349
 """Twice the standard error of a median, as a part of the quartiles' distance by the root of the number: normal numbers

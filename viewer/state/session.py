@@ -9,12 +9,11 @@ from typing import Any
 from tracer.frame import Frame
 from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.lights import number_of
-from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.state.draw_options import DrawOptions
 from viewer.state.pixels import FIT
-from viewer.state.view_state import Pace, ViewState
+from viewer.state.view_state import ViewState
 
 
 @dataclass
@@ -45,20 +44,12 @@ class Session:
         return self.state.draw
 
     @property
-    def pace(self) -> Pace:
-        return self.state.pace
-
-    @property
     def time(self) -> float:
         return self.state.time
 
     @property
     def edits(self) -> Edits:
         return self.state.edits
-
-    @property
-    def meshes(self) -> MeshOptions:
-        return self.state.meshes
 
     def change(self, **fields: Any) -> None:
         """Change fields of the state."""
@@ -74,7 +65,7 @@ class Session:
 
     def set_pace(self, **pace: Any) -> None:
         """Change how the window traces."""
-        self.change(pace=replace(self.pace, **pace))
+        self.change(pace=replace(self.state.pace, **pace))
 
     def restore(self, state: ViewState) -> None:
         """Go back to a state of the scene that is open; what belongs to this machine stays as it is."""
@@ -82,10 +73,11 @@ class Session:
             return
         start, end = self.scene.time_range
         light = min(state.draw.light, max(len(self.scene.lights) - 1, 0))
-        here = replace(state, scene=self.state.scene, meshes=self.meshes, edits=self.edits, warmup=self.state.warmup,
-                       compare=self.state.compare)  # fmt: skip
+        now = self.state
+        here = replace(state, scene=now.scene, meshes=now.meshes, edits=now.edits, warmup=now.warmup,
+                       compare=now.compare)  # fmt: skip
         here = replace(here, time=min(max(state.time, start), end)).with_draw(light=light)
-        self.state, self.playing = here.on_machine_of(self.state), False
+        self.state, self.playing = here.on_machine_of(now), False
         self.want(state.edits, state.draw.light)
 
     def state_of(self, frame: Frame) -> ViewState:

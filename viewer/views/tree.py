@@ -18,8 +18,7 @@ from viewer.util.numbers import count, percent, several
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Scale, fact
-from viewer.views.paint import FAINT_LINE, checkered, in_range, mapped, on_line, outline, shaded
-from viewer.views.slices import Met, met, wide_enough
+from viewer.views.paint import FAINT_LINE, Met, checkered, in_range, mapped, met, on_line, outline, shaded, wide_enough
 
 LAYERS = 100
 """Steps from one side of what most primitives are in to the other."""

@@ -16,8 +16,7 @@ from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words, once, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Note, NoteKind, fact
-from viewer.views.paint import CELL_LINE, by_color, in_bytes, on_line
-from viewer.views.slices import met, wide_enough
+from viewer.views.paint import CELL_LINE, by_color, in_bytes, met, on_line, wide_enough
 
 FULL, LIT = int(ShadowMode.FULL_SHADOW), int(ShadowMode.NON_SHADOW)
 STATES: dict[int, tuple[Color, str]] = {

@@ -86,18 +86,18 @@ def _models(ui: Ui) -> list[Command]:
         return session.scene is not None and session.scene.path.suffix.lower() in MESH_EXTENSIONS
 
     def in_studio() -> bool:
-        return (session.meshes if is_mesh() else loader.meshes).studio
+        return (session.state.meshes if is_mesh() else loader.meshes).studio
 
     def toggle() -> None:
         if is_mesh():
-            loader.read_as(replace(session.meshes, studio=not in_studio()))
+            loader.read_as(replace(session.state.meshes, studio=not in_studio()))
         else:
             loader.meshes = replace(loader.meshes, studio=not in_studio())
 
     def turn() -> None:
         up = shown_up()
         if up is not None:
-            loader.read_as(replace(session.meshes, up=TURNS[(TURNS.index(up) + 1) % len(TURNS)]))
+            loader.read_as(replace(session.state.meshes, up=TURNS[(TURNS.index(up) + 1) % len(TURNS)]))
 
     stands = Condition(
         lambda: loader.load_job is None and shown_up() is not None, "no model is in a studio, or one is being loaded"

@@ -88,7 +88,7 @@ def test_what_culling_saves_stands_above_the_picture_and_comes_back(
     plain, both, counted = (pixels(name) for name in ("plain.png", "savings.png", "counted.png"))
     height = len(plain)
     assert np.array_equal(both[-height:], plain) and np.array_equal(counted[-height:], plain)
-    if method == "paper":  # with none it is pale
+    if method == "paper":  # with none it is dim
         bar = np.round(255.0 * np.array(FATE_COLORS[Fate.TRACED]))
         assert (both[:-height] == bar).all(-1).any(), "no part of the bar is seen"
     code, lines = verdict(capfd, "savings.png", "counted.png")

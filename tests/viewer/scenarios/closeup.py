@@ -121,8 +121,7 @@ def _numbers(d: Driver) -> None:
     _point_at(d, 0.45, 0.55)
     _wheel(d, 12)
     for view in (View.COLOR, View.OCCLUSION):
-        d.c.session.set_draw(view=view)
-        d.settle()
+        d.see(view)
         d.c.preferences.pixel_values = False
         d.frames(3)
         without = d.window()
@@ -140,20 +139,18 @@ def _range(d: Driver) -> None:
     """The panel has a histogram of the pixels that are seen, which give the colours their range."""
     d.c.session.set_draw(view=View.DEPTH, zoom=around(0.5, 0.6, 3.0))
     d.settle()
-    d.ui.show_panel("Pixels")
-    d.frames(3)
+    d.show_panel("Pixels")
     columns, rows = pixels_shown(d.c.session.draw.zoom, d.c.frame.width, d.c.frame.height)
     depth = d.c.frame.depth[rows.start : rows.stop, columns.start : columns.stop]
     depth = depth[np.isfinite(depth)]
-    d.context.item_click("//Pixels/**/Use as the range of colours")
+    d.click("//Pixels/**/Use as the range of colours")
     d.press(int(KEY.f) | SHIFT)
     d.frames(3)
     assert np.allclose(d.c.session.draw.span, (depth.min(), depth.max()))
     expected = picture(d.c.frame, View.DEPTH, span=d.c.session.draw.span)
     assert np.abs(d.shown().astype(int) - expected).max() <= 2
     d.c.session.set_draw(spans=())
-    d.c.session.set_draw(view=View.COLOR)
-    d.settle()
+    d.see(View.COLOR)
 
 
 def _exposed(d: Driver) -> None:
@@ -167,8 +164,7 @@ def _exposed(d: Driver) -> None:
     d.press(KEY.left_bracket)
     d.press(int(KEY.m) | SHIFT)
     assert d.c.session.draw.tone.exposure == 0.5
-    d.context.menu_click("//##MainMenuBar/Picture/Colours as traced")
-    d.frames(2)
+    d.choose("Picture/Colours as traced")
     assert d.c.session.draw.tone.neutral and np.array_equal(d.shown(), picture(d.c.frame)), "bit for bit as it was"
     d.press(int(KEY.z) | CTRL)
     assert d.c.session.draw.tone.exposure == 0.5, "colours as traced can be undone"

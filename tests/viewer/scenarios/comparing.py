@@ -25,8 +25,7 @@ def comparing(d: Driver) -> None:
     """What was kept stays as it was, and is seen in each way beside what is changed since; saved as it is seen."""
     d.resize(*SMALL)
     d.fix_resolution(160, 120)
-    d.c.settings.change(method="none")
-    d.settle()
+    d.change(method="none")
     comparing = d.c.comparing
     d.press(int(KEY.z) | SHIFT)
     assert "choose Keep as A" in d.c.notices.message.text and comparing.seen is None, "nothing is kept yet"
@@ -55,8 +54,7 @@ def comparing(d: Driver) -> None:
             assert saved.shape[1] == 2 * b.shape[1] + GAP
             _inspects_from_a(d)
             for panel in ("Pixels", "Compare"):
-                d.ui.show_panel(panel)
-                d.frames(4)
+                d.show_panel(panel)
                 check_fit(d, f"{panel}, comparing")
     d.context.key_down(KEY.z)
     d.frames(3)
@@ -134,8 +132,7 @@ def _line(d: Driver, a: np.ndarray, b: np.ndarray) -> None:
 
 def _two_methods(d: Driver) -> None:
     """Each frame is traced by both, at rest and in motion, and each counts for itself."""
-    d.c.settings.change(method="paper+cache")
-    d.settle()
+    d.change(method="paper+cache")
     d.press(int(KEY.c) | SHIFT)
     d.settle()
     comparing = d.c.comparing

@@ -13,7 +13,6 @@ from tests.viewer.scenarios.steps import figure4
 from viewer.state.palette import WRONG
 from viewer.state.views import View
 from viewer.views.wipe import wipe_column
-from viewer.window.keyboard import chord
 
 KEY = imgui.Key
 
@@ -33,7 +32,7 @@ def views(d: Driver) -> None:
         if view in (View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.TREE):  # of some frames (`culling`)
             continue
         before = d.c.history.frames
-        d.press(chord(view.key))
+        d.press(view.key)
         assert d.c.session.draw.view is view
         assert view.records or d.c.history.frames == before, "changing the view has traced"
         d.settle()
@@ -44,7 +43,7 @@ def views(d: Driver) -> None:
     d.press(KEY._3)
     d.press(KEY.l)
     assert d.c.session.draw.light == 1
-    d.press(int(KEY.l) | int(KEY.mod_shift))
+    d.press("Shift+L")
     assert d.c.session.draw.light == 0
     d.press(KEY.h)
     d.press(KEY.u)

@@ -37,11 +37,9 @@ def failing(d: Driver) -> None:
         notice = notices.newest_fault
         assert about in notice.text and "made to fail" in notice.text and "Traceback" in notice.details, notice
         assert notice.count == times and len([e for e in notices.entries() if e.text == notice.text]) == 1
-        d.context.item_click(f"//##fault/{icons.ICON_FA_COPY}  Copy details")
-        d.frames(2)
+        d.click(f"//##fault/{icons.ICON_FA_COPY}  Copy details")
         assert imgui.get_clipboard_text() == notice.as_text
-        d.context.item_click("//##fault/Dismiss")
-        d.frames(3)
+        d.click("//##fault/Dismiss")
         assert notices.newest_fault is None and d.c.frame is not None
 
     # Drawing: the picture stays what it was, is not tried again until it should be another, and is not saved as one.
@@ -70,18 +68,16 @@ def failing(d: Driver) -> None:
 
     # Panels, with tables, children and plots open: one says what is wrong with it, and is shown again when told to.
     for label, module, name in (("Statistics", statistics, "right"), ("Plots", plots, "_stack")):
-        d.ui.show_panel(label)
-        d.frames(3)
+        d.show_panel(label)
         good = getattr(module, name)
         setattr(module, name, fail)
         noticed(f"The panel {label}")
         assert f"The panel {label}" in guard.broken
         d.pause(QUIET_AFTER.total_seconds())
-        d.context.item_click(f"//{label}/{again}")
+        d.click(f"//{label}/{again}")
         noticed(f"The panel {label}", 2)
         setattr(module, name, good)
-        d.context.item_click(f"//{label}/{again}")
-        d.frames(3)
+        d.click(f"//{label}/{again}")
         assert not guard.broken
 
     # Bars, dialogs and commands.
@@ -95,7 +91,7 @@ def failing(d: Driver) -> None:
         d.frames(3)
         assert not guard.broken
     good, dialogs._line = dialogs._line, fail
-    d.press(int(KEY.o) | int(KEY.mod_ctrl))
+    d.press("Ctrl+O")
     noticed(dialogs.OPEN)
     assert not d.ui.dialogs
     dialogs._line = good
@@ -103,7 +99,7 @@ def failing(d: Driver) -> None:
     d.press(KEY._5)
     noticed("The command Depth")
     d.pause(QUIET_AFTER.total_seconds())
-    d.context.menu_click("//##MainMenuBar/View/Depth")
+    d.choose("View/Depth")
     noticed("The command Depth", 2)
 
     # Threads.
@@ -122,13 +118,10 @@ def failing(d: Driver) -> None:
     scene_loader.load_visible_scene = read
 
     # All of it is in the log, with what the status bar has said.
-    d.ui.show_panel("Log")
-    d.frames(3)
+    d.show_panel("Log")
     texts = [e.text for e in notices.entries()]
     assert sum("made to fail" in t for t in texts) >= 10 and any("opened in" in t for t in texts)
-    d.context.item_click(f"//Log/{icons.ICON_FA_COPY}  Copy all")
-    d.frames(2)
+    d.click(f"//Log/{icons.ICON_FA_COPY}  Copy all")
     assert all(t in imgui.get_clipboard_text() for t in texts)
-    d.context.item_click("//Log/Clear")
-    d.frames(2)
+    d.click("//Log/Clear")
     assert not notices.entries()

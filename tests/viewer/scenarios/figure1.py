@@ -17,14 +17,12 @@ def figure1(d: Driver) -> None:
     d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path.stem == "figure4", "the scene")
     d.fix_resolution(320, 220)
     d.settle()
-    d.c.settings.change(method="paper")
-    d.settle()
+    d.change(method="paper")
     for _ in range(2):
         d.c.scheduler.trace_again()
         d.settle()
     for _ in d.sizes():
-        d.ui.show_panel("Figure 1")
-        d.frames(5)
+        d.show_panel("Figure 1")
         shadow, changes = d.c.frame.statistics.shadow, d.c.frame.statistics.mode_changes
         assert shadow.saved > 0
         told = " ".join(part.tip for part in _drawing(d).parts if isinstance(part, Box))
@@ -45,12 +43,10 @@ def figure1(d: Driver) -> None:
     d.c.session.set_draw(view=View.COLOR)
 
     # Without culling it says what modes would do; with certificates these stand in the place of modes.
-    d.c.settings.change(method="none")
-    d.settle()
+    d.change(method="none")
     said = {words.text for words in _words(d)}
     assert "would be culled" in said
-    d.c.settings.change(method="certified")
-    d.settle()
+    d.change(method="certified")
     said = {words.text for words in _words(d)}
     assert "Certificates" in said and not any("mode setting" in text for text in said)
     _click(d, "Certificates")

@@ -16,7 +16,6 @@ from tests.viewer.scenarios.studios import standing
 from viewer.state.methods import missing
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.window.keyboard import chord
 from viewer.window.panels.dialogs import OPEN, OpenFileState
 
 KEY = imgui.Key
@@ -33,7 +32,7 @@ def capturing(d: Driver) -> None:
     d.c.preferences.screenshot_template = "{scene}-{view}-{frame:04d}.png"
     d.press(KEY.f12)
     d.wait(lambda: not d.c.captures.busy, "the picture to be written")
-    d.press(int(KEY.f12) | int(KEY.mod_shift))
+    d.press("Shift+F12")
     d.wait(lambda: not d.c.captures.busy, "the window's picture to be written")
     files = sorted(p.name for p in pictures.iterdir())
     assert files == ["tiny-occlusion-0000-2.png", "tiny-occlusion-0000.png"]
@@ -109,7 +108,7 @@ def reopening(d: Driver) -> None:
     d.settle()
     first = Path(d.c.session.scene.path)
     for key in ("H", "Shift+H", "8", "9"):
-        d.press(chord(key))
+        d.press(key)
         d.settle()
         d.press(KEY.f12)
         d.wait(lambda: not d.c.captures.busy, "the picture to be written")
@@ -125,7 +124,7 @@ def reopening(d: Driver) -> None:
         d.wait(lambda: d.c.session.scene.path == first, "the picture's scene")
         assert d.c.session.draw.view is view and d.c.frame is None
         for key in ("8", "9", "H", "Shift+H", "0", "3", view.key):
-            d.press(chord(key))
+            d.press(key)
         d.press(KEY.f12)
         d.c.notices.say("what could not be saved has been told")
         d.c.renderer.take = take
@@ -161,14 +160,12 @@ def browsing(d: Driver) -> None:
     state = d.ui.state(OpenFileState)
     state.folder = d.folder
 
-    d.press(int(KEY.o) | int(KEY.mod_ctrl))
+    d.press("Ctrl+O")
     d.frames(2)
-    d.context.key_chars("bo")
-    d.frames(2)
+    d.type("bo")
     d.press(KEY.tab)
     assert state.typed == "box/" and state.names() == ["inner/", "plot.png", "wheel.aff", "whole.aff"]
-    d.context.key_chars("WHO")
-    d.frames(2)
+    d.type("WHO")
     assert state.names() == ["whole.aff"]
     d.press(KEY.tab)
     d.press(KEY.enter)
@@ -177,24 +174,21 @@ def browsing(d: Driver) -> None:
     d.settle()
 
     # What cannot be opened is refused where it was asked for.
-    d.press(int(KEY.o) | int(KEY.mod_ctrl))
+    d.press("Ctrl+O")
     d.frames(2)
-    d.context.key_chars("gone.aff")
+    d.type("gone.aff")
     d.press(KEY.enter)
     assert d.ui.dialogs and "no such file" in state.problem
     d.frames(2)
-    d.press(int(KEY.a) | int(KEY.mod_ctrl))
-    d.context.key_chars("inner")
-    d.frames(2)
+    d.press("Ctrl+A")
+    d.type("inner")
     assert not state.problem
     d.press(KEY.enter)
     assert d.ui.dialogs and state.folder == box / "inner" and state.typed == ""
     d.frames(2)
 
-    d.context.key_chars("deep.aff")
-    d.frames(2)
-    d.context.item_click(f"//{OPEN}/Open")
-    d.frames(3)
+    d.type("deep.aff")
+    d.click(f"//{OPEN}/Open")
     assert not d.ui.dialogs
     d.wait(lambda: d.c.session.scene.path.name == "deep.aff", "the scene in the folder")
     d.settle()

@@ -23,9 +23,8 @@ def filmstrip(d: Driver) -> None:
     plan.factors, plan.steps, plan.size, plan.ratio = "4, 64", 40, (128, 128), 0.94
     d.c.selection.picked = None
     d.c.selection.select((0.5, 0.5))
-    d.ui.show_panel("Zoom test")
-    d.frames(3)
-    d.context.item_click(f"//Zoom test/**/{icons.ICON_FA_PLAY}  Start")
+    d.show_panel("Zoom test")
+    d.click(f"//Zoom test/**/{icons.ICON_FA_PLAY}  Start")
     d.wait(lambda: runs.current is None, "the zoom test")
     d.settle()
     test = runs.zoom_test
@@ -34,7 +33,7 @@ def filmstrip(d: Driver) -> None:
         for approach in test.results.approaches:
             _point_and_click(d, test, approach)
     d.scroll_down("Zoom test")
-    d.context.item_click(f"//Zoom test/**/{icons.ICON_FA_FLOPPY_DISK} Film")
+    d.click(f"//Zoom test/**/{icons.ICON_FA_FLOPPY_DISK} Film")
     d.wait(lambda: any((d.folder / "pictures").glob("*-film*.png")), "the film to be written")
     (path,) = (d.folder / "pictures").glob("*-film*.png")
     with Image.open(path) as image:
@@ -49,13 +48,12 @@ def _point_and_click(d: Driver, test: RecordedZoomTest, approach: zoom.Approach)
     imgui.internal.set_scroll_y(window, window.scroll_max.y if approach is test.results.approaches[-1] else 0.0)
     d.frames(3)
     small = f"//Zoom test/**/{approach.factor:g} step {step.number}##shot"
-    d.context.mouse_move(small)
-    d.frames(6)
+    d.hover(small)
     shot = test.filmstrip.nearest(approach.factor, step.number)
     magenta = (shot.pixels() == (255, 0, 255)).all(axis=-1)
     assert magenta.shape == (128, 128) and magenta.any() == (step.wrong > 0) == (approach.factor == 64.0)
     assert d.ui.graphics.textures.texture_id(shot, small=False) is not None, "it is not drawn"
     assert d.c.history.frames == traced, "showing it has traced"
-    d.context.item_click(small)
+    d.click(small)
     d.settle()
     assert np.allclose(d.c.session.camera.position, step.camera.position)

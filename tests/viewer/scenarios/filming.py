@@ -15,14 +15,13 @@ def filming(d: Driver) -> None:
     """A path, with its modes; a flight through bookmarks; and one that is stopped."""
     pictures, films, runs = d.folder / "pictures", d.c.films, d.c.runs
     d.settle()
-    d.c.session.set_draw(view=View.OCCLUSION)
-    d.settle()
+    d.see(View.OCCLUSION)
     next(c for c in d.ui.commands if c.name == "Film").run()
     d.frames(3)
     start = f"//Film/**/{icons.ICON_FA_PLAY}  Start"
     films.plan.last, films.plan.size, films.plan.legend = 4, (160, 120), True
     assert films.count == 5
-    d.context.item_click(start)
+    d.click(start)
     d.wait(lambda: runs.current is not None, "the film to begin")
     d.c.questions.before_opening("another scene", lambda: None)
     d.wait(lambda: films.film is not None and runs.current is None, "the film")
@@ -32,11 +31,9 @@ def filming(d: Driver) -> None:
     folder = films.film.folder
     assert folder.parent == pictures and len(list(folder.iterdir())) == 5
 
-    d.context.item_click("//Film/**/###bookmarks")
-    d.frames(2)
+    d.click("//Film/**/###bookmarks")
     assert films.plan.through_bookmarks and films.count == 0
-    d.context.item_click(start)
-    d.frames(2)
+    d.click(start)
     assert d.c.notices.message.error and "two bookmarks" in d.c.notices.message.text
     d.c.bookmarks.add()
     d.hold(KEY.d, 0.2)
@@ -44,7 +41,7 @@ def filming(d: Driver) -> None:
     d.c.bookmarks.add()
     films.plan.fps, films.plan.seconds = 50.0, 60.0
     assert films.count == 3000
-    d.context.item_click(start)
+    d.click(start)
     d.wait(lambda: films.film.traced > 3, "frames of the flight")
     assert d.c.scheduler.drawn_view is View.OCCLUSION
     d.press(KEY.escape)

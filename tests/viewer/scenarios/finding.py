@@ -28,15 +28,15 @@ def finding(d: Driver) -> None:
     assert not c.session.counting, "nobody looks at the table yet"
 
     # Ctrl+F opens it, and what is typed goes into its filter.
-    d.press(int(KEY.f) | int(KEY.mod_ctrl))
+    d.press("Ctrl+F")
     _known(d)
     assert c.frame.settings.record_work and table.level is Level.OBJECTS
-    d.context.item_click("//Find/Primitives")
+    d.click("//Find/Primitives")
     listing = _known(d)
     assert listing.table.rows == len(listing.rows) == c.session.scene.primitive_count
     assert 2 < d.ui.state(FindState).drawn < ROWS_SEEN, "only rows that are seen are drawn"
-    d.press(int(KEY.f) | int(KEY.mod_ctrl))
-    d.context.key_chars("pixels>0")
+    d.press("Ctrl+F")
+    d.type("pixels>0")
     listing = _known(d)
     assert table.order.text == "pixels>0" and 0 < len(listing.rows) < listing.table.rows
     d.context.key_press(KEY.enter)
@@ -44,12 +44,12 @@ def finding(d: Driver) -> None:
     first = int(listing.rows[0])
     assert c.selection.picked.primitive == first, "Enter selects the first row"
     d.context.item_input("//Find/##filterPrimitives")
-    d.context.key_chars("pixel")
+    d.type("pixel")
     table.filter("number>7")  # whose rows are still to come when Enter is pressed, as in a large scene
     d.context.key_press(KEY.enter)
     d.wait(lambda: c.selection.picked.primitive > 7, "the first of the rows that came", 20.0)
     d.context.item_input("//Find/##filterPrimitives")
-    d.press(int(KEY.p) | int(KEY.mod_ctrl) | int(KEY.mod_shift))
+    d.press("Ctrl+Shift+P")
     assert imgui.is_popup_open("##command palette", ANY_POPUP), "the palette comes while one types"
     d.context.key_press(KEY.escape)
     d.frames(3)
@@ -66,18 +66,18 @@ def finding(d: Driver) -> None:
     d.frames(4)
     clicked = int(frame.primitive[y, x])
     assert c.selection.picked.primitive == clicked == table.selected
-    d.context.mouse_move(f"//Find/**/{_id(clicked)}/##row")
+    d.hover(f"//Find/**/{_id(clicked)}/##row")
     assert 2 < d.ui.state(FindState).drawn < ROWS_SEEN
     last = int(listing.rows[-1])
     c.selection.select_primitive(last)
     d.frames(4)
-    d.context.item_click(f"//Find/**/{_id(last)}/##row")
+    d.click(f"//Find/**/{_id(last)}/##row")
     picked = c.selection.picked
     assert picked.primitive == last and picked.x == -1, "what has no pixel can be selected"
 
     # The headers sort.
     before = listing.rows
-    d.context.item_click("//Find/**/Number")
+    d.click("//Find/**/Number")
     listing = _known(d)
     assert (np.diff(listing.rows) == 1).all() and not np.array_equal(before, listing.rows)
 
@@ -90,16 +90,16 @@ def finding(d: Driver) -> None:
     assert c.frame.primitive[c.selection.pixel[1], c.selection.pixel[0]] == last
 
     # The eye hides it and shows it again.
-    d.context.item_click(f"//Find/**/{_id(last)}/eye")
+    d.click(f"//Find/**/{_id(last)}/eye")
     d.wait(lambda: not c.editing.under_way and c.session.edits.hidden_primitives == {last}, "one primitive less", 60.0)
     d.settle()
     assert (c.session.edited.primitives != last).all()
-    d.context.item_click("//Find/Show everything")
+    d.click("//Find/Show everything")
     d.wait(lambda: not c.editing.under_way and not c.session.edits, "all primitives", 60.0)
     d.settle()
 
     # An object's own list, and its outline.
-    d.context.item_click("//Find/Objects")
+    d.click("//Find/Objects")
     listing = _known(d)
     part = int(listing.rows[0])
     row = d.context.item_info(f"//Find/**/{_id(part)}/##row").rect_full
@@ -113,8 +113,7 @@ def finding(d: Driver) -> None:
     assert c.selection.part is None and (shown != d.shown()).any(), "the outline goes with the selection"
     table.open_part(part)
     assert len(_known(d).rows) == int(listing.table.columns["primitives"].numbers[part])
-    d.ui.show_panel("Plots")
-    d.frames(5)
+    d.show_panel("Plots")
     assert not table.visible and not c.session.counting
 
 

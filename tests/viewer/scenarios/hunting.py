@@ -7,7 +7,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
-from tests.viewer.marbles import LAST, STEP, write_marbles
+from tests.viewer.fakes import LAST, STEP, write_marbles
 from viewer.state.picking import wrong_at
 from viewer.window.panels.inspector import wrong_beyond
 from viewer.window.panels.plots import PlotsState
@@ -22,8 +22,7 @@ def hunting(d: Driver) -> None:
     d.drop(write_marbles(d.folder))
     d.wait(lambda: d.c.session.scene.path.name == "marbles.aff", "the scene")
     d.settle()
-    d.c.settings.change(method="paper", depth=2)
-    d.settle()
+    d.change(method="paper", depth=2)
     _from_a_plot(d)
     _from_the_inspector(d)
     _to_a_find(d)
@@ -77,7 +76,7 @@ def _from_the_inspector(d: Driver) -> None:
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
     moment = c.history.records.get(lesson.lit)
     d.scroll_down("Inspector")
-    d.context.item_click(f"//Inspector/**/{light} lit/picture {lesson.lit}##0")
+    d.click(f"//Inspector/**/{light} lit/picture {lesson.lit}##0")
     d.settle()
     assert (c.session.time, c.session.camera) == (moment.state.time, moment.camera)
 
@@ -85,16 +84,15 @@ def _from_the_inspector(d: Driver) -> None:
 def _to_a_find(d: Driver) -> None:
     c, plan = d.c, d.c.hunts.plan
     plan.size, plan.last, plan.step, plan.around, plan.keep = (96, 96), LAST, STEP, 4, 5
-    d.ui.show_panel("Hunt")
-    d.frames(3)
-    d.context.item_click(f"//Hunt/**/{icons.ICON_FA_PLAY}  Start")
+    d.show_panel("Hunt")
+    d.click(f"//Hunt/**/{icons.ICON_FA_PLAY}  Start")
     d.wait(lambda: c.hunts.found is not None and c.runs.current is None, "the hunt", 120.0)
     d.settle()
     found = c.hunts.found
     assert c.hunts.hunt.whole and found.finds and found.frames == LAST // STEP + 5
     c.settings.change(samples=4)
     d.settle()
-    d.context.item_click("//Hunt/**/1##0")
+    d.click("//Hunt/**/1##0")
     find = found.finds[0]
     d.wait(lambda: c.runs.current is None and c.selection.picked is not None, "the find", 60.0)
     d.settle()
@@ -110,11 +108,10 @@ def _to_a_find(d: Driver) -> None:
     if find.bounces == 0:
         one = reasons[find.light]
         assert one.wrong == 1 and (one.lit > 0) == find.lit and (one.blocker < 0) != find.lit
-    d.context.item_click(f"//Hunt/**/{icons.ICON_FA_CODE_BRANCH}  Rays")
+    d.click(f"//Hunt/**/{icons.ICON_FA_CODE_BRANCH}  Rays")
     d.wait(lambda: c.inspector.tree is not None, "its rays", 20.0)
     assert any(ray.shadows is not None and ray.shadows.wrong.any() for ray in c.inspector.tree.rays)
-    d.ui.show_panel("Hunt")
-    d.frames(3)
+    d.show_panel("Hunt")
     d.press(KEY.right_arrow)
     d.settle()
     assert c.frame.settings.samples == 4, "having moved, it gets its samples"

@@ -25,8 +25,7 @@ def lamps(d: Driver) -> None:
     d.c.session.set_pace(target_fps=240.0)  # there is to be no time for many samples in motion
     d.settle()
     hard = d.c.frame.color
-    d.ui.show_panel("Rendering")
-    d.frames(4)
+    d.show_panel("Rendering")
     area = d.context.item_info("//Rendering/**/##lamp-radius").rect_full
     middle = (area.min.x + 0.8 * (area.max.x - area.min.x), 0.5 * (area.min.y + area.max.y))
     d.drag((area.min.x + 4.0, middle[1]), (middle[0] - area.min.x - 4.0, 0.0))
@@ -80,7 +79,7 @@ def lamps(d: Driver) -> None:
     d.hold(KEY.d, 0.3)
     assert d.c.frame.settings.lamp_samples in (1, 4), "few in motion"
     d.press(KEY._1)
-    d.context.item_click("//Rendering/**/x##lamp-radius")
+    d.click("//Rendering/**/x##lamp-radius")
     d.settle()
     assert d.c.frame.settings.lamp_radius is None and d.c.scheduler.lamp_samples_shown == 1
 
@@ -110,7 +109,7 @@ def _one_of_too_many(d: Driver) -> None:
             assert np.array_equal(penumbra.VIEW.find(d.c.frame, light), penumbra.VIEW.find(expected, light))
             drawn = picture(d.c.frame, View.PENUMBRA, light).astype(int)
             assert np.abs(d.shown().astype(int) - drawn).max() <= 2
-        d.press(int(KEY.j) | int(KEY.mod_shift))
+        d.press("Shift+J")
         d.settle()
         assert d.c.scheduler.drawn_view is View.COLOR, "there is no memory for all"
     finally:

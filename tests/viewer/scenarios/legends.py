@@ -6,7 +6,7 @@ import numpy as np
 from imgui_bundle import imgui
 from PIL import Image
 
-from tests.viewer.driver import Driver
+from tests.viewer.driver import Driver, Rect
 from viewer.output import capture
 from viewer.state.preferences import load_preferences
 from viewer.state.views import View, can_draw
@@ -16,19 +16,15 @@ KEY = imgui.Key
 
 
 def legends(d: Driver) -> None:
-    """Every view has its legend in the picture; it can be dragged, catches in corners, stays inside, and can be off."""
-    d.c.settings.change(method="paper")
-    d.settle()
-    for _ in d.sizes():
-        for view in View:
-            d.c.session.set_draw(view=view)
-            d.settle()
-            assert d.ui.state(LegendState).shown == (
-                view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.draw.light)
-            ), view
-            if d.ui.state(LegendState).shown:
-                _legend(d)
-        _dragged(d)
+    """Every view has its legend in the picture; it can be dragged, stays inside, and can be off."""
+    d.change(method="paper")
+    for view in View:
+        d.see(view)
+        there = view is not View.COLOR and can_draw(d.c.frame, view, d.c.session.draw.light)
+        assert d.ui.state(LegendState).shown == there, view
+        if there:
+            _legend(d)
+    _dragged(d)
     d.resize(1024, 700)
     right, bottom = d.picture_edges()[2:]
     area = _legend(d)
@@ -41,23 +37,21 @@ def legends(d: Driver) -> None:
     assert (draw["legend"], kept.legend_in_pictures, draw["legend_at"]) == (True, False, [1.0, 1.0])
 
 
-def _legend(d: Driver) -> tuple[float, float, float, float]:
+def _legend(d: Driver) -> Rect:
     """Left, top, right and bottom of the legend, which lies inside the picture."""
     d.frames(2)
-    area = d.context.item_info("//Picture/legend").rect_full
-    left, top, right, bottom = d.picture_edges()
-    assert left <= area.min.x and area.max.x <= right and top <= area.min.y and area.max.y <= bottom
-    return area.min.x, area.min.y, area.max.x, area.max.y
+    area, picture = d.place("//Picture/legend"), d.picture_edges()
+    assert picture[0] <= area[0] and area[2] <= picture[2] and picture[1] <= area[1] and area[3] <= picture[3]
+    return area
 
 
 def _dragged(d: Driver) -> None:
     """About the picture, and into two corners; nothing but the legend moves, and a click on it selects nothing."""
-    d.c.session.set_draw(view=View.OCCLUSION)
-    d.settle()
+    d.see(View.OCCLUSION)
     camera, frame = d.c.session.camera, d.c.frame
     left, top, right, bottom = d.picture_edges()
 
-    def drag_to(x: float, y: float) -> tuple[float, float, float, float]:
+    def drag_to(x: float, y: float) -> Rect:
         area = _legend(d)
         hold = (area[0] + area[2]) / 2.0, area[3] - 6.0
         d.drag(hold, (x - (area[0] + area[2]) / 2.0, y - (area[1] + area[3]) / 2.0))
@@ -66,12 +60,9 @@ def _dragged(d: Driver) -> None:
     area = drag_to((left + right) / 2.0, (top + bottom) / 2.0)
     assert abs(area[0] + area[2] - left - right) < 6.0 and abs(area[1] + area[3] - top - bottom) < 6.0
     d.context.mouse_click(0)
-    d.frames(2)
-    assert d.c.selection.picked is None and d.c.session.camera == camera and d.c.frame is frame
-    area = drag_to(left, top)
-    assert d.c.session.draw.legend_at == (0.0, 0.0) and area[0] - left < 20.0
-    area = drag_to(right, bottom)
-    assert d.c.session.draw.legend_at == (1.0, 1.0) and right - area[2] < 20.0 and bottom - area[3] < 20.0
+    for corner, place in (((left, top), (0.0, 0.0)), ((right, bottom), (1.0, 1.0))):
+        drag_to(*corner)
+        assert d.c.session.draw.legend_at == place
     assert d.c.session.camera == camera and d.c.frame is frame and d.c.selection.picked is None
 
 
@@ -79,8 +70,7 @@ def _off_and_on(d: Driver) -> None:
     """Where the picture has no legend, the panel has it."""
 
     def panel() -> float:
-        d.ui.show_panel("View")
-        d.frames(4)
+        d.show_panel("View")
         return imgui.internal.find_window_by_name("View").content_size.y
 
     with_legend = panel()
@@ -104,12 +94,11 @@ def _in_saved_pictures(d: Driver) -> None:
             return np.asarray(image)
 
     assert np.array_equal(saved("without"), d.shown())
-    d.ui.show_panel("Saving")
-    d.frames(3)
-    d.context.item_click("//Saving/Legend in saved pictures")
+    d.show_panel("Saving")
+    d.click("//Saving/Legend in saved pictures")
     assert p.legend_in_pictures
     other = (saved("with") != d.shown()).any(axis=-1)
     rows, columns = np.nonzero(other)
     assert other.any() and rows.min() > d.c.frame.height // 4 and columns.min() > d.c.frame.width // 4
-    d.context.item_click("//Saving/Legend in saved pictures")
+    d.click("//Saving/Legend in saved pictures")
     assert not p.legend_in_pictures

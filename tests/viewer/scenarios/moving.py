@@ -46,11 +46,9 @@ def flying(d: Driver) -> None:
     d.frames(2)
     assert d.c.session.camera == before, "a key of a chord, let go late, moved the camera"
 
-    d.ui.show_panel("Camera")
-    d.frames(3)
-    d.context.item_click("//Camera/##new bookmark")
-    d.context.key_chars("wasd")
-    d.frames(3)
+    d.show_panel("Camera")
+    d.click("//Camera/##new bookmark")
+    d.type("wasd")
     assert d.ui.state(NameFields).new["bookmark"] == "wasd"
     assert d.c.session.camera == before, "typing moved the camera"
     d.context.key_press(KEY.enter)

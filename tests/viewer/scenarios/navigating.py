@@ -39,19 +39,16 @@ def _bookmarks(d: Driver) -> None:
     d.wait(lambda: d.c.session.camera == places[0], "the flight to the first bookmark", 30.0)
     d.press(ALT | int(KEY._2))
     d.wait(lambda: d.c.session.camera == places[1], "the flight to the next one", 30.0)
-    d.ui.show_panel("Camera")
-    d.frames(3)
-    d.context.item_click(f"//Camera/**/{id(marks[1])}/\uf304")
-    d.frames(2)
-    d.context.key_chars("near the sphere")
+    d.show_panel("Camera")
+    d.click(f"//Camera/**/{id(marks[1])}/\uf304")
+    d.type("near the sphere")
     d.press(KEY.enter)
     assert marks[1].name == "near the sphere"
     rows = [d.context.item_info(f"//Camera/**/{id(mark)}/###go").rect_full for mark in marks]
     d.drag((rows[1].min.x + 9.0, rows[1].min.y + 5.0), (0.0, rows[0].min.y - rows[1].min.y))
     d.frames(3)
     assert [mark.name for mark in d.c.bookmarks.all] == ["near the sphere", "frame 0"]
-    d.context.item_click(f"//Camera/**/{id(marks[1])}/\uf00d")
-    d.frames(2)
+    d.click(f"//Camera/**/{id(marks[1])}/\uf00d")
     assert [mark.name for mark in d.c.bookmarks.all] == ["near the sphere"]
     d.settle()
 
@@ -100,14 +97,13 @@ def _drags(d: Driver) -> None:
 def _keys(d: Driver) -> None:
     d.press(KEY.f1)
     d.frames(3)
-    d.context.item_click("//Keyboard and mouse/**/Fly forward/W##key")
-    d.frames(2)
+    d.click("//Keyboard and mouse/**/Fly forward/W##key")
     assert d.ui.keyboard.wanted_for == "Fly forward"
     before = d.c.session.camera
     d.press(KEY.x)
     d.frames(2)
     assert d.ui.keymap.of("Fly forward") == ("X",) and d.c.session.camera == before
-    d.context.item_click("//Keyboard and mouse/**/Fly back/S##key")
+    d.click("//Keyboard and mouse/**/Fly back/S##key")
     d.press(KEY.o)
     d.frames(2)
     assert d.ui.keymap.conflicts()["Fly back"] == ["Orbit"] and "also Orbit" in d.c.notices.message.text

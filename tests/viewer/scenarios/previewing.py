@@ -63,7 +63,7 @@ def previewing(d: Driver) -> None:
     d.settle()
     assert d.ui.graphics.preview is None and d.c.preview.geometry is None and d.c.session.previewed is None
     assert d.c.frame is not None and d.c.frame.camera == flown == d.c.session.camera
-    assert d.context.item_exists("//Picture/picture") and not d.context.item_exists("//Picture/preview")
+    assert d.has("//Picture/picture") and not d.has("//Picture/preview")
 
 
 def _read(d: Driver) -> np.ndarray:

@@ -40,20 +40,16 @@ def rays(d: Driver) -> None:
 
     # Filters hide rows and lines.
     everything = len(panel.rows(d.ui))
-    d.context.item_click("//Inspector/wrong")
-    d.frames(3)
+    d.click("//Inspector/wrong")
     assert state.shown.shown is Shown.WRONG and len(panel.rows(d.ui)) < everything and _lines_drawn(d) < drawn
-    d.context.item_click("//Inspector/all")
-    d.frames(3)
+    d.click("//Inspector/all")
     assert len(panel.rows(d.ui)) == everything
 
     # A row that the pointer is on is picked out; a click selects it.
     row = next(row for _, row in panel.rows(d.ui) if len(row.places) == 1 and "traced" in row.text)
-    d.context.mouse_move(f"//Inspector/**/{row.key}/##row")
-    d.frames(3)
+    d.hover(f"//Inspector/**/{row.key}/##row")
     assert state.pointed is not None and state.pointed.key == row.key
-    d.context.item_click(f"//Inspector/**/{row.key}/##row")
-    d.frames(3)
+    d.click(f"//Inspector/**/{row.key}/##row")
     assert state.selected == row.key
 
     # The path ray folds; the tree goes with the selection.

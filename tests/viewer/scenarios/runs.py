@@ -22,12 +22,11 @@ def experimenting(d: Driver) -> None:
     """An experiment starts from its panel, plays, can be stopped, and leaves a table, a plot and files."""
     d.settle()
     runs, home, method = d.c.runs, d.c.session.camera, d.c.session.settings.method
-    d.ui.show_panel("Experiment")
-    d.frames(3)
+    d.show_panel("Experiment")
     runs.experiment_plan.frames, runs.experiment_plan.size = 3000, (64, 48)
-    d.context.item_click("//Experiment/**/##verify")
+    d.click("//Experiment/**/##verify")
     assert runs.experiment_plan.verify
-    d.context.item_click(f"//Experiment/**/{icons.ICON_FA_PLAY}  Start")
+    d.click(f"//Experiment/**/{icons.ICON_FA_PLAY}  Start")
     run = runs.experiment
     for _ in range(3):
         before = run.traced
@@ -39,14 +38,14 @@ def experimenting(d: Driver) -> None:
     assert d.c.session.settings.method == method
     d.press(KEY._2)
     assert d.c.session.draw.view is View.OCCLUSION, "a view can be chosen any time"
-    d.context.item_click(f"//Experiment/**/{icons.ICON_FA_STOP}  Stop")
+    d.click(f"//Experiment/**/{icons.ICON_FA_STOP}  Stop")
     d.wait(lambda: runs.current is None, "the experiment to stop", 20.0)
     assert 3 <= len(run.results.frames) < 3000 and "what was done is kept" in d.c.notices.message.text
     d.settle()
     assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.frame.camera == home
 
     runs.experiment_plan.frames = 6
-    d.context.menu_click("//##MainMenuBar/Run/Experiment")
+    d.choose("Run/Experiment")
     d.wait(lambda: runs.current is None, "the experiment to end")
     d.settle()
     assert runs.experiment is not run and runs.experiment.whole
@@ -62,8 +61,7 @@ def experimenting(d: Driver) -> None:
     d.settle()
     assert runs.experiment.results.settings["accelerator"] == "kdtree-lazy"
     for name in ("Table", "Plot", "Table"):
-        d.context.item_click(f"//Experiment/**/{name}")
-        d.frames(3)
+        d.click(f"//Experiment/**/{name}")
     (table,) = (w for w in imgui.get_current_context().windows if w.was_active and "table 1" in w.name)
     assert table.size.x > 25.0 * imgui.get_font_size(), "columns that are compared are out of sight"
 
@@ -72,25 +70,22 @@ def zooming(d: Driver) -> None:
     """A zoom test starts from its panel, plays, and leaves plots, steps to go to, and files; Escape stops another."""
     d.settle()
     runs = d.c.runs
-    d.ui.show_panel("Zoom test")
-    d.frames(3)
+    d.show_panel("Zoom test")
     start = f"//Zoom test/**/{icons.ICON_FA_PLAY}  Start"
-    d.context.item_click(start)
-    d.frames(2)
+    d.click(start)
     assert runs.zoom_test is None and "click a primitive" in d.c.notices.message.text
     d.context.mouse_move_to_pos(d.picture_centre())
     d.context.mouse_click(0)
     d.frames(2)
     assert d.c.selection.picked is not None
     runs.zoom_plan.steps, runs.zoom_plan.size = 5, (64, 64)
-    d.context.item_click(start)
+    d.click(start)
     d.wait(lambda: runs.current is None, "the zoom test")
     d.settle()
     test = runs.zoom_test
     assert test.whole and [a.factor for a in test.results.approaches] == [4.0, 16.0]
     step = test.results.approaches[0].steps[4]
-    d.context.item_click("//Zoom test/**/4 step 4##shot")
-    d.frames(3)
+    d.click("//Zoom test/**/4 step 4##shot")
     d.settle()
     assert np.allclose(d.c.frame.camera.position, step.camera.position)
     files = saved_results(d, "Zoom test")
@@ -98,7 +93,7 @@ def zooming(d: Driver) -> None:
     assert len(files[".csv"].read_text().splitlines()) == 1 + test.frames
 
     runs.zoom_plan.steps, runs.zoom_plan.ratio = 1000, 0.999
-    d.context.item_click(start)
+    d.click(start)
     d.wait(lambda: runs.zoom_test.traced > 5, "steps")
     d.press(KEY.escape)
     d.wait(lambda: runs.current is None, "the zoom test to stop", 20.0)
@@ -122,12 +117,11 @@ def asking(d: Driver) -> None:
     def answer(name: str) -> None:
         d.frames(3)
         assert d.c.questions.question is not None and runs.current is not None, "nobody has asked"
-        d.context.item_click(f"//{d.c.questions.question.title}###question/{name}")
-        d.frames(3)
+        d.click(f"//{d.c.questions.question.title}###question/{name}")
         assert d.c.questions.question is None
 
     under_way()
-    for ask in (lambda: d.drop(other), lambda: d.press(KEY.f5), lambda: d.press(int(KEY.q) | int(KEY.mod_ctrl)),
+    for ask in (lambda: d.drop(other), lambda: d.press(KEY.f5), lambda: d.press("Ctrl+Q"),
                 lambda: d.c.loader.open(other)):  # fmt: skip
         ask()
         answer("Keep running")
@@ -144,8 +138,7 @@ def asking(d: Driver) -> None:
     d.wait(lambda: d.c.session.scene.path == other and runs.current is None, "the other scene")
     d.settle()
     assert run is runs.experiment and run.results is not None and not run.whole
-    d.ui.show_panel("Experiment")
-    d.frames(3)
+    d.show_panel("Experiment")
     saved_results(d, "Experiment")
     d.drop(first)
     d.wait(lambda: d.c.session.scene.path == first, "the first scene again")
@@ -154,12 +147,11 @@ def asking(d: Driver) -> None:
     # Escape closes what lies over the panels, one by one, and stops the run only when nothing does.
     under_way()
     d.press(KEY.f1)
-    d.context.menu_click("//##MainMenuBar/Help/About Shadowcull")
+    d.choose("Help/About Shadowcull")
     assert d.ui.dialogs == [Dialog.KEYS, Dialog.ABOUT]
     popups = lambda: len(imgui.get_current_context().open_popup_stack)  # noqa: E731
     for there in ("//##MainMenuBar/##MenuBar/File", f"//Scene/{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Recent"):
-        d.context.item_click(there)
-        d.frames(2)
+        d.click(there)
         assert popups() == 1
         d.press(KEY.escape)
         assert popups() == 0 and d.ui.dialogs == [Dialog.KEYS, Dialog.ABOUT]

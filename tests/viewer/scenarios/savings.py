@@ -12,7 +12,6 @@ from viewer.state.savings import bar_of, in_words, sentence
 from viewer.state.views import View
 from viewer.util.numbers import percent
 from viewer.util.resources import default_scene
-from viewer.window.keyboard import chord
 from viewer.window.panels.savings import standing
 
 KEY = imgui.Key
@@ -65,9 +64,9 @@ def savings(d: Driver) -> None:
     assert d.picture_edges() == edges
     d.context.key_up(KEY.d)
     d.settle()
-    d.press(chord("Shift+B"))
+    d.press("Shift+B")
     assert not d.c.preferences.savings and d.picture_edges()[1] < edges[1], "the picture has the room"
-    d.press(chord("Shift+B"))
+    d.press("Shift+B")
     d.settle()
     assert d.picture_edges() == edges
 
@@ -88,15 +87,13 @@ def _saved(d: Driver) -> None:
 
 def _pixels(d: Driver) -> None:
     """A click on a part of the bar shows its pixels, another one those of all parts again."""
-    d.context.item_click("//Picture/traced##savings")
+    d.click("//Picture/traced##savings")
     d.settle()
     assert d.c.scheduler.drawn_view is View.FATE
-    d.context.item_click("//Picture/traced##savings")
-    d.frames(2)
+    d.click("//Picture/traced##savings")
     assert d.ui.fate_shown is None
     all_bright = d.shown().astype(int).sum(-1)
-    d.context.item_click("//Picture/culled##savings")
-    d.frames(2)
+    d.click("//Picture/culled##savings")
     assert d.ui.fate_shown is Fate.CULLED
     culled, now = d.c.frame.fate(d.c.session.draw.light) == Fate.CULLED, d.shown().astype(int).sum(-1)
     others = (d.c.frame.primitive >= 0) & ~culled

@@ -40,7 +40,7 @@ def saved_results(d: Driver, panel: str) -> dict[str, Path]:
     before = set(folder.glob("*"))
     d.scroll_down(panel)
     for kind in ("JSON", "CSV", "Plot"):
-        d.context.item_click(f"//{panel}/**/{icons.ICON_FA_FLOPPY_DISK} {kind}")
+        d.click(f"//{panel}/**/{icons.ICON_FA_FLOPPY_DISK} {kind}")
     d.wait(lambda: not d.c.captures.busy, "the files to be written")
     d.frames(2)
     assert not d.c.notices.message.error, d.c.notices.message.text

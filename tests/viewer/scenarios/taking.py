@@ -68,8 +68,7 @@ def _nothing_to_save(d: Driver) -> None:
     d.c.session.set_draw(view=View.DIFFERENCE)
     d.wait(lambda: d.ui.capture_wanted is None, "the picture that was asked for")
     d.settle()
-    d.c.session.set_draw(view=View.COLOR)
-    d.settle()
+    d.see(View.COLOR)
     assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1, "one that comes is waited for"
     d.ui.capture_wanted, d.ui.graphics.capture_view = CaptureKind.PICTURE, View.DIFFERENCE
     d.frames(3)
@@ -83,8 +82,7 @@ def _nothing_to_save(d: Driver) -> None:
 def _save_as(d: Driver) -> None:
     """A picture of twice the size, with a caption, through the dialog."""
     d.fix_resolution(96, 64)
-    d.c.session.set_draw(view=View.OCCLUSION)
-    d.settle()
+    d.see(View.OCCLUSION)
     d.press(int(KEY.s) | CTRL)
     d.frames(3)
     plan = d.c.pictures.plan
@@ -92,7 +90,7 @@ def _save_as(d: Driver) -> None:
     plan.caption = "{scene}, frame {frame}, {method}, {width} × {height}"
     d.frames(2)
     assert d.c.pictures.size == (288, 192)
-    d.context.item_click(f"//{saving.TITLE}/Save")
+    d.click(f"//{saving.TITLE}/Save")
     d.wait(lambda: d.c.runs.current is None, "the picture")
     d.settle()
     assert Dialog.SAVE_AS not in d.ui.dialogs

@@ -73,7 +73,7 @@ def _tour(d: Driver) -> None:
     assert tour.over
     d.settle()
     d.click("//Picture/**/Close")
-    assert not tour.over and not d.context.item_exists(show)
+    assert not tour.over and not d.has(show)
 
     d.choose("Help/Tour")
     assert tour.at == 0

@@ -14,16 +14,14 @@ def trees(d: Driver) -> None:
     d.settle()
     fast = d.c.frame
     assert fast.statistics.built is None and not d.c.history.values("built").any()
-    d.ui.show_panel("Rendering")
-    d.frames(4)
-    d.context.item_click("//Rendering/quality/##accelerator")
-    d.context.item_click(f"//##Combo_00/{LAZY}")
+    d.show_panel("Rendering")
+    d.click("//Rendering/quality/##accelerator")
+    d.click(f"//##Combo_00/{LAZY}")
     d.wait(lambda: d.c.frame.settings.accelerator == LAZY, "a picture by the other tree")
     d.settle()
     built = d.c.frame.statistics.built
-    assert built is not None and 0 < built.primitives <= built.of and built.nodes > 0
+    assert 0 < built.primitives <= built.of and built.nodes > 0
     assert np.array_equal(d.c.frame.primitive, fast.primitive)
     assert d.c.history.values("built")[-1] == 100.0 * built.share
     for panel in ("Statistics", "Plots"):
-        d.ui.show_panel(panel)
-        d.frames(6)
+        d.show_panel(panel)

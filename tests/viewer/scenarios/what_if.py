@@ -18,22 +18,19 @@ def what_if(d: Driver) -> None:
     c = d.c
     c.settings.change(method="paper")
     d.settle()
-    d.ui.show_panel("What if")
-    d.frames(5)
+    d.show_panel("What if")
     before, traced = c.frame, c.frame.color.copy()
 
     # A light off, by its tick.
-    d.context.item_click("//What if/**/$$1/##on")
+    d.click("//What if/**/$$1/##on")
     d.wait(lambda: not c.editing.under_way, "the light off", 20.0)
     d.settle()
     assert len(c.session.scene.lights) == len(c.session.original.lights) - 1
-    d.context.item_click("//What if/**/Compare with the picture before")
-    d.frames(5)
+    d.click("//What if/**/Compare with the picture before")
     seen = c.comparing.seen
     assert (seen.a.frame, seen.b.frame) == (before, c.frame) and c.comparing.state.mode is CompareMode.DIFFERENCE
     d.scroll_down("What if")
-    d.context.item_click("//What if/**/End the comparison")
-    d.frames(2)
+    d.click("//What if/**/End the comparison")
     assert c.comparing.seen is None
 
     # What was clicked, hidden.
@@ -45,7 +42,7 @@ def what_if(d: Driver) -> None:
     d.settle()
     d.frames(5)
     shown = c.session.scene.primitive_count
-    d.context.item_click("//What if/**/Hide primitive")
+    d.click("//What if/**/Hide primitive")
     d.wait(lambda: not c.editing.under_way, "the primitive hidden", 20.0)
     d.settle()
     assert c.session.edits.hidden_primitives and c.session.scene.primitive_count < shown

@@ -44,15 +44,13 @@ def _culled(d: Driver) -> None:
     one = _click(d, _of(d, FULLY, ShadowMode.FULL_SHADOW), lambda one: one.rule is Rule.FULL_SHADOW)
     d.c.settings.set_light((one.light + 1) % len(d.c.session.scene.lights))
     d.frames(3)
-    d.context.item_click(f"//Inspector/$${one.light}/{d.ui.light_name(one.light)}##light")
-    d.frames(3)
+    d.click(f"//Inspector/$${one.light}/{d.ui.light_name(one.light)}##light")
     assert d.c.session.draw.light == one.light
     assert _said(d, one) == "Culled: fully rendered, and every shadow ray so far was blocked (§2.4)."
     assert one.fate is Fate.CULLED and not one.lit
     blocker = f"//Inspector/answer/{_named(d, one.blocker)}##0"
-    assert d.context.item_exists(blocker), "what is in the way is a link"
-    d.context.item_click(blocker)
-    d.frames(3)
+    assert d.has(blocker), "what is in the way is a link"
+    d.click(blocker)
     assert d.c.selection.picked.primitive == one.blocker
 
 
@@ -65,20 +63,17 @@ def _occluded(d: Driver) -> None:
     text, hider = _said(d, one), _named(d, one.occluded.primitive)
     assert f"partially occluded by {hider} at " in text and text.endswith("so its shadow mode is not trusted (§2.4).")
     by, drawn = d.c.inspector.why.coverage.occluded, _drawn(d)
-    d.context.mouse_move(f"//Inspector/reason/{hider}##0")
-    d.frames(3)
+    d.hover(f"//Inspector/reason/{hider}##0")
     assert _drawn(d) > drawn, "a name that the pointer is on is outlined"
     d.press(KEY.i)
     assert _drawn(d) < drawn, "no outline of what hides it, and no squares"
     d.press(KEY.i)
-    d.context.item_click(f"//Inspector/reason/{hider}##0")
-    d.frames(3)
+    d.click(f"//Inspector/reason/{hider}##0")
     assert d.c.selection.picked.primitive == one.occluded.primitive
     one = _click(d, inside, _by_something)
     link = next(part for part in _words(d).reason(one) if not isinstance(part, str) and part.pixel is not None)
     assert link.pixel == by.pixel
-    d.context.item_click(f"//Inspector/reason/{link.text}##1")
-    d.frames(3)
+    d.click(f"//Inspector/reason/{link.text}##1")
     assert (d.c.selection.picked.x, d.c.selection.picked.y) == by.pixel
 
 
@@ -89,7 +84,7 @@ def _taught(d: Driver) -> None:
     d.frames(3)
     taught = d.c.history.origins_of(d.c.selection.picked)
     number = max(taught.lights[one.light])
-    assert d.context.item_exists(f"//Inspector/reason/picture {number}##0")
+    assert d.has(f"//Inspector/reason/picture {number}##0")
     d.press(KEY.x)
     d.wait(lambda: rays.rows(d.ui), "the rays", 20.0)
     d.frames(3)
@@ -97,7 +92,7 @@ def _taught(d: Driver) -> None:
     d.c.motion.move(navigation.look(left, 0.02, 0.0, d.c.motion.world_up))
     d.settle()
     assert d.c.session.camera != left
-    d.context.item_click(f"//Inspector/reason/picture {number}##0")
+    d.click(f"//Inspector/reason/picture {number}##0")
     d.settle()
     assert d.c.session.camera == left, "it goes back to that picture, and what is selected stays so"
     assert d.c.selection.pixel is not None

@@ -77,7 +77,7 @@ def test_all_presets_can_be_applied_and_as_in_the_paper_is_what_the_paper_says(p
     parts.session.set_settings(method="certified", symmetric=True, zoom_factor=9.0, depth=2, lamp_radius=0.5)
     parts.session.set_draw(view=View.DEPTH)
     parts.presets.apply("As in the paper")
-    s, pace = parts.session.settings, parts.session.pace
+    s, pace = parts.session.settings, parts.session.state.pace
     assert (s.method, s.symmetric, s.zoom_factor, s.depth, s.samples) == ("paper", False, 4.0, 10, 1)
     assert s.lamp_radius == 0.0, "point lights"
     assert (pace.fixed_size, pace.width, pace.height, pace.progressive) == (True, 512, 512, False)

@@ -14,8 +14,7 @@ from PIL import Image
 
 from tests.commands import ROOM, run
 from tests.viewer.desk import ELSEWHERE, Desk
-from tests.viewer.fakes import TINY_SCENE
-from tests.viewer.marbles import write_marbles
+from tests.viewer.fakes import TINY_SCENE, write_marbles
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.settings import Settings

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.viewer.desk import ELSEWHERE, Desk, is_the_same_picture
-from tests.viewer.marbles import LAST, STEP, write_marbles
+from tests.viewer.fakes import LAST, STEP, write_marbles
 from tracer.experiments import zoom
 from viewer.state.picking import wrong_at
 from viewer.util.resources import embedded_scenes
@@ -125,7 +125,7 @@ def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
     for _ in range(2):
         c.undo.undo()
         study.rest()
-    assert c.session.state == here and not c.session.pace.fixed_size
+    assert c.session.state == here and not c.session.state.pace.fixed_size
 
 
 def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(study: Desk, tiny_scene_file: Path) -> None:

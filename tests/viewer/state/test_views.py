@@ -7,8 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from tests.viewer.colors import luminance
-from tests.viewer.drawn import classes_in
+from tests.viewer.drawn import classes_in, luminance
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.culling.fate import Fate
 from tracer.frame import Settings

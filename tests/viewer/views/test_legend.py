@@ -9,8 +9,7 @@ import pytest
 
 from tests.scenes import loaded
 from tests.tracing.nasty_worlds import nasty_walk
-from tests.viewer.colors import luminance
-from tests.viewer.drawn import legend_in
+from tests.viewer.drawn import legend_in, luminance
 from tests.viewer.fakes import (
     in_part,
     make_frame,
@@ -299,8 +298,9 @@ def test_texts_can_be_read_over_any_picture(picture: float):
         assert (luminance(color) + 0.05) / (luminance(backdrop) + 0.05) > 4.5
 
 
-@pytest.mark.parametrize("place", [(0.0, 0.0), (1.0, 1.0), (0.3, 0.9)])
-@pytest.mark.parametrize("size", [(240, 160), (512, 512), (1280, 720)])
+@pytest.mark.parametrize(
+    ("place", "size"), [((0.0, 0.0), (240, 160)), ((1.0, 1.0), (512, 512)), ((0.3, 0.9), (1280, 720))]
+)
 def test_a_legend_in_a_picture_has_its_colours_and_changes_nothing_around_it(
     frame: Frame, place: tuple[float, float], size: tuple[int, int]
 ):
@@ -316,10 +316,7 @@ def test_a_legend_in_a_picture_has_its_colours_and_changes_nothing_around_it(
     for color in OCCLUSION_COLORS.values():
         assert (drawn == np.round(255.0 * np.asarray(color))).all(axis=-1).sum() >= 25
     assert (white == 255).all(), "the picture itself stays as it is"
-
-
-def test_a_picture_too_small_for_its_legend_has_none(frame: Frame):
-    assert with_legend(np.zeros((40, 60, 3), np.uint8), of(frame, View.OCCLUSION), (0.0, 0.0)) is None
+    assert with_legend(white[:40, :60], of(frame, View.OCCLUSION), place) is None, "it is too small for one"
 
 
 def test_modes_say_what_the_papers_method_would_cull(frame: Frame):

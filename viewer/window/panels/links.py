@@ -44,7 +44,7 @@ def sentence(ui: Ui, said: Sentence, key: str, color: ImVec4 | None = None) -> N
             if place:
                 imgui.same_line(0.0, 0.0)
             if link is None:
-                _plain(text, color)
+                imgui.text_colored(color or imgui.get_style_color_vec4(imgui.Col_.text), text)
             else:
                 _link(ui, link, fitted(text, left + room - at), number)
                 number += 1
@@ -68,13 +68,6 @@ def _groups(said: Sentence) -> Iterator[list[_Word]]:
                 group = []
     if group:
         yield group
-
-
-def _plain(text: str, color: ImVec4 | None) -> None:
-    if color is not None:
-        imgui.text_colored(color, text)
-    else:
-        imgui.text_unformatted(text)
 
 
 def _link(ui: Ui, link: Link, text: str, number: int) -> None:

@@ -116,12 +116,12 @@ def _line(ui: Ui, states: NamedStates, index: int, apply: Callable[[int], None],
     else:
         imgui.align_text_to_frame_padding()
         clicked = imgui.selectable(f"{fitted(name, room)}###go", False, 0, ImVec2(room, 0.0))[0]
-        tooltip(f"{name}: {tip}; drag it to another place in the list")
-        to = index + (1 if imgui.get_mouse_drag_delta(0).y > 0.0 else -1)
-        if imgui.is_item_active() and not imgui.is_item_hovered() and 0 <= to < len(states.all):
+        mouse = imgui.get_mouse_pos().y
+        to = index + (mouse > imgui.get_item_rect_max().y) - (mouse < imgui.get_item_rect_min().y)
+        if imgui.is_item_active() and to != index and 0 <= to < len(states.all):
             states.move(index, to)
-            imgui.reset_mouse_drag_delta(0)
             return True
+        tooltip(f"{name}: {tip}; drag it to another place in the list")
         if clicked:
             apply(index)
     imgui.same_line(room + em(0.9))

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, imgui
 
 from viewer.services.controller import Controller
 from viewer.state.palette import FATE_COLORS, label_color
-from viewer.state.savings import LONGEST, PALE, Bar, Clause, Part, Standing, Tone, bar_of, sentence
+from viewer.state.savings import LONGEST, WOULD_OPACITY, Bar, Clause, Part, Standing, Tone, bar_of, sentence
 from viewer.state.views import View
 from viewer.util.numbers import count
 from viewer.views.legend import BACKDROP, TEXT
@@ -84,7 +84,7 @@ def _draw(ui: Ui, bar: Bar, width: float) -> None:
         imgui.set_cursor_screen_pos(at)
         if imgui.invisible_button(f"{part.name}##savings", ImVec2(end.x - at.x, high)):
             _show_pixels(ui, part)
-        draw.add_rect_filled(at, end, packed(FATE_COLORS[part.fate], PALE if part.would else 1.0))
+        draw.add_rect_filled(at, end, packed(FATE_COLORS[part.fate], WOULD_OPACITY if part.would else 1.0))
         if imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         if imgui.is_item_hovered() or ui.fate_shown is part.fate:

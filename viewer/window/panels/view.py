@@ -47,7 +47,7 @@ def show(ui: Ui) -> None:
 def show_rendering(ui: Ui) -> None:
     """Show the panel Rendering."""
     c = ui.controller
-    pace = c.session.pace
+    pace = c.session.state.pace
     setting_switch(ui, ALL["pace.fixed_size"])
     if pace.fixed_size:
         imgui.same_line()

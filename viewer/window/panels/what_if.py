@@ -298,13 +298,10 @@ def handle(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
 
 
 def _nearest(marks: list[Mark], corner: ImVec2, size: ImVec2) -> Mark | None:
+    """The mark that the pointer reaches, if any."""
     mouse = imgui.get_io().mouse_pos
-
-    def away(mark: Mark) -> float:
-        return math.dist((mouse.x, mouse.y), (corner.x + mark.at[0] * size.x, corner.y + mark.at[1] * size.y))
-
-    nearest = min(marks, key=away, default=None)
-    return nearest if nearest is not None and away(nearest) <= em(_REACH) else None
+    away = [math.dist((mouse.x, mouse.y), (corner.x + m.at[0] * size.x, corner.y + m.at[1] * size.y)) for m in marks]
+    return marks[away.index(min(away))] if min(away, default=math.inf) <= em(_REACH) else None
 
 
 def show_lights(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
