@@ -22,7 +22,7 @@ class CompareMode(StrEnum):
         made._value_, made.label, made.command, made.help = value, label, command, help
         return made
 
-    FLIP = "flip", "Flip", "Flip between A and B", "Show B, and A while Z is held."
+    FLIP = "flip", "Flip", "Flip between A and B", "Show B, and A while its key is held."
     WIPE = "wipe", "Wipe", "Wipe between A and B", "Show A left of a line and B right of it. Drag the line."
     SIDE = "side", "Side by side", "A and B side by side", "Show A on the left and B on the right."
     DIFFERENCE = (

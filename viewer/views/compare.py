@@ -22,6 +22,8 @@ ENDLESS = 1e29
 """From here on a difference is one without end: one of the two pictures has no value there."""
 HIDDEN_SHARE = 0.5
 """Per cent of the pixels that differ, at most, which lie beyond the range of a difference that is fitted."""
+MOST_RINGED = 0.05
+"""The part of the pixels that differ up to which they have rings: of more, the rings would be the picture."""
 GAP = 4
 """Pixels between pictures that are saved side by side."""
 _RING = (1.0, 1.0, 1.0)
@@ -111,11 +113,11 @@ def fitted(a: NDArray, size: tuple[int, int]) -> NDArray:
 
 def signed_picture(found: Difference, limit: float, ringed: bool) -> Pixels:
     """Draw a signed difference in false colour, as far as `limit` to both sides, (h, w, 3) uint8; `ringed`: with rings
-    around pixels that differ, or around each crowd of them."""
+    around pixels that differ, or around each crowd of them, where these are few."""
     t = np.clip(found.pixels / np.float32(limit), -1.0, 1.0)[..., None]
     less, same, more = (np.asarray(color, np.float32) for color in (LESS, SAME, MORE))
     pixels = in_bytes(same + np.abs(t) * (np.where(t < 0.0, less, more) - same))
-    if ringed:
+    if ringed and found.stats.pixels <= MOST_RINGED * found.stats.of:
         pixels[marks(found.pixels != 0.0) == Mark.RING] = in_bytes(_RING)
     return pixels
 

@@ -170,23 +170,6 @@ def test_a_task_has_the_thread_to_itself_and_the_newest_request_waits(thread):
     idle(thread)
 
 
-def test_a_task_that_waits_while_the_scene_changes_gets_its_own_renderer_and_ends(thread):
-    old, new, first, task = FakeRenderer(), FakeRenderer(), FakeTask(), FakeTask()
-    held = Event()
-    first.work = lambda renderer, cancelled: (first.started.set(), held.wait(PATIENCE))
-    thread.use(old)
-    thread.perform(first.work)
-    assert first.started.wait(PATIENCE)
-    thread.perform(task.work)
-    thread.use(new)
-    held.set()
-    assert task.started.wait(PATIENCE)
-    idle(thread)
-    assert task.renderer is old and task.cancelled, "what was asked of the old scene is over"
-    thread.submit(request(1.0))
-    assert taken(thread).frame.time == 1.0 and [at for at, _ in new.asked] == [1.0]
-
-
 def test_closing_cuts_a_trace_short():
     thread = RenderThread()
     thread.submit(request(0.0))

@@ -34,6 +34,7 @@ HEIGHT = 2.0 * 5.0 * math.tan(math.radians(30.0))  # of what is seen 5 units awa
         (nav.orbit(HOME, (0.0, 1.0, 0.0), math.pi / 2, 0.0, UP), (-5.0, 1.0, 0.0), (1.0, 0.0, 0.0)),
         (nav.pan(HOME, 0.25, 0.5, distance=5.0), (-0.25 * HEIGHT, 1.0 - 0.5 * HEIGHT, 5.0), HOME.direction),
         (nav.focus(HOME, HOME.position, 1.0, UP), HOME.position, HOME.direction),
+        (nav.focus(HOME, (0.0, 1.0, 0.0), 0.2, UP), (0.0, 1.0, 0.6 / math.tan(math.radians(30.0))), HOME.direction),
     ],
 )
 def test_a_camera_moves_as_the_hand_does(moved: Camera, position: tuple[float, ...], direction: tuple[float, ...]):
@@ -70,21 +71,6 @@ def test_a_dolly_never_reaches_its_pivot(notches):
     assert camera.position[2] > 0.0
 
 
-def test_focus_looks_at_the_point_from_a_distance_that_fits():
-    camera = nav.focus(HOME, (2.0, 1.0, 0.0), 0.2, UP)
-    to_point = np.subtract((2.0, 1.0, 0.0), camera.position)
-    assert to_point / np.linalg.norm(to_point) == pytest.approx(camera.basis()[2])
-    assert np.linalg.norm(to_point) == pytest.approx(3.0 * 0.2 / math.tan(math.radians(30.0)))
-
-
-def test_a_glide_begins_and_ends_where_it_should():
-    there = nav.orbit(HOME, (0.0, 0.0, 0.0), 1.0, 0.3, UP)
-    assert nav.blend(HOME, there, 0.0).position == pytest.approx(HOME.position)
-    assert nav.blend(HOME, there, 1.0) == there
-    behind = Camera((0.0, 1.0, 5.0), (0.0, 0.0, 1.0))
-    assert np.isfinite(nav.blend(HOME, behind, 0.5).basis()).all()
-
-
 def test_the_worlds_up_is_an_axis_where_the_camera_is_nearly_upright():
     assert nav.world_up(Camera((0, 0, 0), (1, 0, 0), (0.05, 0.1, 1.0))) == pytest.approx((0, 0, 1))
     tilted = nav.world_up(Camera((0, 0, 0), (1, 0, 0), (0.0, 1.0, 1.0)))
@@ -101,6 +87,8 @@ def test_the_pace_follows_the_scenes_size():
 
 def test_a_flight_turns_at_an_even_pace_even_to_the_opposite_side():
     start = Camera((0.0, 0.0, 0.0), (0.0, 0.0, -1.0))
+    there = nav.orbit(HOME, (0.0, 0.0, 0.0), 1.0, 0.3, UP)
+    assert nav.blend(HOME, there, 0.0).position == pytest.approx(HOME.position) and nav.blend(HOME, there, 1.0) == there
     for end in (replace(start, direction=(1.0, 0.0, 0.0)), replace(start, direction=(0.0, 0.0, 1.0))):
         ways = [nav.blend(start, end, t).basis()[2] for t in np.linspace(0.0, 1.0, 21)]
         steps = [math.acos(min(1.0, float(a @ b))) for a, b in pairwise(ways)]
