@@ -1,4 +1,1 @@
-"""The command line: what people type, and the commands that need no window.
-
-`main` reads a command line; `render`, `bench`, `zoom` and `info` do what it says and print what came of it.
-"""
+"""The command line: `main` reads it, and each command, in the file of its name, does what it says."""

@@ -31,6 +31,11 @@ class Seen:
     difference: Difference | None = None
 
     @property
+    def has_line(self) -> bool:
+        """Whether A is left of a line, and B right of it."""
+        return self.mode is CompareMode.WIPE and not self.shows_a
+
+    @property
     def names(self) -> tuple[str, str]:
         """What the picture calls the two."""
         return f"A  {self.a.named(self.b)}", f"B  {self.b.named(self.a)}"

@@ -75,7 +75,7 @@ def magnify(ui: Ui, options: DrawOptions, smooth: bool) -> None:
         return
     seen, compared = ui.controller.comparing.seen, ui.graphics.compared
     a = compared.a if compared is not None else None
-    beside = seen is not None and not seen.shows_a and seen.mode in (CompareMode.SIDE, CompareMode.WIPE)
+    beside = seen is not None and (seen.has_line or seen.mode is CompareMode.SIDE)
     for name, drawn in ((PICTURE, filling(ui)), (OF_A, a if beside else None)):
         picture = drawn.picture if drawn is not None else None
         view = seen.a.view if seen is not None and drawn is a else options.view
@@ -117,7 +117,7 @@ def words(ui: Ui, options: DrawOptions, side: Side | None = None) -> tuple[Frame
     if found is None:
         return None
     width, height = found.frame.width, found.frame.height
-    wiped = seen if seen is not None and side is None and not seen.shows_a and seen.mode is CompareMode.WIPE else None
+    wiped = seen if seen is not None and side is None and seen.has_line else None
     column = wipe_column(width, options.wipe)
 
     def of(x: int, y: int) -> Words:
@@ -207,9 +207,7 @@ def drag_line(ui: Ui, area: Area) -> bool:
 def _line_is_there(ui: Ui) -> bool:
     """Whether a line is seen: between A and B, or between the culled picture and the right one."""
     seen = ui.controller.comparing.seen
-    if seen is not None:
-        return seen.mode is CompareMode.WIPE and not seen.shows_a
-    return ui.controller.scheduler.drawn_view is View.WIPE
+    return ui.controller.scheduler.drawn_view is View.WIPE if seen is None else seen.has_line
 
 
 def _line_at(ui: Ui, area: Area) -> float:
@@ -219,37 +217,22 @@ def _line_at(ui: Ui, area: Area) -> float:
 
 def show(ui: Ui, area: Area, top: float) -> None:
     """Draw what says which is which, below the picture's title, which ends at `top`; and the line of a wipe."""
-    seen, frame = ui.controller.comparing.seen, ui.controller.frame
-    y, room = top + em(0.2), area.size.x - em(0.6)
+    seen, frame, y, room = ui.controller.comparing.seen, ui.controller.frame, top + em(0.2), area.size.x - em(0.6)
     if seen is None and frame is not None and _line_is_there(ui):
         method = frame.settings.method
-        _line(ui, area)
-        _names_beside_line(ui, area, y, (method if Method.parse(method).culls else "no culling", "reference"))
+        _line(ui, area, y, (method if Method.parse(method).culls else "no culling", "reference"), (None, None))
     if seen is None:
         return
     a, b = seen.names
     if seen.mode is CompareMode.SIDE:
         _label(ImVec2(area.corner.x - em(GAP) - area.size.x, area.corner.y), a, LESS, room)
         _label(ImVec2(area.corner.x, y), b, MORE, room)
-    elif _line_is_there(ui):
-        _line(ui, area)
-        _names_beside_line(ui, area, y, (a, b), (LESS, MORE))
+    elif seen.has_line:
+        _line(ui, area, y, (a, b), (LESS, MORE))
     elif seen.difference is not None:
         _label(ImVec2(area.corner.x, y), f"{b}   minus   {a}", None, room)
     else:
         _label(ImVec2(area.corner.x, y), *((a, LESS) if seen.shows_a else (b, MORE)), room)
-
-
-def _names_beside_line(
-    ui: Ui, area: Area, y: float, names: tuple[str, str], colors: tuple[Color | None, Color | None] = (None, None)
-) -> None:
-    """What lies left of the line, and right of it, as far as there is room."""
-    x, apart = _line_at(ui, area), em(0.7)
-    left, right = x - apart - area.corner.x, area.end.x - x - apart
-    if left > em(_LEAST):
-        _label(ImVec2(x - apart, y), names[0], colors[0], left, ends_there=True)
-    if right > em(_LEAST):
-        _label(ImVec2(x + apart, y), names[1], colors[1], right)
 
 
 def _label(at: ImVec2, text: str, color: Color | None, room: float, ends_there: bool = False) -> None:
@@ -267,11 +250,11 @@ def _label(at: ImVec2, text: str, color: Color | None, room: float, ends_there: 
     draw.add_text(ImVec2(x + square, at.y + pad), packed(_LIGHT), text)
 
 
-def _line(ui: Ui, area: Area) -> None:
-    """The line, with a disc on it that has an arrow to either side."""
+def _line(ui: Ui, area: Area, top: float, names: tuple[str, str], colors: tuple[Color | None, Color | None]) -> None:
+    """The line, with a disc on it that has an arrow to either side, and what lies left and right of it."""
     draw, x, y = imgui.get_window_draw_list(), _line_at(ui, area), (area.corner.y + area.end.y) / 2.0
     dark, bright = packed(_DARK, 0.72), packed(_HELD if ui.state(WipeState).held else _LIGHT)
-    half, radius, arrow = max(1.0, em(0.05)), em(0.8), em(0.28)
+    half, radius, arrow, apart = max(1.0, em(0.05)), em(0.8), em(0.28), em(0.7)
     draw.push_clip_rect(area.corner, area.end, True)
     for wide, color in ((2.0 * half, dark), (half, bright)):
         draw.add_rect_filled(ImVec2(x - wide, area.corner.y), ImVec2(x + wide, area.end.y), color)
@@ -280,4 +263,8 @@ def _line(ui: Ui, area: Area) -> None:
     for side in (-1.0, 1.0):
         tip, base = x + side * 0.62 * radius, x + side * 0.22 * radius
         draw.add_triangle_filled(ImVec2(tip, y), ImVec2(base, y - arrow), ImVec2(base, y + arrow), bright)
+        name, own = names[side > 0.0], colors[side > 0.0]
+        room = (area.end.x - x if side > 0.0 else x - area.corner.x) - apart
+        if room > em(_LEAST):
+            _label(ImVec2(x + side * apart, top), name, own, room, ends_there=side < 0.0)
     draw.pop_clip_rect()
