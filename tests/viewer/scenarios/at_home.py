@@ -76,7 +76,7 @@ def _undo(d: Driver) -> None:
     assert d.c.session.draw.shading != shading and d.c.undo.undoes.startswith("shading")
     d.choose("Edit/###Undo")
     assert d.c.session.draw.shading == shading, "a drag is one step"
-    assert d.c.notices.message.text.startswith("undone: shading") and d.c.undo.undoes == "camera"
+    assert d.said.startswith("undone: shading") and d.c.undo.undoes == "camera"
     flights = 0
     while d.c.undo.undoes == "camera":  # several where the machine is slow: the camera rests between them
         d.press("Ctrl+Z")
@@ -147,13 +147,13 @@ def _reloading(d: Driver) -> None:
     d.wait(lambda: d.c.session.scene is not scene, "the scene that has changed", 30.0)
     assert d.ui.graphics.display.texture_id is not None
     d.settle()
-    assert d.c.session.state == here and d.c.notices.message.text.endswith("tiny.aff changed")
+    assert d.c.session.state == here and d.said.endswith("tiny.aff changed")
     assert np.abs(d.shown().astype(int) - picture).max() > 20, "another picture"
     scene = d.c.session.scene
     _write(path, good + "\np 3\n0 0\n")
     d.wait(lambda: _failed(d), "the broken scene to be told of", 30.0)
     d.frames(2)
-    assert "tiny.aff:" in d.c.notices.message.text and d.c.session.scene is scene
+    assert "tiny.aff:" in d.said and d.c.session.scene is scene
 
 
 def _failed(d: Driver) -> bool:

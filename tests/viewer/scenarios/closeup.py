@@ -147,8 +147,7 @@ def _range(d: Driver) -> None:
     d.press(int(KEY.f) | SHIFT)
     d.frames(3)
     assert np.allclose(d.c.session.draw.span, (depth.min(), depth.max()))
-    expected = picture(d.c.frame, View.DEPTH, span=d.c.session.draw.span)
-    assert np.abs(d.shown().astype(int) - expected).max() <= 2
+    d.expect_picture()
     d.c.session.set_draw(spans=())
     d.see(View.COLOR)
 
@@ -159,8 +158,7 @@ def _exposed(d: Driver) -> None:
     d.press(KEY.right_bracket, 2)
     d.press(int(KEY.m) | SHIFT)
     assert d.c.session.draw.tone.exposure == 1.0 and d.c.session.draw.clipping
-    expected = picture(d.c.frame, tone=d.c.session.draw.tone, clipping=True)
-    assert np.abs(d.shown().astype(int) - expected).max() <= 1
+    d.expect_picture(1)
     d.press(KEY.left_bracket)
     d.press(int(KEY.m) | SHIFT)
     assert d.c.session.draw.tone.exposure == 0.5

@@ -28,7 +28,7 @@ def comparing(d: Driver) -> None:
     d.change(method="none")
     comparing = d.c.comparing
     d.press(int(KEY.z) | SHIFT)
-    assert "choose Keep as A" in d.c.notices.message.text and comparing.seen is None, "nothing is kept yet"
+    assert "choose Keep as A" in d.said and comparing.seen is None, "nothing is kept yet"
     d.press(int(KEY.a) | CTRL | SHIFT)
     d.press(int(KEY.a) | CTRL)
     kept = d.c.frame

@@ -36,10 +36,7 @@ def views(d: Driver) -> None:
         assert d.c.session.draw.view is view
         assert view.records or d.c.history.frames == before, "changing the view has traced"
         d.settle()
-        shown = d.shown().astype(int)
-        expected = picture(d.c.frame, view, d.c.session.draw.light).astype(int)
-        difference = np.abs(shown - expected)
-        assert difference.max() <= 2, f"{view}: off by {difference.max()} at {np.argwhere(difference > 2)[:3]}"
+        d.expect_picture()
     d.press(KEY._3)
     d.press(KEY.l)
     assert d.c.session.draw.light == 1

@@ -50,7 +50,7 @@ def failing(d: Driver) -> None:
     assert np.array_equal(d.shown(), before)
     d.press(KEY.f12)
     d.frames(3)
-    assert not (d.folder / "pictures").exists() and "no picture to save" in d.c.notices.message.text
+    assert not (d.folder / "pictures").exists() and "no picture to save" in d.said
     notices.dismiss_faults()
     display.write = write
     d.press(KEY._6)

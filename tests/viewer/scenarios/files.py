@@ -10,7 +10,6 @@ import numpy as np
 from imgui_bundle import glfw_utils, imgui
 from PIL import Image
 
-from tests.viewer.drawn import picture
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.studios import standing
 from viewer.state.methods import missing
@@ -55,7 +54,7 @@ def capturing(d: Driver) -> None:
     d.press(KEY.f12)
     d.wait(lambda: not d.c.captures.busy, "the failure to write")
     d.frames(2)
-    assert d.c.notices.message.error and "cannot write" in d.c.notices.message.text
+    assert d.c.notices.message.error and "cannot write" in d.said
     d.settle()
 
 
@@ -75,7 +74,7 @@ def dropping(d: Driver) -> None:
         d.wait(lambda: not d.c.loader.busy, "the load to fail")
         d.frames(2)
         assert d.c.notices.message is not None and d.c.notices.message.error, f"{path} was not refused"
-        assert path.name in d.c.notices.message.text and "\n" not in d.c.notices.message.text
+        assert path.name in d.said and "\n" not in d.said
         assert d.c.session.scene is scene
     lights = "\n".join(f"l {i} 5 3 0.1 0.1 0.1" for i in range(40))
     many = d.folder / "many.aff"
@@ -130,8 +129,7 @@ def reopening(d: Driver) -> None:
         d.c.renderer.take = take
         d.settle()
         assert d.c.scheduler.drawn_view is view
-        expected = picture(d.c.frame, view, shading=d.c.session.draw.shading)
-        assert np.abs(d.shown().astype(int) - expected).max() <= 2
+        d.expect_picture()
 
 
 def cancelling(d: Driver) -> None:
@@ -144,7 +142,7 @@ def cancelling(d: Driver) -> None:
     d.wait(lambda: d.c.loader.load_job is None, "the load to stop", 20.0)
     d.frames(3)
     assert d.c.session.scene is scene and d.c.frame is frame
-    assert "cancelled" in d.c.notices.message.text
+    assert "cancelled" in d.said
 
 
 def browsing(d: Driver) -> None:

@@ -27,14 +27,14 @@ def filming(d: Driver) -> None:
     d.wait(lambda: films.film is not None and runs.current is None, "the film")
     d.settle()
     assert d.c.questions.question is None, "whether to stop it is asked although it is done"
-    assert films.film.whole and "film done: 5 frames" in d.c.notices.message.text
+    assert films.film.whole and "film done: 5 frames" in d.said
     folder = films.film.folder
     assert folder.parent == pictures and len(list(folder.iterdir())) == 5
 
     d.click("//Film/**/###bookmarks")
     assert films.plan.through_bookmarks and films.count == 0
     d.click(start)
-    assert d.c.notices.message.error and "two bookmarks" in d.c.notices.message.text
+    assert d.c.notices.message.error and "two bookmarks" in d.said
     d.c.bookmarks.add()
     d.hold(KEY.d, 0.2)
     d.settle()
@@ -48,4 +48,4 @@ def filming(d: Driver) -> None:
     d.wait(lambda: runs.current is None, "the film to stop", 20.0)
     d.settle()
     assert 3 < len(list(films.film.folder.iterdir())) < 3000
-    assert "is kept" in d.c.notices.message.text and str(films.film.folder) in d.c.notices.message.text
+    assert "is kept" in d.said and str(films.film.folder) in d.said

@@ -106,7 +106,7 @@ def _keys(d: Driver) -> None:
     d.click("//Keyboard and mouse/**/Fly back/S##key")
     d.press(KEY.o)
     d.frames(2)
-    assert d.ui.keymap.conflicts()["Fly back"] == ["Orbit"] and "also Orbit" in d.c.notices.message.text
+    assert d.ui.keymap.conflicts()["Fly back"] == ["Orbit"] and "also Orbit" in d.said
     assert d.c.preferences.navigation == "fly", "a key that was chosen did what it does"
     d.ui.keymap.reset("Fly back")
     d.press(KEY.f1)

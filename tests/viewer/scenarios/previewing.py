@@ -67,7 +67,4 @@ def previewing(d: Driver) -> None:
 
 
 def _read(d: Driver) -> np.ndarray:
-    got: list[np.ndarray] = []
-    d._in_frame.append(lambda: got.append(colors_of(d.ui.graphics.preview)))
-    d.wait(lambda: bool(got), "the preview to be read")
-    return got[0]
+    return d.inside(lambda: colors_of(d.ui.graphics.preview))

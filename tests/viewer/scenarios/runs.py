@@ -33,14 +33,14 @@ def experimenting(d: Driver) -> None:
         d.wait(lambda: run.is_shown and run.traced > before + 3, "frames of the experiment")  # noqa: B023
         assert (d.c.frame.width, d.c.frame.height) == (64, 48) == d.ui.graphics.display.size, "they are not the picture"
     d.hold(KEY.w, 0.1)
-    assert d.c.session.camera == home and "stop it first" in d.c.notices.message.text
+    assert d.c.session.camera == home and "stop it first" in d.said
     d.press(KEY.c)
     assert d.c.session.settings.method == method
     d.press(KEY._2)
     assert d.c.session.draw.view is View.OCCLUSION, "a view can be chosen any time"
     d.click(f"//Experiment/**/{icons.ICON_FA_STOP}  Stop")
     d.wait(lambda: runs.current is None, "the experiment to stop", 20.0)
-    assert 3 <= len(run.results.frames) < 3000 and "what was done is kept" in d.c.notices.message.text
+    assert 3 <= len(run.results.frames) < 3000 and "what was done is kept" in d.said
     d.settle()
     assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.frame.camera == home
 
@@ -73,7 +73,7 @@ def zooming(d: Driver) -> None:
     d.show_panel("Zoom test")
     start = f"//Zoom test/**/{icons.ICON_FA_PLAY}  Start"
     d.click(start)
-    assert runs.zoom_test is None and "click a primitive" in d.c.notices.message.text
+    assert runs.zoom_test is None and "click a primitive" in d.said
     d.context.mouse_move_to_pos(d.picture_centre())
     d.context.mouse_click(0)
     d.frames(2)
@@ -131,7 +131,7 @@ def asking(d: Driver) -> None:
     d.press(KEY.escape)
     assert d.c.questions.question is None and not runs.current.stopping, "Escape has stopped it beside the question"
     d.drop(d.folder / "gone.aff")
-    assert d.c.questions.question is None and "no such file" in d.c.notices.message.text
+    assert d.c.questions.question is None and "no such file" in d.said
     run = runs.experiment
     d.drop(other)
     answer("Stop and open")

@@ -43,7 +43,7 @@ def saved_results(d: Driver, panel: str) -> dict[str, Path]:
         d.click(f"//{panel}/**/{icons.ICON_FA_FLOPPY_DISK} {kind}")
     d.wait(lambda: not d.c.captures.busy, "the files to be written")
     d.frames(2)
-    assert not d.c.notices.message.error, d.c.notices.message.text
+    assert not d.c.notices.message.error, d.said
     files = {path.suffix: path for path in set(folder.glob("*")) - before}
     assert set(files) == {".json", ".csv", ".png"}
     with Image.open(files[".png"]) as plot:

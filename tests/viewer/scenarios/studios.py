@@ -19,7 +19,7 @@ def standing(d: Driver) -> None:
     d.drop(path)
     d.wait(lambda: up_in_studio(d.c.session.scene) is not None, "the model in its studio")
     d.settle()
-    assert up_in_studio(d.c.session.scene) == "z" and "with z up" in d.c.notices.message.text
+    assert up_in_studio(d.c.session.scene) == "z" and "with z up" in d.said
     assert d.c.info["bounds"][1][2] - d.c.info["bounds"][0][2] < 2.1  # the model's, not the floor's
     d.press("Ctrl+U")
     d.wait(lambda: up_in_studio(d.c.session.scene) == "x", "the model to lie")

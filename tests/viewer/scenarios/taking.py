@@ -27,13 +27,10 @@ CTRL, ALT = int(KEY.mod_ctrl), int(KEY.mod_alt)
 def taking(d: Driver) -> None:
     """Each way out of the window, once; what cannot be done is said."""
     d.settle()
-    copied: list[str] = []
-    d._in_frame.append(lambda: imgui.set_clipboard_text("nothing yet"))
-    d.frames(2)
+    d.inside(lambda: imgui.set_clipboard_text("nothing yet"))
     d.press(int(KEY.c) | CTRL | ALT)
-    d._in_frame.append(lambda: copied.append(imgui.get_clipboard_text()))
-    d.wait(lambda: bool(copied), "the clipboard")
-    assert copied[0] == d.c.pictures.command() and copied[0].startswith("shadowcull render ")
+    copied = d.inside(imgui.get_clipboard_text)
+    assert copied == d.c.pictures.command() and copied.startswith("shadowcull render ")
     d.c.preferences.screenshot_template = "taken.png"
     d.press(KEY.f12)
     d.wait(lambda: not d.c.captures.busy, "the picture")
@@ -45,7 +42,7 @@ def taking(d: Driver) -> None:
     d.c.preferences.tev = "127.0.0.1:1"
     next(c for c in d.ui.commands if c.name == "Send to tev").run()
     d.wait(lambda: not d.c.captures.busy, "nobody to listen")
-    assert d.c.notices.message.error and "is tev or HDRView open there?" in d.c.notices.message.text
+    assert d.c.notices.message.error and "is tev or HDRView open there?" in d.said
     d.settle()
 
 
@@ -72,10 +69,7 @@ def _nothing_to_save(d: Driver) -> None:
     assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1, "one that comes is waited for"
     d.ui.capture_wanted, d.ui.graphics.capture_view = CaptureKind.PICTURE, View.DIFFERENCE
     d.frames(3)
-    assert (
-        d.ui.capture_wanted is d.ui.graphics.capture_view is None
-        and "another view was chosen" in d.c.notices.message.text
-    )
+    assert d.ui.capture_wanted is d.ui.graphics.capture_view is None and "another view was chosen" in d.said
     assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1
 
 
@@ -95,7 +89,7 @@ def _save_as(d: Driver) -> None:
     d.settle()
     assert Dialog.SAVE_AS not in d.ui.dialogs
     (path,) = (d.folder / "pictures").glob("tiny-occlusion-288x192*")
-    assert str(path) in d.c.notices.message.text
+    assert str(path) in d.said
     with Image.open(path) as image:
         assert image.width == 288 and image.height > 192
     d.c.session.set_draw(view=View.COLOR)
@@ -119,14 +113,14 @@ def _copy(d: Driver) -> None:
         os.environ["PATH"] = str(folder)
         d.press(int(KEY.c) | CTRL)
         d.frames(3)
-        assert d.c.notices.message.error and "install xclip" in d.c.notices.message.text
+        assert d.c.notices.message.error and "install xclip" in d.said
         program = folder / "xclip"
         program.write_text(f"#!/bin/sh\n/bin/cat > {folder}/got.png\n")
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
         d.press(int(KEY.c) | CTRL)
         d.wait(lambda: (folder / "got.png").exists() and not d.c.captures.busy, "the copy")
         d.frames(2)
-        assert "is on the clipboard" in d.c.notices.message.text
+        assert "is on the clipboard" in d.said
         with Image.open(folder / "got.png") as image:
             assert np.array_equal(np.asarray(image), d.shown())
         d.c.comparing.keep()
