@@ -141,7 +141,7 @@ class SceneLoader:
 
     @property
     def busy(self) -> bool:
-        return any(one is not None for one in (self.load_job, self._restored, self.warm_up_job))
+        return not (self.load_job is None and self._restored is None and self.warm_up_job is None)
 
     @property
     def waiting(self) -> Arrival | None:
@@ -152,8 +152,6 @@ class SceneLoader:
     def ready(self) -> bool:
         """Whether all kernels are; those that make certificates come last, and pictures without them look the same."""
         return self.warm_up_job is None
-
-    # --- kernels ----------------------------------------------------------------------------------
 
     def start(
         self,
@@ -346,23 +344,20 @@ class SceneLoader:
             return arrival
         load, came = self.load_job, self._coming
         self.load_job, self._coming = None, Arrival()
-        if load.result is not None:
-            self.watch.files, came.opened = came.files, load.result
-            self._session.change(meshes=came.meshes)
-            came.text = _in_words(came, load.result)
-            return came
-        if came.again:
-            self.watch.files = self.watch.files | came.files  # what was not come to may be mended too
-        self._report(load, after=" (the scene as it was stays)" if came.again else "")
-        return arrival
-
-
-def _in_words(came: Arrival, opened: Opened) -> str:
-    up, count = up_in_studio(opened.scene), len(opened.scene.warnings)
-    text = f"{opened.scene.path.name} {'reloaded' if came.again else 'opened'} in {opened.seconds:.1f} s"
-    text += f", with {up} up" if up else ""
-    text += f", {count} warning{'s' * (count > 1)}" if count else ""
-    return f"{text}: {came.changed} changed" if came.changed else text
+        if load.result is None:
+            if came.again:
+                self.watch.files = self.watch.files | came.files  # what was not come to may be mended too
+            self._report(load, after=" (the scene as it was stays)" if came.again else "")
+            return arrival
+        came.opened = opened = load.result
+        self.watch.files = came.files
+        self._session.change(meshes=came.meshes)
+        up, count = up_in_studio(opened.scene), len(opened.scene.warnings)
+        came.text = f"{opened.scene.path.name} {'reloaded' if came.again else 'opened'} in {opened.seconds:.1f} s"
+        came.text += f", with {up} up" if up else ""
+        came.text += f", {count} warning{'s' * (count > 1)}" if count else ""
+        came.text += f": {came.changed} changed" if came.changed else ""
+        return came
 
 
 def _warm_up(progress: Progress) -> None:

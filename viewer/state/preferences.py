@@ -46,11 +46,10 @@ class NamedState:
 class Preferences:
     """Everything that outlives the window.
 
-    `state` is what the window starts with (`codec.remembered`), `last` the state to start from where that is asked for;
-    `method` is the one to cull by while culling is on.  `speed` is relative to the scene's own pace.  `savings` says
-    that what culling saves is shown above the picture.  `tour` says that the tour has not been shown yet, `keys` are
-    those that the user has chosen, by the names of commands, and `used` is what the command palette ran last, newest
-    first.  `bookmarks` are by the path of their scene."""
+    `state` is what the window starts with (`codec.remembered`), `method` the one to cull by while culling is on.
+    `speed` is relative to the scene's own pace.  `savings` says that what culling saves is shown above the picture,
+    `tour` that the tour has not been shown yet.  `keys` are those that the user has chosen, by the names of commands,
+    and `used` is what the command palette ran last, newest first.  `bookmarks` are by the path of their scene."""
 
     format: int = FORMAT
     state: dict[str, Any] = field(default_factory=dict)

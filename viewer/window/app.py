@@ -3,7 +3,7 @@
 Hello ImGui owns the window, its GL context, the docking and the screen's density.  It calls a frame in three parts:
 
     before_widgets   input -> state -> scheduler -> newest frame -> picture, with all GL work
-    widgets          panels (drawn by Hello ImGui from `panels.catalogue`), keys, and what lies over the panels
+    widgets          panels (drawn by Hello ImGui from `layout.PANELS`), keys, and what lies over the panels
     after_widgets    pictures of the window
 """
 
