@@ -99,16 +99,18 @@ def _taught(d: Driver) -> None:
 
 
 def _in_motion(d: Driver) -> None:
-    """While the film plays, the sentences are those of picture after picture."""
+    """While each frame of the film is shown, the sentences are those of picture after picture."""
     _click(d, _of(d, PARTLY) & ~_at_border(d), _by_something)
     seen: list[Why] = []
-    missing = 0
+    missing, in_view = 0, True
+    d.c.session.set_pace(every_frame=True)
     d.c.motion.toggle_play()
 
     def others() -> bool:
-        nonlocal missing
+        nonlocal missing, in_view
         found = d.c.inspector.why
-        missing += found is None
+        in_view = in_view and d.c.selection.pixel is not None  # the film may leave it behind
+        missing += found is None and in_view
         if found is not None and not any(found is one for one in seen):
             seen.append(found)
         return len(seen) > 5
@@ -117,7 +119,6 @@ def _in_motion(d: Driver) -> None:
     d.c.motion.toggle_play()
     d.settle()
     assert missing == 0, "they came and went"
-    assert any(one.tree is None for one in seen), "none was of a picture in part"
 
 
 def _by_something(one: Reason) -> bool:
