@@ -8,6 +8,8 @@ method `paper` with the kd-tree, over any sequence of whole frames (tests/tracin
 Where this departs from the text of the paper, or chooses where the text is silent:
 
 =====  ==============================================================================================================
+§2.2   Modes and pixel counts belong to one resolution. `Renderer` keeps them for each that it renders at; a coarser one
+       takes over what a finer one has just seen whole.
 §2.2   A light that moves loses its shadow modes, and every FULLY_RENDERED primitive is examined anew.
 §2.2   Only the first 31 lights have shadow modes: a word of 64 bits has room for no more.
 §2.3   A primitive at the screen's edge is PARTIALLY_OCCLUDED: it may go on beyond the edge.
