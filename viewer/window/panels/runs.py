@@ -71,16 +71,16 @@ def show_run(
     parts: Sequence[Part],
     why: str,
 ) -> None:
-    """Show a panel: the plan or, while the run is under way, what it is doing, beside the parts of its results.
+    """Show a panel: what starts a run or stops it, the plan or what it is doing, and beside these what it has found.
 
     Without results it says `why` one would start."""
 
     def controls() -> None:
+        start_or_progress(ui, run, start, tip)
         if run is not None and ui.controller.runs.current is run:
             paragraph(doing, QUIET)
         else:
             plan()
-        start_or_progress(ui, run, start, tip)
         if run is not None:
             _export_buttons(ui, run)
 
