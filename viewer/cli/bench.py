@@ -21,7 +21,7 @@ from tracer.scene.load import check_scene_file
 from tracer.settings import Settings
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
-from viewer.cli.console import columns_help, fitted, listed, print_table, terminal_width, titled, width_of, working
+from viewer.cli.console import columns_help, fitted, listed, print_table, terminal_width, working
 from viewer.output import exports
 from viewer.output.reports import LAMPS, METHOD, TABLE_1, caveats, lamps_in_words, table_1, title
 from viewer.state import terms
@@ -112,26 +112,12 @@ def run(given: Namespace) -> int:
     return 0 if measured.whole else INTERRUPTED
 
 
-MOST_COLUMNS = 5
-"""Methods that have columns, at most; more have lines."""
-
-
 def bench_table(results: Results, verified: bool, width: int | None) -> Table:
     """Make the table for a terminal so wide; None for any width."""
-    rows, columns = experiment.table(results), table_1(verified)
-    heading = f"Work of shadow rays\n{title(results)}"
-    caption = "; ".join([*caveats(results), *([] if verified else ["--verify counts wrong answers"])])
-    if len(rows) <= MOST_COLUMNS:
-        table = titled(heading, caption)
-        table.add_column("")
-        for row in rows:
-            table.add_column(row.method.replace("+", "\n+"), justify="right")
-        for column in columns:
-            table.add_row(column.meaning, *(column.cell(row) for row in rows))
-        if width is None or width_of(table) <= width:
-            return table
-    caption += "; --csv FILE has all figures"
-    return fitted([METHOD, *columns], lambda some: [listed(some, rows, heading, caption)], width)[0]
+    rows, heading = experiment.table(results), f"Work of shadow rays\n{title(results)}"
+    said = [*caveats(results), *([] if verified else ["--verify counts wrong answers"]), "--csv FILE has all figures"]
+    columns = [METHOD, *table_1(verified)]
+    return fitted(columns, lambda some: [listed(some, rows, heading, "; ".join(said))], width)[0]
 
 
 def lamp_table(results: LampResults, width: int | None) -> Table:

@@ -12,7 +12,7 @@ from tracer.experiments import counterexample, experiment, hunt, lamp_experiment
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.experiment import REFERENCE, Row
 from tracer.experiments.lamp_experiment import CEILING, LampResults, LampRow
-from tracer.experiments.zoom import Approach, Change, Step
+from tracer.experiments.zoom import Change, Step
 from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
 from viewer.state import terms
@@ -122,16 +122,10 @@ def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
 
 
 def frames_in_words(results: experiment.Results) -> str:
-    """Return which frames of which path there are, e.g. "frames 0 to 19 of 200" or "70 of 100 frames, stopped"."""
-    done, path = len(results.frames), results.path_frames
-    if results.planned < path:
-        first, last = results.frames[0], results.frames[-1]
-        text = f"frames {first} to {last} of {path}" if done > 1 else f"frame {first} of {path}"
-    elif done < path:
-        text = f"{done} of {path} frames"
-    else:
-        text = f"{done} frames over the whole path" if done > 1 else "1 frame"
-    return text + ", stopped" * results.stopped
+    """Return which frames of which path there are, e.g. "frames 0 to 69 of 100, stopped"."""
+    first, last = results.frames[0], results.frames[-1]
+    which = f"frames {first} to {last}" if last > first else f"frame {first}"
+    return f"{which} of {results.path_frames}{', stopped' * results.stopped}"
 
 
 def title(results: experiment.Results | zoom.Results | hunt.Results) -> str:
@@ -174,26 +168,14 @@ def happenings(results: zoom.Results) -> list[FactorStep]:
 
 def changes_in_words(changes: Sequence[Change]) -> list[str]:
     """Say what changes, e.g. "lights 0, 2: init → non shadow"; lights that change alike are named together."""
-    return [f"{who}{_spoken(before)} → {_spoken(after)}" for who, before, after in _gathered(changes)]
-
-
-def modes_in_words(changes: Sequence[Change]) -> str:
-    """Say which modes are new in a step, shorter: "fully rendered, lights 0, 2: non shadow"."""
-    return ", ".join(f"{who}{_spoken(after)}" for who, _, after in _gathered(changes))
-
-
-def _gathered(changes: Sequence[Change]) -> list[tuple[str, str, str]]:
-    """(whose mode, before, after), the occlusion mode first."""
-    lights: dict[tuple[str, str], list[str]] = {}
+    alike: dict[tuple[bool, str, str], list[str]] = {}
     for change in changes:
-        if change.light is not None:
-            lights.setdefault((change.before, change.after), []).append(str(change.light))
-    own = [("", change.before, change.after) for change in changes if change.light is None]
-    return own + [(f"light{'s' * (len(n) > 1)} {', '.join(n)}: ", *modes) for modes, n in lights.items()]
-
-
-def _spoken(mode: str) -> str:
-    return mode.replace("_", " ").lower()
+        alike.setdefault((change.light is None, change.before, change.after), []).append(str(change.light))
+    said = []
+    for (own, before, after), lights in alike.items():
+        whose = "" if own else f"light{'s' * (len(lights) > 1)} {', '.join(lights)}: "
+        said.append(f"{whose}{before} → {after}".replace("_", " ").lower())
+    return said
 
 
 STEPS: tuple[Column[FactorStep], ...] = (
@@ -202,29 +184,10 @@ STEPS: tuple[Column[FactorStep], ...] = (
     Column("pixels", "pixels that the primitive covers", lambda row: f"{row[1].pixels:,}"),
     Column("wrong", WRONG_PIXELS, lambda row: f"{row[1].wrong_of_primitive:,}",
            wrong=lambda row: row[1].wrong_of_primitive > 0),
-    Column("modes", "modes from that step on, where they change",
-           lambda row: modes_in_words(row[1].changes), text=True),
+    Column("changes", "modes that change", lambda row: "; ".join(changes_in_words(row[1].changes)), text=True),
     Column("in picture", "wrong pixels of the whole picture", lambda row: f"{row[1].wrong:,}"),
     Column("highest", "highest pixel count so far", lambda row: f"{row[1].highest:,}"),
     Column("distance", "from the camera to the primitive", lambda row: f"{row[1].distance:.4g}"),
-)  # fmt: skip
-
-
-def _share(approach: Approach, name: str) -> str:
-    return f"{sum(getattr(s, name) for s in approach.steps) / max(1, sum(s.due for s in approach.steps)):.1%}"
-
-
-APPROACHES: tuple[Column[Approach], ...] = (
-    Column("factor", "zoom factor", lambda a: f"{a.factor:g}"),
-    Column("re-examined", "when the primitive is examined anew",
-           lambda a: f"step {', '.join(map(str, a.examined_anew))}" if a.examined_anew else "never", text=True),
-    Column("wrong pixels", WRONG_PIXELS,
-           lambda a: f"step {a.wrong_steps[0]} to {a.wrong_steps[-1]}" if a.wrong_steps else "none", text=True),
-    Column("most", f"most {WRONG_PIXELS}", lambda a: f"{a.most_wrong:,}"),
-    Column("at the end", f"{WRONG_PIXELS} in the last step",
-           lambda a: f"{a.steps[-1].wrong_of_primitive:,}" if a.steps else ""),
-    Column(terms.CULLED, "share of the shadow rays due", lambda a: _share(a, "culled")),
-    Column(terms.DYNAMIC_ONLY, "share of the shadow rays due", lambda a: _share(a, "dynamic_only")),
 )  # fmt: skip
 
 

@@ -76,14 +76,6 @@ def test_nothing_is_cut_off_and_what_is_left_out_is_named(width: int | None, mad
     assert (told.count(",") if headings < every else 0) == every - headings, "as many as the commas of a, b, too"
 
 
-def test_few_methods_have_columns_where_these_fit():
-    few = results(["none", "paper", "cells", "certified", "auto"])
-    wide, narrow = (printed([bench_table(few, True, width)], width) for width in (None, 80))
-    assert "traversal steps saved, average" in wide and "traversal steps saved, average" not in narrow
-    two = printed([bench_table(results(["none", "paper"]), True, 80)], 80)
-    assert "traversal steps saved, average" in two and "--csv" not in two
-
-
 def test_where_nothing_helps_a_line_is_longer_than_the_terminal(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
