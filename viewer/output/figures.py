@@ -21,7 +21,6 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, PercentFor
 
 from tracer.experiments import zoom
 from tracer.experiments.experiment import REFERENCE, Results, Row, table
-from tracer.experiments.lamp_experiment import LampResults
 from viewer.output.filmstrip import Filmstrip, Shot
 from viewer.output.reports import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
 from viewer.util.files import write_whole
@@ -108,15 +107,6 @@ def _over(figure: Figure, panels: Sequence[Axes], what: str) -> Figure:
     panels[-1].xaxis.set_major_locator(MaxNLocator(steps=[1, 2, 5, 10], integer=True, min_n_ticks=1))
     figure.align_ylabels(panels)
     return figure
-
-
-def figure_of(results: Results | zoom.Results | LampResults) -> Figure:
-    """Draw the plot of results; raises ValueError where there is none."""
-    if isinstance(results, zoom.Results):
-        return zoom_figure(results)
-    if isinstance(results, Results):
-        return savings_figure(results)
-    raise ValueError("there is no plot of several kinds of lamps")
 
 
 # --- experiments -----------------------------------------------------------------------------------

@@ -8,14 +8,12 @@ from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from tracer.experiments import counterexample, experiment, hunt, lamp_experiment, zoom
+from tracer.experiments import counterexample, experiment, hunt, zoom
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.experiment import REFERENCE, Row
-from tracer.experiments.lamp_experiment import CEILING, LampResults, LampRow
 from tracer.experiments.zoom import Change, Step
 from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
-from viewer.state import terms
 from viewer.util.messages import printable
 from viewer.util.numbers import memory, saved
 
@@ -68,37 +66,18 @@ TABLE_1: tuple[Column[Row], ...] = (
     Column("extra / pixel", "extra occlusion tests per pixel", lambda row: f"{row.extra_tests_per_pixel:.3f}"),
     Column("median frame", "time of a frame, median", lambda row: f"{1000.0 * row.frame_seconds:,.0f} ms"),
     Column("all frames", "time of all frames", lambda row: f"{row.path_seconds:,.2f} s"),
-    Column("preparing", "  of it preparing",
+    Column("preparing", "time of all frames that was spent on preparing",
            lambda row: f"{row.build_seconds:,.2f} s" if row.build_seconds >= 0.005 else ""),
     Column("memory", "memory of the method", lambda row: memory(row.memory_bytes) if row.memory_bytes else ""),
 )  # fmt: skip
 """What the paper's Table 1 says of a method."""
 
 
-def table_1(verified: bool) -> list[Column[Row]]:
-    """Return the columns that mean anything: wrong answers are counted only where frames were `verified`, and then
-    traced rays that are culled are in the times."""
-    return [column for column in TABLE_1 if column is not (SPEED_UP if verified else WRONG)]
+def table_1(results: experiment.Results) -> list[Column[Row]]:
+    """Return the columns that mean anything: wrong answers are counted only where frames were verified, and then rays
+    that are culled are traced as well, which takes time."""
+    return [column for column in TABLE_1 if column is not (SPEED_UP if results.settings.get("verify") else WRONG)]
 
-
-def lamps_in_words(row: LampRow) -> tuple[str, str]:
-    """Return their radius and their samples."""
-    radius = "scene's" if row.lamp_radius is None else f"{row.lamp_radius:g}"
-    return radius, "scene's" if row.lamp_samples is None else str(row.lamp_samples)
-
-
-LAMPS: tuple[Column[LampRow], ...] = (
-    Column("radius", "of the lamps", lambda row: lamps_in_words(row)[0]),
-    Column("samples", "of each lamp", lambda row: lamps_in_words(row)[1]),
-    METHOD,
-    Column("frame, median", "time of a frame", lambda row: f"{1000.0 * row.frame_seconds:,.1f} ms"),
-    Column("speed-up", f"over {REFERENCE}, all frames", lambda row: f"{row.speed_up:.2f}"),
-    Column("of free", f"of the speed-up of {CEILING}, for which shadow rays cost nothing",
-           lambda row: f"{row.share_of_free:.1%}"),
-    Column("saved", f"shadow rays {terms.MEANINGS[terms.SAVED]}",
-           lambda row: "" if row.method in (REFERENCE, CEILING) else f"{row.known:.1%}"),
-    Column("shadow rays", "due per frame", lambda row: f"{row.shadow_rays:,.0f}"),
-)  # fmt: skip
 
 PREPARING = 0.05
 """The part of a method's time from which on it is worth a word that this was preparing."""
@@ -219,13 +198,12 @@ def findings(scene: Scene, finds: Sequence[Counterexample]) -> tuple[Column[Coun
 # --- tables for files -------------------------------------------------------------------------------
 
 
-def table_of(results: experiment.Results | LampResults | zoom.Results) -> tuple[list[str], list[Sequence[object]]]:
+def table_of(results: experiment.Results | zoom.Results) -> tuple[list[str], list[Sequence[object]]]:
     """Return the headings and the rows of results, parts of 1 and seconds as they are.
 
     Of a zoom test that is a row for each step of each factor."""
-    if not isinstance(results, zoom.Results):
-        lines = lamp_experiment.table(results) if isinstance(results, LampResults) else experiment.table(results)
-        return [f.name for f in fields(lines[0])], [astuple(line) for line in lines]
+    if isinstance(results, experiment.Results):
+        return [f.name for f in fields(Row)], [astuple(row) for row in experiment.table(results)]
     plain = [f.name for f in fields(Step) if f.name not in ("camera", "shadows", "changes")]
     lights = max((len(step.shadows) for approach in results.approaches for step in approach.steps), default=0)
     rows: list[Sequence[object]] = []
