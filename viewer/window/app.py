@@ -32,7 +32,7 @@ from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
 from viewer.window.panels import dialogs, named_states, picture, sides, status
-from viewer.window.ui import CaptureKind, Ui
+from viewer.window.ui import CaptureKind, Graphics, Ui
 
 TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
@@ -265,7 +265,7 @@ class App:
         call.pre_new_frame = self.before_widgets
         call.show_gui = self.widgets
         call.before_swap = self.after_widgets
-        call.before_exit = self._release
+        call.before_exit = self._leave
         return params
 
     def _menus(self) -> None:
@@ -304,9 +304,9 @@ class App:
         self._dropped_files = [Path(p) for p in paths]
         hello_imgui.request_refresh()
 
-    def _release(self) -> None:
+    def _leave(self) -> None:
         self.controller.wake.connect(None)  # threads may still be at work when the window is gone
-        graphics.release(self.ui)
+        self.ui.graphics = Graphics()  # all of it goes with the context
 
     def _exit(self) -> None:
         self.params.app_shall_exit = True
