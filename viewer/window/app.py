@@ -286,11 +286,11 @@ class App:
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
         opener = self.controller.loader
-        opener.start(self.scene_path, self.given_settings, self.folders, self.meshes)
+        opener.start(self.given_settings, self.folders, self.meshes)
         if self.scene is not None:
             opener.take(self.scene)
-        elif self.scene_path is None:
-            opener.open(default_scene())
+        else:
+            opener.open(self.scene_path or default_scene())
 
     def _close_wanted(self, window: Any) -> None:
         """The window's close button, or the desktop: the same as the command."""

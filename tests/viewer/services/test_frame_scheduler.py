@@ -112,7 +112,7 @@ class Desk:
 
     def __init__(self, controller: Controller) -> None:
         self.c, self.renderer = controller, FakeRenderer()
-        controller.show(make_scene(), self.renderer, {})
+        controller.show(self.renderer, {})
         assert self.rest() == [False, False]  # one that teaches the modes, and one that shows what they save
 
     def rest(self) -> list[bool]:

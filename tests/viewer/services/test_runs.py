@@ -180,7 +180,7 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
 
     monkeypatch.setattr(experiment, "run", fail)
     controller = Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}}))
-    controller.show(make_scene(), FakeRenderer(), {})
+    controller.show(FakeRenderer(), {})
     controller.runs.experiment_plan.frames = 2
     controller.runs.start_experiment()
     end = time.monotonic() + 20.0

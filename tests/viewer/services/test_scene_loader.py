@@ -16,12 +16,13 @@ import pytest
 from PIL import Image
 
 from tests.viewer.desk import Desk
-from tests.viewer.fakes import make_frame, make_scene
+from tests.viewer.fakes import make_frame
 from tracer.scene.files import Stamp, noting, stamp
 from tracer.scene.load import load_scene
 from tracer.scene.model import SceneError
 from viewer.services.capture_service import CaptureService
-from viewer.services.scene_loader import Arrival, FileWatch, SceneLoader
+from viewer.services.scene_files import FileWatch
+from viewer.services.scene_loader import Arrival, SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -67,8 +68,8 @@ def door(tmp_path: Path) -> Door:
 def test_a_scene_arrives_with_a_renderer_and_what_it_holds(door: Door, tiny_scene_file: Path):
     door.loader.open(tiny_scene_file)
     arrival = door.arrival()
-    assert arrival.opened.scene.path == tiny_scene_file and arrival.place is None
-    assert arrival.opened.renderer.scene is arrival.opened.scene and arrival.opened.info["lights"] == 2
+    assert arrival.renderer.scene.path == tiny_scene_file and arrival.place is None
+    assert arrival.info["lights"] == 2
     assert arrival.text.startswith("tiny.aff opened in ") and door.loader.take_finished() is None, "once"
 
 
@@ -93,12 +94,12 @@ def test_a_load_that_is_overtaken_never_arrives(door: Door, tiny_scene_file: Pat
     other.write_text(tiny_scene_file.read_text())
     door.loader.open(tiny_scene_file)
     door.loader.open(other)
-    assert door.arrival().opened.scene.path == other
+    assert door.arrival().renderer.scene.path == other
 
 
 def door_opened(door: Door, path: Path):
     door.loader.open(path)
-    return door.arrival().opened.scene
+    return door.arrival().renderer.scene
 
 
 def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(
@@ -115,13 +116,14 @@ def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(
     assert door.said == f"saved {picture}" and not door.captures.busy
     door.loader.open(picture)
     arrival = door.arrival()
-    assert arrival.opened is None and arrival.text == f"restored {picture.name}"
+    assert arrival.renderer is None and arrival.text == f"restored {picture.name}"
     assert (arrival.place.time, arrival.place.draw.view) == (1.0, View.DEPTH)
     door.session.scene = None
     monkeypatch.setattr("viewer.services.scene_loader.warm_up", lambda progress: None)
-    door.loader.start(picture, {"lamp_radius": 0.5})
+    door.loader.start({"lamp_radius": 0.5})
+    door.loader.open(picture)
     arrival = door.arrival()
-    assert arrival.opened.scene.path == tiny_scene_file and arrival.place.camera == frame.camera
+    assert arrival.renderer.scene.path == tiny_scene_file and arrival.place.camera == frame.camera
     assert arrival.place.settings.lamp_radius == 0.5, "as the command line says of what is opened first"
     assert door.session.settings.lamp_radius == 0.5, "also where a scene is opened that says nothing of it"
     door.loader.open(picture)
@@ -132,14 +134,13 @@ def test_a_cancelled_load_is_gone_at_once_though_it_cannot_stop(door: Door, tiny
     """As within a library that reads a mesh; and the scene that has waited in vain is let go."""
     deaf, read, opened = threading.Event(), [], door_opened(door, tiny_scene_file)
 
-    def waits(_read, settings, ready, progress, seen):
-        scene = make_scene()
+    def waits(scene, settings, progress, ready, seen):
         read.append(weakref.ref(scene))
         seen(scene)
         deaf.wait(60.0)
         raise SceneError("no more")
 
-    monkeypatch.setattr("viewer.services.scene_loader.open_scene", waits)
+    monkeypatch.setattr("viewer.services.scene_loader.build", waits)
     door.session.open(opened)
     door.loader.open(tiny_scene_file)
     end = time.monotonic() + 20.0
@@ -174,7 +175,7 @@ def test_what_has_changed_is_told_once_and_when_it_rests(tmp_path: Path, monkeyp
         (tmp_path / name).write_text(name)
     watch = FileWatch()
     watch.files = {path: stamp(path) for path in (tmp_path / "a.aff", tmp_path / "b.png", tmp_path / "later.png")}
-    monkeypatch.setattr("viewer.services.scene_loader.LOOK_SECONDS", 0.0)
+    monkeypatch.setattr("viewer.services.scene_files.LOOK_SECONDS", 0.0)
 
     def looks() -> str:
         assert watch.changed() == ""
