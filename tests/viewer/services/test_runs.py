@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from tests.viewer.desk import ELSEWHERE, SIZE, Desk, is_the_same_picture
-from tests.viewer.fakes import FakeRenderer, make_scene
+from tests.viewer.fakes import FakeRenderer
 from tracer.experiments import experiment
 from tracer.experiments.experiment import Experiment
 from viewer.services.controller import Controller
