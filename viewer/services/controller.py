@@ -167,11 +167,6 @@ class Controller:
         seen = self.scheduler.shows_edits or not self.renderer.busy
         self.editing.apply(self.runs.current is not None, seen)
 
-    def inspect_pixel(self) -> None:
-        """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
-        traced = self.own_traced
-        self.inspector.update(traced.frame if traced is not None else None, not self.motion.is_animating)
-
     def frame_inputs(self, size: tuple[int, int]) -> FrameInputs:
         """Return what decides how the next frame is traced, in a window that has room for so many pixels."""
         session = self.session

@@ -2,8 +2,10 @@
 
 Hello ImGui owns the window, its GL context, the docking and the screen's density.  It calls a frame in three parts:
 
-    before_widgets   input -> state -> scheduler -> newest frame -> picture, with all GL work
-    widgets          panels (drawn by Hello ImGui from `layout.PANELS`), keys, and what lies over the panels
+    before_widgets   newest frame -> state -> queries about the frame -> scheduler (`advance`), then the picture, with
+                     all GL work
+    widgets          panels (drawn by Hello ImGui from `layout.PANELS`), keys, and what lies over the panels; what the
+                     user does there is in the state, and seen in the next frame of the window
     after_widgets    pictures of the window
 """
 
@@ -68,7 +70,7 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Editing the scene", c.apply_edits)
     step("Comparing", c.comparing.update)
     # The scheduler: queries about the newest frame are answered before the next.
-    step("Inspecting the pixel", c.inspect_pixel)
+    step("Inspecting the pixel", lambda: c.inspector.update(c.own_traced, not c.motion.is_animating))
     step("Listing the scene", lambda: c.table.update(c.own_traced))
     step("Compiling the method", c.loader.compile_method)
     step("Asking for the next frame", lambda: c.scheduler.request(c.frame_inputs(size)))
@@ -149,7 +151,7 @@ class App:
     # --- one frame -------------------------------------------------------------------------------
 
     def before_widgets(self) -> None:
-        """Bring the state forward by the input of the last frame, ask for frames, and draw the newest."""
+        """Take the newest frame, bring the state forward, ask for the next frame, and draw the picture."""
         self._frame_began = time.perf_counter()
         ui, step = self.ui, self.ui.guard.step
         step("Setting the theme", self._set_theme)
