@@ -8,16 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
-from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from tracer.culling.fate import Fate
 from tracer.scene.lights import named_light
-from viewer.output.capture import FIELDS
 from viewer.output.ray_rows import Filter, Key, Row
 from viewer.services.controller import Controller
 from viewer.services.tour import Tour
-from viewer.state.preferences import default_screenshot_folder
 from viewer.state.views import View
 from viewer.window.command import Command
 from viewer.window.display import Compared, Display, Magnifier, TextureCache
@@ -195,11 +192,3 @@ class Ui:
         command is in the menus."""
         menus = (f"{c.menu} > {c.name}".replace("/", " > ") for c in self.commands if c.name == name)
         return self.key_label(name) or next(menus, name)
-
-    @property
-    def default_folder(self) -> Path:
-        return default_screenshot_folder()
-
-    @property
-    def template_help(self) -> str:
-        return "Fields:\n" + "\n".join(f"{{{name}}}  {meaning}" for name, meaning in FIELDS.items())
