@@ -9,6 +9,7 @@ import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -155,8 +156,9 @@ def _tests(c: Controller) -> bool:
 
 
 def _until(holds: Callable[[], object]) -> Script:
-    """Wait until something has come, but not for ever."""
+    """Wait for the next frame of the window, and until something has come, but not for ever."""
     end = time.monotonic() + PATIENCE
+    yield 0.0
     while not holds() and time.monotonic() < end:
         yield 0.0
 
@@ -176,7 +178,7 @@ def _toggle_culling(c: Controller, open_panel: OpenPanel) -> Script:
     yield SECONDS
     for seen in (_shows_all_traced, _shows_culling):
         c.settings.toggle_culling()
-        yield from _until(lambda seen=seen: seen(c))
+        yield from _until(partial(seen, c))
         yield SECONDS
 
 

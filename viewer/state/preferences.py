@@ -51,8 +51,9 @@ class Preferences:
     """Everything that outlives the window.
 
     `state` is what the window starts with (`codec.remembered`), `method` the one to cull by while culling is on.
-    `speed` is relative to the scene's own pace.  `tour` says that the tour has not been shown yet.  `keys` are those that the user has chosen, by the names of commands,
-    and `used` is what the command palette ran last, newest first.  `bookmarks` are by the path of their scene."""
+    `speed` is relative to the scene's own pace.  `tour` says that the tour has not been shown yet.  `keys` are those
+    that the user has chosen, by the names of commands, and `used` is what the command palette ran last, newest first.
+    `bookmarks` are by the path of their scene."""
 
     format: int = FORMAT
     state: dict[str, Any] = field(default_factory=dict)
@@ -75,7 +76,7 @@ class Preferences:
         False, "Savings in saved pictures", "Say above them what culling saves.", panel="Saving"
     )
     pixel_values: bool = setting(
-        True, "Values in pixels", "Write its value into each pixel, and draw a grid, where the picture is enlarged enough."
+        True, "Values in pixels", "Write each pixel's value into it, and draw a grid, where pixels are large enough."
     )
     screenshot_folder: str = setting("", "Folder", "Where pictures and results are saved.",
                                      unset="shadowcull, in your folder of pictures", panel="Saving")  # fmt: skip

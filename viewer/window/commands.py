@@ -18,7 +18,7 @@ from viewer.state.pixels import FIT, MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window.command import Command, Condition, scene_open
-from viewer.window.panels import slicing, what_if
+from viewer.window.panels import rays, slicing, what_if
 from viewer.window.panels.camera import camera_commands, time_commands
 from viewer.window.panels.find import FindState
 from viewer.window.panels.pixels import pointed_at, zoom_by
@@ -142,7 +142,7 @@ def _view(ui: Ui) -> list[Command]:
         setting_command(ui, "draw.outlines", "View", "B"),
         setting_command(ui, "draw.mark_wrong", "View", "M"),
         setting_command(ui, "draw.shares", "View", "U"),
-        Command("Rays of the clicked pixel", "View", ui.show_rays, "X", separated=True),
+        Command("Rays of the clicked pixel", "View", partial(rays.show_rays, ui), "X", separated=True),
         Command("Find objects and primitives", "View", find, "Ctrl+F",
                 tip="a table of all, with modes, pixels, rays saved and wrong answers"),
         setting_command(ui, "draw.rays", "View", "I"),

@@ -12,7 +12,6 @@ from typing import Any, TypeVar, cast
 
 from tracer.culling.fate import Fate
 from tracer.scene.lights import named_light
-from viewer.output.ray_rows import Filter, Key, Row
 from viewer.services.controller import Controller
 from viewer.services.tour import Tour
 from viewer.state.views import View
@@ -46,7 +45,8 @@ class Dialog(Enum):
 @dataclass
 class Picture:
     """The picture in the window: the size in framebuffer pixels that it may fill (`area`), the one that it fills, the
-    newest frame's, what the camera orbits around and of which scene that is, and what the pointer did last."""
+    newest frame's, what the camera orbits around and of which scene that is, and what the pointer did last: the button
+    that was pressed, whether with Ctrl, where, and whether it was dragged."""
 
     area: tuple[int, int] = (0, 0)
     size: tuple[int, int] = (0, 0)
@@ -54,6 +54,7 @@ class Picture:
     pivot: tuple[float, float, float] | None = None
     pivot_scene: object = None
     pressed: int = 0
+    with_ctrl: bool = False
     pressed_at: tuple[float, float] = (0.0, 0.0)
     dragged: bool = False
 
@@ -80,24 +81,6 @@ class Graphics:
     magnifier: Magnifier | None = None
     preview: PreviewDisplay | None = None
     capture_view: View | None = None
-
-
-@dataclass
-class RaysState:
-    """The tree of a pixel's rays: which shadow rays are `shown`, the keys of the rows that are folded otherwise than at
-    first and of the `selected` one, the row that the pointer is on, for how many frames it is to `unfold`, and the
-    window's frame in which it was `drawn` last."""
-
-    shown: Filter = field(default_factory=Filter)
-    toggled: frozenset[Key] = frozenset()
-    selected: Key | None = None
-    pointed: Row | None = None
-    unfold: int = 0
-    drawn: int = -2
-
-    def is_open(self, row: Row) -> bool:
-        """Whether what is below a row is seen: at first, what is below rays on their way."""
-        return (len(row.places) == 0) != (row.key in self.toggled)
 
 
 State = TypeVar("State")
@@ -164,11 +147,6 @@ class Ui:
         """A light as every panel calls it: by its number in the scene as it was read, and its name if it has one."""
         scene = self.controller.session.scene
         return named_light(scene.lights if scene is not None else (), light)
-
-    def show_rays(self) -> None:
-        """Show the rays of the clicked pixel."""
-        self.state(RaysState).unfold = 3  # until what is to be scrolled is laid out
-        self.show_panel("Inspector")
 
     def take_commands(self, commands: list[Command]) -> None:
         """Make these the commands, with the keys that the user has chosen for them."""

@@ -22,6 +22,7 @@ from viewer.window.setting_rows import in_panel, setting_command, setting_row
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, heading, paragraph, properties, row
 
+
 def show(ui: Ui) -> None:
     """The panel."""
     if ui.controller.session.scene is None:
@@ -84,8 +85,7 @@ def camera_commands(ui: Ui) -> list[Command]:
         mode("orbit", "O"),
         Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True,
                 tip="on what is under the pointer, or is selected"),
-        Command("Reset camera", "Camera", c.motion.reset_camera, "R", enabled=here,
-                tip="back to the scene's own camera"),
+        Command("Reset camera", "Camera", c.motion.reset_camera, "R", enabled=here),
         Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.on_path), "P",
                 checked=lambda: c.session.on_path, enabled=here),
         Command("Copy camera", text, lambda: _copy(ui), "Ctrl+Shift+C", enabled=here, separated=True,
