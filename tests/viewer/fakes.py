@@ -263,6 +263,7 @@ class FakeRenderer:
         self.cancelled: list[float] = []
         self.resets = 0
         self.started = Event()
+        self.scene = make_scene()
         self.go = Event()
         self.go.set()
         self.failing: Exception | None = None
