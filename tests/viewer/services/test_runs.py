@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from tests.viewer.desk import ELSEWHERE, SIZE, Desk, is_the_same_picture
-from tests.viewer.fakes import FakeRenderer, make_scene
+from tests.viewer.fakes import FakeRenderer
 from tracer.experiments import experiment
 from tracer.experiments.experiment import Experiment
 from viewer.services.controller import Controller
@@ -174,7 +174,7 @@ def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytes
 
     monkeypatch.setattr(experiment, "run", fail)
     controller = Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}}))
-    controller.show(make_scene(), FakeRenderer(), {})
+    controller.show(FakeRenderer(), {})
     controller.runs.experiment_plan.frames = 2
     controller.runs.start_experiment()
     end = time.monotonic() + 20.0
