@@ -138,24 +138,6 @@ def test_a_file_that_fails_takes_nothing_else_along(tmp_path: Path, capsys, monk
     assert [path.exists() for path in paths] == [False, True, True]
 
 
-@pytest.mark.parametrize("steps", [4, 5])
-def test_a_cancelled_run_keeps_its_whole_frames(steps: int, tmp_path: Path, capsys, monkeypatch):
-    """Also where Ctrl-C comes just as a frame is done; the part of the next one that was traced is left out."""
-
-    def press(work: Work, label: str, done: int, total: int) -> None:
-        work.stopped = done >= steps
-
-    monkeypatch.setattr(Work, "count", press)
-    paths = [tmp_path / name for name in ("figures.json", "table.csv", "plot.pdf")]
-    assert main([*SMALL, "--json", str(paths[0]), "--csv", str(paths[1]), "--plot", str(paths[2])]) == 130
-    out, err = capsys.readouterr()
-    assert "figure4.aff, 48 × 32, frames 0 to 1 of 6, stopped" in out
-    assert err == "shadowcull: cancelled after 2 of 6 frames; these are kept\n"
-    results = json.loads(paths[0].read_text())
-    assert (results["frames"], results["planned_frames"], results["stopped"]) == ([0, 1], 6, True)
-    assert all(path.stat().st_size > 0 for path in paths)
-
-
 def test_cancelled_before_any_frame_is_done_there_is_nothing_to_keep(tmp_path: Path, capsys, monkeypatch):
     monkeypatch.setattr(Work, "count", lambda work, *_: setattr(work, "stopped", True))
     assert main([*SMALL, "--json", str(tmp_path / "figures.json")]) == 130
@@ -178,15 +160,19 @@ def test_progress_shows_frame_method_time_gone_and_time_left():
     assert "│ paper" in said[said.rindex(" left") :]
 
 
-def test_ctrl_c_keeps_what_is_done(tmp_path: Path):
-    path = tmp_path / "figures.json"
-    terminal = Terminal("bench", "default", "--path-frames", "100000", "--size", "64x64", "--json", str(path))
+def test_ctrl_c_keeps_whole_frames(tmp_path: Path):
+    paths = {kind: tmp_path / f"figures.{kind}" for kind in ("json", "csv", "pdf")}
+    files = ["--json", str(paths["json"]), "--csv", str(paths["csv"]), "--plot", str(paths["pdf"])]
+    terminal = Terminal("bench", "default", "--path-frames", "100000", "--size", "64x64", *files)
     terminal.interrupt_once(r"frame ([3-9]|\d{2,}) of 100000")
     assert terminal.end() == 130
     told = re.search(r"cancelled after (\d+) of 100000 frames; these are kept", terminal.said)
-    assert told and len(json.loads(path.read_text())["frames"]) == int(told[1]) >= 2
-    assert f"default.aff, 64 × 64, frames 0 to {int(told[1]) - 1} of 100000, stopped" in terminal.said
-    assert list(tmp_path.iterdir()) == [path]
+    assert told is not None
+    done, results = int(told[1]), json.loads(paths["json"].read_text())
+    assert (results["frames"], results["planned_frames"], results["stopped"]) == ([*range(done)], 100000, True)
+    assert {len(values) for one in results["methods"].values() for values in one.values()} == {done}
+    assert f"default.aff, 64 × 64, frames 0 to {done - 1} of 100000, stopped" in terminal.said
+    assert sorted(tmp_path.iterdir()) == sorted(paths.values()) and all(p.stat().st_size for p in paths.values())
 
 
 def test_all_methods_have_a_line_each(tmp_path: Path, capsys) -> None:
