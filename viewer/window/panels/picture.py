@@ -95,7 +95,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
         left, top, size = _fitted(ui.picture.shape, room, 2, gap)
         area = _area(ui, "picture of A", left, top, size)
         sides.draw_a(ui, area)
-        _pointer(ui, area, takes_edits=False)
+        _pointer(ui, area)
         pixels.draw(ui, area, seen.a)
         left += size.x + gap
     else:
@@ -108,7 +108,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     _pointer(ui, area)
     pixels.draw(ui, area)
     with _inside(area):
-        what_if.show_lights(ui, area.whole, area.whole_end)
+        what_if.show_lights(ui, area)
     lower = _title(ui, area)
     sides.show(ui, area, lower)
     legend.show(ui, area.corner, area.end)
@@ -203,8 +203,8 @@ def _title(ui: Ui, area: Area) -> float:
 # --- the pointer and the keys that fly -------------------------------------------------------------
 
 
-def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
-    """Hovering, clicking and dragging on the picture, which is ImGui's last item; of lights too if it `takes_edits`."""
+def _pointer(ui: Ui, area: Area) -> None:
+    """Hovering, clicking and dragging on the picture, which is ImGui's last item."""
     c, io = ui.controller, imgui.get_io()
     if ui.picture.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.picture.pivot, ui.picture.pivot_scene = None, c.session.scene
@@ -213,8 +213,6 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
         c.selection.hovered = (u, v)
         if not pixels.wheel(ui, area):
             _wheel(ui, io.mouse_wheel)
-    if takes_edits and what_if.handle(ui, area.whole, area.whole_size):
-        return
     if sides.drag_line(ui, area) or pixels.drag(ui, area):
         return
     if imgui.is_item_activated():
