@@ -10,14 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 
 from imgui_bundle import ImVec2, imgui
 
 from viewer.state import navigation, verified
 from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
-from viewer.state.pixels import FIT, STEP, panned
+from viewer.state.pixels import STEP, panned
 from viewer.util.numbers import whole_percent
 from viewer.window.menus import ANY_POPUP
 from viewer.window.panels import (
@@ -83,8 +82,6 @@ def _picture(ui: Ui, room: ImVec2) -> None:
             left, top, size = _fitted(ui.picture.shape, room)
             imgui.set_cursor_pos(ImVec2(left, top))
             imgui.image(imgui.ImTextureRef(texture), size)
-        elif (area := _preview(ui, room)) is not None:
-            _drag(ui, area, 0.0)
         else:
             _placeholder(ui, room)
     elif texture is not None and c.session.scene is not None:
@@ -163,18 +160,6 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
     if job is not None:
         imgui.set_cursor_pos_x(left)
         imgui.progress_bar(job.fraction, ImVec2(width, 0.0))
-
-
-def _preview(ui: Ui, room: ImVec2) -> Area | None:
-    """The preview, if there is any, and what it is; returns its place, which takes the pointer."""
-    texture = ui.graphics.preview.texture_id if ui.graphics.preview is not None else None
-    if texture is None:
-        return None
-    at = imgui.get_cursor_pos()
-    area = replace(_area(ui, "preview", at.x, at.y, room), zoom=FIT)
-    imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), area.corner, area.end)
-    write_lines(["Preview: no shadows, no reflections, no textures", status.first_picture(ui.controller)], area.corner)
-    return area
 
 
 def _title(ui: Ui, area: Area) -> float:
@@ -284,7 +269,7 @@ def fly(ui: Ui) -> None:
     """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
     c, io = ui.controller, imgui.get_io()
     chord = io.key_ctrl or io.key_alt or io.key_super
-    if ui.keyboard.wanted_for or io.want_text_input or chord or c.session.seen is None:
+    if ui.keyboard.wanted_for or io.want_text_input or chord or c.session.scene is None:
         return
     if imgui.is_popup_open("", ANY_POPUP):
         return
