@@ -310,7 +310,7 @@ def _run(ui: Ui) -> list[Command]:
         elif runner.current is not None:
             runner.stop()
         else:
-            c.selection.picked = None
+            c.selection.clear()
 
     idle = Condition(
         lambda: c.session.scene is not None and runner.current is None, "no scene is open, or a run is in progress"
