@@ -179,7 +179,7 @@ class Controller:
             session.state, session.scene, session.camera, size,
             moving=self.motion.under_way, playing=session.playing, counting=session.counting, run=self.runs.current,
             edited=self.editing.at_work, ready=self.loader.ready, second=self.comparing.second_method,
-            focus=self.selection.hovered,
+            focus=self.selection.hovered, inspected=session.playing and self.selection.pixel is not None,
         )  # fmt: skip
 
     def measure(self) -> None:

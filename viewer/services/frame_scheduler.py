@@ -35,8 +35,9 @@ class FrameInputs:
     The `state` that should be seen, of a `scene` (None: nothing is open) from a `camera`; the `size`, in pixels, that
     there is room for (0 where it is hidden); whether anything is `moving`, time is `playing`, and rays are to be
     counted in any view; the `run` that is under way, whether the scene is being `edited`, whether the kernels that make
-    certificates are `ready`, the `second` method that traces each frame once more (none where it is empty), and the
-    point of the picture that matters most, its `focus`."""
+    certificates are `ready`, the `second` method that traces each frame once more (none where it is empty), the
+    point of the picture that matters most, its `focus`, and whether time plays while a pixel is `inspected`, so that
+    something is asked about each frame before the next may begin."""
 
     state: ViewState = field(default_factory=ViewState)
     scene: Scene | None = None
@@ -50,6 +51,7 @@ class FrameInputs:
     ready: bool = True
     second: str = ""
     focus: tuple[float, float] | None = None
+    inspected: bool = False
 
 
 class FrameScheduler:
@@ -156,6 +158,9 @@ class FrameScheduler:
         if made is None and self.traced is not None and self.samples_shown >= wanted.samples:
             made = self.traced.request  # it holds what is wanted already
         if made is None or not made.covers(wanted):
+            coming = self._coming
+            if inputs.inspected and coming is not None and not wanted.supersedes(coming, self._is_shown(coming)):
+                return  # else the next frame of a film would begin before this one is asked about
             self._asked = wanted
             self._thread.submit(wanted)
 
@@ -241,19 +246,25 @@ class FrameScheduler:
     # --- what the newest frame is -------------------------------------------------------------------
 
     @property
+    def _coming(self) -> RenderRequest | None:
+        """What was asked for last, unless that has failed."""
+        return None if self._asked is self._failed else self._asked
+
+    def _is_shown(self, request: RenderRequest) -> bool:
+        """Return whether the newest frame, or what there is of it, answers this."""
+        return self.traced is not None and self.traced.request == request
+
+    @property
     def awaits(self) -> bool:
         """Whether a frame that was asked for has not come yet, or not all of it; its further samples do not count."""
-        asked, traced = self._asked, self.traced
-        if asked is None or asked is self._failed:
-            return False
-        return traced is None or not traced.whole or traced.request != asked
+        coming, traced = self._coming, self.traced
+        return coming is not None and (traced is None or not traced.whole or not self._is_shown(coming))
 
     @property
     def adds_samples(self) -> bool:
         """Whether the frame that was asked for is there, and more samples a pixel are to come."""
-        asked = self._asked
-        comes = asked is not None and asked is not self._failed and not self.awaits
-        return comes and asked is not None and self.samples_shown < asked.samples
+        coming = self._coming
+        return coming is not None and not self.awaits and self.samples_shown < coming.samples
 
     @property
     def rests(self) -> bool:
