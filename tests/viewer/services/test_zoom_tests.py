@@ -118,7 +118,7 @@ def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
         assert c.session.on_path == find.own_camera and c.session.draw.light == find.light
         assert c.session.settings.method == "paper" and c.session.settings.verify
         if find.bounces == 0:
-            taught = c.history.origins_of(picked)
+            taught = c.history.origins_of(frame, picked.primitive)
             assert taught is not None
             lesson = taught.lights[find.light]
             assert (lesson.lit if find.lit else lesson.blocked) >= 0, "nobody has taught what is wrong"
