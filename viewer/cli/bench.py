@@ -23,14 +23,14 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
 from viewer.cli.console import columns_help, fitted, listed, print_table, terminal_width, titled, width_of, working
 from viewer.output import exports
-from viewer.output.reports import LAMPS, METHOD, TABLE_1, caveats, experiment_title, lamps_in_words, table_1
+from viewer.output.reports import LAMPS, METHOD, TABLE_1, caveats, lamps_in_words, table_1, title
 from viewer.state import terms
 
 ALL = "all"  # methods that are worth comparing in the scene
 EPILOG = f"""\
 examples:
   shadowcull bench kitchen.aff --path-frames 100
-  shadowcull bench Robot.aff --frames 100:200 --size 256x256 --verify
+  shadowcull bench Robot.aff --frames 100-199 --size 256x256 --verify
   shadowcull bench kitchen.aff --path-frames 100 --methods paper,cells,certified,certified+cache
   shadowcull bench kitchen.aff --path-frames 100 --lamp-radius 0.03,0.1 --lamp-samples 16,64 --accelerator bvh8
   shadowcull bench default --methods none,paper --symmetric --json default.json --csv default.csv
@@ -59,7 +59,8 @@ def parser() -> Parser:
     )
     add("--methods", type=arguments.methods_or_all, default=["paper"], metavar="METHOD,...", help=help_)
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
-    add("--frames", metavar="A:B", help="only the frames A to B - 1 of the path")
+    help_ = "the frames A to B of the path, or one (default: all)"
+    add("--frames", type=arguments.frame_span, metavar="A-B", help=help_)
     options.add_size(parser)
     options.add_settings(parser, Settings, "verify")
     add("--json", type=Path, metavar="FILE", help="every figure of every frame")
@@ -88,7 +89,10 @@ def run(given: Namespace) -> int:
         if ALL in given.methods:  # and those that are named besides
             methods = experiment.with_reference([*line_up(len(scene.lights)), *methods])
         times = experiment.path_times(scene, given.path_frames)
-        numbers = frame_range(given.frames, len(times))
+        first, last = given.frames or (0, len(times) - 1)
+        if last >= len(times):
+            raise ValueError(f"--frames {first}-{last}: the path has {len(times)} frames, counted from 0")
+        numbers = range(first, last + 1)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, *methods)
         world = World(scene, times[0], settings.accelerator, work.progress)
         measured: Run[Any]
@@ -98,8 +102,6 @@ def run(given: Namespace) -> int:
         else:
             measured = Experiment(scene, settings, methods, times, numbers)
         results: Any = work.perform(measured, world)  # type: ignore[misc]
-        if not measured.whole:
-            work.note("cancelled after {} of {} frames; the table is of these".format(*measured.done_of))
         failures = exports.write_files(results, wanted)
     if isinstance(results, LampResults):
         print_table(lamp_table(results, terminal_width()))
@@ -110,20 +112,6 @@ def run(given: Namespace) -> int:
     return 0 if measured.whole else INTERRUPTED
 
 
-def frame_range(text: str | None, count: int) -> range:
-    """Read `A:B`, the frames A to B - 1 of a path of `count`; either may be left out."""
-    if text is None:
-        return range(count)
-    first, colon, last = text.partition(":")
-    try:
-        numbers = range(int(first or 0), int(last or count))
-    except ValueError:
-        numbers = range(0)
-    if not colon or not numbers or not 0 <= numbers.start < numbers.stop <= count:
-        raise ValueError(f"--frames {text}: give A:B, the frames A to B - 1 of the {count} there are")
-    return numbers
-
-
 MOST_COLUMNS = 5
 """Methods that have columns, at most; more have lines."""
 
@@ -131,10 +119,10 @@ MOST_COLUMNS = 5
 def bench_table(results: Results, verified: bool, width: int | None) -> Table:
     """Make the table for a terminal so wide; None for any width."""
     rows, columns = experiment.table(results), table_1(verified)
-    title = f"Work of shadow rays\n{experiment_title(results)}"
+    heading = f"Work of shadow rays\n{title(results)}"
     caption = "; ".join([*caveats(results), *([] if verified else ["--verify counts wrong answers"])])
     if len(rows) <= MOST_COLUMNS:
-        table = titled(title, caption)
+        table = titled(heading, caption)
         table.add_column("")
         for row in rows:
             table.add_column(row.method.replace("+", "\n+"), justify="right")
@@ -143,15 +131,15 @@ def bench_table(results: Results, verified: bool, width: int | None) -> Table:
         if width is None or width_of(table) <= width:
             return table
     caption += "; --csv FILE has all figures"
-    return fitted([METHOD, *columns], lambda some: [listed(some, rows, title, caption)], width)[0]
+    return fitted([METHOD, *columns], lambda some: [listed(some, rows, heading, caption)], width)[0]
 
 
 def lamp_table(results: LampResults, width: int | None) -> Table:
     """Make a table with a row for each method under each kind of lamps, as `bench_table`."""
-    title = f"What culling is worth under lamps\n{experiment_title(results.runs[0])}"
+    heading = f"What culling is worth under lamps\n{title(results.runs[0])}"
     caption = "\n".join((
         f"shadow rays: due per frame; speed-up: over {REFERENCE}, all frames; {CEILING}: shadow rays cost nothing",
         f"saved: shadow rays {terms.MEANINGS[terms.SAVED]}; --csv FILE has all figures",
     ))  # fmt: skip
     rows = lamp_experiment.table(results)
-    return fitted(LAMPS, lambda some: [listed(some, rows, title, caption, lamps_in_words)], width, least=5)[0]
+    return fitted(LAMPS, lambda some: [listed(some, rows, heading, caption, lamps_in_words)], width, least=5)[0]

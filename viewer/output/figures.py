@@ -6,7 +6,9 @@ matplotlib settings shows, and the same data give the same file.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
@@ -19,8 +21,9 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, PercentFor
 
 from tracer.experiments import zoom
 from tracer.experiments.experiment import REFERENCE, Results, Row, table
+from tracer.experiments.lamp_experiment import LampResults
 from viewer.output.filmstrip import Filmstrip, Shot
-from viewer.output.reports import NEVER_WHOLE, WRONG_PIXELS, experiment_title, happenings, never_whole, zoom_title
+from viewer.output.reports import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
 from viewer.util.files import write_whole
 from viewer.util.numbers import saved
 
@@ -50,8 +53,14 @@ _STYLE: dict[str, Any] = {
     "svg.hashsalt": "shadowcull",
 }
 
-styled = style.context(["default", _STYLE])
-"""Decorates a function that draws or writes, to do it in this module's style."""
+_drawing = threading.RLock()
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Draw or write in this module's style, on one thread at a time: matplotlib's settings are global."""
+    with _drawing, style.context(["default", _STYLE]):
+        yield
 
 
 def check_ending(path: Path) -> None:
@@ -60,7 +69,7 @@ def check_ending(path: Path) -> None:
         raise ValueError(f"{path}: unknown kind of plot; give one of {' '.join(ENDINGS)}")
 
 
-@styled
+@styled()
 def save(figure: Figure, path: Path, kept: Mapping[str, str] | None = None) -> None:
     """Write a figure as its ending says, one of ENDINGS, whole or not at all, with texts to be kept in it; raises
     OSError in one line."""
@@ -95,9 +104,23 @@ def look(number: int, mark: bool = True) -> dict[str, Any]:
     return found | ({"marker": MARKS[number % len(MARKS)]} if mark else {})
 
 
-def _beside(panel: Axes) -> None:
-    """Name a panel's curves at its right."""
-    panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), borderaxespad=0.0, labelspacing=0.8)
+def _over(figure: Figure, panels: Sequence[Axes], what: str) -> Figure:
+    """Finish panels below each other over the same whole numbers: their curves are named at their right."""
+    for panel in panels:
+        panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), borderaxespad=0.0, labelspacing=0.8)
+    panels[-1].set_xlabel(what)
+    panels[-1].xaxis.set_major_locator(MaxNLocator(steps=[1, 2, 5, 10], integer=True, min_n_ticks=1))
+    figure.align_ylabels(panels)
+    return figure
+
+
+def figure_of(results: Results | zoom.Results | LampResults) -> Figure:
+    """Draw the plot of results; raises ValueError where there is none."""
+    if isinstance(results, zoom.Results):
+        return zoom_figure(results)
+    if isinstance(results, Results):
+        return savings_figure(results)
+    raise ValueError("there is no plot of several kinds of lamps")
 
 
 # --- experiments -----------------------------------------------------------------------------------
@@ -106,19 +129,20 @@ _WORKS = (("steps", "Traversal steps\nsaved"), ("tests", "Intersection tests\nsa
 _FEW = 40  # frames up to which each has a dot
 
 
-@styled
-def savings_figure(results: Results, verified: bool) -> Figure:
+@styled()
+def savings_figure(results: Results) -> Figure:
     """Draw the part of the shadow rays' work that each method saves against the reference, frame by frame.
 
-    One curve per method for traversal steps and one for intersection tests, each with its average and its maximum;
-    where `verified`, the wrong answers of each frame below them, or that there are none.  Raises ValueError where there
-    is no frame, or no method beside the reference."""
+    One curve per method for traversal steps and one for intersection tests, each with its average and its maximum; of
+    verified frames the wrong answers below them, or that there are none.  Raises ValueError where there is no frame, or
+    no method beside the reference."""
+    verified = bool(results.settings.get("verify"))
     rows = [row for row in table(results) if row.method != REFERENCE]
     if not rows:
         raise ValueError("there is nothing to plot: no frame, or no method to compare with the reference")
     any_wrong = any(row.wrong for row in rows)
     checked = ("" if any_wrong else ", no wrong answer") if verified else ", answers not verified"
-    figure = page(f"Work of shadow rays saved by culling\n{experiment_title(results)}{checked}")
+    figure = page(f"Work of shadow rays saved by culling\n{title(results)}{checked}")
     heights = [3.0, 3.0, 1.6] if verified and any_wrong else [1.0, 1.0]
     panels: Sequence[Axes] = figure.subplots(len(heights), sharex=True, gridspec_kw={"height_ratios": heights})
     for panel, (work, label) in zip(panels, _WORKS):
@@ -135,12 +159,7 @@ def savings_figure(results: Results, verified: bool) -> Figure:
         panel.yaxis.set_major_locator(MaxNLocator(3, integer=True))
         panel.yaxis.set_major_formatter("{x:,.0f}")
         panel.set_ylabel("Wrong\nanswers")
-    for panel in panels:
-        _beside(panel)
-    panels[-1].set_xlabel("Frame")
-    panels[-1].xaxis.set_major_locator(MaxNLocator(steps=[1, 2, 5, 10], integer=True, min_n_ticks=1))
-    figure.align_ylabels(panels)
-    return figure
+    return _over(figure, panels, "Frame")
 
 
 def _draw_savings(panel: Axes, results: Results, row: Row, work: str, number: int) -> None:
@@ -162,7 +181,7 @@ def _draw_curve(panel: Axes, results: Results, values: Sequence[float] | np.ndar
 # --- zoom tests ------------------------------------------------------------------------------------
 
 
-@styled
+@styled()
 def zoom_figure(results: zoom.Results) -> Figure:
     """Draw a zoom test over its steps: the primitive's pixels on a logarithmic scale, and for each factor the count
     past which it is examined again, marks where its modes change, and below its pixels with wrong shadows.
@@ -172,7 +191,7 @@ def zoom_figure(results: zoom.Results) -> Figure:
     if not approaches:
         raise ValueError("there is nothing to plot: no step")
     never = f"\n{NEVER_WHOLE.capitalize()}" * never_whole(results)
-    figure = page(f"A primitive approached step by step, and its shadows\n{zoom_title(results)}{never}")
+    figure = page(f"A primitive approached step by step, and its shadows\n{title(results)}{never}")
     counts, wrong = figure.subplots(2, sharex=True, gridspec_kw={"height_ratios": [3.0, 1.6]})
     longest = max(approaches, key=lambda approach: len(approach.steps))
     pixels = [max(step.pixels, 0.5) for step in longest.steps]  # none is a half: a logarithmic scale has no 0
@@ -196,19 +215,14 @@ def zoom_figure(results: zoom.Results) -> Figure:
     counts.set_ylabel("Pixels")
     wrong.set_ylabel(WRONG_PIXELS.replace(" of", "\nof").capitalize())
     wrong.set_ylim(bottom=0.0, top=1.08 * max(1, *(approach.most_wrong for approach in approaches)))
-    for axis in (wrong.xaxis, wrong.yaxis):
-        axis.set_major_locator(MaxNLocator(9 if axis is wrong.xaxis else 3, integer=True))
-    wrong.set_xlabel("Step")
-    for panel in (counts, wrong):
-        _beside(panel)
-    figure.align_ylabels((counts, wrong))
-    return figure
+    wrong.yaxis.set_major_locator(MaxNLocator(3, integer=True))
+    return _over(figure, (counts, wrong), "Step")
 
 
 COLUMNS = 8
 
 
-@styled
+@styled()
 def film_figure(film: Filmstrip, results: zoom.Results) -> Figure:
     """Draw up to COLUMNS recorded pictures of each factor's way, as the paper's Figure 4.
 
@@ -219,7 +233,7 @@ def film_figure(film: Filmstrip, results: zoom.Results) -> Figure:
     numbers = chosen_steps(results, sorted({shot.number for a in approaches for shot in film.of(a.factor)}))
     if not numbers:
         raise ValueError("there is nothing to draw: no step")
-    figure = page(zoom_title(results), (SIZE[0], 1.1 + 2.25 * len(approaches)))
+    figure = page(title(results), (SIZE[0], 1.1 + 2.25 * len(approaches)))
     panels = figure.subplots(len(approaches), len(numbers), squeeze=False)
     for row, approach in zip(panels, approaches):
         shots: dict[int, Shot] = {shot.number: shot for shot in film.of(approach.factor)}
@@ -242,7 +256,7 @@ def chosen_steps(results: zoom.Results, kept: list[int]) -> list[int]:
     """Return up to COLUMNS of the kept steps: first and last, where something happens, and between."""
     if len(kept) <= COLUMNS:
         return kept
-    happened = sorted({step.number for approach in results.approaches for step in happenings(approach)} & set(kept))
+    happened = sorted({step.number for _, step in happenings(results)} & set(kept))
     wanted = [kept[0], kept[-1], *happened]
     even = [kept[round(i * (len(kept) - 1) / (COLUMNS - 1))] for i in range(COLUMNS)]
     return sorted(list(dict.fromkeys([*wanted, *even]))[:COLUMNS])
@@ -258,7 +272,7 @@ _ROWS: tuple[tuple[str, Callable[[Line], float]], ...] = (
 )
 
 
-@styled
+@styled()
 def sweep_figure(title: str, lines: Sequence[Line]) -> Figure:
     """Draw a column of panels for each scene and combination of settings, with a curve for each method over sizes.
 

@@ -8,7 +8,7 @@ from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from tracer.experiments import counterexample, experiment, lamp_experiment, zoom
+from tracer.experiments import counterexample, experiment, hunt, lamp_experiment, zoom
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.experiment import REFERENCE, Row
 from tracer.experiments.lamp_experiment import CEILING, LampResults, LampRow
@@ -134,10 +134,16 @@ def frames_in_words(results: experiment.Results) -> str:
     return text + ", stopped" * results.stopped
 
 
-def experiment_title(results: experiment.Results) -> str:
-    """Return which experiment this is, in one line."""
+def title(results: experiment.Results | zoom.Results | hunt.Results) -> str:
+    """Return what was measured, in one line."""
+    if isinstance(results, experiment.Results):
+        what = frames_in_words(results)
+    elif isinstance(results, zoom.Results):
+        what = f"{results.time:.3f} s, towards primitive {results.primitive}"
+    else:
+        what = f"method {results.method}"
     width, height = results.size
-    return f"{printable(Path(results.scene).name)}, {width} × {height}, {frames_in_words(results)}"
+    return f"{printable(Path(results.scene).name)}, {width} × {height}, {what}"
 
 
 # --- zoom tests ------------------------------------------------------------------------------------
@@ -151,16 +157,19 @@ def never_whole(results: zoom.Results) -> bool:
     return any(a.steps for a in results.approaches) and not any(a.seen_whole for a in results.approaches)
 
 
-def zoom_title(results: zoom.Results) -> str:
-    """Return which test this is, in one line."""
-    name, (width, height) = Path(results.scene).name, results.size
-    return f"{name}, {results.time:.3f} s, towards primitive {results.primitive}, {width} × {height}"
+FactorStep = tuple[float, Step]
+"""A step, behind the zoom factor that it was made with."""
 
 
-def happenings(approach: Approach) -> list[Step]:
+def happenings(results: zoom.Results) -> list[FactorStep]:
     """Return the steps where a mode changes, or the primitive's wrong pixels become more or fewer."""
-    wrong_before = [0, *(step.wrong_of_primitive for step in approach.steps)]
-    return [s for s, wrong in zip(approach.steps, wrong_before) if s.changes or s.wrong_of_primitive != wrong]
+    found = []
+    for approach in results.approaches:
+        wrong_before = [0, *(step.wrong_of_primitive for step in approach.steps)]
+        for step, wrong in zip(approach.steps, wrong_before):
+            if step.changes or step.wrong_of_primitive != wrong:
+                found.append((approach.factor, step))
+    return found
 
 
 def changes_in_words(changes: Sequence[Change]) -> list[str]:
@@ -187,17 +196,18 @@ def _spoken(mode: str) -> str:
     return mode.replace("_", " ").lower()
 
 
-STEPS: tuple[Column[Step], ...] = (
-    Column("step", "number of the step; the camera first stays where it is", lambda step: f"{step.number}"),
-    Column("pixels", "pixels that the primitive covers", lambda step: f"{step.pixels:,}"),
-    Column(
-        "wrong", WRONG_PIXELS, lambda step: f"{step.wrong_of_primitive:,}", lambda step: step.wrong_of_primitive > 0
-    ),
-    Column("modes", "modes from that step on, where they change", lambda step: modes_in_words(step.changes), text=True),
-    Column("in picture", "wrong pixels of the whole picture", lambda step: f"{step.wrong:,}"),
-    Column("highest", "highest pixel count so far", lambda step: f"{step.highest:,}"),
-    Column("distance", "from the camera to the primitive", lambda step: f"{step.distance:.4g}"),
-)
+STEPS: tuple[Column[FactorStep], ...] = (
+    Column("factor", "zoom factor", lambda row: f"{row[0]:g}"),
+    Column("step", "number of the step; the camera first stays where it is", lambda row: f"{row[1].number}"),
+    Column("pixels", "pixels that the primitive covers", lambda row: f"{row[1].pixels:,}"),
+    Column("wrong", WRONG_PIXELS, lambda row: f"{row[1].wrong_of_primitive:,}",
+           wrong=lambda row: row[1].wrong_of_primitive > 0),
+    Column("modes", "modes from that step on, where they change",
+           lambda row: modes_in_words(row[1].changes), text=True),
+    Column("in picture", "wrong pixels of the whole picture", lambda row: f"{row[1].wrong:,}"),
+    Column("highest", "highest pixel count so far", lambda row: f"{row[1].highest:,}"),
+    Column("distance", "from the camera to the primitive", lambda row: f"{row[1].distance:.4g}"),
+)  # fmt: skip
 
 
 def _share(approach: Approach, name: str) -> str:
@@ -221,14 +231,14 @@ APPROACHES: tuple[Column[Approach], ...] = (
 # --- hunts -----------------------------------------------------------------------------------------
 
 
-def findings(scene: Scene, ranks: dict[int, int]) -> tuple[Column[Counterexample], ...]:
-    """Return the columns of findings in a scene; `ranks` by their `id`."""
+def findings(scene: Scene, finds: Sequence[Counterexample]) -> tuple[Column[Counterexample], ...]:
+    """Return the columns of findings in a scene."""
 
     def light(find: Counterexample) -> str:
         return f"{number_of(scene.lights, find.light)}" + (f" (+{find.more_lights})" if find.more_lights else "")
 
     return (
-        Column("#", "the worst first", lambda find: f"{ranks[id(find)]}"),
+        Column("#", "the worst first", lambda find: f"{1 + finds.index(find)}"),
         Column("off by", "difference of the colour from the right one, of 1", lambda find: f"{find.difference:.3f}"),
         Column("pixel", "column and row, from the upper left", lambda find: f"{find.x}, {find.y}"),
         Column("frame", "frame of the path, or the one that it is near",
@@ -250,10 +260,9 @@ def table_of(results: experiment.Results | LampResults | zoom.Results) -> tuple[
     """Return the headings and the rows of results, parts of 1 and seconds as they are.
 
     Of a zoom test that is a row for each step of each factor."""
-    if isinstance(results, experiment.Results):
-        return [f.name for f in fields(Row)], [astuple(row) for row in experiment.table(results)]
-    if isinstance(results, LampResults):
-        return [f.name for f in fields(LampRow)], [astuple(row) for row in lamp_experiment.table(results)]
+    if not isinstance(results, zoom.Results):
+        lines = lamp_experiment.table(results) if isinstance(results, LampResults) else experiment.table(results)
+        return [f.name for f in fields(lines[0])], [astuple(line) for line in lines]
     plain = [f.name for f in fields(Step) if f.name not in ("camera", "shadows", "changes")]
     lights = max((len(step.shadows) for approach in results.approaches for step in approach.steps), default=0)
     rows: list[Sequence[object]] = []

@@ -18,7 +18,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.commands import ROOM, complaint, run
-from tests.viewer.fakes import write_marbles
+from tests.marbles import write_marbles
 from tracer import fingerprint
 from tracer.experiments import experiment
 from tracer.experiments import sweep as sweeping

@@ -117,7 +117,7 @@ def test_ctrl_c_keeps_the_steps_that_are_done(tmp_path: Path) -> None:
     steps = json.loads(output.read_text())["approaches"][0]["steps"]
     assert 3 < len(steps) < 9999
     assert f"cancelled after {len(steps)} of " in terminal.said
-    assert "towards primitive 0, 128 × 128" in terminal.said
+    assert "128 × 128, 0.000 s, towards primitive 0" in terminal.said
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tracer.experiments import zoom
 from tracer.experiments.experiment import Results, Row
 from tracer.experiments.zoom import Approach, Change, Step
 from tracer.scene.model import Camera
@@ -86,4 +87,5 @@ def test_steps_where_something_happens_are_told_and_lights_that_change_alike_tog
         Step(n, 5.0, camera, 10, 10, "INIT", ["INIT"], changes if n == 6 else [], wrong, wrong, 10, 0, 0)
         for n, wrong in enumerate([0, 2, 2, 3, 0, 0, 0])
     ]
-    assert [step.number for step in happenings(Approach(4.0, steps))] == [1, 3, 4, 6]
+    results = zoom.Results("room.aff", (64, 48), 0, 0.0, (0.0, 0.0, 0.0), 0.9, approaches=[Approach(4.0, steps)])
+    assert [(factor, step.number) for factor, step in happenings(results)] == [(4.0, n) for n in (1, 3, 4, 6)]
