@@ -151,7 +151,6 @@ class Controller:
             frame = newest.frame
         self.reloaded = False
         self.motion.look_around(frame)
-        self.selection.refresh(frame)
 
     def move(self) -> None:
         """Bring time and camera to where they should be now."""

@@ -76,7 +76,7 @@ class Tour:
 
     def start(self) -> None:
         """Begin with the first step."""
-        self._c.selection.picked = None  # what was clicked before was not clicked for the tour
+        self._c.selection.clear()  # what was clicked before was not clicked for the tour
         self._go_to(STEPS[0])
 
     def end(self) -> None:
@@ -144,7 +144,7 @@ def _shows(view: View) -> Condition:
 
 def _in_shadow(c: Controller) -> bool:
     """Return whether the pixel that was clicked is in the shadow of some light."""
-    answer = c.inspector.answer if c.selection.picked is not None else None
+    answer = c.inspector.why if c.selection.picked is not None else None
     return answer is not None and any(one.blocker >= 0 for one in answer.reasons)
 
 
@@ -198,8 +198,8 @@ def _click_a_shadow(c: Controller, open_panel: OpenPanel) -> Script:
         picked = c.selection.picked
         if picked is None or picked.dynamic:
             continue
-        yield from _until(lambda: c.inspector.answer is not None)
-        answer = c.inspector.answer
+        yield from _until(lambda: c.inspector.why is not None)
+        answer = c.inspector.why
         for one in answer.reasons if answer is not None else ():
             if not one.lit and one.blocker not in (-1, picked.primitive):
                 c.settings.set_light(one.light)

@@ -33,12 +33,12 @@ def draw(ui: Ui) -> None:
     if display is None:
         return
     display.context.gc()
-    picked, part, now = c.selection.picked, c.selection.part, c.session.edited
-    if part is not None and now is not None:
+    picked, now = c.selection.picked, c.session.edited
+    if picked is not None and picked.part is not None and now is not None:
         display.part_of = ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives])
     options, window = sides.draw_options(ui), in_window(ui)
     if picked is not None:
-        window = replace(window, selected=picked.primitive, selected_part=-1 if part is None else part)
+        window = replace(window, selected=picked.primitive, selected_part=-1 if picked.part is None else picked.part)
     display.draw(c.frame, options, window)
     sides.draw(ui, options, window.smooth)
     sides.magnify(ui, options, window.smooth)
