@@ -34,7 +34,7 @@ def closeup(d: Driver) -> None:
         d.frames(3)
         picked = d.c.selection.picked
         assert picked is None or (picked.x, picked.y) == (x, y)
-        d.c.selection.picked = None
+        d.c.selection.clear()
         d.c.selection.select(d.c.selection.hovered)
         found, d.c.selection.picked = d.c.selection.picked, None
         assert (found is None) == (d.c.frame.primitive[y, x] < 0)

@@ -168,28 +168,28 @@ def explaining(d: Driver) -> None:
     """What the pointer is on, or was clicked, is explained beside the window's own frames; a key hides the lines."""
     d.settle()
     inspector, traced = d.c.inspector, d.c.history.frames
-    assert inspector.answer is None
+    assert inspector.why is None
     shadow, lit = (_places(d, lit) for lit in (False, True))
     d.point(*shadow)
-    d.wait(lambda: inspector.answer is not None, "an answer about the pointer's pixel", 20.0)
-    blocked = [one for one in inspector.answer.reasons if one.blocker >= 0]
+    d.wait(lambda: inspector.why is not None, "an answer about the pointer's pixel", 20.0)
+    blocked = [one for one in inspector.why.reasons if one.blocker >= 0]
     assert blocked and not any(one.lit for one in blocked)
     hovering = _lines_drawn(d)
     d.press("I")
     assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
     d.press("I")
     d.point(*lit)
-    d.wait(lambda: all(one.blocker < 0 for one in inspector.answer.reasons), "an answer about another pixel", 20.0)
+    d.wait(lambda: all(one.blocker < 0 for one in inspector.why.reasons), "an answer about another pixel", 20.0)
     d.pick(*shadow)
     assert d.c.selection.picked is not None
     d.point(*lit)
-    d.wait(lambda: inspector.answer is not None, "an answer about what was clicked", 20.0)
-    assert any(one.blocker >= 0 for one in inspector.answer.reasons), "it goes on following the pointer"
+    d.wait(lambda: inspector.why is not None, "an answer about what was clicked", 20.0)
+    assert any(one.blocker >= 0 for one in inspector.why.reasons), "it goes on following the pointer"
     assert d.c.history.frames == traced, "asking has traced a frame"
     point = inspector.tree.rays[0].end
     d.hold(KEY.d, 0.3)
     d.settle()
-    assert inspector.answer is not None and math.dist(inspector.tree.rays[0].end, point) < 0.2
+    assert inspector.why is not None and math.dist(inspector.tree.rays[0].end, point) < 0.2
     d.hover(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
     assert d.ui.state(Pointed).light == 0
     d.point(*shadow)
@@ -203,7 +203,7 @@ def explaining(d: Driver) -> None:
     d.pick(*shadow)
     assert d.c.selection.picked is not None
     d.pick(0.5, 0.02)
-    assert d.c.selection.picked is None and inspector.answer is None, "a click on nothing clears"
+    assert d.c.selection.picked is None and inspector.why is None, "a click on nothing clears"
 
 
 def _lines_drawn(d: Driver) -> int:
