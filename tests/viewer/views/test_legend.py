@@ -12,17 +12,8 @@ import pytest
 
 from tests.scenes import loaded
 from tests.tracing.nasty_worlds import nasty_walk
-from tests.viewer.drawn import legend_in, luminance
-from tests.viewer.fakes import (
-    in_part,
-    make_frame,
-    with_cell_lights,
-    with_certificates,
-    with_cuts,
-    with_lamps,
-    with_tree,
-    with_voxels,
-)
+from tests.viewer.drawn import legend_in, luminance, units_in
+from tests.viewer.fakes import in_part, make_frame, with_everything
 from tracer.culling.fate import MOVING_SHADOW
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
@@ -58,7 +49,7 @@ def measure(text: str) -> float:
 @pytest.fixture
 def frame() -> Frame:
     """One of numbers, with whatever any view shows."""
-    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(make_frame(SETTINGS)))))))
+    return with_everything(make_frame(SETTINGS))
 
 
 def of(frame: Frame, view: View, **chosen) -> Legend:
@@ -141,8 +132,7 @@ def test_a_scene_has_the_same_dynamic_primitives_by_every_method(method: str):
     renderer.render(time, camera)
     frame = renderer.render(time, camera)
     for view in (View.OCCLUSION, View.SHADOW):
-        told = {entry.name: entry.values[1] for entry in of(frame, view).entries}
-        counts = {name: int(told.get(name, "0").replace(",", "")) for name in ("dynamic", "dynamic, at rest")}
+        counts = {name: units_in(frame, view).get(name, 0) for name in ("dynamic", "dynamic, at rest")}
         assert sum(counts.values()) == dynamic > 0, counts
         assert (counts["dynamic"] == 0) == (method not in ("paper", "none"))
 

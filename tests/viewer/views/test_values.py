@@ -8,32 +8,13 @@ import numpy as np
 import pytest
 
 from tests.viewer.drawn import values_in, words_in
-from tests.viewer.fakes import (
-    in_part,
-    make_frame,
-    with_cell_lights,
-    with_certificates,
-    with_cuts,
-    with_lamps,
-    with_tree,
-    with_voxels,
-)
+from tests.viewer.fakes import in_part, make_frame, with_everything
 from tracer.frame import Settings
-from viewer.state.pixels import (
-    FIT,
-    MOST,
-    Zoom,
-    panned,
-    pixels_shown,
-    zoomed,
-)
+from viewer.state.pixels import FIT, MOST, Zoom, panned, pixels_shown, zoomed
 from viewer.state.views import View, can_draw
 from viewer.views.base import histogram
 
-FRAME = with_cuts(
-    with_lamps(with_certificates(make_frame(Settings(width=16, height=8, verify=True, record_work=True))))
-)
-FRAME = with_tree(with_cell_lights(with_voxels(FRAME)))
+FRAME = with_everything(make_frame(Settings(width=16, height=8, verify=True, record_work=True)))
 
 
 def test_pixels_are_put_into_words():
