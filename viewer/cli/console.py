@@ -193,4 +193,4 @@ def fitted(
 def columns_help(columns: Sequence[Column[Row]]) -> str:
     """Say in a line for each column of a table what it means."""
     width = max(len(column.heading) for column in columns)
-    return "columns:\n" + "".join(f"  {column.heading:{width}}  {column.meaning.strip()}\n" for column in columns)
+    return "columns:\n" + "".join(f"  {column.heading:{width}}  {column.meaning}\n" for column in columns)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.experiments import experiment, lamp_experiment, zoom
+from tracer.experiments import experiment, zoom
 from tracer.version import program_version
 from viewer.output import reports
 from viewer.state.scene_rows import COLUMNS, Table, Values
@@ -28,7 +28,7 @@ from viewer.util.files import check_writable, whole_file, write_new, write_text
 if TYPE_CHECKING:
     from viewer.output.filmstrip import Filmstrip
 
-Results = experiment.Results | lamp_experiment.LampResults | zoom.Results
+Results = experiment.Results | zoom.Results
 
 ENDINGS = {".json": "json", ".csv": "csv", ".png": "plot"}
 """The window's files, by their endings; the commands have an option of each kind's name."""
@@ -46,7 +46,10 @@ def write(results: Results, path: Path, kind: str = "") -> None:
     else:
         from viewer.output import figures  # loads matplotlib
 
-        figures.save(figures.figure_of(results), path)
+        if isinstance(results, zoom.Results):
+            figures.save(figures.zoom_figure(results), path)
+        else:
+            figures.save(figures.savings_figure(results), path)
 
 
 def write_json(path: Path, figures: Mapping[str, Any], indent: int | None = None) -> None:

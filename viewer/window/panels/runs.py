@@ -151,7 +151,7 @@ def results_table(
     for column in columns:
         imgui.table_next_column()
         clipped(column.heading, QUIET)
-        tooltip(column.meaning.strip())
+        tooltip(column.meaning)
     clipper = imgui.ListClipper()
     clipper.begin(len(rows))
     while clipper.step():
