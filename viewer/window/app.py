@@ -138,8 +138,6 @@ class App:
         finally:
             threading.excepthook = hook
             self.controller.close()
-            if self.ui.full_screen.place is not None:
-                layout.put_window(self.layout_file, self.ui.full_screen.place)
         return 0
 
     def _thread_failed(self, of: threading.ExceptHookArgs) -> None:
@@ -167,7 +165,7 @@ class App:
 
     def widgets(self) -> None:
         """Draw what is no docked panel, and read the keys."""
-        ui, step, overlay = self.ui, self.ui.guard.step, self.ui.guard.overlay
+        ui, step = self.ui, self.ui.guard.step
         style.fill_windows(True)
         step("The layout", self.layout.update)
         step("Reading the keys", lambda: menus.handle_keys(ui))
@@ -175,7 +173,6 @@ class App:
         step("Comparing", lambda: sides.read_key(ui))
         dialogs.show(ui)
         step("The tour", ui.tour.update)
-        overlay("The notice", lambda: status.show_fault(ui), self.controller.notices.dismiss_faults)
 
     def after_widgets(self) -> None:
         """Finish a frame that is drawn but not yet shown."""
