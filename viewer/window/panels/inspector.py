@@ -61,7 +61,8 @@ def show(ui: Ui) -> None:
     picked, at = selection.picked, selection.pixel
     if picked is not None:
         named = f"{picked.object_name} ({picked.kind})"
-        clipped(f"pixel {at[0]}, {at[1]}: {named}" if at is not None else named, QUIET)
+        room = imgui.get_content_region_avail().x - em(2.2)  # for the button
+        clipped(f"pixel {at[0]}, {at[1]}: {named}" if at is not None else named, QUIET, room)
         imgui.same_line()
         if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
             selection.clear()
