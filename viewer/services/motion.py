@@ -102,7 +102,7 @@ class Motion:
 
     @property
     def world_up(self) -> navigation.Vector:
-        scene = self._session.seen
+        scene = self._session.scene
         return navigation.world_up(scene.camera) if scene is not None else np.array([0.0, 1.0, 0.0])
 
     @property

@@ -39,15 +39,11 @@ def build(
     settings: Settings,
     progress: Progress,
     ready: Callable[[], bool] = lambda: True,
-    seen: Callable[[Scene], None] = lambda scene: None,
 ) -> Built:
-    """Build the trees of a scene once the tracer is `ready`.  A scene whose kernels are yet to be compiled is `seen`
-    before that.
+    """Build the trees of a scene once the tracer is `ready`.
 
     Raises SceneError or Cancelled; runs on a thread of its own."""
     lights, accelerator = len(scene.lights), settings.accelerator
-    if not can_draw(lights, accelerator) and not compiled_before(lights, accelerator, certificates=False):
-        seen(scene)
     while not ready():
         progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
         time.sleep(0.02)
@@ -64,14 +60,13 @@ class Arrival:
     """What is opened: the renderer of a scene, None where it is open already, and what `scene_info` says of it; the
     place in it to go to, if not where it begins; and one line that says so.  `again` says that it is the scene that was
     open, read again, and what of it had `changed` where this is why: the place stays.  `meshes` says how meshes are
-    read, `files` which were come to, and `waits` is a scene that has been read and waits for kernels."""
+    read, and `files` which were come to."""
 
     meshes: MeshOptions = IN_STUDIO
     place: ViewState | None = None
     again: bool = False
     changed: str = ""
     files: dict[Path, Stamp] = field(default_factory=dict)
-    waits: Scene | None = None
     renderer: Renderer | None = None
     info: dict[str, Any] = field(default_factory=dict)
     text: str = ""
@@ -107,11 +102,6 @@ class SceneLoader:
     @property
     def busy(self) -> bool:
         return not (self.load_job is None and self._restored is None and self.warm_up_job is None)
-
-    @property
-    def waiting(self) -> Arrival | None:
-        """What has been read and waits for kernels to be compiled."""
-        return self._coming if self._coming.waits is not None else None
 
     @property
     def ready(self) -> bool:
@@ -265,11 +255,8 @@ class SceneLoader:
         def ready() -> bool:
             return kernels is None or kernels.done or can_draw()
 
-        def seen(scene: Scene) -> None:
-            coming.waits = scene
-
         def work(progress: Progress) -> Built:
-            return build(read(progress), settings, progress, ready, seen)
+            return build(read(progress), settings, progress, ready)
 
         self.load_job, self._coming = Job(title, work, self._wake), coming
 

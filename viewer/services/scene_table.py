@@ -21,6 +21,7 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.editing import Editing
 from viewer.services.inspector import Selection
 from viewer.services.jobs import Job
+from viewer.services.queries import is_same_picture
 from viewer.services.render_request import Traced
 from viewer.state.notices import Notices
 from viewer.state.parts import parts_of
@@ -32,17 +33,11 @@ from viewer.state.session import Session
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """What tables are made of; with `light` None, shadow modes are those for all lights together."""
+    """What tables are made of; shadow modes are those for `light`."""
 
     now: Edited
     frame: Frame
-    light: int | None
-
-    def is_like(self, other: Source) -> bool:
-        """Whether the tables of another would be the same: further samples of a picture count nothing."""
-        names = ("primitive", "modes", "cells", "saved", "due_rays", "wrong")
-        same = all(getattr(self.frame, name) is getattr(other.frame, name) for name in names)
-        return same and self.now is other.now and self.light == other.light
+    light: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +54,8 @@ class Listing:
 
 
 class SceneTable:
-    """`level` is what rows are, `orders` what is asked of each level; with `all_lights` shadow modes are those for all
-    lights together, else for the session's.  `held` says that the pointer is on it, where rows must not move."""
+    """`level` is what rows are, `orders` what is asked of each level, `held` that the pointer is on it, where rows must
+    not move."""
 
     def __init__(
         self,
@@ -76,8 +71,8 @@ class SceneTable:
         self._preferences, self._notices, self._files, self._editing = preferences, notices, files, editing
         self.level = Level.OBJECTS
         self.orders = dict.fromkeys(Level, Order(column="pixels", descending=True))
-        self.all_lights = self.visible = self.held = self._watched = False
-        self._source: Source | None = None  # the newest
+        self.visible = self.held = self._watched = False
+        self._source: Source | None = None
         self._listings: dict[Level, Listing] = {}
         self._job: Job[Listing] | None = None
         self._asked: object = None  # what the newest job was started for; where it fails, it is not tried again
@@ -184,14 +179,12 @@ class SceneTable:
                 self._listings[made.table.level] = made
         if not self.visible or now is None or self._job is not None:
             return
+        light, last = self._session.draw.light, self._source
         if traced is not None and traced.whole and traced.request.divisor == 1:
-            newest, source = (
-                Source(now, traced.frame, None if self.all_lights else self._session.draw.light),
-                self._source,
-            )
-            stays = self.held and source is not None and source.now is now and source.light == newest.light
-            if source is None or not (stays or newest.is_like(source)):
-                self._source = newest
+            same = last is not None and last.now is now and last.light == light
+            # Further samples of a picture count nothing.
+            if last is None or not same or not (self.held or is_same_picture(last.frame, traced.frame)):
+                self._source = Source(now, traced.frame, light)
         if self._source is not None:
             self._make(self._source)
 

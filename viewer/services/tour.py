@@ -76,7 +76,7 @@ class Tour:
 
     def start(self) -> None:
         """Begin with the first step."""
-        self._c.selection.picked = None  # what was clicked before was not clicked for the tour
+        self._c.selection.clear()  # what was clicked before was not clicked for the tour
         self._go_to(STEPS[0])
 
     def end(self) -> None:
@@ -149,7 +149,7 @@ def _shows(view: View) -> Condition:
 
 def _shadowed(c: Controller) -> int | None:
     """Return a light in whose shadow the pixel is that was clicked: that of another primitive."""
-    picked, answer = c.selection.picked, c.inspector.answer
+    picked, answer = c.selection.picked, c.inspector.why
     if picked is None or answer is None:
         return None
     by_others = (one.light for one in answer.reasons if not one.lit and one.blocker not in (-1, picked.primitive))
@@ -195,7 +195,7 @@ def _click_a_shadow(c: Controller) -> None:
     light = _shadowed(c)
     if light is not None:
         c.settings.set_light(light)
-    elif c.selection.picked is None or c.inspector.answer is not None:
+    elif c.selection.picked is None or c.inspector.why is not None:
         c.session.set_draw(view=View.COLOR)
         c.selection.select(next(_PLACES))
 

@@ -26,25 +26,26 @@ NEARBY = 2
 _BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
 _EDGES = [(a, b) for a in range(8) for b in range(a) if np.abs(_BOX[a] - _BOX[b]).sum() == 2.0]
 
+Seen = tuple[float, Camera, int, int]
+
 
 @dataclass(frozen=True)
 class Pick:
-    """What is selected: a primitive, and the point of it that a pixel of a frame shows.
+    """What is selected: a primitive, and the point of it that a pixel of a frame shows; with a `part`, that whole part
+    of the scene (`viewer.state.parts`).
 
-    `primitive` is -1 where the ray left the scene; then only x and y mean anything.  `unit` carries its modes and
-    counts, -1 where that is not known; `in_cells` says whether units are virtual cells, else they are primitives.
-    `seen` is the frame's time, camera, width and height, None where x and y are no pixel of a frame."""
+    `primitive` is -1 where the ray left the scene; then only x and y mean anything.  `seen` is the frame's time,
+    camera, width and height, None where x and y are no pixel of a frame."""
 
     x: int
     y: int
     primitive: int
-    unit: int = -1
-    in_cells: bool = False
+    part: int | None = None
     kind: str = ""
     object_name: str = ""
     dynamic: bool = False
     point: tuple[float, float, float] | None = None
-    seen: tuple[float, Camera, int, int] | None = None
+    seen: Seen | None = None
 
 
 def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
@@ -54,8 +55,7 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
     if not 0 <= primitive < scene.primitive_count:
         return Pick(x, y, -1)
     point = point_at(frame, u, v)
-    found = _named(scene, primitive, x, y, None if point is None else point.tolist())
-    return replace(found, unit=int(frame.unit[y, x]), in_cells=has_modes_of_cells(frame), seen=_seen(frame))
+    return _named(scene, primitive, x, y, point, _seen(frame))
 
 
 def pick_primitive(frame: Frame, scene: Scene, primitive: int) -> Pick | None:
@@ -67,10 +67,7 @@ def pick_primitive(frame: Frame, scene: Scene, primitive: int) -> Pick | None:
     if shown.any():
         return _middle_pick(frame, scene, shown)
     points = primitive_points(scene, primitive, frame.time)
-    if not len(points):
-        return None
-    found, in_cells = _named(scene, primitive, -1, -1, points.mean(axis=0).tolist()), has_modes_of_cells(frame)
-    return replace(found, unit=primitive if not in_cells and primitive < len(frame.modes) else -1, in_cells=in_cells)
+    return _named(scene, primitive, -1, -1, points.mean(axis=0), None) if len(points) else None
 
 
 def pick_part(frame: Frame, now: Edited, part: int) -> Pick | None:
@@ -80,25 +77,15 @@ def pick_part(frame: Frame, now: Edited, part: int) -> Pick | None:
         return None
     in_part = np.zeros(len(now.primitives) + 1, np.bool_)  # -1, a miss, finds the last of them
     in_part[found] = True
-    shown = in_part[frame.primitive]
-    return _middle_pick(frame, now.scene, shown) if shown.any() else pick_primitive(frame, now.scene, int(found[0]))
+    shown, scene = in_part[frame.primitive], now.scene
+    pick = _middle_pick(frame, scene, shown) if shown.any() else pick_primitive(frame, scene, int(found[0]))
+    return None if pick is None else replace(pick, part=part)
 
 
-def refreshed(old: Pick, frame: Frame) -> Pick:
-    """The same with what carries its modes in a newer frame: the primitive or, where that is cells, what the pixel
-    shows."""
-    in_cells, unit = has_modes_of_cells(frame), old.unit
-    if not in_cells:
-        unit = old.primitive
-    elif not old.in_cells or unit < 0:
-        unit = int(frame.unit[old.y, old.x]) if old.seen == _seen(frame) else -1
-    return replace(old, unit=unit, in_cells=in_cells) if (unit, in_cells) != (old.unit, old.in_cells) else old
-
-
-def _named(scene: Scene, primitive: int, x: int, y: int, point: list[float] | None) -> Pick:
+def _named(scene: Scene, primitive: int, x: int, y: int, point: Vector | None, seen: Seen | None) -> Pick:
     return Pick(
         x, y, primitive, kind=kind_of(scene, primitive), object_name=scene.name_of(primitive),
-        dynamic=scene.object_of(primitive) > 0, point=None if point is None else (point[0], point[1], point[2]),
+        dynamic=scene.object_of(primitive) > 0, point=None if point is None else tuple(point.tolist()), seen=seen,
     )  # fmt: skip
 
 
@@ -109,7 +96,7 @@ def _middle_pick(frame: Frame, scene: Scene, shown: NDArray[np.bool_]) -> Pick:
     return pick(frame, scene, (columns[nearest] + 0.5) / frame.width, (rows[nearest] + 0.5) / frame.height)
 
 
-def _seen(frame: Frame) -> tuple[float, Camera, int, int]:
+def _seen(frame: Frame) -> Seen:
     return frame.time, frame.camera, frame.width, frame.height
 
 
@@ -144,6 +131,14 @@ def pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
 
 
 # --- what a frame knows of a pixel --------------------------------------------------------------------
+
+
+def unit_of(frame: Frame, primitive: int, at: tuple[int, int] | None) -> int:
+    """What carries the modes and pixel counts of a primitive: itself or, where cells do, the one that its pixel shows;
+    -1 where that is not seen."""
+    if not has_modes_of_cells(frame):
+        return primitive
+    return -1 if at is None else int(frame.unit[at[1], at[0]])
 
 
 def shadow_mode_of(frame: Frame, unit: int, light: int) -> ShadowMode | None:
@@ -197,9 +192,12 @@ def primitive_points(scene: Scene, primitive: int, time: float) -> NDArray[np.fl
     return corners if np.isfinite(corners).all() else np.empty((0, 3))
 
 
-def part_points(now: Edited, part: int, time: float) -> NDArray[np.float64]:
-    """(k, 3) corners of all primitives of a part that are somewhere."""
-    scene, found = now.scene, _primitives_of(now, part)
+def points_of(now: Edited, picked: Pick, time: float) -> NDArray[np.float64]:
+    """(k, 3) corners of what is selected: of the primitive, or of all of a part's that are somewhere."""
+    scene = now.scene
+    if picked.part is None:
+        return primitive_points(scene, picked.primitive, time)
+    found = _primitives_of(now, picked.part)
     if not len(found):
         return np.empty((0, 3))
     index = scene.object_of(int(found[0]))

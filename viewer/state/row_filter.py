@@ -1,9 +1,4 @@
-"""Which rows of a table are to be seen, by what is typed above it, and in which order.
-
-All that is typed must hold.  A word finds rows that have it in a name, a number alone the primitive of that number.
-`pixels>100`, `share<=50` and `number:10-20` compare; `object:wall`, `mode:full_shadow` and `is:dynamic` look into one
-column; `object="left wall"` is the whole name.  A `-` in front finds the others.
-"""
+"""Which rows of a table are to be seen, by what is typed above it (`HELP`), and in which order."""
 
 from __future__ import annotations
 

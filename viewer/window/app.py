@@ -63,7 +63,6 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Saving files", c.captures.report_saved)
     step("Quitting once all is saved", c.questions.leave_when_saved)
     step("Taking the newest frame", c.take_frame)
-    step("Previewing the scene", lambda: c.preview.update(traced=c.frame is not None))
     # The state: time, camera, edits, and the steps of undo.
     step("Moving", c.move)
     step("Noting what can be undone", c.undo.note_changes)
@@ -158,7 +157,6 @@ class App:
         advance(self.controller, self._room_for_picture(), step)
         step("The script's function", self._call_script)
         step("Drawing the picture", lambda: graphics.draw(ui))
-        step("Drawing the preview", lambda: graphics.draw_preview(ui))
         step("Drawing recorded pictures", lambda: graphics.draw_recorded(ui))
         step("Saving the picture", self._capture_picture)
         self._set_frame_rate()

@@ -281,7 +281,7 @@ def _run(ui: Ui) -> list[Command]:
         elif runs.current is not None:
             runs.stop()
         else:
-            c.selection.picked = None
+            c.selection.clear()
 
     idle = Condition(
         lambda: c.session.scene is not None and runs.current is None, "no scene is open, or a run is in progress"

@@ -31,7 +31,7 @@ def closeup(d: Driver) -> None:
         d.context.mouse_click(0)
         d.frames(3)
         assert d.c.selection.pixel == ((x, y) if d.c.frame.primitive[y, x] >= 0 else None)
-        d.c.selection.picked = None
+        d.c.selection.clear()
         d.context.mouse_click(2)
         d.frames(3)
         assert d.c.selection.picked is None, "the middle button pans, and selects nothing"

@@ -166,15 +166,15 @@ def explaining(d: Driver) -> None:
     """What the pointer is on, or was clicked, is explained beside the window's own frames; a key hides the lines."""
     d.settle()
     inspector, traced = d.c.inspector, d.c.history.frames
-    assert inspector.answer is None
+    assert inspector.why is None
     shadow, lit = (_places(d, lit) for lit in (False, True))
 
     def answered(blocked: bool) -> None:
-        d.wait(lambda: inspector.answer is not None and _is_blocked(d) == blocked, "an answer about a pixel", 20.0)
+        d.wait(lambda: inspector.why is not None and _is_blocked(d) == blocked, "an answer about a pixel", 20.0)
 
     d.point(*shadow)
     answered(blocked=True)
-    assert not any(one.lit for one in inspector.answer.reasons if one.blocker >= 0)
+    assert not any(one.lit for one in inspector.why.reasons if one.blocker >= 0)
     hovering = _lines_drawn(d)
     d.press("I")
     assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
@@ -191,7 +191,7 @@ def explaining(d: Driver) -> None:
     point = inspector.tree.rays[0].end
     d.hold(KEY.d, 0.3)
     d.settle()
-    assert inspector.answer is not None and math.dist(inspector.tree.rays[0].end, point) < 0.2
+    assert inspector.why is not None and math.dist(inspector.tree.rays[0].end, point) < 0.2
     d.hover(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
     assert d.ui.state(Pointed).light == 0
     d.point(*shadow)
@@ -205,12 +205,12 @@ def explaining(d: Driver) -> None:
     d.pick(*shadow)
     assert d.c.selection.picked is not None
     d.pick(0.5, 0.02)
-    assert d.c.selection.picked is None and inspector.answer is None, "a click on nothing clears"
+    assert d.c.selection.picked is None and inspector.why is None, "a click on nothing clears"
 
 
 def _is_blocked(d: Driver) -> bool:
     """Whether something blocks a light at the pixel that is explained."""
-    return any(one.blocker >= 0 for one in d.c.inspector.answer.reasons)
+    return any(one.blocker >= 0 for one in d.c.inspector.why.reasons)
 
 
 def _lines_drawn(d: Driver) -> int:

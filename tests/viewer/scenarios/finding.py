@@ -106,11 +106,11 @@ def finding(d: Driver) -> None:
     d.context.mouse_move_to_pos((row.min.x + 35.0, 0.5 * (row.min.y + row.max.y)))  # on its name, at no column's edge
     d.context.mouse_click(0)
     d.frames(3)
-    assert c.selection.part == part
+    assert c.selection.picked.part == part
     shown = d.shown()
     d.press(KEY.escape)
     d.frames(3)
-    assert c.selection.part is None and (shown != d.shown()).any(), "the outline goes with the selection"
+    assert c.selection.picked is None and (shown != d.shown()).any(), "the outline goes with the selection"
     table.open_part(part)
     assert len(_known(d).rows) == int(listing.table.columns["primitives"].numbers[part])
     d.show_panel("Plots")

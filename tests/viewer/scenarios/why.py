@@ -82,7 +82,7 @@ def _taught(d: Driver) -> None:
     one = _click(d, _of(d, FULLY, ShadowMode.PARTIAL_SHADOW), lambda one: one.rule is Rule.PARTIAL_SHADOW)
     d.c.settings.set_light(one.light)
     d.frames(3)
-    taught = d.c.history.origins_of(d.c.selection.picked)
+    taught = d.c.history.origins_of(d.c.frame, d.c.selection.picked.primitive)
     number = max(taught.lights[one.light])
     assert d.has(f"//Inspector/reason/picture {number}##0")
     d.press(KEY.x)

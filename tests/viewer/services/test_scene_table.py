@@ -179,7 +179,7 @@ def test_a_table_that_is_not_up_to_date_is_not_saved(desk: Desk, table: SceneTab
 
 def test_names_and_what_is_not_known_are_written_so_that_they_are_read_again(tmp_path: Path) -> None:
     now = edited(make_scene(), Edits())
-    table = tables_of(now, make_frame(), None)[Level.PRIMITIVES]
+    table = tables_of(now, make_frame(), 0)[Level.PRIMITIVES]
     table.columns["object"] = Values(table.columns["object"].numbers, ('a, "quoted"\nname', "train"))
     path = tmp_path / "rows.csv"
     write_rows(table, np.arange(7, dtype=np.int32)[::-1], path)

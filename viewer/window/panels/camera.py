@@ -12,7 +12,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.scene.model import Camera
 from viewer.state import navigation
-from viewer.state.picking import extent_at, part_points, point_at, primitive_points
+from viewer.state.picking import extent_at, point_at, points_of
 from viewer.state.preferences import NAVIGATION
 from viewer.window import menus
 from viewer.window.command import Command, Condition, scene_open
@@ -119,10 +119,10 @@ def time_commands(ui: Ui) -> list[Command]:
 def focus(ui: Ui) -> None:
     """Turn to what is under the pointer, else to what is selected, and go near it; orbits turn around it then."""
     c = ui.controller
-    at, pixel = c.selection.hovered, c.selection.pixel
-    if at is None and pixel is not None and c.selection.part is None and c.frame is not None:
+    at, picked, pixel = c.selection.hovered, c.selection.picked, c.selection.pixel
+    if at is None and pixel is not None and picked is not None and picked.part is None and c.frame is not None:
         at = (pixel[0] + 0.5) / c.frame.width, (pixel[1] + 0.5) / c.frame.height
-    if at is None and c.selection.picked is not None:
+    if at is None and picked is not None:
         fly_to_selected(ui)
     elif at is None or c.frame is None:
         c.notices.say("point at something, or click it, to focus on it")
@@ -137,10 +137,10 @@ def focus(ui: Ui) -> None:
 def fly_to_selected(ui: Ui) -> None:
     """Go near what is selected, whether or not it is seen from here; orbits turn around it then."""
     c = ui.controller
-    now, picked, part, time = c.session.edited, c.selection.picked, c.selection.part, c.session.time
+    now, picked = c.session.edited, c.selection.picked
     if now is None or picked is None:
         return
-    points = primitive_points(now.scene, picked.primitive, time) if part is None else part_points(now, part, time)
+    points = points_of(now, picked, c.session.time)
     if not len(points):
         c.notices.say("the selection is not in the scene at this time")
         return

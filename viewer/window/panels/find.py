@@ -15,11 +15,10 @@ from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.state.row_filter import HELP, HINT
 from viewer.state.scene_rows import COLUMNS, Column, Level
 from viewer.util.numbers import several
-from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, count, em, paragraph, swatch, tooltip
 
-_FIELD, _LIGHT, _NUMBER = 12.0, 10.0, 4.2  # ems of width: of the filter at least, of a light's name, and of a number
+_FIELD, _NUMBER = 12.0, 4.2  # ems of width: of the filter at least, and of a number
 _COLORS = {
     "occlusion": {int(mode): color for mode, color in OCCLUSION_COLORS.items() if isinstance(mode, OcclusionMode)},
     "shadow": {int(mode): color for mode, color in SHADOW_COLORS.items() if isinstance(mode, ShadowMode)},
@@ -34,14 +33,14 @@ _LEVEL_TIPS = {
 @dataclass
 class FindState:
     """`focus` asks for the keyboard above the table; `enters` says that Enter was pressed there, and the row that it
-    selects is to come.  `drawn` rows were drawn last, in the order `order`, and `serial` is of the selection whose row
-    has been shown."""
+    selects is to come.  `drawn` rows were drawn last, in the order `order`, and the row `shown` has been scrolled
+    to."""
 
     focus: bool = False
     enters: bool = False
     drawn: int = 0
     order: object = None
-    serial: int = 0
+    shown: int = -1
 
 
 def show(ui: Ui) -> None:
@@ -67,28 +66,16 @@ def show(ui: Ui) -> None:
 
 
 def _tools(ui: Ui, table: SceneTable) -> None:
-    """What rows are, the filter, the light, and saving, in one line where there is room."""
+    """What rows are, the filter, and saving, in one line where there is room."""
     for level in Level:
         if imgui.radio_button(level.value, table.level is level):
             table.level = level
         tooltip(_LEVEL_TIPS[level])
         imgui.same_line()
-    beside = em(_LIGHT + 2.0) + 2.0 * imgui.get_style().item_spacing.x
+    beside = em(2.0) + imgui.get_style().item_spacing.x
     if imgui.get_content_region_avail().x < em(_FIELD) + beside:
         imgui.new_line()
     _filter(ui, table, imgui.get_content_region_avail().x - beside)
-    imgui.same_line()
-    imgui.set_next_item_width(em(_LIGHT))
-
-    def choose(light: int | None) -> None:
-        table.all_lights = light is None
-        if light is not None:
-            ui.controller.settings.set_light(light)
-
-    lights.combo(
-        ui, "find", None if table.all_lights else ui.controller.session.draw.light, choose, lambda: choose(None)
-    )
-    tooltip(f"the light that shadow modes are of{ui.key('Next light')}, or all lights together")
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK}##save", ImVec2(em(2.0), 0.0)):
         table.save()
@@ -211,9 +198,9 @@ def _to_show(ui: Ui, table: SceneTable, listing: Listing) -> int | None:
     """The place of the row to bring to the eye, once it is there: of what was selected elsewhere, or in another order,
     whose first rows are seen where nothing is selected."""
     state = ui.state(FindState)
-    if listing.order != table.order or (state.order, state.serial) == (listing.order, table.selection.serial):
+    if listing.order != table.order or (state.order, state.shown) == (listing.order, table.selected):
         return None
-    another, state.order, state.serial = state.order != listing.order, listing.order, table.selection.serial
+    another, state.order, state.shown = state.order != listing.order, listing.order, table.selected
     place = _place_of(ui, listing, table.selected)
     if place is None and another:
         imgui.set_scroll_y(0.0)
@@ -227,7 +214,7 @@ def _row(ui: Ui, table: SceneTable, listing: Listing, row: int, selected: bool, 
     flags |= imgui.SelectableFlags_.allow_overlap
     if imgui.selectable("##row", selected, int(flags))[0]:
         table.select(row)
-        ui.state(FindState).serial = table.selection.serial  # it is seen
+        ui.state(FindState).shown = table.selected  # where it is
         if imgui.is_mouse_double_clicked(0) and table.level is Level.OBJECTS:
             table.open_part(row)
     if wanted and not imgui.is_item_visible():

@@ -11,7 +11,7 @@ from tracer.frame import Frame
 from tracer.reasons import Why
 from viewer.state.methods import missing, with_base
 from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
-from viewer.state.picking import outline_of, part_points, primitive_points
+from viewer.state.picking import outline_of, points_of, primitive_points
 from viewer.state.projection import Stroke, strokes
 from viewer.window.panels import rays
 from viewer.window.panels.area import Area, Pen
@@ -66,7 +66,7 @@ def _why(ui: Ui, made: Pen, frame: Frame) -> None:
             _figure_3(made, frame, found)
     if link is not None and link.primitive is not None:
         _outline(ui, made, frame, link.primitive, _WHITE, "pointed link")
-    if link is not None and link.pixel is not None and link.frame is None and in_place:
+    if link is not None and link.pixel is not None and in_place:
         made.square(*_square_of(made, frame, link.pixel), _WHITE)
 
 
@@ -109,17 +109,16 @@ def _square_of(made: Pen, frame: Frame, pixel: tuple[int, int]) -> tuple[ImVec2,
 def _occluded_selection(ui: Ui, made: Pen, frame: Frame) -> None:
     """Where what is selected lies behind something, as dashed lines."""
     c = ui.controller
-    now, picked, part, at = c.session.edited, c.selection.picked, c.selection.part, c.selection.pixel
+    now, picked, at = c.session.edited, c.selection.picked, c.selection.pixel
     if now is None or picked is None:
         return
-    if at is not None and (part is not None or frame.primitive[at[1], at[0]] == picked.primitive):
+    if at is not None and (picked.part is not None or frame.primitive[at[1], at[0]] == picked.primitive):
         return
 
     def lines() -> list[Stroke]:
-        points = primitive_points(now.scene, picked.primitive, frame.time)
-        return _projected(frame, outline_of(points if part is None else part_points(now, part, frame.time)))
+        return _projected(frame, outline_of(points_of(now, picked, frame.time)))
 
-    made.strokes(ui.cached("occluded selection", frame, (picked.primitive, part), lines), _WHITE, 0.12, behind=0.75)
+    made.strokes(ui.cached("occluded selection", frame, picked, lines), _WHITE, 0.12, behind=0.75)
 
 
 def show_missing(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
