@@ -96,7 +96,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
         left, top, size = _fitted(ui.picture.shape, room, 2, gap)
         area = _area(ui, "picture of A", left, top, size)
         sides.draw_a(ui, area)
-        _pointer(ui, area, takes_edits=False)
+        _pointer(ui, area)
         pixels.draw(ui, area, seen.a)
         left += size.x + gap
     else:
@@ -109,7 +109,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     _pointer(ui, area)
     pixels.draw(ui, area)
     with _inside(area):
-        what_if.show_lights(ui, area.whole, area.whole_end)
+        what_if.show_lights(ui, area)
     lower = _title(ui, area)
     sides.show(ui, area, lower)
     legend.show(ui, area.corner, area.end)
@@ -190,8 +190,8 @@ def _title(ui: Ui, area: Area) -> float:
 # --- the pointer and the keys that fly -------------------------------------------------------------
 
 
-def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
-    """Hovering, clicking and dragging on the picture, which is ImGui's last item; of lights too if it `takes_edits`."""
+def _pointer(ui: Ui, area: Area) -> None:
+    """Hovering, clicking and dragging on the picture, which is ImGui's last item."""
     c = ui.controller
     if ui.picture.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.picture.pivot, ui.picture.pivot_scene = None, c.session.scene
@@ -200,8 +200,6 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
         c.selection.hovered = (u, v)
         if imgui.get_io().mouse_wheel:
             _wheel(ui, imgui.get_io().mouse_wheel, (u, v))
-    if takes_edits and what_if.handle(ui, area.whole, area.whole_size):
-        return
     if sides.drag_line(ui, area):
         return
     if imgui.is_item_activated() and not imgui.get_io().key_ctrl:
