@@ -138,10 +138,6 @@ class Motion:
         self.halt()
         self._session.change(camera=None if follow else self._session.camera)
 
-    def reset_camera(self) -> None:
-        """Go back to the scene's own camera, now."""
-        self.follow_path(True)
-
     # --- time -------------------------------------------------------------------------------------
 
     def toggle_play(self) -> None:

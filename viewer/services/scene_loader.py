@@ -108,18 +108,13 @@ class SceneLoader:
         """Whether all kernels are; those that make certificates come last, and pictures without them look the same."""
         return self.warm_up_job is None
 
-    def start(
-        self,
-        settings: Mapping[str, Any] | None = None,
-        folders: Sequence[Path] = (),
-        meshes: MeshOptions = IN_STUDIO,
-    ) -> None:
+    def start(self, settings: Mapping[str, Any], folders: Sequence[Path] = (), meshes: MeshOptions = IN_STUDIO) -> None:
         """Compile or load the kernels in the background; a first scene is opened meanwhile.
 
         `settings` hold for what is opened first, also where a saved place in it has others.  All scenes may read files
         from `folders` besides their own. `meshes` says how meshes are read; which way is up holds for the first."""
         self.folders, self.meshes = tuple(folders), meshes
-        self._given = dict(settings or {})
+        self._given = dict(settings)
         self._session.set_settings(**self._given)
         self.compiles = not compiled_before()
         title = "Compiling the tracer (first start only)" if self.compiles else "Loading the tracer"
