@@ -35,10 +35,8 @@ class Difference(FrameView):
     key = "8"
     help = "Pixels with a wrong shadow answer; where all answers are right, the picture is shown, dimmed."
     records = Record.VERIFY
+    shows = "wrong"
     shows_picture = everywhere = True
-
-    def can_draw(self, frame: Frame, light: int = 0) -> bool:
-        return frame.wrong is not None
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         marks = wrong_marks(frame, draw.magnified)
