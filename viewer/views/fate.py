@@ -14,8 +14,8 @@ from viewer.state.palette import FATE_COLORS, FATE_MEANING, FATE_NAMES, fate_pal
 from viewer.state.views import Record
 from viewer.util.numbers import percent
 from viewer.views.base import Lights, Pixels
-from viewer.views.kinds import Class, ClassView
-from viewer.views.legend import Entry, Legend, Note
+from viewer.views.kinds import Class, ClassView, filled_in
+from viewer.views.legend import Entry, Legend
 from viewer.views.paint import by_class
 
 _PAPER = {Fate.PARTLY_OCCLUDED, Fate.PARTIAL_SHADOW, Fate.NOT_SEEN_WHOLE, Fate.DYNAMIC}
@@ -58,11 +58,6 @@ class Fates(ClassView):
         )
         title = self.title(draw, lights).replace(",", ", first hits,", 1)
         return Legend(title, ("pixels", "of due"), entries, facts=facts, notes=filled_in(frame))
-
-
-def filled_in(frame: Frame) -> tuple[Note, ...]:
-    """Return what is said of a picture of which only a part has been shaded."""
-    return () if frame.shaded is None else (Note("Pixels that are not shaded yet go by the nearest that is."),)
 
 
 VIEW = Fates()

@@ -13,11 +13,11 @@ from viewer.state.palette import GREY
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words, is_shaded, once, shaded_pixels, single
-from viewer.views.legend import Entry, Legend, Note, Scale, fact
+from viewer.views.kinds import filled_in
+from viewer.views.legend import Entry, Legend, Scale, fact
 from viewer.views.paint import by_number, in_range
 
 _SAMPLES = 20_000  # pixels, about, that the range is found from
-_NEAREST = "Other pixels show what the nearest of these has."
 
 
 class Work(FrameView):
@@ -69,13 +69,12 @@ class Work(FrameView):
             fact(name, f"{count(total)} ({percent(total, int(whole.sum(dtype=np.int64)))}{self.of})", self.in_all),
             fact("per pixel", f"{per_pixel:.2f}, at most {count(int(work.max(initial=0)))}"),
         )
-        notes = (Note(_NEAREST),) if part < 1.0 else ()
         if draw.shares:
             entries, scale = self.unknown_shares, Scale("0 %", "100 %", "50 %")
-            return Legend(self.title_of_shares, (), entries, scale, facts, notes=notes)
+            return Legend(self.title_of_shares, (), entries, scale, facts, notes=filled_in(frame))
         low, high = draw.span or self.span(frame)
         scale = Scale(f"{low:.4g}", f"{high:.4g} and more", f"{(low + high) / 2.0:.3g}")
-        return Legend(self.label, (), (), scale, facts, notes=notes)
+        return Legend(self.label, (), (), scale, facts, notes=filled_in(frame))
 
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(self.rays(frame), self.name, shaded_pixels(frame))
