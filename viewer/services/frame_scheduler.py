@@ -357,7 +357,7 @@ class FrameScheduler:
         settings = self.settings
         comes = settings.record_fates if draw.view.needs_fates else draw.view.records is not None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
-            return f"{draw.view.label}: none here, {view.label.lower()} shown"
+            return f"{draw.view.label}: not available here, {view.label.lower()} shown"
         return f"{draw.view.label}: {'verifying' if draw.view.needs_verify else 'counting'} ..."
 
 

@@ -259,7 +259,7 @@ class SceneLoader:
         """Give up the load that is under way; the scene that is open stays."""
         if self.load_job is not None:
             self._give_up()
-            stays = ": the scene that was open stays" if self._session.scene is not None else ""
+            stays = "; the open scene stays" if self._session.scene is not None else ""
             self._notices.say(f"loading cancelled{stays}")
 
     def _give_up(self) -> None:
@@ -291,7 +291,7 @@ class SceneLoader:
         if load.result is None:
             if came.again:
                 self.watch.files = self.watch.files | came.files  # what was not come to may be mended too
-            self._report(load, after=" (the scene as it was stays)" if came.again else "")
+            self._report(load, after=" (the open scene stays as it is)" if came.again else "")
             return arrival
         came.renderer, came.info = load.result
         self.watch.files = came.files

@@ -157,8 +157,8 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
     window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
     for view, title in (
         (View.PENUMBRA, "Penumbra: counting ..."),
-        (View.LIGHTS, "Lights due: none here, colour shown"),
-        (View.FATE, "Fate of shadow rays: none here, colour shown"),
+        (View.LIGHTS, "Lights due: not available here, colour shown"),
+        (View.FATE, "Fate of shadow rays: not available here, colour shown"),
     ):
         window.session.set_draw(view=view)
         window.rest()
