@@ -34,19 +34,9 @@ Built = tuple[Renderer, dict[str, Any]]
 """The renderer that holds a scene's trees, and what `scene_info` says of the scene."""
 
 
-def build(
-    scene: Scene,
-    settings: Settings,
-    progress: Progress,
-    ready: Callable[[], bool] = lambda: True,
-) -> Built:
-    """Build the trees of a scene once the tracer is `ready`.
-
-    Raises SceneError or Cancelled; runs on a thread of its own."""
+def build(scene: Scene, settings: Settings, progress: Progress) -> Built:
+    """Build the trees of a scene.  Raises SceneError or Cancelled."""
     lights, accelerator = len(scene.lights), settings.accelerator
-    while not ready():
-        progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
-        time.sleep(0.02)
     if not can_draw(lights, accelerator):  # many lights need wider words, and kernels for them
         warm_up(progress, lights, accelerator)
     renderer, info, model = Renderer(scene, settings, progress), scene_info(scene), model_bounds(scene)
@@ -247,11 +237,12 @@ class SceneLoader:
         self._give_up()
         settings, kernels = self._session.settings, self.warm_up_job
 
-        def ready() -> bool:
-            return kernels is None or kernels.done or can_draw()
-
         def work(progress: Progress) -> Built:
-            return build(read(progress), settings, progress, ready)
+            scene = read(progress)
+            while not (kernels is None or kernels.done or can_draw()):
+                progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
+                time.sleep(0.02)
+            return build(scene, settings, progress)
 
         self.load_job, self._coming = Job(title, work, self._wake), coming
 
