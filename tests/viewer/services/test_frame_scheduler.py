@@ -105,6 +105,10 @@ def test_the_next_frame_of_a_film_waits_until_this_one_can_be_asked_about():
     window.session.set_settings(method="paper")
     window.request(**film)
     assert [one.time for one in window.renders.asked] == [0.0, 1.0, 3.0], "but what is worthless does not delay it"
+    window.session.change(time=4.0)
+    window.scheduler.forget_modes()
+    window.request(**film)
+    assert window.renders.asked[-1].time == 4.0, "nor what has been cut short"
 
 
 @pytest.mark.parametrize(("ready", "method", "traced"), [
