@@ -55,7 +55,7 @@ def show(ui: Ui) -> None:
     _tools(ui, table)
     listing = table.listing
     if listing is None:
-        paragraph("The table is made when the picture is whole.", QUIET)
+        paragraph("The table is listed when the picture is complete.", QUIET)
         return
     _take_enter(ui, table, listing)
     _said(ui, table, listing)
