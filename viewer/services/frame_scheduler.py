@@ -15,7 +15,6 @@ from tracer.frame import Frame, Settings
 from tracer.method import Method
 from tracer.one_light import with_light
 from tracer.renderer import Renderer
-from tracer.scene.lights import number_of
 from tracer.scene.model import Camera, Scene
 from viewer.services import refinement
 from viewer.services.frame_budget import AT_ONCE, FrameBudget, Plan, divided
@@ -26,6 +25,7 @@ from viewer.services.runs import missing_in, shown_of
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.view_state import ViewState
 from viewer.state.views import View, can_draw, records_fates, records_lights
+from viewer.views import view_of
 
 
 @dataclass(frozen=True)
@@ -347,9 +347,8 @@ class FrameScheduler:
     def title(self) -> str:
         """The view, and the light where it shows one; before it what a run that is under way is at."""
         now, view = self.inputs, self.drawn_view
-        draw, run, title = now.state.draw, now.run, view.label
-        if view.of_light:
-            title += f", light {number_of(now.scene.lights, draw.light) if now.scene is not None else draw.light}"
+        draw, run = now.state.draw, now.run
+        title = view_of(view).title(draw, now.scene.lights if now.scene is not None else ())
         if run is not None:
             lacks = draw.view is not view and missing_in(run, draw.view)
             return f"{shown_of(run)}   {title}{f' (this run {lacks})' if lacks else ''}"

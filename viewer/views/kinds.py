@@ -43,12 +43,12 @@ class ClassView(FrameView):
     """What is classified."""
     classes: ClassVar[tuple[Class, ...]] = ()
     """In the order of the legend."""
-    stripe: ClassVar[int] = 1
-    """Pixels across which a stripe goes, where a class has stripes."""
+    stripe: ClassVar[int] = 0
+    """Pixels across which a stripe goes, where classes have stripes."""
 
     def __init__(self) -> None:
-        self.palette = np.asarray([one.color for one in self.classes], np.float32)
-        self.striped = np.asarray([one.stripes or one.color for one in self.classes], np.float32)
+        stripes = [one.stripes or one.color for one in self.classes] if self.stripe else []
+        self.palette = np.asarray([*(one.color for one in self.classes), *stripes], np.float32)
 
     def find(self, frame: Frame, light: int) -> NDArray[np.uint8]:
         """Return the class of each pixel (h, w), as its place among `classes`; any for a miss."""
@@ -63,8 +63,7 @@ class ClassView(FrameView):
         return None
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
-        found = self.found(frame, draw)
-        return by_class(frame, draw, found, self.palette, self.striped, self.stripe, self.cells(frame))
+        return by_class(frame, draw, self.found(frame, draw), self.palette, self.stripe, self.cells(frame))
 
     def counted(self, frame: Frame, draw: DrawOptions) -> list[int]:
         """Count the pixels of each class that hit something."""

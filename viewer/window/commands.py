@@ -203,7 +203,8 @@ def _picture(ui: Ui) -> list[Command]:
         setting_command(ui, "pixel_values", "Picture", separated=True),
         Command("Brighter", "Picture", partial(expose, _STOPS), "RightBracket", repeats=True, separated=True),
         Command("Darker", "Picture", partial(expose, -_STOPS), "LeftBracket", repeats=True),
-        Command("Colours as traced", "Picture", lambda: session.set_draw(tone=NEUTRAL), enabled=toned),
+        Command("Colours as traced", "Picture", lambda: session.set_draw(tone=NEUTRAL), enabled=toned,
+                tip="reset exposure, white and tone curve"),
         setting_command(ui, "draw.clipping", "Picture", "Shift+M"),
     ]  # fmt: skip
 

@@ -6,8 +6,6 @@ longer referred to here is freed on the GPU by `graphics.draw`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol
@@ -44,19 +42,6 @@ THUMBNAIL = 128
 """Pixels of height of small recorded pictures."""
 BROUGHT_IN_A_FRAME = 6
 """Recorded pictures brought to the GPU in one of the window's frames, at most."""
-
-
-@contextmanager
-def drawing_into(target: Any, tests: int = moderngl.NOTHING) -> Iterator[None]:
-    """Let a framebuffer be drawn into, with these of OpenGL's tests, and then the window again, without any."""
-    window = target.ctx.detect_framebuffer()
-    try:
-        target.use()
-        target.ctx.enable_only(tests)
-        yield
-    finally:
-        window.use()
-        target.ctx.enable_only(moderngl.NOTHING)
 
 
 class PictureTexture:
@@ -234,8 +219,13 @@ class Magnifier:
         program = self._triangle.program
         program["part"], program["size"] = (left, top, right - left, bottom - top), size
         source.use(0)
-        with drawing_into(self._targets[name]):
+        window = self._context.detect_framebuffer()
+        try:
+            self._targets[name].use()
+            self._context.enable_only(moderngl.NOTHING)
             self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        finally:
+            window.use()
         self._shown[name] = wanted
 
     def texture_of(self, name: str, source: int, zoom: Zoom, size: tuple[int, int]) -> int | None:

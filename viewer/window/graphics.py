@@ -15,7 +15,6 @@ from viewer.state.views import View
 from viewer.views.base import Highlight
 from viewer.window.display import Compared, Display, InWindow, Magnifier, TextureCache
 from viewer.window.panels import legend, savings, sides
-from viewer.window.preview import PreviewDisplay
 from viewer.window.ui import CaptureKind, Ui
 
 
@@ -49,23 +48,6 @@ def draw_recorded(ui: Ui) -> None:
     """Bring recorded pictures that are to be seen to the GPU."""
     if ui.graphics.textures is not None:
         ui.graphics.textures.update()
-
-
-def draw_preview(ui: Ui) -> None:
-    """Draw what is seen while kernels compile, from where the camera is; what failed to be drawn is not tried again."""
-    c, gl = ui.controller, ui.graphics
-    geometry = c.preview.geometry
-    if gl.display is None or geometry is None:
-        gl.preview = None
-        return
-    try:
-        if gl.preview is None or gl.preview.geometry is not geometry:
-            gl.preview = PreviewDisplay(gl.display.context, geometry)
-        if min(ui.picture.area) > 0:
-            gl.preview.draw(c.session.camera, ui.picture.area)
-    except Exception:
-        c.preview.geometry = gl.preview = None
-        raise
 
 
 def in_window(ui: Ui) -> InWindow:

@@ -20,7 +20,6 @@ from viewer.window.display import Compared, Display, Magnifier, TextureCache
 from viewer.window.gl_window import FullScreen
 from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard, Keymap, is_key
-from viewer.window.preview import PreviewDisplay
 
 
 class CaptureKind(Enum):
@@ -79,7 +78,6 @@ class Graphics:
     textures: TextureCache | None = None
     compared: Compared | None = None
     magnifier: Magnifier | None = None
-    preview: PreviewDisplay | None = None
     capture_view: View | None = None
 
 

@@ -20,10 +20,10 @@ from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, playing, resizing
 from tests.viewer.scenarios.navigating import navigating
 from tests.viewer.scenarios.panels import closing_panels, hiding, looks, panels
-from tests.viewer.scenarios.previewing import previewing
 from tests.viewer.scenarios.rays import rays
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
 from tests.viewer.scenarios.savings import savings
+from tests.viewer.scenarios.starting import starting
 from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
 from tests.viewer.scenarios.trees import trees
@@ -37,7 +37,7 @@ SCENARIOS = {
         explaining, rays, flying, playing, resizing, capturing, dropping, reopening, cancelling, browsing,
         experimenting, figure1, zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
         panels, closing_panels, looks, hiding, touring, fitting, at_home, navigating, what_if, why,
-        previewing,
+        starting,
         closing_while_tracing, closing_while_loading, closing_while_experimenting,
     )
 }  # fmt: skip

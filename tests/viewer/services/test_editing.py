@@ -13,33 +13,15 @@ from PIL import Image
 
 from tests.commands import run
 from tests.viewer.desk import Desk
+from tests.viewer.fakes import TINY_SCENE
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edits
 from tracer.scene.things import things
 
-SCENE = """
-b 0.3 0.4 0.5
-v
-from 0 1.5 6
-at 0 0.5 0
-up 0 1 0
-angle 45
-hither 0.01
-resolution 64 48
-l 3 5 4  0.6 0.6 0.6
-l -4 4 3  0.4 0.4 0.4
-f 0.8 0.3 0.2  0.7 0.2 10 0 1
-x ball { s 0 0.8 0 0.8 }
+CARS = """x ball { s 0 0.8 0 0.8 }
 x car { s 1.6 0.4 0.5 0.4 }
-k car { transl 4 0 0 0 0 0 0 0  1 0 0 0 0 0 0  2 1 0 0 0 0 0  3 1 0 0 0 0 0 }
-f 0.6 0.6 0.6  0.8 0 1 0 1
-p 4
--4 0 -4
--4 0 4
-4 0 4
-4 0 -4
-a 1 2 20
-"""
+k car { transl 4 0 0 0 0 0 0 0  1 0 0 0 0 0 0  2 1 0 0 0 0 0  3 1 0 0 0 0 0 }"""
+SCENE = TINY_SCENE.replace("s 0 0.8 0 0.8", CARS)
 
 
 @pytest.fixture

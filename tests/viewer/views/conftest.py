@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.commands import ROOM
 from tests.viewer.fakes import (
-    FLYER_SCENE,
     with_cell_lights,
     with_certificates,
     with_cuts,
@@ -25,7 +25,7 @@ from tracer.scene.load import load_scene
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Frame:
     """The third frame of a small scene, with a sphere that hides a part of the floor and a triangle that moves."""
     path = tmp_path_factory.mktemp("pictures") / "scene.aff"
-    path.write_text(FLYER_SCENE)
+    path.write_text(ROOM)
     renderer = Renderer(load_scene(path), Settings(width=96, height=64, threads=1))
     return [renderer.render(time) for time in (1.0, 2.0, 3.0)][-1]
 

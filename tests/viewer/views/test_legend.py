@@ -269,7 +269,7 @@ def test_the_difference_counts_what_is_wrong_or_says_why_nothing_is(frame: Frame
 def test_all_parts_lie_inside_and_no_two_texts_touch(frame: Frame, view: View):
     layout = lay_out(of(frame, view), measure, LINE)
     boxes = [(w.x, w.y, w.x + measure(w.text), w.y + LINE) for w in layout.words if w.text]
-    for left, top, right, bottom in [*boxes, *((s.x, s.y, s.x + s.width, s.y + s.height) for s in layout.swatches)]:
+    for left, top, right, bottom in [*boxes, *((s.x, s.y, s.x + s.width, s.y + s.height) for s in layout.boxes)]:
         assert left >= 0.4 * LINE and right <= layout.width - 0.4 * LINE + 1e-6
         assert top >= 0.4 * LINE and bottom <= layout.height - 0.4 * LINE + 1e-6
     for i, one in enumerate(boxes):

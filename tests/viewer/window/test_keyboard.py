@@ -8,11 +8,9 @@ import glfw
 import pytest
 from imgui_bundle import imgui
 
-from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
-from viewer.window import commands, widgets
+from viewer.window import widgets
 from viewer.window.keyboard import HELD, PLACES, Keyboard, Keymap, chord, is_place, tidy, works_while_typing
-from viewer.window.ui import Ui
 
 KEY = imgui.Key
 DEFAULTS = {"Focus": ("F",), "Reset camera": ("R",), "Step back": ("LeftArrow",), "Shadow culling": ("C",), "Loop": ()}
@@ -53,14 +51,6 @@ def test_another_layout_is_noticed():
     made._looked = float("-inf")
     made.update()
     assert made.chord("W") == int(KEY.z)
-
-
-@pytest.fixture
-def ui():
-    ui = Ui(Controller(Preferences(keys={"Focus": ["Hyper+X", "Ctrl+J", "Nonsense", ""], "No command": ["X"]})))
-    ui.take_commands(commands.build(ui))
-    yield ui
-    ui.controller.close()
 
 
 def test_keys_that_a_file_cannot_mean_are_dropped(ui):

@@ -1,4 +1,4 @@
-"""What the status bar and the statistics say in words."""
+"""What the status bar, the statistics and the panel Culling say in words."""
 
 from __future__ import annotations
 
@@ -9,8 +9,12 @@ import pytest
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.settings import Settings
 from viewer.state import terms
+from viewer.state.draw_options import DrawOptions
+from viewer.state.views import View
+from viewer.window.panels.culling import trust, wrong_answers
 from viewer.window.panels.inspector import unanswered
 from viewer.window.panels.status import doing, first_picture
+from viewer.window.widgets import ERROR
 
 
 def job(title: str, label: str = "", fraction: float = 0.5) -> SimpleNamespace:
@@ -102,3 +106,38 @@ def test_modes_that_are_only_looked_at_are_named_as_no_part_of_the_time() -> Non
         assert beside == f"{label} (for display)" and why.startswith(tip) and "no part of the frame's time" in why
     assert terms.phase("shading", Settings(modes=True)) == terms.PHASES["shading"]
     assert terms.phase("new", Settings()) == ("new", "")
+
+
+# --- beside the method ---------------------------------------------------------------------------------
+
+
+def test_wrong_answers_are_those_of_the_method_that_is_shown():
+    settings = Settings(16, 8, method="paper", verify=True)
+    c = SimpleNamespace(
+        frame=make_frame(settings), scheduler=SimpleNamespace(settings=settings), runs=SimpleNamespace(current=None),
+        session=SimpleNamespace(settings=settings, draw=DrawOptions(View.DIFFERENCE)),
+    )  # fmt: skip
+    text, color = wrong_answers(c)
+    assert text.startswith("3 wrong answers (") and color == ERROR
+    c.session.settings = Settings(16, 8, method="paper")
+    assert wrong_answers(c)[0] == f"{text} (verified for the view Difference)", "the box Verify is not ticked"
+    c.runs.current = SimpleNamespace(name="zoom test")
+    text, color = wrong_answers(c)
+    assert text == "wrong answers of the zoom test are in its own panel" and color != ERROR
+    c.runs.current, c.scheduler.settings = None, Settings(16, 8, method="auto", verify=True)
+    assert wrong_answers(c) is None
+
+
+def test_below_a_method_stands_what_it_trusts_whether_it_is_exact_and_what_it_does_now():
+    settings = Settings(16, 8, method="paper+cache")
+    c = SimpleNamespace(
+        frame=make_frame(settings), runs=SimpleNamespace(current=None), session=SimpleNamespace(settings=settings)
+    )
+    first, second = trust(c).split(" cache: ")
+    assert first.startswith("paper: Trusts ") and "Wrong now and then." in first and second.endswith("as the method.")
+    c.session.settings = Settings(16, 8, method="auto")
+    c.frame.statistics.decision = "Every shadow ray is traced."
+    assert trust(c).endswith(" Exact."), "the picture is another method's"
+    c.frame = make_frame(c.session.settings)
+    c.frame.statistics.decision = "Every shadow ray is traced."
+    assert trust(c).endswith(" Exact. Every shadow ray is traced.")

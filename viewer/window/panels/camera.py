@@ -85,7 +85,7 @@ def camera_commands(ui: Ui) -> list[Command]:
         mode("orbit", "O"),
         Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True,
                 tip="on what is under the pointer, or is selected"),
-        Command("Reset camera", "Camera", c.motion.reset_camera, "R", enabled=here),
+        Command("Reset camera", "Camera", lambda: c.motion.follow_path(True), "R", enabled=here),
         Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.on_path), "P",
                 checked=lambda: c.session.on_path, enabled=here),
         Command("Copy camera", text, lambda: _copy(ui), "Ctrl+Shift+C", enabled=here, separated=True,

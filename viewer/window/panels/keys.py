@@ -8,7 +8,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.window.command import MENUS
 from viewer.window.keyboard import HELD
 from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
+from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, properties, tooltip, value
 
 _KEY = 7.6  # width of a key in ems
 _POINTER = (
@@ -131,12 +131,6 @@ def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
 def _pointer() -> None:
     """Show what the pointer does on the picture."""
     imgui.separator_text("On the picture")
-    if imgui.begin_table("pointer", 2):
-        imgui.table_setup_column("gesture", int(imgui.TableColumnFlags_.width_fixed), em(10.0))
-        imgui.table_setup_column("meaning", int(imgui.TableColumnFlags_.width_stretch))
-        for gesture, meaning in _POINTER:
-            imgui.table_next_column()
-            imgui.text_unformatted(gesture)
-            imgui.table_next_column()
-            paragraph(meaning, QUIET)
-        imgui.end_table()
+    with properties("pointer", 10.0) as shown:
+        for gesture, meaning in _POINTER if shown else ():
+            value(gesture, meaning, wraps=True)

@@ -32,7 +32,7 @@ def show(ui: Ui, width: float) -> None:
             _head("The tour is done", ("Close", tour.end, ""))
             paragraph(LAST_WORD, QUIET)
         else:
-            begun = ui.controller.frame is not None or ui.graphics.preview is not None
+            begun = ui.controller.frame is not None
             text = tour.text(step) if begun else "You can begin as soon as there is a picture."
             number, last = STEPS.index(step) + 1, step is STEPS[-1]
             _head(
