@@ -104,8 +104,7 @@ class App:
         self.ui = Ui(self.controller)
         self.ui.guard = Guard(self.controller.notices, lambda name, fault: status.instead_of_part(self.ui, name, fault))
         self.ui.take_commands(commands.build(self.ui))
-        self.ui.desktop.paste, self.ui.desktop.copy = imgui.get_clipboard_text, imgui.set_clipboard_text
-        self.ui.desktop.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
+        self.ui.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
         self._on_frame = on_frame
         self._told: Frame | None = None  # what the script has seen
         self.layout_file = layout.ready_file(config_folder())
@@ -146,8 +145,6 @@ class App:
         finally:
             threading.excepthook = hook
             self.controller.close()
-            if self.ui.full_screen.place is not None:
-                layout.put_window(self.layout_file, self.ui.full_screen.place)
         return 0
 
     def _thread_failed(self, of: threading.ExceptHookArgs) -> None:
@@ -174,7 +171,7 @@ class App:
 
     def widgets(self) -> None:
         """Draw what is no docked panel, and read the keys."""
-        ui, step, overlay = self.ui, self.ui.guard.step, self.ui.guard.overlay
+        ui, step = self.ui, self.ui.guard.step
         style.fill_windows(True)
         step("The layout", self.layout.update)
         step("Reading the keys", lambda: menus.handle_keys(ui))
@@ -182,7 +179,6 @@ class App:
         step("Comparing", lambda: sides.read_key(ui))
         dialogs.show(ui)
         step("The tour", ui.tour.update)
-        overlay("The notice", lambda: status.show_fault(ui), self.controller.notices.dismiss_faults)
 
     def after_widgets(self) -> None:
         """Finish a frame that is drawn but not yet shown."""
@@ -299,7 +295,7 @@ class App:
     def _close_wanted(self, window: Any) -> None:
         """The window's close button, or the desktop: the same as the command."""
         glfw.set_window_should_close(window, False)
-        self.ui.guard.step("Quitting", self.ui.desktop.exit)
+        self.ui.guard.step("Quitting", self.ui.exit)
 
     def _iconify(self, _window: Any, iconified: int) -> None:
         self.iconified = bool(iconified)

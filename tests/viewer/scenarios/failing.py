@@ -12,7 +12,6 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
 from viewer.services import scene_loader
-from viewer.state.notices import QUIET_AFTER
 from viewer.util.resources import embedded_scenes
 from viewer.window import menus
 from viewer.window.panels import dialogs, plots, statistics, status
@@ -30,16 +29,14 @@ def failing(d: Driver) -> None:
         raise ZeroDivisionError("made to fail")
 
     def noticed(about: str, times: int = 1) -> None:
-        """There is a notice, of one failure only, with all that is known; it is copied, and goes."""
+        """There is a notice, of one failure only, with all that is known."""
         d.wait(lambda: notices.newest_fault is not None, f"a notice about {about}", 20.0)
         d.frames(8)  # a flood would be counted by now
         notice = notices.newest_fault
         assert about in notice.text and "made to fail" in notice.text and "Traceback" in notice.details, notice
         assert notice.count == times and len([e for e in notices.entries() if e.text == notice.text]) == 1
-        d.click(f"//##fault/{icons.ICON_FA_COPY}  Copy details")
-        assert imgui.get_clipboard_text() == notice.as_text
-        d.click("//##fault/Dismiss")
-        assert notices.newest_fault is None and d.c.frame is not None
+        assert d.c.frame is not None
+        notices.mark_read()
 
     # Drawing: the picture stays what it was, is not tried again until it should be another, and is not saved as one.
     before, frame = d.shown(), d.c.frame
@@ -50,7 +47,7 @@ def failing(d: Driver) -> None:
         d.press(KEY.f12)
         d.frames(3)
         assert not (d.folder / "pictures").exists() and "no picture to save" in d.said
-        notices.dismiss_faults()
+        notices.mark_read()
     d.press(KEY._6)
     d.expect_picture()
     assert d.c.frame is frame
@@ -61,7 +58,7 @@ def failing(d: Driver) -> None:
     d.c.session.set_pace(fixed_size=False)
     d.settle()
     assert display.size == (d.c.frame.width, d.c.frame.height)
-    notices.dismiss_faults()
+    notices.mark_read()
 
     # Panels, with tables, children and plots open: one says what is wrong with it, and is shown again when told to.
     for label, module, name in (("Statistics", statistics, "right"), ("Plots", plots, "_stack")):
@@ -69,7 +66,8 @@ def failing(d: Driver) -> None:
         with patch.object(module, name, fail):
             noticed(f"The panel {label}")
             assert f"The panel {label}" in guard.broken
-            d.pause(QUIET_AFTER.total_seconds())
+            d.click(f"//{label}/{icons.ICON_FA_COPY}  Copy details")
+            assert imgui.get_clipboard_text() == guard.broken[f"The panel {label}"].as_text
             d.click(f"//{label}/{again}")
             noticed(f"The panel {label}", 2)
         d.click(f"//{label}/{again}")
@@ -90,7 +88,6 @@ def failing(d: Driver) -> None:
     d.ui.commands = [replace(c, run=fail) if c.name == "Depth" else c for c in d.ui.commands]
     d.press(KEY._5)
     noticed("The command Depth")
-    d.pause(QUIET_AFTER.total_seconds())
     d.choose("View/Depth")
     noticed("The command Depth", 2)
 

@@ -14,7 +14,7 @@ from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
 from viewer.state.picking import outline_of, points_of, primitive_points
 from viewer.state.projection import Stroke, strokes
 from viewer.window.panels import rays
-from viewer.window.panels.area import Area, Pen, pen
+from viewer.window.panels.area import Area, Pen
 from viewer.window.panels.links import Pointed
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, paragraph, tooltip
@@ -35,10 +35,10 @@ def show(ui: Ui, area: Area) -> None:
     frame = ui.controller.frame
     if frame is None:
         return
-    with pen(area, frame) as made:
-        rays.draw(ui, made, frame)
-        _why(ui, made, frame)
-        _occluded_selection(ui, made, frame)
+    made = Pen(area, frame)
+    rays.draw(ui, made, frame)
+    _why(ui, made, frame)
+    _occluded_selection(ui, made, frame)
 
 
 # --- why -------------------------------------------------------------------------------------------
@@ -72,13 +72,12 @@ def _why(ui: Ui, made: Pen, frame: Frame) -> None:
 
 def _outline(ui: Ui, made: Pen, frame: Frame, primitive: int, color: ImVec4, name: str) -> None:
     scene = ui.controller.session.scene
-    if scene is not None and primitive < scene.primitive_count:
-
-        def lines() -> list[Stroke]:
-            return _projected(frame, outline_of(primitive_points(scene, primitive, frame.time)))
-
-        pieces = ui.cached(name, frame, primitive, lines)
-        made.strokes(pieces, color, _OUTLINE)
+    if scene is None or primitive >= scene.primitive_count:
+        return
+    pieces = ui.cached(
+        name, frame, primitive, lambda: _projected(frame, outline_of(primitive_points(scene, primitive, frame.time)))
+    )
+    made.strokes(pieces, color, _OUTLINE)
 
 
 def _projected(frame: Frame, lines: list) -> list[Stroke]:

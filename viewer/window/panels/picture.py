@@ -8,8 +8,6 @@ when it was pressed on the picture itself.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, imgui
 
@@ -31,7 +29,7 @@ from viewer.window.panels import (
     tour,
     what_if,
 )
-from viewer.window.panels.area import Area, pointer, size_of, write_lines
+from viewer.window.panels.area import Area, inside, pointer, size_of, write_lines
 from viewer.window.panels.legend import LegendState
 from viewer.window.setting_rows import ALL
 from viewer.window.style import ON_PICTURE_ERROR
@@ -104,11 +102,11 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     area = _area(ui, "picture", left, top, size)
     sides.draw_picture(ui, sides.PICTURE, texture, area)
     sides.draw_wiped(ui, area)
-    with _inside(area):
+    with inside(area):
         overlays.show(ui, area)
     _pointer(ui, area)
     pixels.draw(ui, area)
-    with _inside(area):
+    with inside(area):
         what_if.show_lights(ui, area)
     lower = _title(ui, area)
     sides.show(ui, area, lower)
@@ -134,17 +132,6 @@ def _area(ui: Ui, name: str, left: float, top: float, size: ImVec2) -> Area:
     scale = imgui.get_io().display_framebuffer_scale
     ui.picture.size = max(1, round(size.x * scale.x)), max(1, round(size.y * scale.y))
     return Area(corner, size, ui.controller.session.draw.zoom)
-
-
-@contextmanager
-def _inside(area: Area) -> Iterator[None]:
-    """What is drawn over the picture does not go beyond it."""
-    draw = imgui.get_window_draw_list()
-    draw.push_clip_rect(area.corner, area.end, True)
-    try:
-        yield
-    finally:
-        draw.pop_clip_rect()
 
 
 def _placeholder(ui: Ui, room: ImVec2) -> None:
