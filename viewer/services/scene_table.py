@@ -114,7 +114,9 @@ class SceneTable:
         selection = self.selection
         done = selection.select_part(row) if self.level is Level.OBJECTS else selection.select_primitive(row)
         if not done:
-            self._notices.say("it is hidden" if self.is_hidden(row) else "it is not in the scene at this time")
+            self._notices.say(
+                "it is hidden: its eye shows it again" if self.is_hidden(row) else "it has no place at this time"
+            )
 
     @property
     def selected(self) -> int:

@@ -13,7 +13,7 @@ from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
 from tracer.scene.deformation import deformed
 from tracer.scene.edits import Edited
-from tracer.scene.model import CONE, Camera, Scene
+from tracer.scene.model import CONE, Camera, Quadrics, Scene
 from tracer.why_in_words import kind_of
 from viewer.state.navigation import Vector, ray
 from viewer.state.parts import parts_of
@@ -125,9 +125,9 @@ def pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
     rows, columns = np.nonzero(shown)
     if not len(rows):
         return None
-    apart = np.hypot(columns + left + 0.5 - at[0] * frame.width, rows + top + 0.5 - at[1] * frame.height)
-    nearest = int(np.argmin(apart))
-    return int(columns[nearest]) + left, int(rows[nearest]) + top
+    columns, rows = columns + left, rows + top
+    nearest = np.argmin(np.hypot(columns + 0.5 - at[0] * frame.width, rows + 0.5 - at[1] * frame.height))
+    return int(columns[nearest]), int(rows[nearest])
 
 
 # --- what a frame knows of a pixel --------------------------------------------------------------------
@@ -226,27 +226,25 @@ def _primitives_of(now: Edited, part: int) -> NDArray:
 
 def _corners(scene: Scene, index: int, primitives: NDArray, time: float) -> NDArray[np.float64]:
     """(k, corners, 3) of triangles, or of quadrics, of one object."""
-    held = scene.objects[index]
+    owner = scene.objects[index]
     if not len(primitives):
         return np.empty((0, 3, 3))
-    if primitives[0] < scene.triangle_count:
-        which = primitives - int(scene.triangle_offsets[index])
-        if held.deformation is None:
-            local = held.triangles.corners[which].astype(np.float64)
-        else:
-            d = held.deformation
+    if primitives[0] >= scene.triangle_count:
+        local = _boxes(owner.quadrics, primitives - int(scene.quadric_offsets[index]))
+    else:
+        which, d = primitives - int(scene.triangle_offsets[index]), owner.deformation
+        if d is not None:
             keyed = replace(d, times=d.times[which], corners=d.corners[which], normals=d.normals[which])
             local = deformed(keyed, time)[0].astype(np.float64)
-    else:
-        local = _boxes(scene, index, primitives - int(scene.quadric_offsets[index]))
-    matrix = scene.animation.matrix(held.chain, time)
+        else:
+            local = owner.triangles.corners[which].astype(np.float64)
+    matrix = scene.animation.matrix(owner.chain, time)
     with np.errstate(all="ignore"):
         return np.asarray(local @ matrix[:3, :3].T + matrix[:3, 3], np.float64)
 
 
-def _boxes(scene: Scene, index: int, which: NDArray) -> NDArray[np.float64]:
+def _boxes(quadrics: Quadrics, which: NDArray) -> NDArray[np.float64]:
     """(k, 8, 3) corners of boxes around quadrics, in the space of their object."""
-    quadrics = scene.objects[index].quadrics
     boxes = np.repeat(_BOX[None], len(which), axis=0)
     cones = quadrics.kind[which] == CONE
     boxes[cones, :, :2] *= np.abs(quadrics.radii[which][cones]).max(axis=1)[:, None, None]

@@ -172,33 +172,23 @@ def test_lights_are_summed_up_by_the_samples_that_arrive():
     )
 
 
-# --- what fails, and what takes long ----------------------------------------------------------------
-
-
-def test_an_answer_that_fails_is_one_line_in_the_panel_and_stops_no_film(
+def test_an_answer_that_fails_is_one_line_and_a_failed_edit_leaves_answers(
     desk: PixelDesk, monkeypatch: pytest.MonkeyPatch
 ):
     def fail(*_: object) -> None:
-        raise ValueError("no such light")
+        raise ValueError("made to fail")
 
-    monkeypatch.setattr(module, "why", fail)
-    desk.c.motion.toggle_play()
-    desk.c.selection.select(desk.shadow)
-    desk.until(lambda: desk.c.inspector.problem == "no such light")
-    assert desk.c.session.playing
-    desk.c.motion.toggle_play()
-    desk.until(lambda: not desk.c.active)
-    assert unanswered(Ui(desk.c)) == "No answer: no such light."
-
-
-def test_a_pixel_is_explained_after_a_failed_edit(desk: PixelDesk, monkeypatch: pytest.MonkeyPatch):
-    def fail(*_: object) -> None:
-        raise MemoryError("made to fail")
-
-    monkeypatch.setattr("viewer.services.editing.edited", fail)
-    desk.c.editing.change(desk.c.editing.now.with_light(0, False))
-    desk.until(lambda: desk.c.notices.message is not None and "made to fail" in desk.said)
-    monkeypatch.undo()
+    with monkeypatch.context() as patched:
+        patched.setattr(module, "why", fail)
+        desk.c.selection.select(desk.shadow)
+        desk.until(lambda: desk.c.inspector.problem == "made to fail")
+        assert unanswered(Ui(desk.c)) == "No answer: made to fail."
+        desk.c.selection.clear()
+        desk.tick()
+        patched.setattr("viewer.services.editing.edited", fail)
+        desk.c.editing.change(desk.c.editing.now.with_light(0, False))
+        desk.until(lambda: desk.c.notices.message is not None and "made to fail" in desk.said)
+        desk.until(lambda: not desk.c.editing.under_way)
     desk.c.selection.select(desk.shadow)
     assert blocked(desk.answered())
 

@@ -55,7 +55,7 @@ def show(ui: Ui) -> None:
     _tools(ui, table)
     listing = table.listing
     if listing is None:
-        paragraph("The table is made when the picture is whole.", QUIET)
+        paragraph("The table is listed when the picture is complete.", QUIET)
         return
     _take_enter(ui, table, listing)
     _said(ui, table, listing)
@@ -118,6 +118,8 @@ def _said(ui: Ui, table: SceneTable, listing: Listing) -> None:
     said = several(rows, noun) if found == rows else f"{count(found)} of {several(rows, noun)}"
     if row >= 0 and _place_of(ui, listing, row) is None:
         said += "; the selection is not among them"
+    elif not found and listing.table.level is Level.OBJECTS:
+        said += "; materials and textures are those of primitives"
     paragraph(said, QUIET)
     if edits.hidden or edits.hidden_primitives:
         imgui.same_line()
@@ -144,9 +146,8 @@ def _table(ui: Ui, table: SceneTable, listing: Listing) -> None:
     if not imgui.begin_table(f"table{listing.table.level.value}", len(columns), int(flags)):
         return
     imgui.table_setup_scroll_freeze(1, 1)
-    scene = ui.controller.session.scene
     for number, column in enumerate(columns):
-        _set_up(table, number, column, there=column.name != "texture" or bool(scene is not None and scene.textures))
+        _set_up(table, number, column)
     imgui.table_next_row(int(imgui.TableRowFlags_.headers))
     for number, column in enumerate(columns):
         if imgui.table_set_column_index(number):
@@ -171,15 +172,13 @@ def _table(ui: Ui, table: SceneTable, listing: Listing) -> None:
     imgui.end_table()
 
 
-def _set_up(table: SceneTable, number: int, column: Column, there: bool) -> None:
+def _set_up(table: SceneTable, number: int, column: Column) -> None:
     kinds = imgui.TableColumnFlags_
     flags = kinds.prefer_sort_descending if column.numeric and column.name != "number" else kinds.prefer_sort_ascending
     if number == 0:
         flags |= kinds.no_hide | kinds.no_reorder
     if column.name == table.order.column:
         flags |= kinds.default_sort
-    if not there:
-        flags |= kinds.disabled
     imgui.table_setup_column(column.title, int(flags), em(_NUMBER) if column.numeric else 0.0)
 
 

@@ -246,7 +246,7 @@ def _line(ui: Ui, words: Words, one: Reason) -> None:
 def _modes(ui: Ui, unit: int, frame: Frame, scene: Scene) -> None:
     """The occlusion mode and the shadow mode per light, and how the pixel compares with its two reference pixels."""
     if not 0 <= unit < len(frame.modes):
-        paragraph("Known when the picture shows its cell.", QUIET)
+        paragraph("Known when its cell is visible.", QUIET)
         return
     occlusion = OcclusionMode(int(modes.occlusion_mode(frame.modes[unit])))
     origins, covered = ui.controller.history.origins_of(frame, unit), 0

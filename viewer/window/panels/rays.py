@@ -68,7 +68,7 @@ def section(ui: Ui) -> None:
         if ui.controller.selection.picked is None:
             paragraph("Click a pixel to see what became of each of its rays.", QUIET)
         elif tree is None:
-            paragraph("The rays are listed when the picture is whole.", QUIET)
+            paragraph("The rays are listed when the picture is complete.", QUIET)
         else:
             _tree(ui, tree)
     setting_switch(ui, ALL["draw.rays"])
