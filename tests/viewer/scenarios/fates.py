@@ -29,7 +29,7 @@ def fates(d: Driver) -> None:
 
     d.press("Space")
     d.wait(lambda: d.c.frame.shaded is not None, "a picture of which a part is shaded")
-    for view in (View.FATE, View.MOVING_SHADOW, View.OCCLUSION):
+    for view in (View.FATE, View.OCCLUSION, View.MOVING_SHADOW):
         d.press(view.key)
         d.wait(lambda view=view: d.c.scheduler.drawn_view is view, f"the view {view.label}")
         for _ in range(SOME):
@@ -37,6 +37,5 @@ def fates(d: Driver) -> None:
             d.wait(lambda frame=frame: d.c.frame is not frame, "another picture")
             assert d.c.scheduler.drawn_view is view, "no other view flashes up"
     d.press("Space")
-    d.press(View.MOVING_SHADOW.key)
     d.settle()
     d.expect_picture()
