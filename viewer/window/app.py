@@ -104,8 +104,7 @@ class App:
         self.ui = Ui(self.controller)
         self.ui.guard = Guard(self.controller.notices, lambda name, fault: status.instead_of_part(self.ui, name, fault))
         self.ui.take_commands(commands.build(self.ui))
-        self.ui.desktop.paste, self.ui.desktop.copy = imgui.get_clipboard_text, imgui.set_clipboard_text
-        self.ui.desktop.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
+        self.ui.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
         self._on_frame = on_frame
         self._told: Frame | None = None  # what the script has seen
         self.layout_file = layout.ready_file(config_folder())
@@ -296,7 +295,7 @@ class App:
     def _close_wanted(self, window: Any) -> None:
         """The window's close button, or the desktop: the same as the command."""
         glfw.set_window_should_close(window, False)
-        self.ui.guard.step("Quitting", self.ui.desktop.exit)
+        self.ui.guard.step("Quitting", self.ui.exit)
 
     def _iconify(self, _window: Any, iconified: int) -> None:
         self.iconified = bool(iconified)

@@ -8,6 +8,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+from imgui_bundle import imgui
+
 from tracer.method import Kind, Method, additions, bases
 from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
@@ -43,7 +45,7 @@ def _file(ui: Ui) -> list[Command]:
 
     def copy_command() -> None:
         if (words := c.pictures.command()) is not None:
-            ui.desktop.copy(words)
+            imgui.set_clipboard_text(words)
 
     def up() -> str | None:
         return up_in_studio(c.session.scene) if c.session.scene is not None else None
@@ -86,7 +88,7 @@ def _file(ui: Ui) -> list[Command]:
         Command("Send to tev", "File", lambda: c.pictures.to_tev(c.frame), enabled=there,
                 tip="the frame and its buffers, to tev or HDRView; the panel Saving says where it listens"),
         Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset), separated=True),
-        Command("Quit", "File", lambda: ui.desktop.exit(), "Ctrl+Q", separated=True),
+        Command("Quit", "File", lambda: ui.exit(), "Ctrl+Q", separated=True),
     ]  # fmt: skip
 
 
@@ -179,7 +181,7 @@ def _interface(ui: Ui) -> list[Command]:
         Command("Interface at 100 %", "View", partial(size, 0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
         Command("Hide panels", "View", hide_panels, "Tab", checked=lambda: ui.panels_hidden, separated=True),
         Command("Full screen", "View", fill_screen, "F11", checked=lambda: ui.full_screen.wanted),
-        Command("Default layout", "View", lambda: ui.desktop.reset_layout()),
+        Command("Default layout", "View", lambda: ui.reset_layout()),
     ]  # fmt: skip
 
 
@@ -250,7 +252,7 @@ def _culling(ui: Ui) -> list[Command]:
                        checked=lambda: method().kind is kind)  # fmt: skip
 
     def addition(kind: Kind) -> Command:
-        fits = Condition(lambda: method().kind is not kind, "it is the method itself")
+        fits = Condition(lambda: method().kind is not kind, "it is the chosen method")
         return Command(f"Method +{kind.name}", "Culling", partial(change, toggled, kind.name), tip=kind.summary,
                        checked=lambda: method().has(kind.name), enabled=fits)  # fmt: skip
 

@@ -62,7 +62,7 @@ class PictureTexture:
         """Bring a picture (h, w, 3) to the GPU.  Raises DisplayError for what is too much for it."""
         size, most = (pixels.shape[1], pixels.shape[0]), self.context.info["GL_MAX_TEXTURE_SIZE"]
         if max(size) > most:
-            raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, which takes {most} pixels a side")
+            raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, whose limit is {most} pixels a side")
         _ = self.context.error  # of somebody before us
         if self.picture is None or self.picture.size != size:
             self.picture = self.context.texture(size, 3, alignment=1)

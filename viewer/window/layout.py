@@ -103,7 +103,7 @@ class Layout:
             hello_imgui.DockingSplit(of, space, side, share) for space, of, side, share in SPACES
         ]
         self._docking.dockable_windows = [self._window(panel) for panel in PANELS.values()]
-        ui.show_panel, ui.panel_labels, ui.desktop.reset_layout = self.show, SIDES, self.reset
+        ui.show_panel, ui.panel_labels, ui.reset_layout = self.show, SIDES, self.reset
 
     # --- what the commands ask for ---------------------------------------------------------------
 

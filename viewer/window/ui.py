@@ -59,16 +59,6 @@ class Picture:
 
 
 @dataclass
-class Desktop:
-    """What commands ask of the window itself, and of the clipboard."""
-
-    exit: Callable[[], None] = lambda: None
-    reset_layout: Callable[[], None] = lambda: None
-    paste: Callable[[], str] = lambda: ""
-    copy: Callable[[str], None] = lambda text: None
-
-
-@dataclass
 class Graphics:
     """What lives as long as the window's GL context, and is None without one.  `capture_view` is the view that a
     picture is wanted of."""
@@ -97,7 +87,8 @@ class Ui:
     dialogs: list[Dialog] = field(default_factory=list)
     keyboard: Keyboard = field(default_factory=Keyboard)
     fate_shown: Fate | None = None
-    desktop: Desktop = field(default_factory=Desktop)
+    exit: Callable[[], None] = lambda: None
+    reset_layout: Callable[[], None] = lambda: None
     graphics: Graphics = field(default_factory=Graphics)
     show_panel: Callable[[str], Any] = lambda label: None
     panel_labels: tuple[str, ...] = ()

@@ -158,7 +158,7 @@ def _light_buffer(d: Driver) -> None:
     d.change(method="lightbuffer")
     d.wait(lambda: isinstance(state.answer, Unfolded), "the cube", 20.0)
     lists = state.answer
-    d.click("//Light buffer/distance at which full shadow begins")
+    d.click("//Light buffer/Distance at which full shadow begins")
     d.wait(lambda: (state.answer.cross != lists.cross).any(), "where full shadow begins", 20.0)
 
 

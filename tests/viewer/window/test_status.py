@@ -52,11 +52,11 @@ def run(traced: int, label: str) -> SimpleNamespace:
     [
         ({"warm_up_job": KERNELS}, "Compiling the tracer (first start only): 50 %"),
         ({"warm_up_job": KERNELS, "compiles": True, "frame": FRAME},
-         "compiling what makes certificates (first start only): 50 %"),
-        ({"warm_up_job": KERNELS, "frame": FRAME}, "loading what makes certificates: 50 %"),
+         "compiling the kernels of certificates (first start only): 50 %"),
+        ({"warm_up_job": KERNELS, "frame": FRAME}, "loading the kernels of certificates: 50 %"),
         ({"runs": run(0, "starting")}, "experiment is starting   (Escape stops it)"),
         ({"runs": run(1, "frame 1 of 5, none")}, "experiment, traced: frame 1 of 5, none   (Escape stops it)"),
-        ({"certifies": True, "frame": FRAME}, "preparing (cells settled in the last picture: 1)"),
+        ({"certifies": True, "frame": FRAME}, "making certificates (cells settled in the last picture: 1)"),
         ({}, "idle"),
     ],
 )  # fmt: skip
@@ -111,33 +111,32 @@ def test_modes_that_are_only_looked_at_are_named_as_no_part_of_the_time() -> Non
 # --- beside the method ---------------------------------------------------------------------------------
 
 
-def test_wrong_answers_are_those_of_the_method_that_is_shown():
-    settings = Settings(16, 8, method="paper", verify=True)
-    c = SimpleNamespace(
-        frame=make_frame(settings), scheduler=SimpleNamespace(settings=settings), runs=SimpleNamespace(current=None),
-        session=SimpleNamespace(settings=settings, draw=DrawOptions(View.DIFFERENCE)),
-    )  # fmt: skip
+def shown(method: str, **more: object) -> SimpleNamespace:
+    """A controller with a frame by a method, which is the one that is chosen."""
+    settings = Settings(16, 8, method=method, **more)
+    session = SimpleNamespace(settings=settings, draw=DrawOptions(View.DIFFERENCE))
+    return SimpleNamespace(frame=make_frame(settings), scheduler=SimpleNamespace(settings=settings), session=session,
+                           runs=SimpleNamespace(current=None))  # fmt: skip
+
+
+def test_wrong_answers_are_those_of_the_method_that_is_shown() -> None:
+    c = shown("paper", verify=True)
     text, color = wrong_answers(c)
     assert text.startswith("3 wrong answers (") and color == ERROR
     c.session.settings = Settings(16, 8, method="paper")
     assert wrong_answers(c)[0] == f"{text} (verified for the view Difference)", "the box Verify is not ticked"
     c.runs.current = SimpleNamespace(name="zoom test")
     text, color = wrong_answers(c)
-    assert text == "wrong answers of the zoom test are in its own panel" and color != ERROR
+    assert text == "The panel of the zoom test shows its wrong answers." and color != ERROR
     c.runs.current, c.scheduler.settings = None, Settings(16, 8, method="auto", verify=True)
     assert wrong_answers(c) is None
 
 
-def test_below_a_method_stands_what_it_trusts_whether_it_is_exact_and_what_it_does_now():
-    settings = Settings(16, 8, method="paper+cache")
-    c = SimpleNamespace(
-        frame=make_frame(settings), runs=SimpleNamespace(current=None), session=SimpleNamespace(settings=settings)
-    )
-    first, second = trust(c).split(" cache: ")
+def test_below_a_method_stands_what_it_trusts_whether_it_is_exact_and_what_it_does_now() -> None:
+    first, second = trust(shown("paper+cache")).split(" cache: ")
     assert first.startswith("paper: Trusts ") and "Wrong now and then." in first and second.endswith("as the method.")
-    c.session.settings = Settings(16, 8, method="auto")
-    c.frame.statistics.decision = "Every shadow ray is traced."
-    assert trust(c).endswith(" Exact."), "the picture is another method's"
-    c.frame = make_frame(c.session.settings)
+    c = shown("auto")
     c.frame.statistics.decision = "Every shadow ray is traced."
     assert trust(c).endswith(" Exact. Every shadow ray is traced.")
+    c.session.settings = Settings(16, 8, method="certified")
+    assert "Every shadow ray" not in trust(c), "the picture is another method's"

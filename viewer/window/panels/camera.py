@@ -125,7 +125,7 @@ def focus(ui: Ui) -> None:
     if at is None and picked is not None:
         fly_to_selected(ui)
     elif at is None or c.frame is None:
-        c.notices.say("point at something, or click it, to focus on it")
+        c.notices.say("Point at something, or click it, to focus on it.")
     else:
         point, extent = point_at(c.frame, *at), extent_at(c.frame, *at)
         if point is None or extent is None:
@@ -156,7 +156,7 @@ def _go_near(ui: Ui, point: np.ndarray, radius: float) -> None:
 
 
 def _copy(ui: Ui) -> None:
-    ui.desktop.copy(json.dumps(ui.controller.session.camera.to_json()))
+    imgui.set_clipboard_text(json.dumps(ui.controller.session.camera.to_json()))
     ui.controller.notices.say("camera copied as JSON")
 
 
@@ -164,7 +164,7 @@ def _paste(ui: Ui) -> None:
     """Fly to the camera on the clipboard; what its JSON leaves out stays as it is."""
     c = ui.controller
     try:
-        data = c.session.camera.to_json() | {"position": None} | json.loads(ui.desktop.paste() or "")
+        data = c.session.camera.to_json() | {"position": None} | json.loads(imgui.get_clipboard_text() or "")
         c.motion.glide(Camera.from_json(data))
     except (TypeError, ValueError, RecursionError):
         c.notices.say("no camera pasted: the clipboard holds no camera as JSON", error=True)

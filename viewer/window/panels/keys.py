@@ -19,7 +19,7 @@ _POINTER = (
     ("Shift", "while flying: faster"),
     ("Ctrl + wheel, Ctrl + left drag", "zoom into the picture itself around the pointer; move it"),
     ("Drag the wipe's line", "compare the picture with the right one, or A with B"),
-    ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
+    ("Drag the legend", "move it within the picture"),
     ("Click", "inspect a pixel, and draw its shadow rays; click the background to clear the selection"),
 )
 
@@ -72,13 +72,13 @@ def _head(ui: Ui, conflicts: int) -> None:
     if imgui.button("Reset all keys"):
         ui.keymap.reset()
     imgui.end_disabled()
-    tooltip("give every command its usual key again")
+    tooltip("Restore the default keys of all commands.")
     if conflicts:
         imgui.same_line(0.0, em(1.0))
         imgui.text_colored(ERROR, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {conflicts} conflicts")
     paragraph(
-        f"Press a key for {waiting}, or Escape to leave it." if waiting else
-        "Click a key to choose another; the right button offers more. Keys without Ctrl or Alt are places on the "
+        f"Press a key for {waiting}, or Escape to cancel." if waiting else
+        "Click a key to change it, right-click for more. Keys without Ctrl or Alt are places on the "
         "keyboard, shown by what is printed there.",
         None if waiting else QUIET,
     )  # fmt: skip
@@ -119,7 +119,7 @@ def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
         if imgui.menu_item("No key", "", False, bool(keymap.of(name)))[0]:
             keymap.choose(name, [])
         usual = ", ".join(map(ui.keyboard.label, keymap.usual(name))) or "no key"
-        if imgui.menu_item(f"The usual key: {usual}", "", False, keymap.changed(name))[0]:
+        if imgui.menu_item(f"Default key: {usual}", "", False, keymap.changed(name))[0]:
             keymap.reset(name)
         imgui.end_popup()
     imgui.same_line()

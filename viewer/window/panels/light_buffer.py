@@ -36,7 +36,7 @@ def show(ui: Ui) -> None:
     c, state = ui.controller, ui.state(CubeState)
     if c.frame is not None:
         state.take(c.renderer.query(unfold, c.frame, c.session.draw.light, state.depths))
-    checkbox("distance at which full shadow begins", state.depths, lambda on: setattr(state, "depths", on))
+    checkbox("Distance at which full shadow begins", state.depths, lambda on: setattr(state, "depths", on))
     imgui.same_line()
     imgui.set_next_item_width(min(em(14.0), imgui.get_content_region_avail().x))
     lights.combo(ui, "light buffer", c.session.draw.light, c.settings.set_light)

@@ -72,13 +72,12 @@ def _why(ui: Ui, made: Pen, frame: Frame) -> None:
 
 def _outline(ui: Ui, made: Pen, frame: Frame, primitive: int, color: ImVec4, name: str) -> None:
     scene = ui.controller.session.scene
-    if scene is not None and primitive < scene.primitive_count:
-
-        def lines() -> list[Stroke]:
-            return _projected(frame, outline_of(primitive_points(scene, primitive, frame.time)))
-
-        pieces = ui.cached(name, frame, primitive, lines)
-        made.strokes(pieces, color, _OUTLINE)
+    if scene is None or primitive >= scene.primitive_count:
+        return
+    pieces = ui.cached(
+        name, frame, primitive, lambda: _projected(frame, outline_of(primitive_points(scene, primitive, frame.time)))
+    )
+    made.strokes(pieces, color, _OUTLINE)
 
 
 def _projected(frame: Frame, lines: list) -> list[Stroke]:

@@ -99,8 +99,8 @@ def doing(c: Controller) -> str:
     if run is not None:
         return f"{run.name}{f', traced: {run.label}' if run.traced else ' is starting'}   (Escape stops it)"
     if preparing is not None:
-        what = "compiling what makes certificates (first start only)"
-        return f"{what if c.loader.compiles else 'loading what makes certificates'}: {100.0 * preparing.fraction:.0f} %"
+        does, when = ("compiling", " (first start only)") if c.loader.compiles else ("loading", "")
+        return f"{does} the kernels of certificates{when}: {100.0 * preparing.fraction:.0f} %"
     if c.loader.method_job is not None:
         return f"{c.loader.method_job.title}, once for this version"
     if c.session.scene is None:
@@ -113,7 +113,7 @@ def doing(c: Controller) -> str:
         made = c.frame.statistics.certificates if c.frame is not None else 0
         before = ", before more samples" if c.session.settings.samples > 1 else ""
         makes, _ = terms.made(c.session.settings.method)
-        return f"preparing{before}{f' ({makes} in the last picture: {count(made)})' if made else ''}"
+        return f"making certificates{before}{f' ({makes} in the last picture: {count(made)})' if made else ''}"
     if c.renderer.busy or c.scheduler.awaits:
         is_there = c.frame is not None and not c.scheduler.outdated and c.frame.camera == c.session.camera
         return "refining the picture" if c.scheduler.becoming_finer or is_there else TRACING
