@@ -12,6 +12,7 @@ SOME = 6  # pictures in motion that are looked at
 
 def fates(d: Driver) -> None:
     """The keys of the views of fates; another light asks for no frame; no other view flashes up in motion."""
+    d.settle()
     d.fix_resolution(240, 135)
     d.c.settings.change(method="paper", samples=1)
     d.open(embedded_scenes()["default"])
