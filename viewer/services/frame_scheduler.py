@@ -158,11 +158,17 @@ class FrameScheduler:
         if made is None and self.traced is not None and self.samples_shown >= wanted.samples:
             made = self.traced.request  # it holds what is wanted already
         if made is None or not made.covers(wanted):
-            coming = self._coming
-            if inputs.inspected and coming is not None and not wanted.supersedes(coming, self._is_shown(coming)):
+            if inputs.inspected and self._is_to_be_seen_before(wanted):
                 return  # else the next frame of a film would begin before this one is asked about
             self._asked = wanted
             self._thread.submit(wanted)
+
+    def _is_to_be_seen_before(self, wanted: RenderRequest) -> bool:
+        """Return whether what was asked for last is still to come, and is worth it though something else is wanted."""
+        coming = self._coming
+        if coming is None or coming.serial != self._serial:  # forgetting modes has cut it short
+            return False
+        return not wanted.supersedes(coming, self._is_shown(coming))
 
     def _should_refine(self) -> bool:
         """Whether, at rest, one more frame of the same view will know more about shadows."""
@@ -357,7 +363,7 @@ class FrameScheduler:
         settings = self.settings
         comes = settings.record_fates if draw.view.needs_fates else draw.view.records is not None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
-            return f"{draw.view.label}: none here, {view.label.lower()} shown"
+            return f"{draw.view.label}: not available here, {view.label.lower()} shown"
         return f"{draw.view.label}: {'verifying' if draw.view.needs_verify else 'counting'} ..."
 
 

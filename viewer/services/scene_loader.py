@@ -34,19 +34,9 @@ Built = tuple[Renderer, dict[str, Any]]
 """The renderer that holds a scene's trees, and what `scene_info` says of the scene."""
 
 
-def build(
-    scene: Scene,
-    settings: Settings,
-    progress: Progress,
-    ready: Callable[[], bool] = lambda: True,
-) -> Built:
-    """Build the trees of a scene once the tracer is `ready`.
-
-    Raises SceneError or Cancelled; runs on a thread of its own."""
+def build(scene: Scene, settings: Settings, progress: Progress) -> Built:
+    """Build the trees of a scene.  Raises SceneError or Cancelled."""
     lights, accelerator = len(scene.lights), settings.accelerator
-    while not ready():
-        progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
-        time.sleep(0.02)
     if not can_draw(lights, accelerator):  # many lights need wider words, and kernels for them
         warm_up(progress, lights, accelerator)
     renderer, info, model = Renderer(scene, settings, progress), scene_info(scene), model_bounds(scene)
@@ -247,11 +237,12 @@ class SceneLoader:
         self._give_up()
         settings, kernels = self._session.settings, self.warm_up_job
 
-        def ready() -> bool:
-            return kernels is None or kernels.done or can_draw()
-
         def work(progress: Progress) -> Built:
-            return build(read(progress), settings, progress, ready)
+            scene = read(progress)
+            while not (kernels is None or kernels.done or can_draw()):
+                progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
+                time.sleep(0.02)
+            return build(scene, settings, progress)
 
         self.load_job, self._coming = Job(title, work, self._wake), coming
 
@@ -259,7 +250,7 @@ class SceneLoader:
         """Give up the load that is under way; the scene that is open stays."""
         if self.load_job is not None:
             self._give_up()
-            stays = ": the scene that was open stays" if self._session.scene is not None else ""
+            stays = "; the open scene stays" if self._session.scene is not None else ""
             self._notices.say(f"loading cancelled{stays}")
 
     def _give_up(self) -> None:
@@ -291,7 +282,7 @@ class SceneLoader:
         if load.result is None:
             if came.again:
                 self.watch.files = self.watch.files | came.files  # what was not come to may be mended too
-            self._report(load, after=" (the scene as it was stays)" if came.again else "")
+            self._report(load, after=" (the open scene stays as it is)" if came.again else "")
             return arrival
         came.renderer, came.info = load.result
         self.watch.files = came.files

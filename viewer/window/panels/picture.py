@@ -140,13 +140,13 @@ def _placeholder(ui: Ui, room: ImVec2) -> None:
     job, text = c.loader.warm_up_job or c.loader.load_job, status.first_picture(c)
     if c.session.scene is None and job is None:
         text = f"Open a scene{ui.key('Open...')}, or drop one on this window"
-    at, width = imgui.get_cursor_pos(), min(room.x, max(imgui.calc_text_size(text).x, em(16.0)))
+    at, width = imgui.get_cursor_pos(), min(room.x, max(imgui.calc_text_size(text).x, em(24.0)))
     left = at.x + (room.x - width) / 2.0
     imgui.set_cursor_pos(ImVec2(left, at.y + room.y / 2.0))
     clipped(text, QUIET)
     if job is not None:
         imgui.set_cursor_pos_x(left)
-        imgui.progress_bar(job.fraction, ImVec2(width, 0.0))
+        imgui.progress_bar(job.fraction, ImVec2(width, 0.0), job.label)  # with the time that is left
 
 
 def _title(ui: Ui, area: Area) -> float:
