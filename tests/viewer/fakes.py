@@ -221,6 +221,11 @@ def with_cell_lights(frame: Frame) -> Frame:
     return replace(frame, layers=frame.layers | {"cell lights": np.where(frame.primitive >= 0, asked, np.int32(-1))})
 
 
+def with_everything(frame: Frame) -> Frame:
+    """The frame with whatever any view shows."""
+    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(frame))))))
+
+
 def in_part(frame: Frame) -> Frame:
     """The frame while every second column has been shaded: nothing is known of what lights send to the others."""
     shaded = np.indices(frame.primitive.shape)[1] % 2 == 0

@@ -24,13 +24,6 @@ Lights = tuple[Light, ...]
 T = TypeVar("T")
 
 
-class Highlight(NamedTuple):
-    """What the window alone asks of a view: the fate that stands out, and whether the wipe has its line."""
-
-    fate: Fate | None = None
-    line: bool = True
-
-
 @dataclass(frozen=True)
 class Values:
     """What a view shows of each pixel: `numbers` (h, w, k) float32 with a name for each of the k; where they are
@@ -55,8 +48,8 @@ class FrameView(Declaration):
         """Draw a frame, (h, w, 3) uint8."""
         raise NotImplementedError
 
-    def highlighted(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
-        """Draw the same with what the window highlights."""
+    def highlighted(self, frame: Frame, draw: DrawOptions, fate: Fate | None) -> Pixels:
+        """Draw the same; where a fate is given, and the view is of fates, this one stands out."""
         return self.colorize(frame, draw)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:

@@ -114,6 +114,11 @@ class ModeView(ClassView):
         return Legend(title, ("pixels", named), (*entries, *at_rest(frame)), facts=facts)
 
 
+def filled_in(frame: Frame) -> tuple[Note, ...]:
+    """Return what is said of a picture of which only a part has been shaded."""
+    return () if frame.shaded is None else (Note("Pixels that are not shaded yet show the nearest one that is."),)
+
+
 def mode_name(mode: OcclusionMode | ShadowMode) -> str:
     """Return the name of a mode as legends have it."""
     return mode.name.replace("_", " ").lower()
@@ -136,7 +141,7 @@ def shadow_modes(frame: Frame, light: int) -> NDArray[np.uint8]:
 
 def not_culled(title: str) -> Legend:
     """Return the legend of a light that culling does not cover."""
-    why = "This light is not culled, as there are too many: all its rays are traced."
+    why = "There are too many lights for this one to be culled: all its shadow rays are traced."
     return Legend(title, notes=(Note(why, NoteKind.WARNING),))
 
 

@@ -34,13 +34,10 @@ from viewer.views.paint import (
 
 LAYERS = 100
 """Steps from one side of what most primitives are in to the other."""
-SAMPLES = 128
-"""Points along each side of a slice, of which parts are counted."""
 STRIPE = 4
 """Pixels across which a stripe of what waits goes."""
 WAITS_COLORS = hex_color("4A4E57"), hex_color("6B707B")
 """Stripes of what of a tree is not built."""
-_OF_SLICE = f"its area, by {SAMPLES} x {SAMPLES} points; what lies outside of all boxes counts for neither"
 
 
 class Tree(FrameView):
@@ -75,11 +72,8 @@ class Tree(FrameView):
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
         parts, built, cut = tree_of(frame), frame.statistics.built, draw.slice
-        share = share_built(parts, cut)
         low, high = draw.span or self.span(frame)
         facts = [fact(f"slice at {AXES[cut.axis]}", f"{plane_of(parts, cut):.4g}")]
-        if share is not None:
-            facts.append(fact("built of the slice", percent(share, 1.0), _OF_SLICE))
         if built is not None:
             in_nodes = f"{percent(built.primitives, built.of)} of {count(built.of)}"
             facts.append(fact("nodes built", count(built.nodes)))
@@ -131,21 +125,6 @@ def tree_seen(frame: Frame, cut: Slice, where: Region = EVERYWHERE) -> tuple[Par
     shape = plane.behind.shape
     found = parts.at(plane.points.reshape(-1, 3), cut.axis) or nothing_at(plane.behind.size)
     return PartsAt._make(column.reshape(shape) for column in found), plane
-
-
-def share_built(parts: TreeParts, cut: Slice) -> float | None:
-    """Return which share of what a slice has of the tree is built, by SAMPLES x SAMPLES points; None where it has
-    none."""
-    steps = (np.arange(SAMPLES, dtype=np.float32) + np.float32(0.5)) / np.float32(SAMPLES)
-    points = np.empty((SAMPLES, SAMPLES, 3), np.float32)
-    low, high = parts.extent[:3], parts.extent[3:]
-    one, other = (k for k in range(3) if k != cut.axis)
-    points[..., cut.axis] = plane_of(parts, cut)
-    points[..., one] = low[one] + steps[:, None] * (high[one] - low[one])
-    points[..., other] = low[other] + steps * (high[other] - low[other])
-    found = parts.at(points.reshape(-1, 3), cut.axis)
-    there = found.numbers != NOWHERE if found is not None else np.zeros(0, np.bool_)
-    return float(found.built[there].mean()) if found is not None and there.any() else None
 
 
 def _in_company(line: NDArray[np.bool_]) -> NDArray[np.bool_]:

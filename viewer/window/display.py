@@ -14,11 +14,12 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.pixels import Zoom
 from viewer.util.resources import shader_source
-from viewer.views import AS_SAVED, Highlight, Pixels, colorize
+from viewer.views import Pixels, colorize
 from viewer.views.compare import Difference, signed_picture
 
 
@@ -29,12 +30,12 @@ class DisplayError(RuntimeError):
 @dataclass(frozen=True)
 class InWindow:
     """What the window adds to how a frame is drawn: a bright border around the `selected` primitive, or around all of
-    the selected part of the scene; whether pixels are blended where they are enlarged; and what is highlighted."""
+    the selected part of the scene; whether pixels are blended where they are enlarged; and the fate that stands out."""
 
     selected: int = -1
     selected_part: int = -1
     smooth: bool = True
-    highlight: Highlight = AS_SAVED
+    fate: Fate | None = None
 
 
 PLAIN = InWindow()
@@ -114,7 +115,7 @@ class Display(PictureTexture):
         if wanted in (self._drawn, self._failed):  # frames are equal only where they are the same
             return
         self._failed = wanted
-        pixels = colorize(frame, draw, window.highlight)
+        pixels = colorize(frame, draw, window.fate)
         if window.selected >= 0:
             pixels[_selected_border(frame, window, self.part_of)] = 255
         self.write(pixels, window.smooth and draw.view.shows_clipped)

@@ -12,7 +12,6 @@ from viewer.state.methods import missing
 from viewer.state.parts import parts_of
 from viewer.state.savings import comparison_in_words
 from viewer.state.views import View
-from viewer.views.base import Highlight
 from viewer.window.display import Compared, Display, InWindow, Magnifier, TextureCache
 from viewer.window.panels import legend, savings, sides
 from viewer.window.ui import CaptureKind, Ui
@@ -54,8 +53,7 @@ def in_window(ui: Ui) -> InWindow:
     """Return what the window adds to the picture, but for what is selected."""
     c = ui.controller
     smooth, view = c.session.draw.smooth and c.session.draw.zoom.fits, c.scheduler.drawn_view
-    line = view is not View.WIPE or not c.scheduler.becoming_finer  # of few pixels it would be thick
-    return InWindow(smooth=smooth, highlight=Highlight(ui.fate_shown if view is View.FATE else None, line))
+    return InWindow(smooth=smooth, fate=ui.fate_shown if view is View.FATE else None)
 
 
 def capture(ui: Ui) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from imgui_bundle import imgui
 
-from tests.viewer.drawn import classes_in
+from tests.viewer.drawn import units_in
 from tests.viewer.driver import Driver
 from tracer.method import additions, bases
 from tracer.renderer import Renderer
@@ -51,7 +51,7 @@ def certifying(d: Driver) -> None:
             d.press(view.key)
             assert d.c.scheduler.drawn_view is view and d.c.history.frames == traced
             d.expect_picture()
-        assert "fully rendered" in [row.name for row in classes_in(d.c.frame, View.OCCLUSION) if row.pixels]
+        assert units_in(d.c.frame, View.OCCLUSION)["fully rendered"]
         _use(d, View.DIFFERENCE, "paper")
     _press(d, View.CERTIFICATE.key)
     assert d.c.frame.certificates is None and d.c.scheduler.drawn_view is View.COLOR
@@ -159,7 +159,7 @@ def _light_buffer(d: Driver) -> None:
     d.wait(lambda: isinstance(state.answer, Unfolded), "the cube", 20.0)
     lists = state.answer
     d.click("//Light buffer/Distance at which full shadow begins")
-    d.wait(lambda: (state.answer.cross != lists.cross).any(), "where full shadow begins", 20.0)
+    d.wait(lambda: (state.answer.picture != lists.picture).any(), "where full shadow begins", 20.0)
 
 
 def explaining(d: Driver) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.drawn import classes_in
+from tests.viewer.drawn import units_in
 from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame, Settings
@@ -63,7 +63,7 @@ def test_wide_words_reach_light_30():
     frame = make_frame()
     words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
     frame = replace(frame, modes=words)
-    rows = {r.name: r.units for r in classes_in(frame, View.SHADOW, 30)}
+    rows = units_in(frame, View.SHADOW, 30)
     assert rows["non shadow"] + rows["non shadow, untrusted"] == 5
     assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
     assert shadow_mode_of(frame, 0, 31) is None

@@ -8,14 +8,7 @@ import numpy as np
 import pytest
 
 from tests.commands import ROOM
-from tests.viewer.fakes import (
-    with_cell_lights,
-    with_certificates,
-    with_cuts,
-    with_lamps,
-    with_tree,
-    with_voxels,
-)
+from tests.viewer.fakes import with_everything
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
@@ -41,4 +34,4 @@ def frame(plain: Frame) -> Frame:
     reference = plain.color.copy()
     reference[wrong > 0] = 1.0 - reference[wrong > 0]
     verified = replace(plain, settings=replace(plain.settings, verify=True), wrong=wrong, reference=reference)
-    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(verified))))))
+    return with_everything(verified)

@@ -42,8 +42,8 @@ _MOST_MARKS = 64  # of lights: more would hide the picture
 _REACH = 0.7  # ems from a mark's middle at which it can be taken hold of
 _ON, _HELD, _OFF = ImVec4(1.0, 0.93, 0.45, 1.0), ImVec4(0.42, 0.70, 0.96, 1.0), ImVec4(0.62, 0.65, 0.70, 1.0)
 _DIGITS = 6  # of a place to which a light is brought
-_STATIC = "It stays where it is at this moment, and counts as what never moves: its primitives carry modes."
-_CAN_MOVE = "It stays where it is, but counts as able to move: no modes, and its shadows are always traced."
+_STATIC = "It stays where it is at this moment, and counts as static: its primitives carry modes."
+_CAN_MOVE = "It stays where it is, but counts as dynamic: it carries no modes, and its shadow rays are always traced."
 
 
 @dataclass
@@ -69,7 +69,7 @@ def commands(ui: Ui) -> list[Command]:
         Command("Show everything", "Edit/What if", editing.show_everything,
                 enabled=Condition(lambda: bool(editing.now.hidden or editing.now.hidden_primitives),
                                   "nothing is hidden")),
-        Command("Take all edits back", "Edit/What if", editing.clear, tip="the scene as its file says",
+        Command("Clear all edits", "Edit/What if", editing.clear, tip="the scene as its file says",
                 enabled=Condition(lambda: bool(editing.now), "the scene is as its file says")),
     ]  # fmt: skip
 
@@ -94,7 +94,7 @@ def show(ui: Ui) -> None:
         return
     ui.state(WhatIfState).drawn = imgui.get_frame_count()
     if not ui.controller.editing.now:
-        paragraph("Change the scene, not its file, and see what that changes. Undo brings all back.", QUIET)
+        paragraph("Edits change the scene, but not its file. Undo takes them back.", QUIET)
     _object(ui, edited)
     _lights(ui, edited)
     _edits(ui)
@@ -106,7 +106,7 @@ def _object(ui: Ui, edited: Edited) -> None:
     pick, editing = ui.controller.selection.picked, ui.controller.editing
     heading("Object")
     if pick is None or not 0 <= pick.primitive < len(edited.primitives):
-        paragraph("Click an object in the picture to hide it, or to let it move.", QUIET)
+        paragraph("Click an object in the picture to hide it, or to make it static or dynamic.", QUIET)
         return
     thing, primitive = edited.thing_of(pick.primitive), int(edited.primitives[pick.primitive])
     clipped(thing.name)
@@ -127,7 +127,7 @@ def _object(ui: Ui, edited: Edited) -> None:
         def move(on: bool) -> None:
             editing.change(editing.now.with_moving(thing.name, on))
 
-        checkbox("Can move", thing.name in editing.now.moving, move, _CAN_MOVE)
+        checkbox("Dynamic", thing.name in editing.now.moving, move, _CAN_MOVE)
 
 
 def _lights(ui: Ui, edited: Edited) -> None:
@@ -172,7 +172,7 @@ def _light(ui: Ui, edited: Edited, number: int, own_place: list[float]) -> None:
         imgui.same_line(0.0, 0.0)
         if imgui.button(icons.ICON_FA_ROTATE_LEFT, (button, button)):
             editing.change(editing.now.with_light_at(number, None))
-        tooltip("back to where it was")
+        tooltip("back to its place in the scene")
 
 
 def _move(ui: Ui, number: int, to: tuple[float, float, float] | list[float]) -> None:
@@ -193,11 +193,11 @@ def _edits(ui: Ui) -> None:
         imgui.push_id(number)
         if imgui.small_button(icons.ICON_FA_XMARK):
             editing.change(without)
-        tooltip("take this edit back")
+        tooltip("remove this edit")
         imgui.same_line()
         clipped(words)
         imgui.pop_id()
-    if len(listed) > 1 and wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Take all back"):
+    if len(listed) > 1 and wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Clear all"):
         editing.clear()
 
 
@@ -209,7 +209,7 @@ def _changed(ui: Ui) -> None:
         return
     heading("What has changed")
     if not same_place(before.frame, frame):
-        text = "The picture before the edits is from elsewhere. Take all back and undo that, to compare from here."
+        text = "The picture before the edits has another camera or time: clear the edits and undo that, to compare."
         paragraph(text, QUIET)
         return
     on = comparing.state.on and comparing.kept is before
