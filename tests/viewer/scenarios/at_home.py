@@ -50,9 +50,8 @@ def _palette(d: Driver) -> None:
     assert not imgui.is_popup_open("", ANY_POPUP)
     d.press("Ctrl+Shift+P")
     assert [item.name for item in d.ui.state(Finder).found[:2]] == ["setting Bounces", "Occlusion mode"]
-    d.press(KEY.down_arrow)
-    d.press(KEY.up_arrow)
-    d.press(KEY.down_arrow)
+    for key in (KEY.down_arrow, KEY.up_arrow, KEY.down_arrow):
+        d.press(key)
     assert d.ui.state(Finder).aimed.name == "Occlusion mode"
     d.press(KEY.escape)
 
@@ -75,10 +74,8 @@ def _undo(d: Driver) -> None:
     d.choose("Edit/###Undo")
     assert d.c.session.draw.shading == shading, "a drag is one step"
     assert d.said.startswith("undone: shading") and d.c.undo.undoes == "camera"
-    flights = 0
     while d.c.undo.undoes == "camera":  # several where the machine is slow: the camera rests between them
         d.press("Ctrl+Z")
-        flights += 1
     d.settle()
     assert d.c.session.camera == home
     d.press("Ctrl+Y")

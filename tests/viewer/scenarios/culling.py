@@ -159,7 +159,7 @@ def _light_buffer(d: Driver) -> None:
     d.wait(lambda: isinstance(state.answer, Unfolded), "the cube", 20.0)
     lists = state.answer
     d.click("//Light buffer/Distance at which full shadow begins")
-    d.wait(lambda: (state.answer.cross != lists.cross).any(), "where full shadow begins", 20.0)
+    d.wait(lambda: (state.answer.picture != lists.picture).any(), "where full shadow begins", 20.0)
 
 
 def explaining(d: Driver) -> None:
