@@ -91,13 +91,13 @@ class Values:
         return count(value)
 
     @cached_property
-    def keys(self) -> NDArray:
-        """What the column is sorted by: words by the alphabet, what is not known last."""
+    def keys(self) -> NDArray[np.float64]:
+        """What the column is sorted by: words by the alphabet; NaN, which comes last, where nothing is known."""
         if self.words is None:
-            return self.numbers
+            return self.numbers.astype(np.float64)
         folded = [word.casefold() for word in self.words]
-        ranks = np.full(len(folded) + 1, len(folded), np.int32)  # -1 finds the last of them
-        ranks[sorted(range(len(folded)), key=folded.__getitem__)] = np.arange(len(folded), dtype=np.int32)
+        ranks = np.full(len(folded) + 1, np.nan)  # -1 finds the last of them
+        ranks[sorted(range(len(folded)), key=folded.__getitem__)] = np.arange(len(folded))
         return ranks[self.numbers]
 
 

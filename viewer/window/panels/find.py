@@ -75,20 +75,20 @@ def _tools(ui: Ui, table: SceneTable) -> None:
     beside = em(2.0) + imgui.get_style().item_spacing.x
     if imgui.get_content_region_avail().x < em(_FIELD) + beside:
         imgui.new_line()
-    _filter(ui, table, imgui.get_content_region_avail().x - beside)
+    imgui.set_next_item_width(imgui.get_content_region_avail().x - beside)
+    _filter(ui, table)
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK}##save", ImVec2(em(2.0), 0.0)):
         table.save()
     tooltip("save these rows as CSV, in this order")
 
 
-def _filter(ui: Ui, table: SceneTable, width: float) -> None:
+def _filter(ui: Ui, table: SceneTable) -> None:
     state = ui.state(FindState)
     if state.focus:
         imgui.set_keyboard_focus_here()
         state.focus = False
     hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  {HINT}"
-    imgui.set_next_item_width(width)
     changed, text = imgui.input_text_with_hint(f"##filter{table.level.value}", hint, table.order.text)
     if changed:
         table.filter(text)
