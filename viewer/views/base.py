@@ -87,12 +87,6 @@ def once(frame: Frame, what: Hashable, find: Callable[[], T]) -> T:
     return found
 
 
-def forget(frame: Frame) -> None:
-    """Forget what was found of a frame."""
-    with _lock:
-        _found.pop(frame, None)
-
-
 def single(numbers: NDArray, name: str, known: NDArray[np.bool_], classes: bool = False) -> Values:
     """Return values of one number a pixel (h, w)."""
     return Values(np.asarray(numbers, np.float32)[..., None], (name,), known, classes)
@@ -101,6 +95,17 @@ def single(numbers: NDArray, name: str, known: NDArray[np.bool_], classes: bool 
 def hits(frame: Frame) -> NDArray[np.bool_]:
     """Find the pixels that show something."""
     return frame.primitive >= 0
+
+
+_SAMPLED = 20_000  # pixels, about, that percentiles are of
+
+
+def percentiles(frame: Frame, numbers: NDArray, *of: float) -> list[float]:
+    """Return percentiles of what is shown of a number (h, w), from pixels evenly spread; none where nothing is hit."""
+    step = max(1, numbers.size // _SAMPLED)
+    sample = numbers.reshape(-1)[::step][frame.primitive.reshape(-1)[::step] >= 0]
+    found: list[float] = np.percentile(sample, of).tolist() if len(sample) else []
+    return found
 
 
 def is_shaded(frame: Frame, x: int, y: int) -> bool:

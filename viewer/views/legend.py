@@ -135,12 +135,12 @@ def fitting(legend: Legend, measure: Measure, line: float, width: float, height:
     """The layout of as much of a legend as there is room for: notes go first, then facts, then the last column.
 
     None where even the colours and their names are too large."""
-    shorter, plain = replace(legend, notes=()), replace(legend, notes=(), facts=())
-    narrow, bare = (
+    plain = replace(legend, notes=(), facts=())
+    narrower = (
         replace(plain, columns=plain.columns[:n], entries=tuple(replace(e, values=e.values[:n]) for e in plain.entries))
         for n in (1, 0)
     )
-    for one in (legend, shorter, plain, narrow, bare):
+    for one in (legend, replace(legend, notes=()), plain, *narrower):
         layout = lay_out(one, measure, line)
         if layout.width <= width and layout.height <= height:
             return layout

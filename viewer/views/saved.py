@@ -12,12 +12,21 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, is_shaded, once, shaded_pixels, single
+from viewer.views.base import (
+    FrameView,
+    Lights,
+    Pixels,
+    Values,
+    Words,
+    is_shaded,
+    once,
+    percentiles,
+    shaded_pixels,
+    single,
+)
 from viewer.views.kinds import filled_in
 from viewer.views.legend import Entry, Legend, Scale, fact
 from viewer.views.paint import by_number, in_range
-
-_SAMPLES = 20_000  # pixels, about, that the range is found from
 
 
 class Work(FrameView):
@@ -43,13 +52,7 @@ class Work(FrameView):
 
     def span(self, frame: Frame) -> tuple[float, float]:
         """Return 0 and the 99th percentile of pixels that hit something, 1 at least."""
-        return once(frame, self.name, lambda: (0.0, self._top(frame)))
-
-    def _top(self, frame: Frame) -> float:
-        work = self.rays(frame)
-        step = max(1, work.size // _SAMPLES)
-        sample = work.reshape(-1)[::step][frame.primitive.reshape(-1)[::step] >= 0]
-        return max(1.0, float(np.percentile(sample, 99.0))) if len(sample) else 1.0
+        return once(frame, self.name, lambda: (0.0, max([1.0, *percentiles(frame, self.rays(frame), 99.0)])))
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         work = self.rays(frame)
