@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,11 @@ class Source:
     frame: Frame
     light: int
 
+    @cached_property
+    def tables(self) -> dict[Level, Table]:
+        """Both tables, made by the first job that asks."""
+        return tables_of(self.now, self.frame, self.light)
+
 
 @dataclass(frozen=True, eq=False)
 class Listing:
@@ -46,7 +52,6 @@ class Listing:
     understood, `problem` says why, and the rows are those of before."""
 
     source: Source
-    tables: dict[Level, Table]
     table: Table
     rows: NDArray[np.int32]
     order: Order
@@ -191,22 +196,18 @@ class SceneTable:
             self._make(self._source)
 
     def _make(self, source: Source) -> None:
-        """Have a listing made, unless it is there or was tried."""
+        """Have a listing made, unless this is what was asked for last."""
         level, order, before = self.level, self.order, self.listing
         asked = source, level, order
-        if asked == self._asked or (before is not None and (before.source, before.order) == (source, order)):
+        if asked == self._asked:
             return
-        tables = next((one.tables for one in self._listings.values() if one.source is source), None)
 
         def work(_: Progress) -> Listing:
-            known = tables or tables_of(source.now, source.frame, source.light)
-            table, problem = known[level], ""
+            table = source.tables[level]
             try:
-                rows = listed(table, order)
+                return Listing(source, table, listed(table, order), order)
             except FilterError as error:
-                problem, rows = str(error), np.arange(table.rows, dtype=np.int32)
-                if before is not None and before.table.rows == table.rows:
-                    rows = before.rows
-            return Listing(source, known, table, rows, order, problem)
+                rows = before.rows if before is not None else np.arange(table.rows, dtype=np.int32)
+                return Listing(source, table, rows, order, str(error))
 
         self._asked, self._job = asked, Job("The table", work, self._wake)

@@ -186,25 +186,15 @@ def typical_depth(frame: Frame) -> float:
 
 
 def primitive_points(scene: Scene, primitive: int, time: float) -> NDArray[np.float64]:
-    """World space corners of a primitive: (3, 3) of a triangle, (8, 3) of a box around a sphere or a cone; (0, 3) where
-    it is beyond all numbers."""
-    corners = _corners(scene, scene.object_of(primitive), np.array([primitive]), time)[0]
-    return corners if np.isfinite(corners).all() else np.empty((0, 3))
+    """World space corners of a primitive, (3, 3) of a triangle, (8, 3) of a box around a sphere or a cone; none of a
+    corner that is beyond all numbers."""
+    return _corners(scene, np.array([primitive]), time)
 
 
 def points_of(now: Edited, picked: Pick, time: float) -> NDArray[np.float64]:
     """(k, 3) corners of what is selected: of the primitive, or of all of a part's that are somewhere."""
-    scene = now.scene
-    if picked.part is None:
-        return primitive_points(scene, picked.primitive, time)
-    found = _primitives_of(now, picked.part)
-    if not len(found):
-        return np.empty((0, 3))
-    index = scene.object_of(int(found[0]))
-    quadrics = found >= scene.triangle_count
-    corners = [_corners(scene, index, found[which], time).reshape(-1, 3) for which in (~quadrics, quadrics)]
-    points = np.concatenate(corners)
-    return points[np.isfinite(points).all(axis=1)]
+    part = picked.part
+    return _corners(now.scene, np.array([picked.primitive]) if part is None else _primitives_of(now, part), time)
 
 
 def outline_of(points: NDArray) -> list[NDArray[np.float64]]:
@@ -224,23 +214,25 @@ def _primitives_of(now: Edited, part: int) -> NDArray:
     return found[found >= 0]
 
 
-def _corners(scene: Scene, index: int, primitives: NDArray, time: float) -> NDArray[np.float64]:
-    """(k, corners, 3) of triangles, or of quadrics, of one object."""
-    owner = scene.objects[index]
+def _corners(scene: Scene, primitives: NDArray, time: float) -> NDArray[np.float64]:
+    """(k, 3) corners of primitives of one object."""
     if not len(primitives):
-        return np.empty((0, 3, 3))
-    if primitives[0] >= scene.triangle_count:
-        local = _boxes(owner.quadrics, primitives - int(scene.quadric_offsets[index]))
+        return np.empty((0, 3))
+    index = scene.object_of(int(primitives[0]))
+    owner, are_quadrics = scene.objects[index], primitives >= scene.triangle_count
+    triangles = primitives[~are_quadrics] - int(scene.triangle_offsets[index])
+    quadrics = primitives[are_quadrics] - int(scene.quadric_offsets[index])
+    if owner.deformation is None:
+        corners = owner.triangles.corners[triangles].astype(np.float64)
     else:
-        which, d = primitives - int(scene.triangle_offsets[index]), owner.deformation
-        if d is not None:
-            keyed = replace(d, times=d.times[which], corners=d.corners[which], normals=d.normals[which])
-            local = deformed(keyed, time)[0].astype(np.float64)
-        else:
-            local = owner.triangles.corners[which].astype(np.float64)
+        d = owner.deformation
+        keyed = replace(d, times=d.times[triangles], corners=d.corners[triangles], normals=d.normals[triangles])
+        corners = deformed(keyed, time)[0].astype(np.float64)
+    local = np.concatenate([corners.reshape(-1, 3), _boxes(owner.quadrics, quadrics).reshape(-1, 3)])
     matrix = scene.animation.matrix(owner.chain, time)
     with np.errstate(all="ignore"):
-        return np.asarray(local @ matrix[:3, :3].T + matrix[:3, 3], np.float64)
+        points = np.asarray(local @ matrix[:3, :3].T + matrix[:3, 3], np.float64)
+    return points[np.isfinite(points).all(axis=1)]
 
 
 def _boxes(quadrics: Quadrics, which: NDArray) -> NDArray[np.float64]:

@@ -23,7 +23,7 @@ from viewer.window.command import Command, Condition, scene_open
 from viewer.window.panels import rays, slicing, what_if
 from viewer.window.panels.camera import camera_commands, time_commands
 from viewer.window.panels.find import FindState
-from viewer.window.panels.pixels import pointed_at, zoom_by
+from viewer.window.panels.pixels import zoom_by
 from viewer.window.setting_rows import setting_command
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
@@ -197,9 +197,9 @@ def _picture(ui: Ui) -> list[Command]:
     enlarged = Condition(lambda: not session.draw.zoom.fits, "the whole picture is shown")
     toned = Condition(lambda: not session.draw.tone.neutral, "colours are shown as traced")
     return [
-        Command("Zoom in", "Picture", lambda: zoom_by(ui, STEP, pointed_at(ui)), "Equal", repeats=True,
+        Command("Zoom in", "Picture", partial(zoom_by, ui, STEP), "Equal", repeats=True,
                 enabled=larger, other_keys=("Shift+Equal", "KeypadAdd")),
-        Command("Zoom out", "Picture", lambda: zoom_by(ui, 1.0 / STEP, pointed_at(ui)), "Minus", repeats=True,
+        Command("Zoom out", "Picture", partial(zoom_by, ui, 1.0 / STEP), "Minus", repeats=True,
                 enabled=enlarged, other_keys=("KeypadSubtract",)),
         Command("Fit picture", "Picture", lambda: session.set_draw(zoom=FIT), "Shift+F", enabled=enlarged),
         setting_command(ui, "pixel_values", "Picture", separated=True),

@@ -240,7 +240,7 @@ def _wheel(ui: Ui, notches: float, at: tuple[float, float]) -> None:
     """Zoom into the picture with Ctrl; else come nearer to what is seen at this point of it, or fly faster."""
     c, speed = ui.controller, ALL["speed"]
     if imgui.get_io().key_ctrl:
-        pixels.zoom_by(ui, STEP**notches, pixels.pointed_at(ui))
+        pixels.zoom_by(ui, STEP**notches)
     elif c.preferences.navigation == "orbit":
         _take_pivot(ui, at)
         if ui.picture.pivot is not None:
