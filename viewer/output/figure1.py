@@ -149,7 +149,7 @@ _SHOW_WHAT_IS_MADE = {
 def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
     s, bar = frame.statistics, bar_of(frame)
     always = (Fate.CULLED, Fate.DYNAMIC_ONLY, Fate.TRACED) if method.culls or by_modes else (Fate.TRACED,)
-    rays = dict.fromkeys(always, 0) | {part.fate: part.rays for part in bar.parts}
+    rays = dict.fromkeys(always, 0) | {part.fate: part.rays for part in bar}
     if method.uses_modes:
         rule = (
             "Of a fully rendered primitive, FULL_SHADOW: culled. NON_SHADOW: only dynamic objects are tested. All "
@@ -164,10 +164,11 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
         )
     else:
         rule = "All rays are traced."
-    names = FATE_WOULD if bar.would and by_modes else FATE_NAMES
+    would = any(part.would for part in bar)
+    names = FATE_WOULD if would and by_modes else FATE_NAMES
     flows = tuple(
         Flow(names[fate], number, FATE_COLORS[fate], FATE_MEANING[fate], View.FATE, percent(number, s.shadow.due),
-             hollow=bar.would and fate.is_saved)
+             hollow=would and fate.is_saved)
         for fate, number in sorted(rays.items())
     )  # fmt: skip
     if s.wrong is not None and s.cuts is None:

@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from tracer.frame import Frame
 from viewer.state.palette import FATE_COLORS, Color, label_color
-from viewer.state.savings import WOULD_OPACITY, bar_of, counters_in_words
+from viewer.state.savings import WOULD_OPACITY, bar_of, counters, in_words, places
 from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, TEXT, Legend, Swatch, fitting, wrapped
 from viewer.views.shadow import STRIPE
 
@@ -62,14 +62,14 @@ def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None
     height, width = pixels.shape[:2]
     size = max(CAPTION_SMALLEST, round(min(width, height) / CAPTION_LINES))
     letters, margin, step = font(size), round(0.6 * size), round(1.35 * size)
-    words = ", ".join(filter(None, (counters_in_words(frame), comparison)))
+    words = ", ".join(filter(None, (in_words(counters(frame)), comparison)))
     lines, bar = wrapped(words, letters.getlength, width - 2 * margin), bar_of(frame)
-    strip = Image.new("RGB", (width, 2 * margin + step * (len(lines) + bool(bar.parts))), in_bytes(BACKDROP))
+    strip = Image.new("RGB", (width, 2 * margin + step * (len(lines) + bool(bar))), in_bytes(BACKDROP))
     draw = ImageDraw.Draw(strip)
     for number, line in enumerate(lines):
         draw.text((margin, margin + number * step), line, in_bytes(TEXT), letters)
     top, pad = margin + len(lines) * step, round(0.35 * size)
-    for part, left, right in bar.places(margin, width - margin):
+    for part, left, right in places(bar, margin, width - margin):
         if right > left:
             color, there = FATE_COLORS[part.fate], WOULD_OPACITY if part.would else 1.0
             drawn = np.multiply(there, color) + np.multiply(1.0 - there, BACKDROP)
