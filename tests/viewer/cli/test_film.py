@@ -96,8 +96,7 @@ def test_what_is_done_is_kept(capfd: pytest.CaptureFixture[str], monkeypatch: py
 
 def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     Path("taken").mkdir()
-    for name in ("0110.png", "0002.png", "10000.png", "notes.png"):
-        Path("taken", name).write_bytes(b"")
+    Path("taken", "0110.png").write_bytes(b"")
     Path("file").write_text("")
     assert run(capfd, "render", "room.aff", "-o", "one.png", *SIZE)[0] == 0
     cases = [
@@ -107,7 +106,7 @@ def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: p
         (("-o", "d", "--through", "one.png"), "needs two bookmarks, or saved pictures, at least; there are 1"),
         (("-o", "d", "--bookmarks"), "at least; there are 0"),
         (("-o", "d", "--bookmarks", "--frames", "0-3"), "not allowed with"),
-        (("-o", "taken"), "numbered pictures in it already, 0002.png to 10000.png; give another folder"),
+        (("-o", "taken"), "numbered pictures in it already; give another folder"),
         (("-o", "file"), "no folder for the pictures"),
         (("-o", "gone/d"), "gone/d: there is no folder gone"),
         (
