@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from tests.viewer.fakes import FLYER_SCENE, PATIENCE, FakeRenderer, make_frame, 
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from tracer.scene.model import Camera, Cancelled
+from tracer.scene.model import Camera, Cancelled, Scene
 from viewer.services.beside import FIRST, MOST, STILL, Baseline, Pair, Rounds, Subject, subject_of
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.render_thread import RenderThread
@@ -23,22 +24,25 @@ CAMERA = Camera((0.0, 1.0, 4.0), (0.0, -0.25, -1.0))
 SIZE = Settings(width=16, height=8)
 
 
+def never() -> bool:
+    return False
+
+
 class Timed:
     """A renderer whose frames take, in turn, the seconds that were given for the method; `made` are certificates.
 
     Those beside it note in the same `order` who traced, and in `taught` whose modes they were given."""
 
     settings = SIZE
-    failing: Exception | None = None
 
-    def __init__(self, seconds: dict[str, list[float]], made: dict[str, list[int]] | None = None) -> None:
-        self.seconds, self.made = seconds, made or {}
+    def __init__(self, seconds: dict[str, list[float]], made: tuple[int, ...] = (), failing: Exception | None = None):
+        self.seconds, self.made, self.failing = seconds, made, failing
         self.order: list[str] = []
         self.taught: list[object] = []
 
     def beside(self) -> Timed:
-        other = Timed(self.seconds, self.made)
-        other.order, other.taught, other.failing = self.order, self.taught, self.failing
+        other = Timed(self.seconds, self.made, self.failing)
+        other.order, other.taught = self.order, self.taught
         return other
 
     def take_modes(self, other: object) -> None:
@@ -48,26 +52,21 @@ class Timed:
         if self.failing is not None:
             raise self.failing
         method = self.settings.method
-        number = self.order.count(method)
+        number, times = self.order.count(method), self.seconds[method]
         self.order.append(method)
         frame = make_frame(self.settings, time, camera)
-        times, made = self.seconds[method], self.made.get(method, [])
         frame.statistics.seconds = times[number % len(times)]
-        frame.statistics.certificates = made[number] if number < len(made) else 0
+        frame.statistics.certificates = self.made[number] if method == "certified" and number < len(self.made) else 0
         return frame
 
 
-def rounds_of(*methods: str) -> Rounds:
-    return Rounds(Subject(1.0, CAMERA, replace(SIZE, method="none"), methods))
+def rounds_of(method: str) -> Rounds:
+    return Rounds(Subject(1.0, CAMERA, replace(SIZE, method="none"), ("none", method)))
 
 
 def step(rounds: Rounds, renderer: Timed, most: int = 10_000) -> int:
     """Go so many steps at most; returns how many there were."""
     return next((n for n in range(1, most + 1) if not rounds.step(renderer, never)), most)
-
-
-def never() -> bool:
-    return False
 
 
 def test_medians_quartiles_and_the_margin():
@@ -83,25 +82,19 @@ def test_medians_quartiles_and_the_margin():
 
 def test_methods_take_turns_after_frames_that_do_not_count_and_stop_once_it_is_known():
     renderer = Timed({"none": [9.0] * FIRST + [0.2] * 60, "paper": [9.0] * FIRST + [0.1] * 60})
-    rounds = rounds_of("none", "paper")
-    assert step(rounds, renderer) == 2 * (FIRST + LEAST)
-    assert renderer.order[: 2 * FIRST] == ["none"] * FIRST + ["paper"] * FIRST
-    counted = renderer.order[2 * FIRST :]
-    assert counted == ["none", "paper", "paper", "none"] * (LEAST // 2), "who is first changes"
+    rounds = rounds_of("paper")
+    assert step(rounds, renderer) == 2 * (FIRST + LEAST) and not rounds.step(renderer, never)
+    counted = ["none", "paper", "paper", "none"] * (LEAST // 2)  # who is first changes
+    assert renderer.order == ["none"] * FIRST + ["paper"] * FIRST + counted
     assert rounds.so_far.settled and rounds.so_far.speed("paper", "none").median == pytest.approx(2.0)
     assert renderer.taught == [renderer] * 2, "each begins with the modes that the window has"
-    assert not rounds.step(renderer, never) and len(renderer.order) == 2 * (FIRST + LEAST)
-
-
-def test_where_the_numbers_go_up_and_down_it_ends_after_so_many_rounds():
-    rounds = rounds_of("none", "paper")
+    rounds = rounds_of("paper")
     step(rounds, Timed({"none": [0.1, 0.3, 0.2], "paper": [0.25, 0.1, 0.15, 0.3]}))
-    assert rounds.so_far.count == MOST and rounds.so_far.settled
+    assert rounds.so_far.settled and rounds.so_far.count == MOST, "numbers that go up and down"
 
 
 def test_nothing_counts_before_the_method_has_made_what_it_makes():
-    rounds = rounds_of("none", "certified")
-    renderer = Timed({"none": [0.1], "certified": [0.1]}, {"certified": [90, 50, 20, 3]})
+    rounds, renderer = rounds_of("certified"), Timed({"none": [0.1], "certified": [0.1]}, made=(90, 50, 20, 3))
     step(rounds, renderer, FIRST + 5 + 1)
     assert rounds.so_far.count == 0
     step(rounds, renderer, 1)
@@ -172,9 +165,8 @@ def test_no_tree_is_built_for_a_figure():
 
 
 def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
-    spare = Spare()
-    begun, renderer = spare.rest(traced()), Timed({"none": [0.1], "paper": [0.1]})
-    renderer.failing = MemoryError()
+    spare, renderer = Spare(), Timed({}, failing=MemoryError())
+    begun = spare.rest(traced())
     with pytest.raises(MemoryError):
         begun.step(renderer, never)
     assert not begun.step(renderer, never)
@@ -228,9 +220,13 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
     assert thread.close(PATIENCE), "the thread hangs"
 
 
+def flyer(folder: Path) -> Scene:
+    (folder / "scene.aff").write_text(FLYER_SCENE)
+    return load_scene(folder / "scene.aff")
+
+
 def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
-    (tmp_path / "scene.aff").write_text(FLYER_SCENE)
-    scene = load_scene(tmp_path / "scene.aff")
+    scene = flyer(tmp_path)
     settings = Settings(width=48, height=32, threads=1, method="paper+rest")
     window, alone = Renderer(scene, settings), Renderer(scene, settings)
     for at in (0.0, 1.0, 1.0):
@@ -239,11 +235,11 @@ def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
     alone.render(1.0)
     rounds = Rounds(Subject(1.0, scene.camera_at(1.0), replace(settings, method="none"), ("none", "paper+rest")))
     for _ in range(2 * FIRST + 2):
-        rounds.step(window, lambda: False)
+        rounds.step(window, never)
         window.take_turn(1.0)
-    found = rounds.so_far.rounds[0]
-    assert found[1].shadow.saved == known.statistics.shadow.saved > 0
-    assert found[0].shadow.rays > found[1].shadow.rays and found[0].occlusion_tests == 0
+    ((none, paper),) = rounds.so_far.rounds
+    assert paper.shadow.saved == known.statistics.shadow.saved > 0
+    assert none.shadow.rays > paper.shadow.rays and none.occlusion_tests == 0
     window.settings = replace(settings, width=24, height=16)
     window.render(1.0)
     window.settings = settings
@@ -259,8 +255,7 @@ def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
 @pytest.mark.parametrize("keeps_modes", [True, False])
 def test_neither_knows_what_the_other_has_found_out(tmp_path, keeps_modes):
     """While an object moves, and when it rests, which counts as static for one of the methods alone."""
-    (tmp_path / "scene.aff").write_text(FLYER_SCENE)
-    scene = load_scene(tmp_path / "scene.aff")
+    scene = flyer(tmp_path)
     settings = Settings(width=48, height=32, threads=1, modes=keeps_modes, record_work=True)
     methods = "paper", "certified"
     alone = [Renderer(scene, replace(settings, method=method)) for method in methods]
