@@ -40,7 +40,7 @@ def save(shown: Shown, path: Path, text: str) -> None:
     figures.save(figure(shown), path, texts_of_file(path.suffix.lower(), text))
 
 
-@styled
+@styled()
 def figure(shown: Shown) -> Figure:
     """Draw it; the same data give the same file."""
     width, height = shown.state.size

@@ -14,7 +14,6 @@ from tracer.experiments.zoom import Step
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
-from tracer.scene.model import Scene
 from viewer.services.beside import Baseline
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
@@ -121,8 +120,8 @@ class Controller:
         place, playing, said = arrival.place, arrival.again and session.playing, arrival.text
         if arrival.again:
             place = session.state  # it is seen as it is now, from where we are
-        if arrival.opened is not None:
-            self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
+        if arrival.renderer is not None:
+            self.show(arrival.renderer, arrival.info)
         if arrival.place is not None:
             self.undo.begin_step("the place of a saved picture")
         if place is not None:
@@ -168,11 +167,6 @@ class Controller:
         seen = self.scheduler.shows_edits or not self.renderer.busy
         self.editing.apply(self.runs.current is not None, seen)
 
-    def inspect_pixel(self) -> None:
-        """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
-        traced = self.own_traced
-        self.inspector.update(traced.frame if traced is not None else None, not self.motion.is_animating)
-
     def frame_inputs(self, size: tuple[int, int]) -> FrameInputs:
         """Return what decides how the next frame is traced, in a window that has room for so many pixels."""
         session = self.session
@@ -201,8 +195,9 @@ class Controller:
             self.editing.forget_modes()
             self.baseline.forget()
 
-    def show(self, scene: Scene, renderer: Renderer, info: dict[str, Any]) -> None:
+    def show(self, renderer: Renderer, info: dict[str, Any]) -> None:
         """Show another scene: what was known and drawn of the old one is gone, settings and view stay."""
+        scene = renderer.scene
         self.runs.stop()
         if self.session.scene is None or self.session.scene.path != scene.path:
             self.undo.clear()

@@ -27,7 +27,7 @@ from viewer.output.commands import cannot_come_back, needs_history
 from viewer.services import stills
 from viewer.services.named_states import Bookmarks
 from viewer.services.pictures import Pictures
-from viewer.services.runs import FileRun, Runs, check_size
+from viewer.services.runs import FileRun, Runs
 from viewer.state import codec, navigation
 from viewer.state.navigation import Stop, Take
 from viewer.state.plans import FilmPlan, frames_within
@@ -192,7 +192,6 @@ class Films:
         plan, state = self.plan, self._pictures.now()
         if state is None:
             raise ValueError("there is nothing to film yet")
-        check_size(plan.size)
         stops = stops_of(self._bookmarks.all, scene) if plan.through_bookmarks else None
         camera = self._session.camera if plan.from_here else None
         filmed = takes(scene, self.frames, stops, plan.seconds, plan.fps, camera)

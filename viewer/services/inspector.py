@@ -19,6 +19,7 @@ from tracer.scene.edits import Edited
 from tracer.told_rays import RayTree
 from tracer.why import why
 from viewer.services.queries import Ask, Newest
+from viewer.services.render_request import Traced
 from viewer.state.picking import Pick, pick, pick_part, pick_primitive, pixel_of, refreshed, same_place
 from viewer.state.pixels import Point, pixel_at
 from viewer.state.session import Session
@@ -153,11 +154,12 @@ class Inspector:
         self._told: Inspection | None = None  # the newest with reasons
         self._traced: RayTree | None = None  # the newest; a picture that is shaded in part so far has none
 
-    def update(self, frame: Frame | None, idle: bool) -> None:
+    def update(self, traced: Traced | None, idle: bool) -> None:
         """Take up what has been answered, and ask about what is looked at now.
 
-        `frame` is the newest, None where nothing may be asked about it; what the pointer is on is asked about when
-        `idle`."""
+        `traced` is the newest picture, None where nothing may be asked about it; what the pointer is on is asked about
+        when `idle`."""
+        frame = traced.frame if traced is not None else None
         kept, self._frame = self._selection.picked, frame
         at = None
         if frame is not None:

@@ -9,6 +9,7 @@ import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -32,8 +33,8 @@ _PLACES = sorted(  # where a shadow is looked for, in parts of the picture's wid
 )
 
 Condition = Callable[[Controller], bool]
-Script = Iterator[float | Condition]
-"""Does a step; yields how many seconds to wait before it goes on, or what must have come by then."""
+Script = Iterator[float]
+"""Does a step; yields how many seconds to wait before it goes on."""
 OpenPanel = Callable[[str], None]
 
 
@@ -50,38 +51,21 @@ class Step:
 
 
 class Tour:
-    """`at` is the number of the step that is next, or None while no tour is being taken; `done` are those done so far:
-    the others are watched for, as somebody may run ahead.  `over` says that the last one was done, until that is
-    dismissed."""
+    """`step` is the one that is next, None while no tour is being taken; `over` says that the last one was done, until
+    that is dismissed."""
 
     def __init__(self, controller: Controller, open_panel: OpenPanel, key: Callable[[str], str]) -> None:
         """`key` returns the key of a command as the user reads it, or else where its menu is."""
         self._c, self._open_panel, self._key = controller, open_panel, key
-        self.at: int | None = None
+        self.step: Step | None = None
         self.over = False
-        self._held = [0] * len(STEPS)  # of each step's conditions
+        self._held = 0  # how many of the step's conditions
         self._script: Script | None = None
-        self._waits_for: Condition = lambda c: False
-        self._waits_until = 0.0
-
-    @property
-    def step(self) -> Step | None:
-        """The step that is next."""
-        return STEPS[self.at] if self.at is not None else None
-
-    @property
-    def done(self) -> set[int]:
-        """The numbers of the steps that are done."""
-        return {number for number, step in enumerate(STEPS) if self._held[number] == len(step.done)}
-
-    @property
-    def showing(self) -> bool:
-        """Whether the step is being done for the user."""
-        return self._script is not None
+        self._goes_on_at = 0.0
 
     def text(self, step: Step) -> str:
         """Return what to do in a step, as things are, with the keys that do it now, or what is being done."""
-        if self.showing and step is self.step and step.shown:
+        if self._script is not None and step is self.step and step.shown:
             return step.shown
         text = step.text if isinstance(step.text, str) else step.text(self._c)
         return re.sub(r"\{(.+?)\}", lambda name: self._key(name[1]), text)
@@ -92,53 +76,41 @@ class Tour:
 
     def start(self) -> None:
         """Begin with the first step."""
-        self._held = [0] * len(STEPS)
         self._c.selection.picked = None  # what was clicked before was not clicked for the tour
-        self.over = False
-        self._go_to(0)
+        self._go_to(STEPS[0])
 
     def end(self) -> None:
         """Take the tour away."""
-        self.at = self._script = None
-        self.over = False
+        self._go_to(None)
 
     def skip(self) -> None:
-        """Go on to the next step that is not done; after the last the tour is over."""
-        if self.at is not None:
-            self._go_to(self.at + 1)
+        """Go on to the next step; after the last the tour ends."""
+        if self.step is not None:
+            self._go_to(next(iter(STEPS[STEPS.index(self.step) + 1 :]), None))
 
     def show(self) -> None:
         """Do the step for the user."""
         if self.step is not None:
-            self._script, self._waits_until = self.step.show(self._c, self._open_panel), 0.0
+            self._script, self._goes_on_at = self.step.show(self._c, self._open_panel), 0.0
 
     def update(self) -> None:
-        """See whether steps are done, once per frame, and go on with what is being shown."""
-        if self.at is None or self._c.frame is None:
+        """See whether the step is done, once per frame, and go on with what is being shown."""
+        if self.step is None or self._c.frame is None:
             return
-        self._go_on_showing()
-        for number, step in enumerate(STEPS):
-            held = self._held[number]
-            self._held[number] += held < len(step.done) and step.done[held](self._c)
-        if self.at in self.done and self._script is None:
+        now = time.monotonic()
+        if self._script is not None and now >= self._goes_on_at:
+            wait = next(self._script, None)
+            self._goes_on_at = now + (wait or 0.0)
+            if wait is None:
+                self._script = None
+        done = self.step.done
+        self._held += self._held < len(done) and done[self._held](self._c)
+        if self._held == len(done) and self._script is None:
             self.skip()
             self.over = self.step is None
 
-    def _go_on_showing(self) -> None:
-        now = time.monotonic()
-        if self._script is None or (now < self._waits_until and not self._waits_for(self._c)):
-            return
-        wait = next(self._script, None)
-        if wait is None:
-            self._script = None
-        elif callable(wait):
-            self._waits_for, self._waits_until = wait, now + PATIENCE
-        else:
-            self._waits_for, self._waits_until = lambda c: False, now + wait
-
-    def _go_to(self, first: int) -> None:
-        self._script = None
-        self.at = next((n for n in range(first, len(STEPS)) if n not in self.done), None)
+    def _go_to(self, step: Step | None) -> None:
+        self.step, self._held, self._script, self.over = step, 0, None, False
 
 
 # --- conditions ------------------------------------------------------------------------------------
@@ -183,6 +155,14 @@ def _tests(c: Controller) -> bool:
 # --- scripts ---------------------------------------------------------------------------------------
 
 
+def _until(holds: Callable[[], object]) -> Script:
+    """Wait for the next frame of the window, and until something has come, but not for ever."""
+    end = time.monotonic() + PATIENCE
+    yield 0.0
+    while not holds() and time.monotonic() < end:
+        yield 0.0
+
+
 def _fly(c: Controller, _: OpenPanel) -> Script:
     c.motion.glide(navigation.fly(c.session.camera, 0.0, 0.0, 0.5 * c.motion.pace, c.motion.world_up))
     yield SECONDS
@@ -194,11 +174,11 @@ def _toggle_culling(c: Controller, open_panel: OpenPanel) -> Script:
     if Method.parse(before).adaptive or not _saves(c):
         c.settings.change(method=with_base(before, BY_MODES))
         c.notices.say(f"the method is {c.session.settings.method} now, as {before} has culled nothing here")
-    yield _shows_culling
+    yield from _until(lambda: _shows_culling(c))
     yield SECONDS
     for seen in (_shows_all_traced, _shows_culling):
         c.settings.toggle_culling()
-        yield seen
+        yield from _until(partial(seen, c))
         yield SECONDS
 
 
@@ -218,7 +198,7 @@ def _click_a_shadow(c: Controller, open_panel: OpenPanel) -> Script:
         picked = c.selection.picked
         if picked is None or picked.dynamic:
             continue
-        yield lambda c: c.inspector.answer is not None
+        yield from _until(lambda: c.inspector.answer is not None)
         answer = c.inspector.answer
         for one in answer.reasons if answer is not None else ():
             if not one.lit and one.blocker not in (-1, picked.primitive):
@@ -231,7 +211,7 @@ def _run_a_zoom_test(c: Controller, open_panel: OpenPanel) -> Script:
     """Go towards a small primitive that is fully rendered, if the picture has one: what is not has no count to grow
     from, and what is large cannot become so many times as large."""
     open_panel("Zoom test")
-    yield lambda c: not c.scheduler.awaits
+    yield from _until(lambda: not c.scheduler.awaits)
     small = _small_primitive(c)
     if small is not None:
         c.selection.select_primitive(small)
@@ -257,21 +237,22 @@ def _small_primitive(c: Controller) -> int | None:
 
 # --- the steps -------------------------------------------------------------------------------------
 
+_THE_SAME = (
+    "The picture looks the same, but without culling every shadow ray is traced: see the bar above the picture, "
+    "hatched while culling is off, and the row Traced in the Statistics panel."
+)
+
 
 def _how_to_toggle(c: Controller) -> str:
     method = Method.parse(c.session.settings.method)
-    seen = (
-        "The picture looks the same, but without culling every shadow ray is traced: see the bar above the picture, "
-        "hatched while culling is off, and the row Traced in the Statistics panel."
-    )
     if method.adaptive:
         return (
             f"Choose {BY_MODES}, the published method, at the top of the Culling panel, and then press "
-            f"{{Shadow culling}} twice. {seen} (The method {method.base} culls only where that is quicker.)"
+            f"{{Shadow culling}} twice. {_THE_SAME} (The method {method.base} culls only where that is quicker.)"
         )
     if method.culls and c.frame is not None and not _saves(c) and not c.active:
         return f"The method {method.base} has culled nothing here yet. Press {{Trace again}} to trace once more."
-    return f"Press {{Shadow culling}} {'twice' if method.culls else 'once more to cull again'}. {seen}"
+    return f"Press {{Shadow culling}} {'twice' if method.culls else 'once more to cull again'}. {_THE_SAME}"
 
 
 STEPS = (
@@ -283,8 +264,7 @@ STEPS = (
     ),
     Step(
         "Turn culling off and on", _how_to_toggle, (_shows_all_traced, _shows_culling), _toggle_culling,
-        "Culling is on, then off, so that every shadow ray is traced, and on again, as it stays. The picture looks the "
-        "same: see the bar above it, hatched while culling is off, and the row Traced in the Statistics panel.",
+        f"Culling is on, then off, and on again, as it stays. {_THE_SAME}",
     ),
     Step(
         "See the modes",

@@ -2,8 +2,10 @@
 
 Hello ImGui owns the window, its GL context, the docking and the screen's density.  It calls a frame in three parts:
 
-    before_widgets   input -> state -> scheduler -> newest frame -> picture, with all GL work
-    widgets          panels (drawn by Hello ImGui from `layout.PANELS`), keys, and what lies over the panels
+    before_widgets   newest frame -> state -> queries about the frame -> scheduler (`advance`), then the picture, with
+                     all GL work
+    widgets          panels (drawn by Hello ImGui from `layout.PANELS`), keys, and what lies over the panels; what the
+                     user does there is in the state, and seen in the next frame of the window
     after_widgets    pictures of the window
 """
 
@@ -32,7 +34,7 @@ from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
 from viewer.window.panels import dialogs, named_states, picture, sides, status
-from viewer.window.ui import CaptureKind, Ui
+from viewer.window.ui import CaptureKind, Graphics, Ui
 
 TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
@@ -68,7 +70,7 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Editing the scene", c.apply_edits)
     step("Comparing", c.comparing.update)
     # The scheduler: queries about the newest frame are answered before the next.
-    step("Inspecting the pixel", c.inspect_pixel)
+    step("Inspecting the pixel", lambda: c.inspector.update(c.own_traced, not c.motion.is_animating))
     step("Listing the scene", lambda: c.table.update(c.own_traced))
     step("Compiling the method", c.loader.compile_method)
     step("Asking for the next frame", lambda: c.scheduler.request(c.frame_inputs(size)))
@@ -149,7 +151,7 @@ class App:
     # --- one frame -------------------------------------------------------------------------------
 
     def before_widgets(self) -> None:
-        """Bring the state forward by the input of the last frame, ask for frames, and draw the newest."""
+        """Take the newest frame, bring the state forward, ask for the next frame, and draw the picture."""
         self._frame_began = time.perf_counter()
         ui, step = self.ui, self.ui.guard.step
         step("Setting the theme", self._set_theme)
@@ -265,7 +267,7 @@ class App:
         call.pre_new_frame = self.before_widgets
         call.show_gui = self.widgets
         call.before_swap = self.after_widgets
-        call.before_exit = self._release
+        call.before_exit = self._leave
         return params
 
     def _menus(self) -> None:
@@ -286,11 +288,11 @@ class App:
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
         opener = self.controller.loader
-        opener.start(self.scene_path, self.given_settings, self.folders, self.meshes)
+        opener.start(self.given_settings, self.folders, self.meshes)
         if self.scene is not None:
             opener.take(self.scene)
-        elif self.scene_path is None:
-            opener.open(default_scene())
+        else:
+            opener.open(self.scene_path or default_scene())
 
     def _close_wanted(self, window: Any) -> None:
         """The window's close button, or the desktop: the same as the command."""
@@ -304,9 +306,9 @@ class App:
         self._dropped_files = [Path(p) for p in paths]
         hello_imgui.request_refresh()
 
-    def _release(self) -> None:
+    def _leave(self) -> None:
         self.controller.wake.connect(None)  # threads may still be at work when the window is gone
-        graphics.release(self.ui)
+        self.ui.graphics = Graphics()  # all of it goes with the context
 
     def _exit(self) -> None:
         self.params.app_shall_exit = True

@@ -1,10 +1,13 @@
 """From a frame to a picture on the screen: the view's pixels as a texture, which ImGui shows as an image.
 
-`viewer.views` makes the pixels, on one core; changing the view, the light or the selection never traces.
+`viewer.views` makes the pixels, on one core; changing the view, the light or the selection never traces.  What is no
+longer referred to here is freed on the GPU by `graphics.draw`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol
@@ -43,6 +46,19 @@ BROUGHT_IN_A_FRAME = 6
 """Recorded pictures brought to the GPU in one of the window's frames, at most."""
 
 
+@contextmanager
+def drawing_into(target: Any, tests: int = moderngl.NOTHING) -> Iterator[None]:
+    """Let a framebuffer be drawn into, with these of OpenGL's tests, and then the window again, without any."""
+    window = target.ctx.detect_framebuffer()
+    try:
+        target.use()
+        target.ctx.enable_only(tests)
+        yield
+    finally:
+        window.use()
+        target.ctx.enable_only(moderngl.NOTHING)
+
+
 class PictureTexture:
     """A picture on the GPU; needs a current GL context.  `version` is another one whenever the picture is."""
 
@@ -64,10 +80,8 @@ class PictureTexture:
             raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, which takes {most} pixels a side")
         _ = self.context.error  # of somebody before us
         if self.picture is None or self.picture.size != size:
-            made = self.context.texture(size, 3, alignment=1)
-            self.release()
-            self.picture = made
-            made.repeat_x = made.repeat_y = False
+            self.picture = self.context.texture(size, 3, alignment=1)
+            self.picture.repeat_x = self.picture.repeat_y = False
         self.picture.write(np.ascontiguousarray(pixels), alignment=1)
         filtering = moderngl.LINEAR if smooth else moderngl.NEAREST
         self.picture.filter = (filtering, filtering)
@@ -82,18 +96,16 @@ class PictureTexture:
         assert self._pixels is not None
         return self._pixels
 
-    def release(self) -> None:
-        """Free it."""
-        if self.picture is not None:
-            self.picture.release()
+    def clear(self) -> None:
+        """Let it go."""
         self.picture = self._pixels = None
 
 
 class Display(PictureTexture):
     """The newest frame in its view."""
 
-    def __init__(self, context: moderngl.Context | None = None) -> None:
-        super().__init__(context or moderngl.create_context())
+    def __init__(self, context: moderngl.Context) -> None:
+        super().__init__(context)
         self.frame: Frame | None = None
         self.part_of: NDArray[np.int32] | None = None
         """(primitives,) the part of the scene that each primitive belongs to, needed while one is selected."""
@@ -132,8 +144,8 @@ class Display(PictureTexture):
         data = self.context.screen.read(viewport=(0, 0, width, height), components=3, alignment=1)
         return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 3)[::-1])
 
-    def release(self) -> None:
-        super().release()
+    def clear(self) -> None:
+        super().clear()
         self.frame = self._drawn = None
 
 
@@ -151,9 +163,10 @@ class Compared:
             self.difference.write(signed_picture(found, limit, ringed), smooth=False)
             self._drawn = found, limit, ringed
 
-    def release(self) -> None:
-        self.a.release()
-        self.difference.release()
+    def clear(self) -> None:
+        """Let all of it go."""
+        self.a.clear()
+        self.difference.clear()
         self._drawn = None
 
 
@@ -184,19 +197,12 @@ class TextureCache:
 
     def update(self) -> None:
         """Keep, or bring, what was asked for since the last time, and nothing else."""
-        for key in self._textures.keys() - self._wanted:
-            self._textures.pop(key).release()
+        self._textures = {key: texture for key, texture in self._textures.items() if key in self._wanted}
         for shot, small in list(self._wanted - self._textures.keys())[:BROUGHT_IN_A_FRAME]:
+            pixels = shot.thumbnail(THUMBNAIL) if small else shot.pixels()
             self._textures[shot, small] = texture = PictureTexture(self._context)
-            texture.write(
-                shot.thumbnail(THUMBNAIL) if small else shot.pixels(), smooth=small
-            )  # a lone wrong pixel stays
+            texture.write(pixels, smooth=small)  # a lone wrong pixel stays
         self._wanted.clear()
-
-    def release(self) -> None:
-        """Free everything on the GPU."""
-        self._wanted.clear()
-        self.update()
 
 
 class Magnifier:
@@ -222,21 +228,14 @@ class Magnifier:
         wanted = source.glo, zoom, size, source.size, version
         if self._shown.get(name) == wanted:
             return
-        window = self._context.detect_framebuffer()
-        try:
-            target = self._targets.get(name)
-            if target is None or target.size != size:
-                self.drop(name)
-                target = self._targets[name] = self._context.framebuffer([self._context.texture(size, 4)])
-            left, top, right, bottom = zoom.shown()
-            program = self._triangle.program
-            program["part"], program["size"] = (left, top, right - left, bottom - top), size
-            source.use(0)
-            target.use()
-            self._context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        if name not in self._targets or self._targets[name].size != size:
+            self._targets[name] = self._context.framebuffer([self._context.texture(size, 4)])
+        left, top, right, bottom = zoom.shown()
+        program = self._triangle.program
+        program["part"], program["size"] = (left, top, right - left, bottom - top), size
+        source.use(0)
+        with drawing_into(self._targets[name]):
             self._triangle.render(moderngl.TRIANGLES, vertices=3)
-        finally:
-            window.use()
         self._shown[name] = wanted
 
     def texture_of(self, name: str, source: int, zoom: Zoom, size: tuple[int, int]) -> int | None:
@@ -245,16 +244,9 @@ class Magnifier:
         return self._targets[name].color_attachments[0].glo if there else None
 
     def drop(self, name: str) -> None:
-        """Free a copy, if there is one."""
-        target = self._targets.pop(name, None)
+        """Let a copy go, if there is one."""
+        self._targets.pop(name, None)
         self._shown.pop(name, None)
-        if target is not None:
-            target.color_attachments[0].release()
-            target.release()
-
-    def release(self) -> None:
-        for name in list(self._targets):
-            self.drop(name)
 
 
 def _selected_border(frame: Frame, window: InWindow, part_of: NDArray[np.int32] | None) -> NDArray[np.bool_]:

@@ -21,21 +21,11 @@ from viewer.window.ui import CaptureKind, Ui
 
 def make(ui: Ui) -> None:
     """Make all that a new context needs."""
-    ui.graphics.display = Display()
-    ui.graphics.textures = TextureCache(ui.graphics.display.context)
-    ui.graphics.compared = Compared(ui.graphics.display.context)
-    ui.graphics.magnifier = Magnifier(ui.graphics.display.context)
-    ui.graphics.renderer_name = ui.graphics.display.context.info["GL_RENDERER"]
-
-
-def release(ui: Ui) -> None:
-    """Free all of it, before the context goes."""
-    release_preview(ui)
-    gl = ui.graphics
-    for part in (gl.compared, gl.magnifier, gl.display, gl.textures):
-        if part is not None:
-            part.release()
-    gl.compared = gl.magnifier = gl.display = gl.textures = None
+    context, gl = moderngl.create_context(), ui.graphics
+    context.gc_mode = "context_gc"  # what nobody refers to is freed where `draw` says so, with the context current
+    gl.display, gl.textures = Display(context), TextureCache(context)
+    gl.compared, gl.magnifier = Compared(context), Magnifier(context)
+    gl.renderer_name = context.info["GL_RENDERER"]
 
 
 def draw(ui: Ui) -> None:
@@ -43,6 +33,7 @@ def draw(ui: Ui) -> None:
     display, c = ui.graphics.display, ui.controller
     if display is None:
         return
+    display.context.gc()
     picked, part, now = c.selection.picked, c.selection.part, c.session.edited
     if part is not None and now is not None:
         display.part_of = ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives])
@@ -61,35 +52,20 @@ def draw_recorded(ui: Ui) -> None:
 
 
 def draw_preview(ui: Ui) -> None:
-    """Draw what is seen while kernels compile from where the camera is; free what it took once there is none any more.
-    The window's framebuffer stays bound.  A preview that failed to be drawn is not tried again."""
+    """Draw what is seen while kernels compile, from where the camera is; what failed to be drawn is not tried again."""
     c, gl = ui.controller, ui.graphics
     geometry = c.preview.geometry
     if gl.display is None or geometry is None:
-        release_preview(ui)
+        gl.preview = None
         return
-    if gl.preview is None or gl.preview.geometry is not geometry:
-        release_preview(ui)
-        gl.preview = PreviewDisplay(gl.display.context, geometry)
-    if min(ui.picture.area) < 1:
-        return
-    window = gl.display.context.detect_framebuffer()
     try:
-        gl.preview.draw(c.session.camera, ui.picture.area)
+        if gl.preview is None or gl.preview.geometry is not geometry:
+            gl.preview = PreviewDisplay(gl.display.context, geometry)
+        if min(ui.picture.area) > 0:
+            gl.preview.draw(c.session.camera, ui.picture.area)
     except Exception:
-        c.preview.geometry = None
-        release_preview(ui)
+        c.preview.geometry = gl.preview = None
         raise
-    finally:
-        window.use()
-        gl.display.context.disable(moderngl.DEPTH_TEST)
-
-
-def release_preview(ui: Ui) -> None:
-    """Free what the preview took."""
-    if ui.graphics.preview is not None:
-        ui.graphics.preview.release()
-    ui.graphics.preview = None
 
 
 def in_window(ui: Ui) -> InWindow:

@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
-from viewer.output.figure1 import TITLE
 from viewer.util.files import write_text
 from viewer.window.gl_window import Rect
 from viewer.window.panels import (
@@ -73,7 +72,7 @@ PANELS = {
         Panel("Culling", "RightMiddle", culling.show),
         Panel("Inspector", "RightBottom", inspector.show),
         Panel("What if", "LeftBottom", what_if.show),
-        Panel(TITLE, "Bottom", figure1.show),
+        Panel("Figure 1", "Bottom", figure1.show),
         Panel("Plots", "Bottom", plots.show),
         Panel("Compare", "Bottom", compare.show),
         Panel("Pixels", "Bottom", pixels.show),

@@ -12,20 +12,23 @@ from numpy.typing import NDArray
 from tracer.scene.camera import Camera
 from viewer.services.preview import MOST_LIGHTS, VERTEX, PreviewGeometry
 from viewer.util.resources import shader_source
+from viewer.window.display import drawing_into
 
 _NEAREST = 2e-4  # of the way to the farthest that is drawn
 _VERSION = "#version 330 core\n"
 
 
 class PreviewDisplay:
-    """A geometry on the GPU, and the target that it is drawn into; needs a current GL context, and what it draws
-    changes the framebuffer and the depth test."""
+    """A geometry on the GPU, and the target that it is drawn into; needs a current GL context."""
 
-    def __init__(self, context: Any, geometry: PreviewGeometry) -> None:
+    def __init__(self, context: moderngl.Context, geometry: PreviewGeometry) -> None:
         self.geometry, self._context = geometry, context
-        self._owned: list[Any] = []
-        self._program: Any = None
+        vertex, fragment = (_VERSION + shader_source(f"preview.{ending}") for ending in ("vert", "frag"))
+        self._program: Any = context.program(vertex_shader=vertex, fragment_shader=fragment)
         self._array: Any = None
+        if len(geometry.vertices):
+            content = (context.buffer(geometry.vertices), "3f4 3f4 3f4", *(VERTEX.names or ()))
+            self._array = context.vertex_array(self._program, [content])
         self._target: Any = None
         self._drawn: object = None
 
@@ -38,35 +41,16 @@ class PreviewDisplay:
         """Draw it in so many pixels, unless that is in the target already."""
         if (camera, size) == self._drawn:
             return
-        if self._array is None and len(self.geometry.vertices):
-            self._upload()
-        target = self._fitting_target(size)
-        target.use()
-        self._context.enable_only(moderngl.DEPTH_TEST)
-        target.clear(*self.geometry.background, 1.0, depth=1.0)
-        if self._array is not None:
-            self._place(camera, size)
-            self._array.render(moderngl.TRIANGLES)
+        if self._target is None or self._target.size != size:
+            color, depth = self._context.texture(size, 4), self._context.depth_texture(size)
+            color.repeat_x = color.repeat_y = False
+            self._target = self._context.framebuffer([color], depth)
+        with drawing_into(self._target, moderngl.DEPTH_TEST):
+            self._target.clear(*self.geometry.background, 1.0, depth=1.0)
+            if self._array is not None:
+                self._place(camera, size)
+                self._array.render(moderngl.TRIANGLES)
         self._drawn = camera, size
-
-    def release(self) -> None:
-        """Free everything on the GPU."""
-        self._release_target()
-        for made in reversed(self._owned):
-            made.release()
-        self._owned.clear()
-
-    def _upload(self) -> None:
-        sources = {
-            f"{stage}_shader": _VERSION + shader_source(f"preview.{ending}")
-            for stage, ending in (("vertex", "vert"), ("fragment", "frag"))
-        }
-        self._program = self._context.program(**sources)
-        self._owned.append(self._program)
-        buffer = self._context.buffer(self.geometry.vertices)
-        self._owned.append(buffer)
-        self._array = self._context.vertex_array(self._program, [(buffer, "3f4 3f4 3f4", *(VERTEX.names or ()))])
-        self._owned.append(self._array)
 
     def _place(self, camera: Camera, size: tuple[int, int]) -> None:
         """The camera, and the lights."""
@@ -81,20 +65,6 @@ class PreviewDisplay:
         program["lights"].write(lights.tobytes())
         # Its columns are the axes, so that p * view is p in them.
         program["view"].write(camera.basis().astype(np.float32).tobytes())
-
-    def _fitting_target(self, size: tuple[int, int]) -> Any:
-        if self._target is None or self._target.size != size:
-            self._release_target()
-            color, depth = self._context.texture(size, 4), self._context.depth_texture(size)
-            color.repeat_x = color.repeat_y = False
-            self._target = self._context.framebuffer([color], depth)
-        return self._target
-
-    def _release_target(self) -> None:
-        if self._target is not None:
-            for made in (self._target, *self._target.color_attachments, self._target.depth_attachment):
-                made.release()
-            self._target = None
 
 
 def _range(camera: Camera, box: NDArray[np.float64]) -> tuple[float, float]:

@@ -6,8 +6,8 @@ import numpy as np
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tests.marbles import LAST, STEP, write_marbles
 from tests.viewer.driver import Driver
-from tests.viewer.fakes import LAST, STEP, write_marbles
 from viewer.state.picking import wrong_at
 from viewer.window.panels.inspector import wrong_beyond
 from viewer.window.panels.plots import PlotsState

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 from tests.viewer.driver import Driver
 from viewer.output.ray_rows import Shown
 from viewer.window.panels import rays as panel
-from viewer.window.ui import RaysState
+from viewer.window.panels.rays import RaysState
 
 KEY = imgui.Key
 

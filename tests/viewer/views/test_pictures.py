@@ -263,7 +263,6 @@ def test_the_window_shows_the_same_and_what_is_selected(frame: Frame, view: View
         display.part_of = np.zeros(frame.primitive.max() + 1, np.int32)
         display.draw(frame, how, InWindow(selected=chosen, selected_part=0))
         assert (display.read()[border] == 255).mean() < 1.0, "it is the part that has the border"
-        display.release()
     context.release()
 
 

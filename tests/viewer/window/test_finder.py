@@ -7,7 +7,8 @@ import pytest
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
 from viewer.window import commands
-from viewer.window.finder import Finder, Item, Kind, find, match
+from viewer.window.command import Command, Kind
+from viewer.window.finder import Finder, find, match
 from viewer.window.guard import Guard
 from viewer.window.panels.command_palette import items
 from viewer.window.ui import Ui
@@ -22,7 +23,7 @@ def ui():
     ui.controller.close()
 
 
-def look_for(ui: Ui, typed: str) -> list[Item]:
+def look_for(ui: Ui, typed: str) -> list[Command]:
     return find(typed, items(ui), ui.controller.preferences.used)
 
 
@@ -58,8 +59,8 @@ def test_what_was_used_last_comes_first(ui):
 def test_what_cannot_be_run_says_why_and_stays_open(ui):
     finder = Finder()
     (play,) = (item for item in items(ui) if item.name == "Play")
-    assert not play.enabled and play.why_not == "nothing moves in this scene" and play.key == "Space"
-    assert finder.enter(play) is None and "nothing moves" in finder.problem
+    assert play.why_not == "nothing moves in this scene" and play.key == "Space"
+    assert not finder.enter(play) and "nothing moves" in finder.problem
 
 
 def test_a_setting_is_typed(ui):
@@ -67,12 +68,12 @@ def test_a_setting_is_typed(ui):
     finder.begin()
     finder.type("bounces")
     finder.update(items(ui), [])
-    assert finder.enter(finder.aimed) is None and finder.setting.label == "Bounces" and finder.typed == "10"
+    assert not finder.enter(finder.aimed) and finder.setting.label == "Bounces" and finder.typed == "10"
     for wrong in ("many", "200", "-1", "", "1.5"):
         finder.type(wrong)
-        assert finder.enter(None) is None and "0 to 100" in finder.problem and c.session.settings.depth == 10
+        assert not finder.enter(None) and "0 to 100" in finder.problem and c.session.settings.depth == 10
     finder.type("3")
-    assert finder.enter(None) is not None and c.session.settings.depth == 3
+    assert finder.enter(None) and c.session.settings.depth == 3
 
 
 def test_lines_are_stepped_through_around_the_end(ui):
@@ -87,7 +88,7 @@ def test_lines_are_stepped_through_around_the_end(ui):
     assert finder.aimed is first
     finder.type("zzzz")
     finder.update(items(ui), [])
-    assert finder.found == [] and finder.aimed is None and finder.enter(None) is None
+    assert finder.found == [] and finder.aimed is None and not finder.enter(None)
 
 
 def test_words_elsewhere_count_for_less_and_a_whole_word_for_most():

@@ -41,7 +41,6 @@ def test_the_preview_has_the_surfaces_of_the_traced_picture():
             camera = scene.camera_at(time)
             display.draw(camera, SIZE)
             depth, drawn = depths_of(display), colors_of(display)
-            display.release()
             frame = renderer.render(time, camera)
             traced = frame.depth * _cosines(camera, width, height)
             shown, at = np.unique(frame.primitive, return_inverse=True)

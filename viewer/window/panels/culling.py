@@ -13,9 +13,10 @@ from tracer.setting import Setting
 from viewer.services.controller import Controller
 from viewer.state import verified
 from viewer.state.methods import groups, toggled, with_base
+from viewer.window import menus
 from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, em, fitted, outlined, paragraph, properties, row, tooltip, wide_button
+from viewer.window.widgets import ERROR, QUIET, em, fitted, outlined, paragraph, properties, row, tooltip
 
 _OF_MODES = ("settings.symmetric", "settings.zoom_factor")
 _NAMES = 10.5  # ems of the names of methods; sentences begin behind them
@@ -46,13 +47,9 @@ def show(ui: Ui) -> None:
         for one in settings if shown else ():
             if one.kind is not bool:
                 setting_row(ui, one, note(one))
-    forget = f"Forget all modes and certificates{ui.key('Reset modes')}."
-    if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", forget, 2):
-        c.reset_modes()
+    menus.button(ui, "Reset modes", icons.ICON_FA_ERASER, columns=2)
     imgui.same_line()
-    again = f"Trace the same frame once more, with what is known after the last one{ui.key('Trace again')}."
-    if wide_button(f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again", again):
-        c.scheduler.trace_again()
+    menus.button(ui, "Trace again", icons.ICON_FA_ROTATE_RIGHT)
     setting_switch(ui, ALL["pace.keep_tracing"])
     said = wrong_answers(c)
     if said is not None:  # at the end, where it moves nothing

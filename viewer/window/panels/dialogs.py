@@ -12,7 +12,7 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import portable_file_dialogs as native
 
-from viewer.services.scene_loader import CAPTURE_SUFFIXES, SCENE_SUFFIXES, refusal
+from viewer.services.scene_files import CAPTURE_SUFFIXES, SCENE_SUFFIXES, refusal
 from viewer.window.panels import command_palette, keys, named_states, saving
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, centred, clipped, em, paragraph

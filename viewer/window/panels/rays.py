@@ -5,6 +5,7 @@ Rays are drawn on their way, and shadow rays as far as light comes, and on."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
 from typing import NamedTuple
@@ -14,17 +15,41 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.frame import Frame
 from tracer.told_rays import AWAY, TRACED, RayTree
-from viewer.output.ray_rows import Filter, RayRows, Row, Shown, totals, unfolded
+from viewer.output.ray_rows import Filter, Key, RayRows, Row, Shown, totals, unfolded
 from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels import lights
 from viewer.window.panels.area import SHADE, Pen
 from viewer.window.panels.links import Pointed
 from viewer.window.setting_rows import ALL, setting_switch
-from viewer.window.ui import RaysState, Ui
+from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip, tooltip_at
 
 _ROWS = 14  # of the tree that are seen at once
 _LIGHT = 14.0  # ems of width, at most, for the name of a light
+
+
+@dataclass
+class RaysState:
+    """The tree of a pixel's rays: which shadow rays are `shown`, the keys of the rows that are folded otherwise than at
+    first and of the `selected` one, the row that the pointer is on, for how many frames it is to `unfold`, and the
+    window's frame in which it was `drawn` last."""
+
+    shown: Filter = field(default_factory=Filter)
+    toggled: frozenset[Key] = frozenset()
+    selected: Key | None = None
+    pointed: Row | None = None
+    unfold: int = 0
+    drawn: int = -2
+
+    def is_open(self, row: Row) -> bool:
+        """Whether what is below a row is seen: at first, what is below rays on their way."""
+        return (len(row.places) == 0) != (row.key in self.toggled)
+
+
+def show_rays(ui: Ui) -> None:
+    """Show the rays of the clicked pixel."""
+    ui.state(RaysState).unfold = 3  # until what is to be scrolled is laid out
+    ui.show_panel("Inspector")
 
 
 def section(ui: Ui) -> None:

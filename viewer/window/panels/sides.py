@@ -50,7 +50,7 @@ def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
     if compared is None:
         return
     if seen is None:
-        compared.release()
+        compared.clear()
     elif seen.difference is not None:
         compared.draw_difference(seen.difference, comparing.limit(seen.difference), options.mark_wrong)
     else:

@@ -31,6 +31,15 @@ def rows(ui: Ui) -> None:
             session.set_draw(slice=cut.in_layer(number, layers))
 
 
+def step(ui: Ui, layers: int) -> None:
+    """Go on by so many layers."""
+    session, frame = ui.controller.session, ui.controller.frame
+    cut = session.draw.slice
+    many = view_of(session.draw.view).layers(frame, cut.axis) if frame is not None else 0
+    if many:
+        session.set_draw(slice=cut.in_layer(cut.layer(many) + layers, many))
+
+
 def lines_at(ui: Ui, x: int, y: int) -> list[str]:
     """What a pixel of the newest frame shows of space, in a view of that; nothing where it shows none."""
     c = ui.controller
