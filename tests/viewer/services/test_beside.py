@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.tracing.same import assert_same
-from tests.viewer.fakes import FLYER_SCENE, PATIENCE, FakeRenderer, make_frame, until
+from tests.viewer.fakes import PATIENCE, FakeRenderer, make_frame, until
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene

@@ -8,15 +8,13 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.runs import missing_in
-from viewer.state.draw_options import NEUTRAL
 from viewer.state.view_state import LONGEST_SIDE
 from viewer.state.views import View, can_draw
+from viewer.window import menus
 from viewer.window.panels import legend, lights, slicing
 from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, WARNING, em, paragraph, properties, right, row, size_field, tooltip
-
-_BUTTON = 2.2  # ems that a row leaves for a button
 
 
 def show(ui: Ui) -> None:
@@ -33,9 +31,10 @@ def show(ui: Ui) -> None:
             if draw.view.has_slice:
                 slicing.rows(ui)
             for one in settings:
-                if one.path == "draw.tone.exposure" and not draw.tone.neutral:
-                    setting_row(ui, one, room=_BUTTON)
-                    _reset_tone(ui)
+                if one.path == "draw.tone.exposure":
+                    setting_row(ui, one, room=2.2)
+                    imgui.same_line(0.0, em(0.3))
+                    menus.button(ui, "Colours as traced", icons.ICON_FA_ROTATE_LEFT, width=1.9)
                 elif one.kind is not bool:
                     setting_row(ui, one)
             _range(ui)
@@ -61,13 +60,6 @@ def show_rendering(ui: Ui) -> None:
                 setting_row(ui, one)
         if shown and c.session.scene is not None and c.session.scene.lights:
             lights.lamp_rows(ui)
-
-
-def _reset_tone(ui: Ui) -> None:
-    imgui.same_line(0.0, em(0.3))
-    if imgui.button(f"{icons.ICON_FA_ROTATE_LEFT}##reset tone", (-1.0, 0.0)):
-        ui.controller.session.set_draw(tone=NEUTRAL)
-    tooltip("Reset exposure, white and curve: colours as traced.")
 
 
 def _views(ui: Ui) -> None:
