@@ -221,7 +221,7 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
 
 
 def flyer(folder: Path) -> Scene:
-    (folder / "scene.aff").write_text(FLYER_SCENE)
+    (folder / "scene.aff").write_text(ROOM)
     return load_scene(folder / "scene.aff")
 
 
