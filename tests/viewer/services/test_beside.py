@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.commands import ROOM
 from tests.tracing.same import assert_same
 from tests.viewer.fakes import PATIENCE, FakeRenderer, make_frame, until
 from tracer.frame import Frame, Settings
