@@ -10,7 +10,7 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from viewer.state.comparison import Side
-from viewer.state.pixels import FIT, GRID_FROM, Point, pixels_shown, zoomed
+from viewer.state.pixels import FIT, GRID_FROM, pixels_shown, zoomed
 from viewer.state.views import can_draw
 from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
@@ -178,18 +178,13 @@ def _numbers(area: Area, width: int, height: int, words: Callable[[int, int], tu
             made.add_text(font, size, ImVec2(middle.x - halves[number], top + number * size), front, line)
 
 
-# --- zoom, which commands change as well ---------------------------------------------------------------
+# --- zoom, by the wheel and by commands ---------------------------------------------------------------
 
 
-def pointed_at(ui: Ui) -> tuple[float, float]:
-    """Return where the pointer is in the picture's room, else its middle."""
-    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.draw.zoom
-    if hovered is None:
-        return 0.5, 0.5
-    return (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale
-
-
-def zoom_by(ui: Ui, factor: float, at: Point = (0.5, 0.5)) -> None:
-    """Enlarge the picture; `at`, 0 to 1 in the room that it has, stays where it is."""
-    session = ui.controller.session
-    session.set_draw(zoom=zoomed(session.draw.zoom, factor, at))
+def zoom_by(ui: Ui, factor: float) -> None:
+    """Enlarge the picture around what is under the pointer, which stays where it is; else around its middle."""
+    session, hovered = ui.controller.session, ui.controller.selection.hovered
+    zoom, at = session.draw.zoom, (0.5, 0.5)
+    if hovered is not None:
+        at = (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale
+    session.set_draw(zoom=zoomed(zoom, factor, at))
