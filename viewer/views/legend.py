@@ -174,10 +174,10 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
 
     if legend.scale is not None:
         scale = legend.scale
-        step_width = inner / STEPS
-        for k, (red, green, blue) in enumerate((signed_map if scale.signed else color_map)(STEPS).tolist()):
-            place = STEPS - 1 - k if scale.reverse else k
-            boxes.append(Box(pad + place * step_width, y + 0.1 * line, step_width, 0.7 * line, (red, green, blue)))
+        colors = (signed_map if scale.signed else color_map)(STEPS).tolist()
+        for k, (red, green, blue) in enumerate(reversed(colors) if scale.reverse else colors):
+            left = inner * k / STEPS  # each as far as the bar's end: there are no seams where the next one begins
+            boxes.append(Box(pad + left, y + 0.1 * line, inner - left, 0.7 * line, (red, green, blue)))
         y += line
         words.append(Words(pad, y, scale.low))
         words.append(Words(pad + (inner - measure(scale.middle)) / 2.0, y, scale.middle, QUIET))
