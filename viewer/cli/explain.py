@@ -26,7 +26,7 @@ from tracer.why_in_words import Words, plain
 from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import working
-from viewer.output.ray_rows import Filter, RayRows, Row, Shown, totals
+from viewer.output.ray_rows import RayFilter, RayRow, RayRows, RaySubset, totals
 from viewer.services.inspector import with_origins
 from viewer.util.messages import printable
 
@@ -55,7 +55,7 @@ def parser() -> Parser:
     options.add_size(parser)
     help_ = f"how shadow rays are culled: {options.METHODS} (default: {DEFAULT_METHOD})"
     add("--method", type=arguments.method, metavar="METHOD", help=help_)
-    add("--only", choices=list(Shown), default="all", help="which shadow rays are listed (default: all)")
+    add("--only", choices=list(RaySubset), default="all", help="which shadow rays are listed (default: all)")
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
     add("--json", action="store_true", help="all rays as JSON on standard output")
     add("--camera", type=arguments.camera, metavar="JSON", help=f"another camera: {options.CAMERA}")
@@ -102,7 +102,7 @@ def run(given: Namespace) -> int:
     title = (
         f"{given.path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
     )
-    _print(found, tree, scene, Filter(Shown(given.only), light), title)
+    _print(found, tree, scene, RayFilter(RaySubset(given.only), light), title)
     return 0
 
 
@@ -117,7 +117,7 @@ def _with_origins(found: Why, frame: Frame, modes: ModeOrigins, before: int) -> 
     return found if origins is None else with_origins(found, origins, name)
 
 
-def _print(found: Why, tree: RayTree, scene: Scene, shown: Filter, title: str) -> None:
+def _print(found: Why, tree: RayTree, scene: Scene, shown: RayFilter, title: str) -> None:
     console = Console()
     if not console.is_terminal:
         console = Console(width=100_000, soft_wrap=True)  # a line for each row, whatever reads it
@@ -125,7 +125,7 @@ def _print(found: Why, tree: RayTree, scene: Scene, shown: Filter, title: str) -
     for line in why_lines(found, scene, shown.light):
         console.print(Text(printable(line)))
     said = [totals(tree)]
-    if shown != Filter():
+    if shown != RayFilter():
         of = "" if shown.light is None else f" of {named_light(scene.lights, shown.light)}"
         said.append(f"shadow rays shown: {shown.shown.value}{of}")
     drawn = Tree(Text("\n".join(said), "bold"), guide_style="dim")
@@ -136,7 +136,7 @@ def _print(found: Why, tree: RayTree, scene: Scene, shown: Filter, title: str) -
         console.print(Text(tree.frame.statistics.decision, "italic"))
 
 
-def _add(tree: Tree, row: Row) -> None:
+def _add(tree: Tree, row: RayRow) -> None:
     """Add a row, and those below it, but for the single samples and lights of many with the same fate."""
     red, green, blue = (round(255 * channel) for channel in row.color)
     below = tree.add(Text(printable(row.text), f"rgb({red},{green},{blue})" if len(row.places) else "bold"))

@@ -48,7 +48,7 @@ SAID: dict[Verdict, str] = {
 }
 
 
-class Shown(StrEnum):
+class RaySubset(StrEnum):
     """Which shadow rays are to be seen."""
 
     ALL = "all"
@@ -58,29 +58,29 @@ class Shown(StrEnum):
     WRONG = "wrong"
 
 
-SHOWN_HELP: dict[Shown, str] = {
-    Shown.ALL: "all lights, also those that the surface faces away from",
-    Shown.TRACED: "shadow rays that were traced through the scene",
-    Shown.UNTRACED: "shadow rays that were due and not traced: culled, dynamic only, candidates and cache",
-    Shown.BLOCKED: "shadow rays that do not reach their light",
-    Shown.WRONG: "shadow rays with a wrong answer",
+SUBSET_HELP: dict[RaySubset, str] = {
+    RaySubset.ALL: "all lights, also those that the surface faces away from",
+    RaySubset.TRACED: "shadow rays that were traced through the scene",
+    RaySubset.UNTRACED: "shadow rays that were due and not traced: culled, dynamic only, candidates and cache",
+    RaySubset.BLOCKED: "shadow rays that do not reach their light",
+    RaySubset.WRONG: "shadow rays with a wrong answer",
 }
 
 
-class Filter(NamedTuple):
+class RayFilter(NamedTuple):
     """Which shadow rays are to be seen, and of which light, None for all."""
 
-    shown: Shown = Shown.ALL
+    shown: RaySubset = RaySubset.ALL
     light: int | None = None
 
     def places(self, rays: ShadowRays) -> NDArray[np.int64]:
         """The places of the rays that are to be seen."""
         kept = {
-            Shown.ALL: np.ones(len(rays.light), np.bool_),
-            Shown.TRACED: rays.verdict == TRACED,
-            Shown.UNTRACED: (rays.verdict != TRACED) & (rays.verdict != AWAY),
-            Shown.BLOCKED: (rays.verdict != AWAY) & ~rays.lit,
-            Shown.WRONG: rays.wrong,
+            RaySubset.ALL: np.ones(len(rays.light), np.bool_),
+            RaySubset.TRACED: rays.verdict == TRACED,
+            RaySubset.UNTRACED: (rays.verdict != TRACED) & (rays.verdict != AWAY),
+            RaySubset.BLOCKED: (rays.verdict != AWAY) & ~rays.lit,
+            RaySubset.WRONG: rays.wrong,
         }[self.shown]
         return np.flatnonzero(kept if self.light is None else kept & (rays.light == self.light))
 
@@ -107,26 +107,26 @@ MOST_LIGHTS = 12
 """Lights of a point that have a row each; of more, those with the same fate have one together."""
 MOST_NAMED = 3  # primitives that are named in a row
 
-Key = tuple[int | str, ...]
+RayKey = tuple[int | str, ...]
 Places = NDArray[np.int64]
 Outcome = tuple[int, int, str, int, str]  # verdict, lit, what blocks it, wrong, what was known
 
 
 @dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
-class Row:
+class RayRow:
     """`ray` is the path ray it is about, and `places` are the shadow rays of that which it stands for, none for the
     path ray itself; `tip` says more about it."""
 
-    key: Key
+    key: RayKey
     text: str
     tip: str
     color: Color
     ray: int
     places: Places = field(default_factory=lambda: np.empty(0, np.int64))
-    below: Callable[[], list[Row]] | None = None
+    below: Callable[[], list[RayRow]] | None = None
 
     @cached_property
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[RayRow]:
         """What is below it."""
         return [] if self.below is None else self.below()
 
@@ -134,15 +134,15 @@ class Row:
 class RayRows:
     """The rows of a tree of rays of a scene, as a filter lets them be seen."""
 
-    def __init__(self, tree: RayTree, scene: Scene, shown: Filter) -> None:
+    def __init__(self, tree: RayTree, scene: Scene, shown: RayFilter) -> None:
         self.tree, self._scene, self._filter = tree, scene, shown
 
     @cached_property
-    def top(self) -> list[Row]:
+    def top(self) -> list[RayRow]:
         """The primary ray's row."""
         return [self._path(number) for number in self.tree.children.get(-1, ())]
 
-    def _path(self, number: int) -> Row:
+    def _path(self, number: int) -> RayRow:
         """A ray on its way, and below it its shadow rays and the rays that it sends on."""
         ray = self.tree.rays[number]
         met = "leaves the scene" if ray.primitive < 0 else f"{self._name(ray.primitive)} at {ray.t:.4g}"
@@ -155,14 +155,14 @@ class RayRows:
             tip.append("shadow rays: " + self._summary(ray.shadows, np.arange(len(ray.shadows.light))))
         text, key = f"{ray.kind.value} ray: {met}", ("ray", number)
 
-        def below() -> list[Row]:
+        def below() -> list[RayRow]:
             s = ray.shadows
             shadows = [] if s is None else self._shadows(number, s, self._filter.places(s), key, of_point=True)
             return shadows + [self._path(one) for one in self.tree.children.get(number, ())]
 
-        return Row(key, text, "\n".join(tip), PATH_COLOR, number, below=below)
+        return RayRow(key, text, "\n".join(tip), PATH_COLOR, number, below=below)
 
-    def _shadows(self, ray: int, s: ShadowRays, places: Places, above: Key, of_point: bool = False) -> list[Row]:
+    def _shadows(self, ray: int, s: ShadowRays, places: Places, above: RayKey, of_point: bool = False) -> list[RayRow]:
         """Rows of shadow rays: those of a point by light, or of many lights by what became of them; below that those of
         a light by what became of them, and those with the same fate one by one."""
         outcomes, lights = self._by_outcome(s, places), len(np.unique(s.light[places]))
@@ -179,7 +179,7 @@ class RayRows:
             return rows
         return [self._group(ray, s, np.array([one]), (*above, one), self._sample(s, one)) for one in places.tolist()]
 
-    def _group(self, ray: int, s: ShadowRays, places: Places, key: Key, name: str) -> Row:
+    def _group(self, ray: int, s: ShadowRays, places: Places, key: RayKey, name: str) -> RayRow:
         """A row for shadow rays: of those alike what they share, else how many have which fate."""
         first, outcomes = int(places[0]), list(self._by_outcome(s, places))
         one_light = bool((s.light[places] == s.light[first]).all())
@@ -192,7 +192,7 @@ class RayRows:
             text, tip = f"{count(len(places))} {what} {self._fate(s, places, by)}", MEANING[VERDICTS[s.verdict[first]]]
         folds = len(places) > 1 and not (one_light and (s.verdict[places] == AWAY).all())
         below = partial(self._shadows, ray, s, places, key) if folds else None
-        return Row(key, f"{name}: {text}" if name else text, tip, color_of(s, places), ray, places, below)
+        return RayRow(key, f"{name}: {text}" if name else text, tip, color_of(s, places), ray, places, below)
 
     def _by_outcome(self, s: ShadowRays, places: Places) -> dict[Outcome, list[int]]:
         """The places with each fate; what blocks them counts where they are of one light."""
@@ -262,7 +262,7 @@ class RayRows:
         return f"sample {place - s.of_light(int(s.light[place])).start}"
 
 
-def unfolded(rows: list[Row], is_open: Callable[[Row], bool], level: int = 0) -> Iterator[tuple[int, Row]]:
+def unfolded(rows: list[RayRow], is_open: Callable[[RayRow], bool], level: int = 0) -> Iterator[tuple[int, RayRow]]:
     """The rows that are seen where some are open, each with its level."""
     for row in rows:
         yield level, row

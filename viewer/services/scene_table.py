@@ -59,8 +59,8 @@ class Listing:
 
 
 class SceneTable:
-    """`level` is what rows are, `orders` what is asked of each level, `held` that the pointer is on it, where rows must
-    not move."""
+    """`level` is what rows are, `orders` what is asked of each level; where the pointer is on the table (`pointed_at`),
+    rows must not move."""
 
     def __init__(
         self,
@@ -76,7 +76,7 @@ class SceneTable:
         self._preferences, self._notices, self._files, self._editing = preferences, notices, files, editing
         self.level = Level.OBJECTS
         self.orders = dict.fromkeys(Level, Order(column="pixels", descending=True))
-        self.visible = self.held = self._watched = False
+        self.visible = self.pointed_at = self._watched = False
         self._source: Source | None = None
         self._listings: dict[Level, Listing] = {}
         self._job: Job[Listing] | None = None
@@ -190,7 +190,7 @@ class SceneTable:
         if traced is not None and traced.whole and traced.request.divisor == 1:
             same = last is not None and last.now is now and last.light == light
             # Further samples of a picture count nothing.
-            if last is None or not same or not (self.held or is_same_picture(last.frame, traced.frame)):
+            if last is None or not same or not (self.pointed_at or is_same_picture(last.frame, traced.frame)):
                 self._source = Source(now, traced.frame, light)
         if self._source is not None:
             self._make(self._source)

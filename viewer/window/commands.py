@@ -20,10 +20,11 @@ from viewer.state.pixels import FIT, MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window.command import Command, Condition, scene_open
-from viewer.window.panels import rays, slicing, what_if
+from viewer.window.panels import rays, what_if
 from viewer.window.panels.camera import camera_commands, time_commands
 from viewer.window.panels.find import FindState
 from viewer.window.panels.pixels import zoom_by
+from viewer.window.panels.view import step_slice
 from viewer.window.setting_rows import setting_command
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
@@ -135,9 +136,9 @@ def _view(ui: Ui) -> list[Command]:
         Command("Previous view", "View", partial(another, -1)),
         Command("Next light", "View", partial(light, 1), "L", enabled=lit, separated=True),
         Command("Previous light", "View", partial(light, -1), "Shift+L", enabled=lit),
-        Command("Next layer of the slice", "View", partial(slicing.step, ui, 1), "Shift+RightBracket", enabled=sliced,
+        Command("Next layer of the slice", "View", partial(step_slice, ui, 1), "Shift+RightBracket", enabled=sliced,
                 separated=True, repeats=True),
-        Command("Previous layer of the slice", "View", partial(slicing.step, ui, -1), "Shift+LeftBracket",
+        Command("Previous layer of the slice", "View", partial(step_slice, ui, -1), "Shift+LeftBracket",
                 enabled=sliced, repeats=True),
         setting_command(ui, "savings", "View", "Shift+B", separated=True),
         setting_command(ui, "draw.legend", "View", "N"),

@@ -14,7 +14,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
 from tracer.told_rays import AWAY, TRACED, RayTree
-from viewer.output.ray_rows import MOST_LIGHTS, Filter, RayRows, Row, Shown, totals, unfolded
+from viewer.output.ray_rows import MOST_LIGHTS, RayFilter, RayRow, RayRows, RaySubset, totals, unfolded
 from viewer.window.panels.rays import MOST_DRAWN, Part, ray_lines
 
 PIXEL = 24, 26  # on the square that mirrors the sphere
@@ -30,7 +30,7 @@ def tree_of(path: Path, more: str = "", **settings) -> tuple[Scene, RayTree]:
     return scene, ray_tree(renderer, frame, *PIXEL)
 
 
-def every_row(rows: RayRows) -> list[Row]:
+def every_row(rows: RayRows) -> list[RayRow]:
     return [row for _, row in unfolded(rows.top, lambda row: True)]
 
 
@@ -45,7 +45,7 @@ def singles(rows: RayRows) -> list[tuple[int, int]]:
 )
 def test_each_ray_has_one_row_and_those_alike_one_above(tmp_path: Path, more: str, settings: dict) -> None:
     scene, tree = tree_of(tmp_path / "a.aff", more, **{"method": "none", **settings})
-    rows = RayRows(tree, scene, Filter())
+    rows = RayRows(tree, scene, RayFilter())
     told = every_row(rows)
     assert [row.ray for row in told if not len(row.places)] == sorted(ray.number for ray in tree.rays)
     due = [(r.number, p) for r in tree.rays for p in range(0 if r.shadows is None else len(r.shadows.light))]
@@ -62,19 +62,19 @@ def test_each_ray_has_one_row_and_those_alike_one_above(tmp_path: Path, more: st
     assert totals(tree).startswith(f"{len(tree.rays)} rays and {tree.due} shadow rays that are due")
 
 
-@pytest.mark.parametrize("shown", [Shown.TRACED, Shown.UNTRACED, Shown.BLOCKED, Shown.WRONG])
-def test_filters_keep_what_they_name(tmp_path: Path, shown: Shown) -> None:
+@pytest.mark.parametrize("shown", [RaySubset.TRACED, RaySubset.UNTRACED, RaySubset.BLOCKED, RaySubset.WRONG])
+def test_filters_keep_what_they_name(tmp_path: Path, shown: RaySubset) -> None:
     scene, tree = tree_of(tmp_path / "a.aff", method="certified", lamp_radius=0.3, lamp_samples=8)
-    kept = set(singles(RayRows(tree, scene, Filter(shown, 1))))
+    kept = set(singles(RayRows(tree, scene, RayFilter(shown, 1))))
     for ray in tree.rays:
         s = ray.shadows
         for place in range(16) if s is not None else ():
             traced, away = s.verdict[place] == TRACED, s.verdict[place] == AWAY
             says = {
-                Shown.TRACED: traced,
-                Shown.UNTRACED: not traced and not away,
-                Shown.BLOCKED: not away and not s.lit[place],
-                Shown.WRONG: bool(s.wrong[place]),
+                RaySubset.TRACED: traced,
+                RaySubset.UNTRACED: not traced and not away,
+                RaySubset.BLOCKED: not away and not s.lit[place],
+                RaySubset.WRONG: bool(s.wrong[place]),
             }[shown] and s.light[place] == 1
             assert ((ray.number, place) in kept) == says
 
@@ -82,7 +82,7 @@ def test_filters_keep_what_they_name(tmp_path: Path, shown: Shown) -> None:
 @pytest.mark.parametrize(("more", "method"), [("", "paper"), (BULBS, "none")], ids=["few", "many"])
 def test_lines_are_dark_behind_what_blocks(tmp_path: Path, more: str, method: str) -> None:
     _, tree = tree_of(tmp_path / "a.aff", more, method=method)
-    lines = ray_lines(tree.frame, tree, Filter())
+    lines = ray_lines(tree.frame, tree, RayFilter())
     drawn = {(line.ray, line.place) for line in lines if line.place >= 0}
     assert len(drawn) == min(MOST_DRAWN, tree.due)
     for ray, place in tree.shadow_rays():

@@ -15,9 +15,9 @@ from tracer.renderer import Renderer
 from viewer.state.views import View
 from viewer.views.tree import LAYERS
 from viewer.views.voxels import voxels_seen
-from viewer.window.panels import slicing
 from viewer.window.panels.light_buffer import CubeState, Unfolded
 from viewer.window.panels.links import Pointed
+from viewer.window.panels.view import words_in_space
 
 KEY = imgui.Key
 
@@ -132,7 +132,7 @@ def _slice(d: Driver) -> None:
     seen = np.argwhere(voxels_seen(d.c.frame, cut)[0] >= 0)
     if len(seen):
         y, x = seen[len(seen) // 2].tolist()
-        assert f", {sides[2] // 2}" in slicing.lines_at(d.ui, x, y)[0]
+        assert f", {sides[2] // 2}" in words_in_space(d.ui, x, y)[0]
 
 
 def _tree(d: Driver) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
-from viewer.output.ray_rows import Shown
+from viewer.output.ray_rows import RaySubset
 from viewer.window.panels import rays as panel
 from viewer.window.panels.rays import RaysState
 
@@ -32,7 +32,7 @@ def rays(d: Driver) -> None:
 
     # Filters hide rows and lines.
     d.click("//Inspector/wrong")
-    assert state.shown.shown is Shown.WRONG and len(panel.rows(d.ui)) < everything and lines_drawn() < drawn
+    assert state.shown.shown is RaySubset.WRONG and len(panel.rows(d.ui)) < everything and lines_drawn() < drawn
     d.click("//Inspector/all")
     assert len(panel.rows(d.ui)) == everything
 

@@ -17,7 +17,7 @@ from tracer.reasons import Reason, Rule, Why
 from tracer.renderer import Renderer
 from tracer.told_rays import RayTree
 from tracer.why_in_words import Link
-from viewer.output.ray_rows import Filter
+from viewer.output.ray_rows import RayFilter
 from viewer.services import inspector as module
 from viewer.state import navigation
 from viewer.window.panels.inspector import summary, unanswered, wrong_beyond
@@ -206,7 +206,7 @@ def test_rays_follow_the_camera_and_an_edit_of_the_scene(desk: PixelDesk):
         return c.inspector.tree
 
     def lines_of(one: RayTree) -> int:
-        return len(ray_lines(one.frame, one, Filter()))
+        return len(ray_lines(one.frame, one, RayFilter()))
 
     c.selection.select(desk.shadow)
     first = tree()

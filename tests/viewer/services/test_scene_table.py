@@ -62,13 +62,13 @@ def test_pixels_and_rays_are_those_of_the_picture(desk: Desk, table: SceneTable)
 
 def test_rows_stay_as_they_are_under_the_pointer(desk: Desk, table: SceneTable) -> None:
     before = known(desk)
-    table.held = True
+    table.pointed_at = True
     desk.c.motion.move(ELSEWHERE)
     desk.until(lambda: desk.c.frame.camera == ELSEWHERE)
     assert known(desk) is before, "the pointer is on it"
     table.sort("number", True)
     assert known(desk).rows.tolist() == sorted(before.rows.tolist(), reverse=True), "a click counts at once"
-    table.held = False
+    table.pointed_at = False
     desk.until(lambda: table.listing.source.frame.camera == ELSEWHERE)
 
 

@@ -48,7 +48,7 @@ def show(ui: Ui) -> None:
     c = ui.controller
     table = c.table
     table.watch()
-    table.held = False
+    table.pointed_at = False
     if c.session.scene is None:
         paragraph("Open a scene to list its objects and primitives.", QUIET)
         return
@@ -154,7 +154,7 @@ def _table(ui: Ui, table: SceneTable, listing: Listing) -> None:
             imgui.table_header(column.title)
             tooltip(column.tip)
     _sort(table, columns)
-    table.held = imgui.is_window_hovered()
+    table.pointed_at = imgui.is_window_hovered()
     wanted, selected = _to_show(ui, table, listing), table.selected
     clipper = imgui.ListClipper()
     clipper.begin(len(listing.rows), imgui.get_text_line_height() + 2.0 * imgui.get_style().cell_padding.y)

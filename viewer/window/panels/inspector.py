@@ -250,9 +250,7 @@ def _modes(ui: Ui, unit: int, frame: Frame, scene: Scene) -> None:
         return
     occlusion = OcclusionMode(int(modes.occlusion_mode(frame.modes[unit])))
     origins, covered = ui.controller.history.origins_of(frame, unit), 0
-    if imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_prop)):
-        imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
-        imgui.table_setup_column("mode", int(imgui.TableColumnFlags_.width_stretch), 1.5)
+    if imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_same)):
         _mode("occlusion", occlusion.name, OCCLUSION_COLORS[occlusion], OCCLUSION_MEANING[occlusion])
         for light in range(len(scene.lights)):
             shadow = shadow_mode_of(frame, unit, light)

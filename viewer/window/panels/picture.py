@@ -23,7 +23,6 @@ from viewer.window.panels import (
     pixels,
     savings,
     sides,
-    slicing,
     status,
     timeline,
     tour,
@@ -31,6 +30,7 @@ from viewer.window.panels import (
 )
 from viewer.window.panels.area import Area, inside, pointer, size_of, write_lines
 from viewer.window.panels.legend import LegendState
+from viewer.window.panels.view import show_words_in_space
 from viewer.window.setting_rows import ALL
 from viewer.window.style import ON_PICTURE_ERROR
 from viewer.window.ui import Ui
@@ -112,7 +112,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     sides.show(ui, area, lower)
     legend.show(ui, area.corner, area.end)
     overlays.show_missing(ui, area.corner, area.end)
-    slicing.show(ui)
+    show_words_in_space(ui)
 
 
 def _fitted(shape: tuple[int, int], room: ImVec2, count: int = 1, gap: float = 0.0) -> tuple[float, float, ImVec2]:

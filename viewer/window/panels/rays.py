@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.told_rays import AWAY, TRACED, RayTree
-from viewer.output.ray_rows import SHOWN_HELP, Filter, Key, RayRows, Row, Shown, totals, unfolded
+from viewer.output.ray_rows import SUBSET_HELP, RayFilter, RayKey, RayRow, RayRows, RaySubset, totals, unfolded
 from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels import lights
 from viewer.window.panels.area import SHADE, Pen
@@ -34,14 +34,14 @@ class RaysState:
     first and of the `selected` one, the row that the pointer is on, for how many frames it is to `unfold`, and the
     window's frame in which it was `drawn` last."""
 
-    shown: Filter = field(default_factory=Filter)
-    toggled: frozenset[Key] = frozenset()
-    selected: Key | None = None
-    pointed: Row | None = None
+    shown: RayFilter = field(default_factory=RayFilter)
+    toggled: frozenset[RayKey] = frozenset()
+    selected: RayKey | None = None
+    pointed: RayRow | None = None
     unfold: int = 0
     drawn: int = -2
 
-    def is_open(self, row: Row) -> bool:
+    def is_open(self, row: RayRow) -> bool:
         """Whether what is below a row is seen: at first, what is below rays on their way."""
         return (len(row.places) == 0) != (row.key in self.toggled)
 
@@ -80,13 +80,13 @@ def are_listed(ui: Ui) -> bool:
     return drawn_now and ui.controller.selection.picked is not None
 
 
-def rows(ui: Ui) -> list[tuple[int, Row]]:
+def rows(ui: Ui) -> list[tuple[int, RayRow]]:
     """The rows that are seen, with their levels: at first, all that is below rays on their way."""
     state, tree, scene = ui.state(RaysState), ui.controller.inspector.tree, ui.controller.session.scene
     if tree is None or scene is None:
         return []
     top = ui.cached("rows of rays", tree, state.shown, lambda: RayRows(tree, scene, state.shown).top)
-    found: list[tuple[int, Row]] = ui.cached(
+    found: list[tuple[int, RayRow]] = ui.cached(
         "rows of rays that are seen", top, state.toggled, lambda: list(unfolded(top, state.is_open))
     )
     return found
@@ -97,12 +97,12 @@ def rows(ui: Ui) -> list[tuple[int, Row]]:
 
 def _filters(ui: Ui, state: RaysState) -> None:
     """Which shadow rays are listed and drawn."""
-    for number, shown in enumerate(Shown):
+    for number, shown in enumerate(RaySubset):
         if number:
             same_line_for(shown.value)
         if imgui.radio_button(shown.value, state.shown.shown is shown):
             state.shown = state.shown._replace(shown=shown)
-        tooltip(SHOWN_HELP[shown])
+        tooltip(SUBSET_HELP[shown])
     imgui.set_next_item_width(min(em(_LIGHT), imgui.get_content_region_avail().x))
 
     def choose(light: int | None) -> None:
@@ -130,7 +130,7 @@ def _tree(ui: Ui, tree: RayTree) -> None:
     imgui.end_child()
 
 
-def _row(state: RaysState, level: int, row: Row) -> None:
+def _row(state: RaysState, level: int, row: RayRow) -> None:
     """One row: its arrow folds it, a click selects it."""
     flags = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_avail_width
     flags |= imgui.TreeNodeFlags_.open_on_arrow | imgui.TreeNodeFlags_.open_on_double_click
@@ -190,7 +190,7 @@ class RayLine(NamedTuple):
     strokes: list[Stroke]
 
 
-def ray_lines(frame: Frame, tree: RayTree, shown: Filter, further: bool = True) -> list[RayLine]:
+def ray_lines(frame: Frame, tree: RayTree, shown: RayFilter, further: bool = True) -> list[RayLine]:
     """The rays on their way and the shadow rays that a filter lets be seen, MOST_DRAWN of these at most: those of the
     first points first, and of one point evenly.  Not `further`: those of the clicked point alone."""
     lines, left = [], MOST_DRAWN
@@ -232,7 +232,7 @@ def draw(ui: Ui, made: Pen, frame: Frame) -> None:
     tree, listed = c.inspector.tree, are_listed(ui)
     if tree is None or c.selection.picked is None or not (listed or c.session.draw.rays):
         return
-    shown = state.shown if listed else Filter()
+    shown = state.shown if listed else RayFilter()
     lines: list[RayLine] = ui.cached(
         "rays", frame, (tree, shown, listed), lambda: ray_lines(frame, tree, shown, listed)
     )
@@ -249,14 +249,14 @@ def draw(ui: Ui, made: Pen, frame: Frame) -> None:
 
 
 def _standing_out(
-    tree: RayTree, frame: Frame, lines: Sequence[RayLine], chosen: Sequence[Row], light: int | None
+    tree: RayTree, frame: Frame, lines: Sequence[RayLine], chosen: Sequence[RayRow], light: int | None
 ) -> list[RayLine]:
     """The lines of chosen rows' rays, and of the clicked point's shadow rays to a light."""
     found = [line for row in chosen for line in lines if line.ray == row.ray and line.place < 0 and not len(row.places)]
     groups = [(row.ray, row.places) for row in chosen if len(row.places)]
     s = tree.rays[0].shadows
     if light is not None and s is not None:
-        groups.append((0, Filter(Shown.ALL, light).places(s)))
+        groups.append((0, RayFilter(RaySubset.ALL, light).places(s)))
     for ray, places in groups:
         found += _shadow_lines(frame, tree, ray, places[:: -(-len(places) // _MOST_CHOSEN) or 1])
     return found
@@ -268,7 +268,7 @@ def _line(made: Pen, line: RayLine, alpha: float, width: float = 1.0) -> None:
     made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around)
 
 
-def _points(made: Pen, tree: RayTree, frame: Frame, chosen: Row | None, further: bool) -> None:
+def _points(made: Pen, tree: RayTree, frame: Frame, chosen: RayRow | None, further: bool) -> None:
     """A ring around each point that is shaded, a larger one at the clicked one; a cross where the chosen ray ends."""
     for ray in tree.rays if further else tree.rays[:1]:
         at = place(frame, ray.end) if ray.shadows is not None else None
