@@ -164,7 +164,7 @@ def fit_table(fitted: dict[str, dict[str, dict[str, float]]]) -> Table:
     return made
 
 
-@styled
+@styled()
 def plot(rows: dict[str, Any], fitted: dict[str, dict[str, dict[str, float]]]) -> Figure:
     """Time and steps a ray over the number of triangles, on a logarithmic axis, with the lines fitted to them."""
     figure = Figure(figsize=SIZE, layout="constrained")

@@ -91,7 +91,7 @@ def inspect(path: Path, size: int) -> dict[str, Any]:
     from tracer.scene.load import load_visible_scene
     from tracer.scene.mesh_options import IN_STUDIO
     from tracer.settings import Settings
-    from viewer.services.scene_loader import open_scene
+    from viewer.services.scene_loader import build
 
     warm_up(lights=1)
     warm_up(lights=96)
@@ -100,12 +100,12 @@ def inspect(path: Path, size: int) -> dict[str, Any]:
     before, started, reports = resident("VmRSS"), time.perf_counter(), Reports()
     scene = load_visible_scene(path, reports, meshes=IN_STUDIO)
     read, most_reading, as_scene = time.perf_counter(), resident("VmHWM"), resident("VmRSS")
-    opened = open_scene(lambda: scene, Settings(width=size, height=size), lambda: True, reports)
+    renderer, _ = build(scene, Settings(width=size, height=size), reports)
     reports("ready", 1.0)
     built, most_building = time.perf_counter(), resident("VmHWM")
-    frame = opened.renderer.render(0.0)
+    frame = renderer.render(0.0)
     drawn = time.perf_counter()
-    opened.renderer.render(0.0)  # what the first has taught
+    renderer.render(0.0)  # what the first has taught
     triangles = room.triangles_of(path) or 0
     return {
         "scene": path.name,

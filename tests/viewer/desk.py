@@ -39,7 +39,7 @@ class Desk:
 
     def open(self, path: Path) -> None:
         scene = load_scene(path)
-        self.c.show(scene, Renderer(scene, self.c.session.settings), scene_info(scene))
+        self.c.show(Renderer(scene, self.c.session.settings), scene_info(scene))
         self.rest()
 
     def tick(self) -> None:

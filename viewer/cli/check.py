@@ -34,7 +34,7 @@ from viewer.output import capture, exr
 from viewer.output.commands import BUILT, CHANCE
 from viewer.output.comparison import comparison_of, text_of_pdf
 from viewer.services import stills
-from viewer.services.scene_loader import find_scene
+from viewer.services.scene_files import find_scene
 from viewer.state import codec
 from viewer.state.methods import NO_CULLING
 from viewer.state.view_state import ViewState, Warmup

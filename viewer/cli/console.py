@@ -59,9 +59,9 @@ class Work:
         return self.stopped
 
     def perform(self, run: Run[Results], world: World | None = None) -> Results:
-        """Do a run and show how far it is; return its results, those that are done where it was cancelled.
+        """Do a run and show how far it is; return its results.
 
-        Raises Cancelled where it was cancelled before there were any."""
+        Where it was cancelled, that is said, and what is done is returned.  Raises Cancelled where nothing is."""
 
         def show() -> None:
             self.count(run.label, run.traced, run.frames)
@@ -71,6 +71,8 @@ class Work:
             pass
         if run.results is None:
             raise Cancelled("cancelled")
+        if not run.whole:
+            self.note("cancelled after {} of {} frames; these are kept".format(*run.done_of))
         return run.results
 
     def note(self, line: str) -> None:
@@ -191,4 +193,4 @@ def fitted(
 def columns_help(columns: Sequence[Column[Row]]) -> str:
     """Say in a line for each column of a table what it means."""
     width = max(len(column.heading) for column in columns)
-    return "columns:\n" + "".join(f"  {column.heading:{width}}  {column.meaning.strip()}\n" for column in columns)
+    return "columns:\n" + "".join(f"  {column.heading:{width}}  {column.meaning}\n" for column in columns)

@@ -87,8 +87,6 @@ def run(given: Namespace) -> int:
         work.perform(film, World(scene, takes[0].time, settings.accelerator, work.progress))
         if film.remark:
             work.note(film.remark)
-        if not film.whole:
-            work.note(f"cancelled after {film.traced} of {film.frames} frames; these are kept")
     for written in filter(None, (folder, video)):
         print(printable(written))
     return 0 if film.whole else INTERRUPTED

@@ -17,7 +17,7 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, listed, print_table, working
 from viewer.output import exports
-from viewer.output.reports import findings
+from viewer.output.reports import findings, title
 from viewer.services import hunts, stills
 from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
@@ -78,16 +78,11 @@ def run(given: Namespace) -> int:
             hunts.check_folder(given.output)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method, NO_CULLING)
         world = World(scene, times[0], settings.accelerator, work.progress)
-        hunt_run = Hunt(scene, search)
-        found = work.perform(hunt_run, world)
-        if work.stopped:
-            work.note(f"cancelled after {hunt_run.traced} of {search.frames} pictures; the table is of these")
+        found = work.perform(Hunt(scene, search), world)
         written = _write(found, scene, search, world, given, work) if given.output is not None else []
     if found.finds:
-        size = f"{found.size[0]} × {found.size[1]}"
-        title = f"{Path(found.scene).name}, {size}, method {found.method}: the worst wrong pixels"
-        columns = findings(scene, {id(find): rank for rank, find in enumerate(found.finds, 1)})
-        print_table(listed(columns, found.finds, title, "off by: of the colour, of 1; light: (+ others)"))
+        heading, caption = f"{title(found)}: the worst wrong pixels", "off by: of the colour, of 1; light: (+ others)"
+        print_table(listed(findings(scene, found.finds), found.finds, heading, caption))
     print(printable(found.summary))
     for file in written:
         print(printable(file))

@@ -18,7 +18,7 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, view_form
 from viewer.output import capture, commands
 from viewer.services import stills
-from viewer.services.scene_loader import find_scene, is_capture
+from viewer.services.scene_files import find_scene, is_capture
 from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
 from viewer.state.methods import BY_MODES, SHOWN_BY, default_for

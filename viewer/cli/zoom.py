@@ -18,7 +18,7 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import columns_help, listed, print_table, working
 from viewer.output import exports
-from viewer.output.reports import APPROACHES, NEVER_WHOLE, STEPS, happenings, never_whole, zoom_title
+from viewer.output.reports import NEVER_WHOLE, STEPS, WRONG_PIXELS, happenings, never_whole, title
 from viewer.state.methods import NO_CULLING
 from viewer.state.plans import parse_factors
 from viewer.util.messages import say
@@ -91,13 +91,8 @@ def run(given: Namespace) -> int:
         start = zoom.aim(frame, primitive)
         test = ZoomTest(scene, settings, start, given.factors, given.steps, given.ratio)
         results = work.perform(test, world)
-        if not test.whole:
-            work.note(f"cancelled after {test.traced} of {test.frames} frames; the tables are of these")
         failures = exports.write_files(results, wanted)
-    for approach in results.approaches:
-        print_table(listed(STEPS, happenings(approach), f"zoom factor {approach.factor:g}"))
-    caption = "wrong pixels: those of this primitive\nculled, dynamic only: shares of the shadow rays due"
-    print_table(listed(APPROACHES, results.approaches, zoom_title(results), caption))
+    print_table(listed(STEPS, happenings(results), title(results), f"wrong: {WRONG_PIXELS}", lambda row: row[0]))
     if never_whole(results):
         say(f"primitive {results.primitive}: {NEVER_WHOLE}")
     if failures:

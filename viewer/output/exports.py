@@ -10,7 +10,6 @@ import csv
 import io
 import json
 import os
-import threading
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
@@ -20,24 +19,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.experiments import experiment, lamp_experiment, zoom
+from tracer.experiments import experiment, zoom
 from tracer.version import program_version
 from viewer.output import reports
 from viewer.state.scene_rows import COLUMNS, Table, Values
 from viewer.util.files import check_writable, whole_file, write_new, write_text
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from viewer.output.filmstrip import Filmstrip
 
-Results = experiment.Results | lamp_experiment.LampResults | zoom.Results
+Results = experiment.Results | zoom.Results
 
 ENDINGS = {".json": "json", ".csv": "csv", ".png": "plot"}
 """The window's files, by their endings; the commands have an option of each kind's name."""
-
-_AT_ONCE = 1 << 14  # rows
-_drawing = threading.Lock()  # matplotlib's settings are global while a figure is drawn
 
 
 def write(results: Results, path: Path, kind: str = "") -> None:
@@ -50,36 +44,24 @@ def write(results: Results, path: Path, kind: str = "") -> None:
     elif kind == "csv":
         write_csv(path, *reports.table_of(results))
     else:
-        _plot(lambda: _figure(results), path)
+        from viewer.output import figures  # loads matplotlib
+
+        if isinstance(results, zoom.Results):
+            figures.save(figures.zoom_figure(results), path)
+        else:
+            figures.save(figures.savings_figure(results), path)
 
 
-def write_json(path: Path, figures: Mapping[str, Any]) -> None:
+def write_json(path: Path, figures: Mapping[str, Any], indent: int | None = None) -> None:
     """Write figures, and which version of the program found them; raises OSError in one line."""
-    write_text(path, json.dumps(dict(figures) | {"version": program_version()}))
+    write_text(path, json.dumps({**figures, "version": program_version()}, indent=indent))
 
 
 def write_film(film: Filmstrip, results: zoom.Results, path: Path) -> None:
     """Write the filmstrip of a zoom test, as a picture; raises as `write`."""
     from viewer.output import figures
 
-    _plot(lambda: figures.film_figure(film, results), path)
-
-
-def _figure(results: Results) -> Figure:
-    from viewer.output import figures  # loads matplotlib
-
-    if isinstance(results, zoom.Results):
-        return figures.zoom_figure(results)
-    if isinstance(results, experiment.Results):
-        return figures.savings_figure(results, bool(results.settings.get("verify")))
-    raise ValueError("there is no plot of several kinds of lamps")
-
-
-def _plot(draw: Callable[[], Figure], path: Path) -> None:
-    from viewer.output import figures
-
-    with _drawing:
-        figures.save(draw(), path)
+    figures.save(figures.film_figure(film, results), path)
 
 
 def wanted_files(options: Namespace) -> dict[str, Path]:
@@ -137,20 +119,14 @@ def write_rows(table: Table, rows: NDArray[np.int32], path: Path) -> None:
     Raises OSError in one line."""
     columns = ((column.title, table.columns.get(column.name)) for column in COLUMNS[table.level])
     known = {title: values for title, values in columns if values is not None}
-
-    def cells() -> Iterator[tuple[str, ...]]:
-        for start in range(0, len(rows), _AT_ONCE):
-            some = rows[start : start + _AT_ONCE]
-            yield from zip(*(_cells(values, some) for values in known.values()), strict=True)
-
-    write_csv(path, list(known), cells())
+    write_csv(path, list(known), zip(*(_cells(values, rows) for values in known.values()), strict=True))
 
 
-def _cells(values: Values, rows: NDArray[np.int32]) -> list[str]:
+def _cells(values: Values, rows: NDArray[np.int32]) -> Iterator[str]:
+    """Give the texts of a column one after another, as there may be millions."""
     numbers = values.numbers[rows]
     if values.words is not None:
-        words = [*values.words, ""]  # -1 finds the last of them
-        return [words[code] for code in numbers.tolist()]
+        return map((*values.words, "").__getitem__, numbers)  # -1 finds the last of them
     if numbers.dtype.kind == "f":
-        return [f"{number:.2f}" if number == number else "" for number in numbers.tolist()]
-    return [str(number) for number in numbers.tolist()]
+        return (f"{number:.2f}" if number == number else "" for number in numbers)
+    return map(str, numbers)

@@ -14,25 +14,12 @@ from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from tracer.method import Method
 from tracer.statistics import FrameStatistics
-from viewer.state import terms, verified
+from viewer.state import palette, terms, verified
 from viewer.state.methods import BY_MODES
-from viewer.state.palette import (
-    FATE_COLORS,
-    FATE_MEANING,
-    FATE_NAMES,
-    FATE_WOULD,
-    OCCLUSION_COLORS,
-    OCCLUSION_MEANING,
-    SHADOW_COLORS,
-    SHADOW_MEANING,
-    WRONG,
-    Color,
-)
+from viewer.state.palette import Color
 from viewer.state.savings import bar_of
 from viewer.state.views import View
 from viewer.util.numbers import count, percent, whole_percent
-
-TITLE = "Figure 1"
 
 
 @dataclass(frozen=True)
@@ -64,29 +51,30 @@ class Stage:
     time: str = "in shading"
     share: float = 0.0
 
+    @property
+    def heading(self) -> str:
+        return f"{self.name} {self.section}".strip()
+
 
 @dataclass(frozen=True)
 class Figure:
-    """The figure of a frame: what it is of, its stages, and, in sentences, what the next frame begins with and what
-    else there is to say."""
+    """The figure of a frame: what it is of, its stages, and sentences below them."""
 
     title: str
     stages: tuple[Stage, ...]
-    next_frame: str
     notes: tuple[str, ...]
 
 
 def figure_of(frame: Frame, name: str = "") -> Figure:
     """Return the figure of a frame, with a name of what it shows."""
     method, s = Method.parse(frame.settings.method), frame.statistics
-    by_modes = frame.settings.keeps_modes and (method.uses_modes or not method.culls) and not method.clusters
+    by_modes = (method.uses_modes or not method.culls) and not method.clusters
     changes = s.mode_changes if by_modes else None
-    stages = [*_until_shading(s, method, by_modes, changes), _shadow_testing(frame, method, by_modes)]
+    stages = [*_until_shading(s, method, changes), _shadow_testing(frame, method, changes is not None)]
     if changes is not None:
         stages += [_shadow_mode_setting(changes), _occlusion_mode_setting(frame, method, changes)]
     title = f"{frame.settings.method}, {frame.width} × {frame.height} pixels, {1e3 * s.seconds:.1f} ms"
-    notes = tuple(_notes(s, method, by_modes))
-    return Figure(", ".join(filter(None, (name, title))), tuple(stages), _next(method, changes), notes)
+    return Figure(", ".join(filter(None, (name, title))), tuple(stages), tuple(_notes(s, method, changes)))
 
 
 def _timed(s: FrameStatistics, stage: Stage, *phases: str, counted: bool = True) -> Stage:
@@ -99,12 +87,11 @@ def _timed(s: FrameStatistics, stage: Stage, *phases: str, counted: bool = True)
     return replace(stage, time=f"{time}, {percent(seconds, s.seconds)}", share=share)
 
 
-def _until_shading(s: FrameStatistics, method: Method, by_modes: bool, changes: ModeChanges | None) -> Iterator[Stage]:
-    moving, flows = OcclusionMode.DYNAMIC, tuple[Flow, ...]()
+def _until_shading(s: FrameStatistics, method: Method, changes: ModeChanges | None) -> Iterator[Stage]:
+    flows: tuple[Flow, ...] = ()
     rule = "Objects and lights move to where they are now. What is known of a light that moved is forgotten."
     if changes is not None:
-        number, tip = changes.units["dynamic"], OCCLUSION_MEANING[moving]
-        flows = (Flow(f"dynamic {_units(method)}", number, OCCLUSION_COLORS[moving], tip, View.OCCLUSION),)
+        flows = (_modes_of(OcclusionMode.DYNAMIC, f"dynamic {_units(method)}", changes.units["dynamic"]),)
     yield _timed(s, Stage("Place dynamic objects", rule, flows), "place")
 
     rule = "A ray through each pixel finds the nearest primitive: generation, traversal, intersection."
@@ -112,7 +99,7 @@ def _until_shading(s: FrameStatistics, method: Method, by_modes: bool, changes: 
     flows = (Flow("primary rays", s.primary.rays, None, tip, View.PRIMITIVE),)
     yield _timed(s, Stage("Primary rays", rule, flows, View.PRIMITIVE), "primary")
 
-    if by_modes:
+    if changes is not None:
         rule = (
             "Where two neighbouring pixels see different primitives, the ray of one is tested against the primitive of "
             "the other: a hit shows that this primitive is partially occluded."
@@ -149,7 +136,7 @@ _SHOW_WHAT_IS_MADE = {
 def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
     s, bar = frame.statistics, bar_of(frame)
     always = (Fate.CULLED, Fate.DYNAMIC_ONLY, Fate.TRACED) if method.culls or by_modes else (Fate.TRACED,)
-    rays = dict.fromkeys(always, 0) | {part.fate: part.rays for part in bar.parts}
+    rays = dict.fromkeys(always, 0) | {part.fate: part.rays for part in bar}
     if method.uses_modes:
         rule = (
             "Of a fully rendered primitive, FULL_SHADOW: culled. NON_SHADOW: only dynamic objects are tested. All "
@@ -164,17 +151,18 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
         )
     else:
         rule = "All rays are traced."
-    names = FATE_WOULD if bar.would and by_modes else FATE_NAMES
+    would = any(part.would for part in bar)
+    names = palette.FATE_WOULD if would and by_modes else palette.FATE_NAMES
     flows = tuple(
-        Flow(names[fate], number, FATE_COLORS[fate], FATE_MEANING[fate], View.FATE, percent(number, s.shadow.due),
-             hollow=bar.would and fate.is_saved)
+        Flow(names[fate], number, palette.FATE_COLORS[fate], palette.FATE_MEANING[fate], View.FATE,
+             percent(number, s.shadow.due), hollow=would and fate.is_saved)
         for fate, number in sorted(rays.items())
     )  # fmt: skip
     if s.wrong is not None and s.cuts is None:
         tip, wrong = f"{terms.MEANINGS[terms.WRONG]}: {verified.share(s.wrong)}", s.wrong
         name = verified.named("wrong", wrong) if wrong.samples > 1 else terms.WRONG
         share = percent(wrong.answers, wrong.due)
-        flows = (*flows, Flow(name, wrong.answers, WRONG, tip, View.DIFFERENCE, share))
+        flows = (*flows, Flow(name, wrong.answers, palette.WRONG, tip, View.DIFFERENCE, share))
     return Stage("Shadow testing", rule, flows, View.FATE, "§2.4")
 
 
@@ -183,19 +171,18 @@ def _shadow_mode_setting(changes: ModeChanges) -> Stage:
         "A blocked ray adds FULL_SHADOW to its primitive and light, an unblocked one NON_SHADOW; both together are "
         "PARTIAL_SHADOW, and always traced."
     )
-    flows = []
-    for mode, name in (
-        (ShadowMode.FULL_SHADOW, "full shadow"),
-        (ShadowMode.NON_SHADOW, "non-shadow"),
-        (ShadowMode.PARTIAL_SHADOW, "partial shadow"),
-    ):
-        key = mode.name.lower()
-        tip = (
-            f"modes gained in this frame, of a primitive and a light each. {mode.name}: {SHADOW_MEANING[mode]}. "
-            f"There are {count(changes.shadow_modes[key])} now."
-        )
-        flows.append(Flow(f"→ {name}", getattr(changes, key), SHADOW_COLORS[mode], tip, View.SHADOW))
-    return Stage("Shadow-mode setting", rule, tuple(flows), View.SHADOW, "§2.5")
+
+    def gained(mode: ShadowMode, name: str, number: int) -> Flow:
+        meaning, now = palette.SHADOW_MEANING[mode], count(changes.shadow_modes[mode.name.lower()])
+        tip = f"{meaning}: modes gained in this frame, of a primitive and a light each; there are {now} now"
+        return Flow(f"→ {name}", number, palette.SHADOW_COLORS[mode], tip, View.SHADOW)
+
+    flows = (
+        gained(ShadowMode.FULL_SHADOW, "full shadow", changes.full_shadow),
+        gained(ShadowMode.NON_SHADOW, "non-shadow", changes.non_shadow),
+        gained(ShadowMode.PARTIAL_SHADOW, "partial shadow", changes.partial_shadow),
+    )
+    return Stage("Shadow-mode setting", rule, flows, View.SHADOW, "§2.5")
 
 
 def _occlusion_mode_setting(frame: Frame, method: Method, changes: ModeChanges) -> Stage:
@@ -204,38 +191,37 @@ def _occlusion_mode_setting(frame: Frame, method: Method, changes: ModeChanges) 
         "What is seen and was not found occluded is FULLY_RENDERED. What covers more than "
         f"{factor} times the pixels by which that was found is INIT again."
     )
-    whole, part, init = OcclusionMode.FULLY_RENDERED, OcclusionMode.PARTIALLY_OCCLUDED, OcclusionMode.INIT
     flows = (
-        Flow("→ fully rendered", changes.fully_rendered, OCCLUSION_COLORS[whole],
-             f"{units} that went from INIT to FULLY_RENDERED in this frame", View.OCCLUSION),
-        Flow("→ partially occluded", changes.partially_occluded, OCCLUSION_COLORS[part],
-             f"{units} that became PARTIALLY_OCCLUDED, and were not in the last frame", View.OCCLUSION),
-        Flow("→ examined anew", changes.examined_anew, OCCLUSION_COLORS[init],
-             f"{units} that went from FULLY_RENDERED to INIT, as they cover more than {factor} times their highest "
-             "pixel count: they may show shadows that were too small before", View.PIXEL_COUNT),
+        _modes_of(OcclusionMode.FULLY_RENDERED, "→ fully rendered", changes.fully_rendered,
+                  f"{units} that went from INIT to FULLY_RENDERED in this frame"),
+        _modes_of(OcclusionMode.PARTIALLY_OCCLUDED, "→ partially occluded", changes.partially_occluded,
+                  f"{units} that became PARTIALLY_OCCLUDED, and were not in the last frame"),
+        _modes_of(OcclusionMode.INIT, "→ examined anew", changes.examined_anew,
+                  f"{units} that went from FULLY_RENDERED to INIT, as they cover more than {factor} times their "
+                  "highest pixel count: they may show shadows that were too small before", View.PIXEL_COUNT),
     )  # fmt: skip
     stage = Stage("Occlusion-mode setting", rule, flows, View.OCCLUSION, "§2.6")
     return _timed(frame.statistics, stage, "mode setting", counted=method.uses_modes)
 
 
-def _notes(s: FrameStatistics, method: Method, by_modes: bool) -> Iterator[str]:
-    """Short ones: the window has one line for them."""
+def _modes_of(mode: OcclusionMode, name: str, number: int, tip: str = "", view: View = View.OCCLUSION) -> Flow:
+    return Flow(name, number, palette.OCCLUSION_COLORS[mode], tip or palette.OCCLUSION_MEANING[mode], view)
+
+
+def _notes(s: FrameStatistics, method: Method, changes: ModeChanges | None) -> Iterator[str]:
+    """Say what the next frame begins with, and more; shortly, as the window has one line for it."""
+    if changes is not None:
+        whole, units = changes.units["fully_rendered"], sum(changes.units.values())
+        yield f"Next frame: {count(whole)} of {count(units)} {_units(method)} fully rendered."
+    elif method.makes:
+        yield f"Next frame: with all {terms.things(terms.made(str(method))[0])} made so far."
     if s.part < 1.0:
         yield f"{whole_percent(s.part)} of pixels shaded so far."
-    if by_modes and not method.culls:
+    if changes is not None and not method.culls:
         brackets = f"; in brackets: {terms.FOR_DISPLAY}" if s.part == 1.0 else ""  # for which there is room
         yield f"Outlined: what {BY_MODES} would do{brackets}."
     if s.decision:
         yield s.decision
-
-
-def _next(method: Method, changes: ModeChanges | None) -> str:
-    if changes is not None:
-        whole, units = changes.units["fully_rendered"], sum(changes.units.values())
-        return f"Next frame: {count(whole)} of {count(units)} {_units(method)} fully rendered."
-    if method.makes:
-        return f"Next frame: with all {terms.things(terms.made(str(method))[0])} made so far."
-    return "Next frame."
 
 
 def _units(method: Method) -> str:

@@ -81,6 +81,11 @@ class Drawing:
     scale: float = 1.0
     parts: list[Box | Words | Arrow] = field(default_factory=list)
 
+    def write(self, x: float, text: str, ink: str, step: float = 0.0, right: bool = False) -> None:
+        """Add a line of text at the bottom, and go on so far below."""
+        self.parts.append(Words(x, self.height, text, ink, right))
+        self.height += step
+
     def at(self, x: float, y: float) -> Box | None:
         """Return what is said something about at a point of the drawing as it is seen, above all else."""
         x, y = x / self.scale, y / self.scale
@@ -91,12 +96,10 @@ class Drawing:
 # --- where its parts lie ----------------------------------------------------------------------------
 
 # All in lines' heights.
-_PAD, _STEP = 0.35, 1.15  # the room inside a box and around it, and from line to line
-_ARROW, _ROWS = 0.7, 1.35  # from a box's left edge to the arrow that leaves it, and to the rows beside this
+_PAD, _STEP, _GAP = 0.35, 1.15, 0.7  # the room inside a box and around it, from line to line, and between two texts
+_ARROW, _ROWS, _NAMES = 0.7, 1.35, 2.4  # from a box's left edge to the arrow that leaves it, the rows, and their names
 _LOOP, _GUTTER = 1.1, 1.6  # the way back to the first stage, at the left edge, and the room between columns
-_TIME = 0.14  # how high the bar of a stage's time is
-_SQUARE, _BETWEEN = 0.7, 0.7  # a row's square of colour, and the room between its columns
-_HEAD = 0.28  # half of an arrow's head
+_TIME, _SQUARE, _HEAD = 0.14, 0.7, 0.28  # the bar of a stage's time, a row's square, and half of an arrow's head
 _WIDEST = 28.0  # a column, where there is room for several: else numbers stand far from their names
 _BOLD = 1.12  # how much wider bold letters are
 _SMALLEST = 0.6  # of the size of letters: what finds no room by smaller ones is scrolled
@@ -109,139 +112,112 @@ def lay_out(figure: Figure, measure: Measure, line: float, width: float, height:
 
     Rules are written out where they find room in letters of full size.  Else they are tips, and letters get smaller
     until all is seen, but not so small that nobody can read them: then the figure is higher than the room."""
-    known, stages, best = cache(measure), len(figure.stages), (0.0, 1)
+    sheet, stages, best = _Sheet(cache(measure), line), len(figure.stages), (0.0, 1)
     fewest = min(max(1, int(width / (_WIDEST * line))), stages)
     for rules in (True, False):
         for columns in range(fewest, stages + 1):
-            drawing = _Sheet(figure, known, line, width, columns, rules).drawing
+            drawing = sheet.draw(figure, width, columns, rules)
             scale = min(1.0, width / drawing.width, height / drawing.height)
             if scale == 1.0:
                 return drawing
             best = max(best, (scale, columns))
     scale, columns = best
-    drawing = _Sheet(figure, known, line, width / scale, columns, rules=False).drawing
+    drawing = sheet.draw(figure, width / scale, columns, rules=False)
     drawing.scale = min(1.0, width / drawing.width, max(height / drawing.height, _SMALLEST))
     return drawing
 
 
+@dataclass(frozen=True)
 class _Sheet:
-    """The figure in so many columns, which are as wide as their texts at least."""
+    """What texts measure, and how high lines are."""
 
-    def __init__(self, figure: Figure, measure: Measure, line: float, width: float, columns: int, rules: bool) -> None:
-        self._measure, self._line, self._rules = measure, line, rules
+    measure: Measure
+    line: float
+
+    def bold(self, text: str) -> float:
+        return _BOLD * self.measure(text)
+
+    def draw(self, figure: Figure, width: float, columns: int, rules: bool) -> Drawing:
+        """Return the figure in so many columns, which are as wide as their texts at least."""
+        line = self.line
         gaps = (_LOOP + (columns - 1) * _GUTTER) * line
-        self._column = max((width - gaps) / columns, *map(self._least_width, figure.stages))
-        self.drawing = Drawing(columns * self._column + gaps)
-        if figure.title:
-            self._write(wrapped(figure.title, self._bold, self.drawing.width), 0.0, STRONG)
-            self.drawing.height += 0.3 * line
-        self._columns(figure.stages, columns)
-        x = _LOOP * line
-        said = " ".join((figure.next_frame, *figure.notes))
-        self._write(wrapped(said, measure, self.drawing.width - x), x, QUIET)
+        column = max((width - gaps) / columns, *map(self._least_width, figure.stages))
+        drawing = Drawing(columns * column + gaps)
+        for text in wrapped(figure.title, self.bold, drawing.width) if figure.title else ():
+            drawing.write(0.0, text, STRONG, _STEP * line)
+        drawing.height += 0.3 * line if figure.title else 0.0
+        self._columns(drawing, figure.stages, column, columns, rules)
+        for text in wrapped(" ".join(figure.notes), self.measure, drawing.width - _LOOP * line):
+            drawing.write(_LOOP * line, text, QUIET, _STEP * line)
+        return drawing
 
-    def _bold(self, text: str) -> float:
-        return _BOLD * self._measure(text)
-
-    def _write(self, lines: Sequence[str], x: float, ink: str = TEXT) -> None:
-        """Add lines of text at the bottom."""
-        for text in lines:
-            self.drawing.parts.append(Words(x, self.drawing.height, text, ink))
-            self.drawing.height += _STEP * self._line
-
-    def _arrow(self, *points: Point, head: float = _HEAD) -> None:
-        self.drawing.parts.append(Arrow(points, head * self._line))
-
-    def _columns(self, stages: Sequence[Stage], columns: int) -> None:
-        """All stages, from column to column, and the way from the last back to the first."""
-        drawing, line, top = self.drawing, self._line, self.drawing.height
-        entrance, foot, end = top + (_PAD + 0.5) * line, top, (0.0, 0.0)
-        heights = [self._height(stage) for stage in stages]
+    def _columns(self, drawing: Drawing, stages: Sequence[Stage], width: float, columns: int, rules: bool) -> None:
+        """Add all stages, from column to column, with arrows between them and from the last back to the first."""
+        line, top, foot, end = self.line, drawing.height, 0.0, (0.0, 0.0)
+        entrance, head, heights = top + (_PAD + 0.5) * line, _HEAD * line, []
+        for stage in stages:  # each is as high as it comes out alone
+            alone = Drawing(width)
+            self._stage(alone, stage, 0.0, width, rules)
+            heights.append(alone.height)
         for number, span in enumerate(_split(heights, columns)):
-            x = _LOOP * line + number * (self._column + _GUTTER * line)
+            x, drawing.height = _LOOP * line + number * (width + _GUTTER * line), top
             if number:  # from the foot of the column before
                 turn = x - 0.5 * _GUTTER * line
-                self._arrow(end, (turn, end[1]), (turn, entrance), (x, entrance))
-            drawing.height = top
+                drawing.parts.append(Arrow((end, (turn, end[1]), (turn, entrance), (x, entrance)), head))
             for place in span:
-                leaves = self._stage(stages[place], x)
+                leaves = self._stage(drawing, stages[place], x, width, rules)
                 end = x + _ARROW * line, drawing.height
-                self._arrow((end[0], leaves), end, head=0.0 if place == span[-1] else _HEAD)
-            foot = max(foot, drawing.height)
-        left, drawing.height = 0.35 * line, foot + 0.15 * line
-        back = (end[0], drawing.height), (left, drawing.height), (left, entrance), (_LOOP * line, entrance)
-        self._arrow(end, *back)
-        drawing.height += 0.2 * line
-
-    def _height(self, stage: Stage) -> float:
-        """What a stage takes, found by drawing it elsewhere."""
-        own, self.drawing = self.drawing, Drawing(self._column)
-        self._stage(stage, 0.0)
-        scratch, self.drawing = self.drawing, own
-        return scratch.height
-
-    def _stage(self, stage: Stage, x: float) -> float:
-        """A box, and the rows beside the arrow that leaves it; returns where this leaves it."""
-        drawing, line, pad = self.drawing, self._line, _PAD * self._line
-        inner, heading, top = self._column - 2.0 * pad, f"{stage.name} {stage.section}".strip(), drawing.height
-        drawing.parts.append(Box(x, top, self._column, 0.0, BOX))
-        place = len(drawing.parts) - 1  # the box, which is as high as what is in it
-        drawing.height += pad
-        if self._bold(heading) + self._measure(stage.time) + _BETWEEN * line <= inner:
-            drawing.parts.append(Words(x + pad + inner, drawing.height, stage.time, QUIET, right=True))
-            self._write([heading], x + pad, STRONG)
-        else:
-            self._write([heading], x + pad, STRONG)
-            self._write([stage.time], x + pad, QUIET)
-        self._write(wrapped(stage.rule, self._measure, inner) if self._rules else [], x + pad)
-        bottom = drawing.height + pad - 0.15 * line
-        tip = f"{heading}\n{stage.rule}\n{stage.time}"
-        drawing.parts[place] = Box(x, top, self._column, bottom - top, BOX, tip=tip, view=stage.view)
-        if stage.share:
-            height = _TIME * line
-            drawing.parts.append(Box(x, bottom - height, self._column * stage.share, height, TIME))
-        drawing.height = bottom + pad
-        self._rows(stage, x)
-        drawing.height = max(drawing.height, bottom + pad + 0.4 * line) + pad
-        return bottom
-
-    # --- what leaves a stage ----------------------------------------------------------------------
+                drawing.parts.append(Arrow(((end[0], leaves), end), 0.0 if place == span[-1] else head))
+            foot = max(foot, drawing.height + 0.15 * line)
+        left, drawing.height = 0.35 * line, foot + 0.2 * line
+        back = (end[0], foot), (left, foot), (left, entrance), (_LOOP * line, entrance)
+        drawing.parts.append(Arrow((end, *back), head))
 
     def _least_width(self, stage: Stage) -> float:
-        """The width in which nothing of a stage is cut: its name, its time, and the rows that leave it."""
-        texts = max(self._bold(f"{stage.name} {stage.section}"), self._measure(stage.time)) + 2.0 * _PAD * self._line
-        room = self._names_at(stage) + self._numbers(stage) + self._shares(stage)
-        return max(texts, room + max((self._measure(flow.name) for flow in stage.flows), default=0.0))
-
-    def _names_at(self, stage: Stage) -> float:
-        return (_ROWS + (_SQUARE + 0.35 if any(flow.color for flow in stage.flows) else 0.0)) * self._line
-
-    def _numbers(self, stage: Stage) -> float:
-        return max((self._bold(f"{flow.number:,}") for flow in stage.flows), default=0.0) + _BETWEEN * self._line
+        """Return the width in which nothing of a stage is cut: its name, its time, and the rows that leave it."""
+        texts = max(self.bold(stage.heading), self.measure(stage.time)) + 2.0 * _PAD * self.line
+        names = max((self.measure(flow.name) for flow in stage.flows), default=0.0)
+        numbers = max((self.bold(f"{flow.number:,}") for flow in stage.flows), default=0.0)
+        return max(texts, (_NAMES + _GAP) * self.line + names + numbers + self._shares(stage))
 
     def _shares(self, stage: Stage) -> float:
-        widest = max((self._measure(flow.share) for flow in stage.flows), default=0.0)
-        return widest + _BETWEEN * self._line if widest else 0.0
+        """Return the width of a stage's shares, with the room before them."""
+        widest = max((self.measure(flow.share) for flow in stage.flows), default=0.0)
+        return widest + _GAP * self.line if widest else 0.0
 
-    def _rows(self, stage: Stage, x: float) -> None:
-        """Square, name, number and share of each, below each other."""
-        drawing, line, square, right = self.drawing, self._line, _SQUARE * self._line, x + self._column
-        names, numbers, left = x + self._names_at(stage), right - self._shares(stage), x + _ROWS * line
+    def _stage(self, drawing: Drawing, stage: Stage, x: float, width: float, rules: bool) -> float:
+        """Add a stage: its box, and below it the rows of what leaves it; returns where the box ends."""
+        line, pad, step = self.line, _PAD * self.line, _STEP * self.line
+        top, place, inner, right = drawing.height, len(drawing.parts), width - 2.0 * pad, x + width
+        drawing.height += pad
+        beside = self.bold(stage.heading) + self.measure(stage.time) + _GAP * line <= inner
+        drawing.write(x + pad, stage.heading, STRONG, 0.0 if beside else step)
+        drawing.write(right - pad, stage.time, QUIET, step, right=True)
+        for text in wrapped(stage.rule, self.measure, inner) if rules else ():
+            drawing.write(x + pad, text, TEXT, step)
+        foot = drawing.height + pad - 0.15 * line
+        tip = f"{stage.heading}\n{stage.rule}\n{stage.time}"
+        drawing.parts.insert(place, Box(x, top, width, foot - top, BOX, tip=tip, view=stage.view))
+        if stage.share:
+            drawing.parts.append(Box(x, foot - _TIME * line, width * stage.share, _TIME * line, TIME))
+        drawing.height, left, square = foot + pad, x + _ROWS * line, _SQUARE * line
         for flow in stage.flows:
-            y, said = drawing.height, f"{flow.name}: {flow.number:,}" + (f" ({flow.share})" if flow.share else "")
+            y, number = drawing.height, f"{flow.number:,}"
             if flow.color is not None:
                 inset = 0.5 * (line - square)
                 drawing.parts.append(Box(left, y + inset, square, square, flow.color, flow.hollow))
-            drawing.parts.append(Words(numbers, y, f"{flow.number:,}", STRONG, right=True))
+            drawing.write(right - self._shares(stage), number, STRONG, right=True)
             if flow.share:
-                drawing.parts.append(Words(right, y, flow.share, QUIET, right=True))
-            self._write([flow.name], names)
-            tip = f"{said}\n{flow.tip}"
-            drawing.parts.append(Box(left, y, right - left, _STEP * line, tip=tip, view=flow.view))
+                drawing.write(right, flow.share, QUIET, right=True)
+            drawing.write(x + _NAMES * line, flow.name, TEXT, step)
+            tip = f"{flow.name}: {number}{f' ({flow.share})' if flow.share else ''}\n{flow.tip}"
+            drawing.parts.append(Box(left, y, right - left, step, tip=tip, view=flow.view))
+        drawing.height = max(drawing.height, foot + pad + 0.4 * line) + pad
+        return foot
 
 
 def _split(heights: Sequence[float], columns: int) -> list[range]:
-    """Consecutive spans, one for each column, whose highest is as low as can be."""
+    """Return consecutive spans, one for each column, whose highest is as low as can be."""
 
     def highest(cuts: tuple[int, ...]) -> float:
         return max(sum(heights[a:b]) for a, b in pairwise((0, *cuts, len(heights))))

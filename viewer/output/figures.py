@@ -1,4 +1,4 @@
-"""Figures for slides and papers: of experiments, zoom tests and sweeps, and what all figures have in common.
+"""Figures for slides and papers: of experiments and zoom tests, and what all figures have in common.
 
 Importing this loads matplotlib, which takes a second: import it where a figure is wanted.  Nothing of a user's own
 matplotlib settings shows, and the same data give the same file.
@@ -6,9 +6,11 @@ matplotlib settings shows, and the same data give the same file.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 from matplotlib import style
@@ -20,12 +22,9 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, PercentFor
 from tracer.experiments import zoom
 from tracer.experiments.experiment import REFERENCE, Results, Row, table
 from viewer.output.filmstrip import Filmstrip, Shot
-from viewer.output.reports import NEVER_WHOLE, WRONG_PIXELS, experiment_title, happenings, never_whole, zoom_title
+from viewer.output.reports import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
 from viewer.util.files import write_whole
 from viewer.util.numbers import saved
-
-if TYPE_CHECKING:  # this needs pyarrow
-    from tracer.experiments.sweep_summary import Line
 
 ENDINGS = (".png", ".svg", ".pdf")
 # Okabe and Ito's colours, those that read well as letters first; in greys, dashes and marks distinguish methods.
@@ -50,8 +49,14 @@ _STYLE: dict[str, Any] = {
     "svg.hashsalt": "shadowcull",
 }
 
-styled = style.context(["default", _STYLE])
-"""Decorates a function that draws or writes, to do it in this module's style."""
+_drawing = threading.RLock()
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Draw or write in this module's style, on one thread at a time: matplotlib's settings are global."""
+    with _drawing, style.context(["default", _STYLE]):
+        yield
 
 
 def check_ending(path: Path) -> None:
@@ -60,7 +65,7 @@ def check_ending(path: Path) -> None:
         raise ValueError(f"{path}: unknown kind of plot; give one of {' '.join(ENDINGS)}")
 
 
-@styled
+@styled()
 def save(figure: Figure, path: Path, kept: Mapping[str, str] | None = None) -> None:
     """Write a figure as its ending says, one of ENDINGS, whole or not at all, with texts to be kept in it; raises
     OSError in one line."""
@@ -89,15 +94,19 @@ def bare(panel: Axes) -> None:
         side.set_visible(False)
 
 
-def look(number: int, mark: bool = True) -> dict[str, Any]:
-    """Return how the curve with this number is drawn: its colour, its dashes, and its mark."""
-    found = {"color": COLORS[number % len(COLORS)], "linestyle": DASHES[number % len(DASHES)]}
-    return found | ({"marker": MARKS[number % len(MARKS)]} if mark else {})
+def look(number: int) -> dict[str, Any]:
+    """Return how the curve with this number is drawn: its colour and its dashes."""
+    return {"color": COLORS[number % len(COLORS)], "linestyle": DASHES[number % len(DASHES)]}
 
 
-def _beside(panel: Axes) -> None:
-    """Name a panel's curves at its right."""
-    panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), borderaxespad=0.0, labelspacing=0.8)
+def _over(figure: Figure, panels: Sequence[Axes], what: str) -> Figure:
+    """Finish panels below each other over the same whole numbers: their curves are named at their right."""
+    for panel in panels:
+        panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), borderaxespad=0.0, labelspacing=0.8)
+    panels[-1].set_xlabel(what)
+    panels[-1].xaxis.set_major_locator(MaxNLocator(steps=[1, 2, 5, 10], integer=True, min_n_ticks=1))
+    figure.align_ylabels(panels)
+    return figure
 
 
 # --- experiments -----------------------------------------------------------------------------------
@@ -106,19 +115,20 @@ _WORKS = (("steps", "Traversal steps\nsaved"), ("tests", "Intersection tests\nsa
 _FEW = 40  # frames up to which each has a dot
 
 
-@styled
-def savings_figure(results: Results, verified: bool) -> Figure:
+@styled()
+def savings_figure(results: Results) -> Figure:
     """Draw the part of the shadow rays' work that each method saves against the reference, frame by frame.
 
-    One curve per method for traversal steps and one for intersection tests, each with its average and its maximum;
-    where `verified`, the wrong answers of each frame below them, or that there are none.  Raises ValueError where there
-    is no frame, or no method beside the reference."""
+    One curve per method for traversal steps and one for intersection tests, each with its average and its maximum; of
+    verified frames the wrong answers below them, or that there are none.  Raises ValueError where there is no frame, or
+    no method beside the reference."""
+    verified = bool(results.settings.get("verify"))
     rows = [row for row in table(results) if row.method != REFERENCE]
     if not rows:
         raise ValueError("there is nothing to plot: no frame, or no method to compare with the reference")
     any_wrong = any(row.wrong for row in rows)
     checked = ("" if any_wrong else ", no wrong answer") if verified else ", answers not verified"
-    figure = page(f"Work of shadow rays saved by culling\n{experiment_title(results)}{checked}")
+    figure = page(f"Work of shadow rays saved by culling\n{title(results)}{checked}")
     heights = [3.0, 3.0, 1.6] if verified and any_wrong else [1.0, 1.0]
     panels: Sequence[Axes] = figure.subplots(len(heights), sharex=True, gridspec_kw={"height_ratios": heights})
     for panel, (work, label) in zip(panels, _WORKS):
@@ -135,12 +145,7 @@ def savings_figure(results: Results, verified: bool) -> Figure:
         panel.yaxis.set_major_locator(MaxNLocator(3, integer=True))
         panel.yaxis.set_major_formatter("{x:,.0f}")
         panel.set_ylabel("Wrong\nanswers")
-    for panel in panels:
-        _beside(panel)
-    panels[-1].set_xlabel("Frame")
-    panels[-1].xaxis.set_major_locator(MaxNLocator(steps=[1, 2, 5, 10], integer=True, min_n_ticks=1))
-    figure.align_ylabels(panels)
-    return figure
+    return _over(figure, panels, "Frame")
 
 
 def _draw_savings(panel: Axes, results: Results, row: Row, work: str, number: int) -> None:
@@ -155,14 +160,14 @@ def _draw_savings(panel: Axes, results: Results, row: Row, work: str, number: in
 def _draw_curve(panel: Axes, results: Results, values: Sequence[float] | np.ndarray, number: int, label: str) -> str:
     """One value per frame, in the look of the method of this number; returns its colour."""
     dot = "." if len(results.frames) <= _FEW else ""
-    (drawn,) = panel.plot(results.frames, values, marker=dot, markersize=9, label=label, **look(number, mark=False))
+    (drawn,) = panel.plot(results.frames, values, marker=dot, markersize=9, label=label, **look(number))
     return str(drawn.get_color())
 
 
 # --- zoom tests ------------------------------------------------------------------------------------
 
 
-@styled
+@styled()
 def zoom_figure(results: zoom.Results) -> Figure:
     """Draw a zoom test over its steps: the primitive's pixels on a logarithmic scale, and for each factor the count
     past which it is examined again, marks where its modes change, and below its pixels with wrong shadows.
@@ -172,7 +177,7 @@ def zoom_figure(results: zoom.Results) -> Figure:
     if not approaches:
         raise ValueError("there is nothing to plot: no step")
     never = f"\n{NEVER_WHOLE.capitalize()}" * never_whole(results)
-    figure = page(f"A primitive approached step by step, and its shadows\n{zoom_title(results)}{never}")
+    figure = page(f"A primitive approached step by step, and its shadows\n{title(results)}{never}")
     counts, wrong = figure.subplots(2, sharex=True, gridspec_kw={"height_ratios": [3.0, 1.6]})
     longest = max(approaches, key=lambda approach: len(approach.steps))
     pixels = [max(step.pixels, 0.5) for step in longest.steps]  # none is a half: a logarithmic scale has no 0
@@ -180,7 +185,7 @@ def zoom_figure(results: zoom.Results) -> Figure:
     for place, approach in enumerate(approaches):
         numbers, factor = [step.number for step in approach.steps], f"{approach.factor:g}"
         limits = [approach.factor * step.highest or np.nan for step in approach.steps]
-        looks = look(place, mark=False)
+        looks = look(place)
         counts.step(numbers, limits, where="post", label=f"{factor} × highest count", **looks)
         changed = [step.number for step in approach.steps if step.changes]
         marks = [max(approach.steps[number].pixels, 0.5) for number in changed]
@@ -196,19 +201,14 @@ def zoom_figure(results: zoom.Results) -> Figure:
     counts.set_ylabel("Pixels")
     wrong.set_ylabel(WRONG_PIXELS.replace(" of", "\nof").capitalize())
     wrong.set_ylim(bottom=0.0, top=1.08 * max(1, *(approach.most_wrong for approach in approaches)))
-    for axis in (wrong.xaxis, wrong.yaxis):
-        axis.set_major_locator(MaxNLocator(9 if axis is wrong.xaxis else 3, integer=True))
-    wrong.set_xlabel("Step")
-    for panel in (counts, wrong):
-        _beside(panel)
-    figure.align_ylabels((counts, wrong))
-    return figure
+    wrong.yaxis.set_major_locator(MaxNLocator(3, integer=True))
+    return _over(figure, (counts, wrong), "Step")
 
 
 COLUMNS = 8
 
 
-@styled
+@styled()
 def film_figure(film: Filmstrip, results: zoom.Results) -> Figure:
     """Draw up to COLUMNS recorded pictures of each factor's way, as the paper's Figure 4.
 
@@ -219,7 +219,7 @@ def film_figure(film: Filmstrip, results: zoom.Results) -> Figure:
     numbers = chosen_steps(results, sorted({shot.number for a in approaches for shot in film.of(a.factor)}))
     if not numbers:
         raise ValueError("there is nothing to draw: no step")
-    figure = page(zoom_title(results), (SIZE[0], 1.1 + 2.25 * len(approaches)))
+    figure = page(title(results), (SIZE[0], 1.1 + 2.25 * len(approaches)))
     panels = figure.subplots(len(approaches), len(numbers), squeeze=False)
     for row, approach in zip(panels, approaches):
         shots: dict[int, Shot] = {shot.number: shot for shot in film.of(approach.factor)}
@@ -242,56 +242,7 @@ def chosen_steps(results: zoom.Results, kept: list[int]) -> list[int]:
     """Return up to COLUMNS of the kept steps: first and last, where something happens, and between."""
     if len(kept) <= COLUMNS:
         return kept
-    happened = sorted({step.number for approach in results.approaches for step in happenings(approach)} & set(kept))
+    happened = sorted({step.number for _, step in happenings(results)} & set(kept))
     wanted = [kept[0], kept[-1], *happened]
     even = [kept[round(i * (len(kept) - 1) / (COLUMNS - 1))] for i in range(COLUMNS)]
     return sorted(list(dict.fromkeys([*wanted, *even]))[:COLUMNS])
-
-
-# --- sweeps ----------------------------------------------------------------------------------------
-
-MOST_PANELS = 6
-_ROWS: tuple[tuple[str, Callable[[Line], float]], ...] = (
-    (_WORKS[0][1], lambda line: line.steps),
-    (_WORKS[1][1], lambda line: line.tests),
-    ("Speed-up over none\n(processor time)", lambda line: line.speed_up),
-)
-
-
-@styled
-def sweep_figure(title: str, lines: Sequence[Line]) -> Figure:
-    """Draw a column of panels for each scene and combination of settings, with a curve for each method over sizes.
-
-    Raises ValueError where there is nothing to compare, or too much for one figure."""
-    drawn = [line for line in lines if line.method != REFERENCE and line.steps == line.steps]
-    if not drawn:
-        raise ValueError(f"there is nothing to plot: no frame by {REFERENCE} and by another method")
-    columns = list(dict.fromkeys((line.scene, line.settings) for line in drawn))
-    if len(columns) > MOST_PANELS:
-        raise ValueError(
-            f"{len(columns)} scenes and combinations of settings, more than the {MOST_PANELS} of one plot; "
-            "plot studies of fewer, or draw results.parquet by other means"
-        )
-    methods = list(dict.fromkeys(line.method for line in drawn))
-    frames = sum(line.frames for line in lines)
-    figure = page(f"{title}\n{frames:,} frames", (max(SIZE[0], 3.6 * len(columns) + 2.4), 9.0))
-    panels = figure.subplots(len(_ROWS), len(columns), squeeze=False, sharex="col", sharey="row")
-    for column, (scene, settings) in enumerate(columns):
-        mine = [line for line in drawn if (line.scene, line.settings) == (scene, settings)]
-        panels[0][column].set_title("\n".join(filter(None, (scene, *settings.split(", ")))), fontsize=15.0)
-        for (_, value), panel in zip(_ROWS, panels[:, column], strict=True):
-            for number, method in enumerate(methods):
-                of_method = [line for line in mine if line.method == method]  # the smallest first
-                sizes = [f"{line.width}×{line.height}" for line in of_method]
-                panel.plot(sizes, [value(line) for line in of_method], label=method, markersize=8, **look(number))
-        panels[-1][column].tick_params(axis="x", labelsize=12.0, labelrotation=30.0)
-    for row, (label, _) in enumerate(_ROWS):
-        panels[row][0].set_ylabel(label)
-        if row < 2:
-            panels[row][0].yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
-    for panel in panels[-1]:
-        panel.axhline(1.0, color="black", linewidth=1.0)
-    handles, names = panels[0][0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside right upper")
-    figure.align_ylabels()
-    return figure

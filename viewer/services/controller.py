@@ -14,7 +14,6 @@ from tracer.experiments.zoom import Step
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
-from tracer.scene.model import Scene
 from viewer.services.beside import Baseline
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
@@ -28,7 +27,6 @@ from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
 from viewer.services.named_states import Bookmarks, Presets
 from viewer.services.pictures import Pictures
-from viewer.services.preview import Preview
 from viewer.services.questions import Questions
 from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
@@ -80,7 +78,6 @@ class Controller:
         self.table = SceneTable(session, selection, preferences, notices, captures, editing, wake)
         self.questions = questions = Questions(runs, captures, wake)
         self.loader = loader = SceneLoader(session, preferences, notices, questions.before_opening, wake)
-        self.preview = Preview(session, loader, motion, notices, wake)
         self.pictures = pictures = Pictures(
             session, preferences, scheduler, self.history, loader, runs, captures, notices
         )
@@ -115,22 +112,20 @@ class Controller:
 
     def take_scene(self) -> None:
         """Show the scene that has been read, if one has."""
-        session, arrival, flown = self.session, self.loader.take_finished(), self.preview.flown
+        session, arrival = self.session, self.loader.take_finished()
         if arrival is None:
             return
         place, playing, said = arrival.place, arrival.again and session.playing, arrival.text
         if arrival.again:
             place = session.state  # it is seen as it is now, from where we are
-        if arrival.opened is not None:
-            self.show(arrival.opened.scene, arrival.opened.renderer, arrival.opened.info)
+        if arrival.renderer is not None:
+            self.show(arrival.renderer, arrival.info)
         if arrival.place is not None:
             self.undo.begin_step("the place of a saved picture")
         if place is not None:
             self.restore(place)
         elif session.scene is not None:
             said = f"{said}. {remark_on(session.scene.lights, session.settings)}".removesuffix(". ")
-        if flown is not None:  # while the scene was waiting for its kernels
-            session.change(camera=flown)
         session.playing, self.reloaded = playing and session.animated, arrival.again
         self.notices.say(said)
 
@@ -156,7 +151,6 @@ class Controller:
             frame = newest.frame
         self.reloaded = False
         self.motion.look_around(frame)
-        self.selection.refresh(frame)
 
     def move(self) -> None:
         """Bring time and camera to where they should be now."""
@@ -167,11 +161,6 @@ class Controller:
         """Have the scene edited as is wanted, once what was edited last has been seen."""
         seen = self.scheduler.shows_edits or not self.renderer.busy
         self.editing.apply(self.runs.current is not None, seen)
-
-    def inspect_pixel(self) -> None:
-        """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
-        traced = self.own_traced
-        self.inspector.update(traced.frame if traced is not None else None, not self.motion.is_animating)
 
     def frame_inputs(self, size: tuple[int, int]) -> FrameInputs:
         """Return what decides how the next frame is traced, in a window that has room for so many pixels."""
@@ -201,8 +190,9 @@ class Controller:
             self.editing.forget_modes()
             self.baseline.forget()
 
-    def show(self, scene: Scene, renderer: Renderer, info: dict[str, Any]) -> None:
+    def show(self, renderer: Renderer, info: dict[str, Any]) -> None:
         """Show another scene: what was known and drawn of the old one is gone, settings and view stay."""
+        scene = renderer.scene
         self.runs.stop()
         if self.session.scene is None or self.session.scene.path != scene.path:
             self.undo.clear()

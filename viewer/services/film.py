@@ -27,7 +27,7 @@ from viewer.output.commands import cannot_come_back, needs_history
 from viewer.services import stills
 from viewer.services.named_states import Bookmarks
 from viewer.services.pictures import Pictures
-from viewer.services.runs import FileRun, Runs, check_size
+from viewer.services.runs import FileRun, Runs
 from viewer.state import codec, navigation
 from viewer.state.navigation import Stop, Take
 from viewer.state.plans import FilmPlan, frames_within
@@ -58,15 +58,13 @@ def prepare(folder: Path, video: Path | None) -> None:
         check_writable(video)
     try:
         folder.mkdir(exist_ok=True)
-        taken = sorted((path for path in folder.iterdir() if re.fullmatch(r"\d{4,}\.png", path.name)),
-                       key=lambda path: int(path.stem))  # fmt: skip
+        taken = any(re.fullmatch(r"\d{4,}\.png", path.name) for path in folder.iterdir())
     except FileNotFoundError:
         raise OSError(f"{folder}: there is no folder {folder.parent}") from None
     except OSError as error:
         raise OSError(f"{folder}: no folder for the pictures: {error.strerror or error}") from None
     if taken:
-        which = taken[0].name if len(taken) == 1 else f"{taken[0].name} to {taken[-1].name}"
-        raise OSError(f"{folder}: there are numbered pictures in it already, {which}; give another folder")
+        raise OSError(f"{folder}: there are numbered pictures in it already; give another folder")
 
 
 def frame_count(frames: tuple[int, int], stops: int | None, seconds: float, fps: float) -> int:
@@ -194,7 +192,6 @@ class Films:
         plan, state = self.plan, self._pictures.now()
         if state is None:
             raise ValueError("there is nothing to film yet")
-        check_size(plan.size)
         stops = stops_of(self._bookmarks.all, scene) if plan.through_bookmarks else None
         camera = self._session.camera if plan.from_here else None
         filmed = takes(scene, self.frames, stops, plan.seconds, plan.fps, camera)

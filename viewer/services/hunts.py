@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 from dataclasses import replace
 from pathlib import Path
@@ -13,11 +12,10 @@ from tracer.experiments.hunt import Hunt, Search
 from tracer.frame import Settings
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Scene
-from tracer.version import program_version
-from viewer.output import commands
+from viewer.output import commands, exports
 from viewer.output.comparison import Comparison, Crop
 from viewer.services.history import FrameNavigator
-from viewer.services.runs import Runs, check_size
+from viewer.services.runs import Runs
 from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
 from viewer.state.notices import Notices
@@ -25,7 +23,6 @@ from viewer.state.pixels import around
 from viewer.state.plans import HuntPlan, frames_within
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
-from viewer.util.files import write_text
 
 # --- what is kept: a figure and a JSON for each counterexample, and one JSON with all --------------------
 
@@ -80,10 +77,10 @@ def save_json(find: Counterexample, found: hunt.Results, scene: Scene, state: Vi
     words = ["shadowcull", "explain", commands.scene_word(Path(state.scene))]
     words += commands.options(replace(state, warmup=Warmup()))
     words += ["--pixel", f"{find.x},{find.y}", "--before", path.name, "--only", "wrong"]
-    told = counterexample.to_json(find, scene) | {"size": list(found.size), "method": found.method}
-    told |= {"scene": found.scene, "settings": found.settings, "version": program_version()}
+    told = counterexample.to_json(find, scene) | {"size": found.size, "method": found.method}
+    told |= {"scene": found.scene, "settings": found.settings}
     told |= {"words": counterexample.in_words(find, scene), "explain": shlex.join(words)}
-    write_text(path, json.dumps(told, indent=1))
+    exports.write_json(path, told, indent=1)
 
 
 # --- in the window ------------------------------------------------------------------------------------
@@ -115,7 +112,6 @@ class Hunts:
 
         def make(scene: Scene) -> Hunt:
             plan, (first, last) = self.plan, self.frames
-            check_size(plan.size)
             times = [take.time for take in navigation.along_path(scene, first, last)][:: plan.step]
             settings = replace(
                 self._session.settings, method=plan.method, width=plan.size[0], height=plan.size[1], samples=1,

@@ -10,14 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from tracer.experiments import experiment, zoom
+from tracer.experiments import experiment, hunt, zoom
 from tracer.experiments.experiment import Experiment
-from tracer.experiments.hunt import Hunt
 from tracer.experiments.runner import STARTING, Run
 from tracer.experiments.zoom import Step, ZoomTest
 from tracer.method import in_order
@@ -31,10 +30,10 @@ from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Task, Traced
 from viewer.state.methods import BY_MODES, CERTIFIED
 from viewer.state.notices import Notices
-from viewer.state.plans import LONGEST_SIDE, ExperimentPlan, ZoomPlan, parse_factors
+from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
-from viewer.state.views import View
+from viewer.state.views import Record, View
 from viewer.util.messages import failure
 from viewer.util.numbers import several
 
@@ -59,43 +58,31 @@ class RecordedZoomTest(ZoomTest):
 # --- in words -----------------------------------------------------------------------------------------
 
 
+_NOT_RECORDED = {
+    Record.VERIFY: "does not verify",
+    Record.WORK: "does not count the rays of each pixel",
+    Record.LIGHTS: "does not record which samples of lights reach each pixel",
+    Record.FATES: "does not record what becomes of the shadow rays of each pixel",
+}
+
+
 def missing_in(run: Run, view: View) -> str:
-    """Why frames of a run cannot be seen in a view, in words; nothing where they can."""
+    """Say why frames of a run cannot be seen in a view; nothing where they can."""
     if isinstance(run, FileRun) and run.view is None:
         return "is traced beside it"
-    if isinstance(run, FileRun) and run.view is view:
+    drawn = isinstance(run, FileRun) and run.view is view
+    if view.records is None or drawn or (view.needs_verify and run.verifies):
         return ""
-    if view.needs_work:
-        return "does not count the rays of each pixel"
-    if view.needs_lights:
-        return "does not record which samples of lights reach each pixel"
-    if view.needs_fates:
-        return "does not record what becomes of the shadow rays of each pixel"
-    return "does not verify" if view.needs_verify and not run.verifies else ""
+    return _NOT_RECORDED[view.records]
 
 
 def shown_of(run: Run) -> str:
-    """Which frame of a run is the picture, in words."""
+    """Say which frame of a run is the picture."""
     return f"showing {run.label_shown}" if run.label_shown != STARTING else f"the {run.name} is starting"
 
 
-def described(run: Experiment | ZoomTest, scene: Scene | None) -> tuple[str, bool]:
-    """Scene, size, and what was done of a run's results; and whether they are of another scene than the one that is
-    open, or of what that was before: this is said first."""
-    name, elsewhere = run.scene_path.name, not run.is_of(scene)
-    if elsewhere and scene is not None:
-        same = Path(scene.path) == run.scene_path
-        name += " before it was edited or reloaded" if same else f" (not {Path(scene.path).name}, which is open)"
-    if isinstance(run, ZoomTest):
-        what = f"towards primitive {run.start.primitive}"
-    else:
-        done, of = run.done_of
-        what = f"{'' if done == of else f'{done} of '}{several(of, 'frame')}, {run.settings.accelerator}"
-    return f"{name}, {run.settings.width} x {run.settings.height}, {what}", elsewhere
-
-
 def duration(seconds: float) -> str:
-    """A time as people say it: 4 s, 2:05 min, 1:10 h."""
+    """Say a time as people do: 4 s, 2:05 min, 1:10 h."""
     if seconds < 59.5:
         return f"{seconds:.0f} s"
     minutes, rest = divmod(round(seconds), 60)
@@ -103,26 +90,6 @@ def duration(seconds: float) -> str:
 
 
 # --- one at a time ------------------------------------------------------------------------------------
-
-
-def check_size(size: tuple[int, int]) -> None:
-    """Raise ValueError, in one line, for pictures that are too large for a run."""
-    if max(size) > LONGEST_SIDE:
-        raise ValueError(f"{size[0]} x {size[1]} is too large for a run; {LONGEST_SIDE} pixels a side at most")
-
-
-@dataclass(frozen=True)
-class _Task:
-    """A run as the render thread does it; what goes wrong is kept in the run."""
-
-    run: Run
-    wake: Callable[[], None]
-
-    def work(self, renderer: Renderer, cancelled: Callable[[], bool]) -> None:
-        world = getattr(renderer, "world", None)
-        with suppress(Exception):
-            for _ in self.run.each(world, cancelled, self.wake):
-                pass
 
 
 class Progress(NamedTuple):
@@ -180,10 +147,16 @@ class Runs:
             except (ValueError, OSError) as error:
                 self._notices.say(str(error), error=True)
                 return False
+
+            def work(renderer: Renderer, cancelled: Callable[[], bool]) -> None:
+                with suppress(Exception):  # the run keeps it
+                    for _ in run.each(getattr(renderer, "world", None), cancelled, self._wake):
+                        pass
+
             run.watches = True
             self.current = run
             self._session.playing = False
-            self._perform(_Task(run, self._wake).work)
+            self._perform(work)
             return True
         return False
 
@@ -221,11 +194,10 @@ class Runs:
     # --- experiments and zoom tests ---------------------------------------------------------------
 
     def start_experiment(self) -> None:
-        """Begin what `experiment_plan` says, over the open scene's path."""
+        """Measure what `experiment_plan` says, over the open scene's path."""
 
         def make(scene: Scene) -> Run:
             plan = self.experiment_plan
-            check_size(plan.size)
             settings = replace(
                 self._session.settings, width=plan.size[0], height=plan.size[1], depth=plan.depth, verify=plan.verify,
                 samples=1, accelerator=plan.accelerator,
@@ -242,7 +214,6 @@ class Runs:
 
         def make(scene: Scene) -> Run:
             plan, frame, selected = self.zoom_plan, self._selection.frame, self._selection.picked
-            check_size(plan.size)
             settings = replace(self._session.settings, width=plan.size[0], height=plan.size[1]).validated()
             if frame is None:
                 raise ValueError("there is no picture yet")
@@ -272,16 +243,14 @@ class Runs:
     # --- results as files -------------------------------------------------------------------------
 
     def exports_of(self, run: Run) -> dict[str, Callable[[Path], None]]:
-        """What can be saved of a run now, by how the names of the files end."""
+        """List what can be saved of a run now, by how the names of the files end."""
         results, scene = run.results, self._session.scene
-        if isinstance(run, Hunt):
-            if results is None or scene is None or not run.is_of(scene):
-                return {}
+        if isinstance(results, hunt.Results) and scene is not None and run.is_of(scene):
             return {".json": lambda path: exports.write_json(path, results.to_dict(scene))}
-        if results is None or not isinstance(run, Experiment | ZoomTest):
+        if not isinstance(results, experiment.Results | zoom.Results):
             return {}
         found: dict[str, Callable[[Path], None]] = dict.fromkeys(exports.ENDINGS, partial(exports.write, results))
-        if isinstance(run, RecordedZoomTest):
+        if isinstance(run, RecordedZoomTest) and isinstance(results, zoom.Results):
             found["-film.png"] = partial(exports.write_film, run.filmstrip, results)
         return found
 

@@ -1,4 +1,4 @@
-"""Opens scenes and saved pictures beside the window, reads a scene again when its files change, and prepares kernels.
+"""Opens scenes and saved pictures beside the window, reads a scene again when its files change, and compiles kernels.
 
 While a scene is read the one that is open stays usable, and it stays open if the reading fails or
 is cancelled.  A second request to open takes the place of the first.
@@ -9,7 +9,6 @@ from __future__ import annotations
 import gc
 import time
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -17,104 +16,55 @@ from typing import Any
 
 from tracer.compilation import can_draw, compiled_before, make_ready, ready_for, warm_up
 from tracer.renderer import Renderer, Settings
-from tracer.scene.files import Stamp, noting, stamp
+from tracer.scene.files import Stamp, noting
 from tracer.scene.load import load_visible_scene, scene_info
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
 from tracer.scene.model import Progress, Scene
 from tracer.scene.studio import model_bounds, up_in_studio
 from viewer.output import capture
 from viewer.services.jobs import Job
+from viewer.services.scene_files import FileWatch, find_scene, is_capture, refusal
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.util import resources
 from viewer.views import paint
 
-LOOK_SECONDS = 0.35
-"""From one look at a scene's files to the next."""
-SCENE_SUFFIXES = (".aff", ".nff", ".obj", ".ply", ".stl", ".gltf", ".glb")
-CAPTURE_SUFFIXES = (".png",)
+Built = tuple[Renderer, dict[str, Any]]
+"""The renderer that holds a scene's trees, and what `scene_info` says of the scene."""
 
 
-@dataclass(frozen=True)
-class Opened:
-    """A scene, the renderer that holds its trees, and what `scene_info` says of it."""
-
-    scene: Scene
-    renderer: Renderer
-    info: dict[str, Any]
-    seconds: float
-
-
-def is_capture(path: Path) -> bool:
-    return path.suffix.lower() in CAPTURE_SUFFIXES
-
-
-def refusal(path: Path) -> str | None:
-    """Why a path cannot be opened, in one line; None if it is worth trying."""
-    if path.is_dir():
-        return f"{path}: a folder; open a scene ({' '.join(SCENE_SUFFIXES)}) or a saved picture (.png)"
-    if path.suffix.lower() not in SCENE_SUFFIXES + CAPTURE_SUFFIXES:
-        return f"{path.name}: not a scene ({' '.join(SCENE_SUFFIXES)}) nor a saved picture (.png)"
-    return None if path.exists() else f"{path}: no such file"
-
-
-def find_scene(stored: str, picture: Path) -> Path | None:
-    """Where a saved picture's scene is now: at its old path, beside the picture, or among our own scenes."""
-    path = Path(stored)
-    candidates = [path, picture.parent / path.name]
-    embedded = resources.embedded_scenes().get(path.stem)
-    if embedded is not None and (stored == path.stem or path.parent.name == embedded.parent.name):
-        candidates.append(embedded)
-    return next((c for c in candidates if c.is_file()), None)
-
-
-def open_scene(
-    read: Callable[[], Scene],
-    settings: Settings,
-    ready: Callable[[], bool],
-    progress: Progress,
-    seen: Callable[[Scene], None] = lambda scene: None,
-) -> Opened:
-    """Build the trees of a scene once it is `read` and the tracer is `ready`.  A scene whose kernels are yet to be
-    compiled is `seen` before that.
-
-    Raises SceneError or Cancelled; runs on a thread of its own."""
-    started, scene = time.perf_counter(), read()
+def build(scene: Scene, settings: Settings, progress: Progress) -> Built:
+    """Build the trees of a scene.  Raises SceneError or Cancelled."""
     lights, accelerator = len(scene.lights), settings.accelerator
-    if not can_draw(lights, accelerator) and not compiled_before(lights, accelerator, certificates=False):
-        seen(scene)
-    while not ready():
-        progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
-        time.sleep(0.02)
     if not can_draw(lights, accelerator):  # many lights need wider words, and kernels for them
         warm_up(progress, lights, accelerator)
     renderer, info, model = Renderer(scene, settings, progress), scene_info(scene), model_bounds(scene)
     if model is not None:  # what the camera goes around is the model, not the floor
         info["bounds"] = model.tolist()
-    return Opened(scene, renderer, info, time.perf_counter() - started)
+    return renderer, info
 
 
 @dataclass
 class Arrival:
-    """What is opened: a scene, None where it is open already; the place in it to go to, if not where it begins; and one
-    line that says so.  `again` says that it is the scene that was open, read again, and what of it had `changed` where
-    this is why: the place stays.  `meshes` says how meshes are read, `files` which were come to, and `waits` is a scene
-    that has been read and waits for kernels."""
+    """What is opened: the renderer of a scene, None where it is open already, and what `scene_info` says of it; the
+    place in it to go to, if not where it begins; and one line that says so.  `again` says that it is the scene that was
+    open, read again, and what of it had `changed` where this is why: the place stays.  `meshes` says how meshes are
+    read, and `files` which were come to."""
 
     meshes: MeshOptions = IN_STUDIO
     place: ViewState | None = None
     again: bool = False
     changed: str = ""
     files: dict[Path, Stamp] = field(default_factory=dict)
-    waits: Scene | None = None
-    opened: Opened | None = None
+    renderer: Renderer | None = None
+    info: dict[str, Any] = field(default_factory=dict)
     text: str = ""
+    began: float = field(default_factory=time.perf_counter)
 
 
 class SceneLoader:
-    """Runs `open_scene` on threads; `take_finished` hands out what has come."""
+    """Reads scenes, and runs `build`, on threads; `take_finished` hands out what has come."""
 
     def __init__(
         self,
@@ -133,7 +83,7 @@ class SceneLoader:
         self.folders: tuple[Path, ...] = ()  # besides a scene's own, that it may read files from
         self.meshes = IN_STUDIO  # how the next mesh is read
         self.watch = FileWatch()  # of what the newest scene was read from, or what was missed
-        self.load_job: Job[Opened] | None = None
+        self.load_job: Job[Built] | None = None
         self._coming = Arrival()  # of that job
         self._cancelled: list[Job] = []  # some end late, as within a library that reads a mesh
         self._restored: Arrival | None = None
@@ -144,34 +94,21 @@ class SceneLoader:
         return not (self.load_job is None and self._restored is None and self.warm_up_job is None)
 
     @property
-    def waiting(self) -> Arrival | None:
-        """What has been read and waits for kernels to be compiled."""
-        return self._coming if self._coming.waits is not None else None
-
-    @property
     def ready(self) -> bool:
         """Whether all kernels are; those that make certificates come last, and pictures without them look the same."""
         return self.warm_up_job is None
 
-    def start(
-        self,
-        path: Path | None,
-        settings: Mapping[str, Any] | None = None,
-        folders: Sequence[Path] = (),
-        meshes: MeshOptions = IN_STUDIO,
-    ) -> None:
-        """Compile or load the kernels in the background, and open a first scene meanwhile.
+    def start(self, settings: Mapping[str, Any], folders: Sequence[Path] = (), meshes: MeshOptions = IN_STUDIO) -> None:
+        """Compile or load the kernels in the background; a first scene is opened meanwhile.
 
         `settings` hold for what is opened first, also where a saved place in it has others.  All scenes may read files
         from `folders` besides their own. `meshes` says how meshes are read; which way is up holds for the first."""
         self.folders, self.meshes = tuple(folders), meshes
-        self._given = dict(settings or {})
+        self._given = dict(settings)
         self._session.set_settings(**self._given)
         self.compiles = not compiled_before()
         title = "Compiling the tracer (first start only)" if self.compiles else "Loading the tracer"
         self.warm_up_job = Job(title, _warm_up, self._wake)
-        if path is not None:
-            self.open(path)
 
     def compile_method(self) -> None:
         """Compile in the background what the chosen method has of its own, the first time that it is chosen."""
@@ -300,14 +237,12 @@ class SceneLoader:
         self._give_up()
         settings, kernels = self._session.settings, self.warm_up_job
 
-        def ready() -> bool:
-            return kernels is None or kernels.done or can_draw()
-
-        def work(progress: Progress) -> Opened:
-            def seen(scene: Scene) -> None:
-                coming.waits = scene
-
-            return open_scene(lambda: read(progress), settings, ready, progress, seen)
+        def work(progress: Progress) -> Built:
+            scene = read(progress)
+            while not (kernels is None or kernels.done or can_draw()):
+                progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
+                time.sleep(0.02)
+            return build(scene, settings, progress)
 
         self.load_job, self._coming = Job(title, work, self._wake), coming
 
@@ -315,7 +250,7 @@ class SceneLoader:
         """Give up the load that is under way; the scene that is open stays."""
         if self.load_job is not None:
             self._give_up()
-            stays = ": the scene that was open stays" if self._session.scene is not None else ""
+            stays = "; the open scene stays" if self._session.scene is not None else ""
             self._notices.say(f"loading cancelled{stays}")
 
     def _give_up(self) -> None:
@@ -347,13 +282,15 @@ class SceneLoader:
         if load.result is None:
             if came.again:
                 self.watch.files = self.watch.files | came.files  # what was not come to may be mended too
-            self._report(load, after=" (the scene as it was stays)" if came.again else "")
+            self._report(load, after=" (the open scene stays as it is)" if came.again else "")
             return arrival
-        came.opened = opened = load.result
+        came.renderer, came.info = load.result
         self.watch.files = came.files
         self._session.change(meshes=came.meshes)
-        up, count = up_in_studio(opened.scene), len(opened.scene.warnings)
-        came.text = f"{opened.scene.path.name} {'reloaded' if came.again else 'opened'} in {opened.seconds:.1f} s"
+        scene = came.renderer.scene
+        up, count = up_in_studio(scene), len(scene.warnings)
+        seconds = time.perf_counter() - came.began
+        came.text = f"{scene.path.name} {'reloaded' if came.again else 'opened'} in {seconds:.1f} s"
         came.text += f", with {up} up" if up else ""
         came.text += f", {count} warning{'s' * (count > 1)}" if count else ""
         came.text += f": {came.changed} changed" if came.changed else ""
@@ -365,36 +302,3 @@ def _warm_up(progress: Progress) -> None:
     progress("what draws pictures", 0.0)
     paint.make_ready()
     warm_up(progress)
-
-
-class FileWatch:
-    """Looks at `files`, as they were read, by the time of their last change and their size."""
-
-    def __init__(self) -> None:
-        self.files: dict[Path, Stamp] = {}
-        self._seen: dict[Path, Stamp] = {}
-        self._worker = ThreadPoolExecutor(1, "shadowcull watching the scene")
-        self._look: Future[dict[Path, Stamp]] | None = None
-        self._next = 0.0
-
-    def changed(self) -> str:
-        """Name what has changed since it was read, or was named last; "" for nothing.
-
-        To be called in each frame of the window, which does not wait for a disk.  What has changed is told once it has
-        stayed the same from one look to the next, so that nothing is read that is half-written."""
-        if self._look is None:
-            if self.files and time.monotonic() >= self._next:
-                self._look = self._worker.submit(lambda paths: {path: stamp(path) for path in paths}, tuple(self.files))
-            return ""
-        if not self._look.done():
-            return ""
-        now, before = self._look.result(), self._seen
-        self._look, self._seen, self._next = None, now, time.monotonic() + LOOK_SECONDS
-        if now != before or now.keys() != self.files.keys():
-            return ""
-        changed = [path for path in now if now[path] != self.files[path]]
-        # What has gone may be about to be replaced, as many programs write files.
-        if not changed or any(now[path] is None and self.files[path] is not None for path in changed):
-            return ""
-        self.files = now
-        return f"{changed[0].name}{f' and {len(changed) - 1} more' if len(changed) > 1 else ''}"

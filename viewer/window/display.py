@@ -1,6 +1,7 @@
 """From a frame to a picture on the screen: the view's pixels as a texture, which ImGui shows as an image.
 
-`viewer.views` makes the pixels, on one core; changing the view, the light or the selection never traces.
+`viewer.views` makes the pixels, on one core; changing the view, the light or the selection never traces.  What is no
+longer referred to here is freed on the GPU by `graphics.draw`.
 """
 
 from __future__ import annotations
@@ -13,11 +14,12 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.pixels import Zoom
 from viewer.util.resources import shader_source
-from viewer.views import AS_SAVED, Highlight, Pixels, colorize
+from viewer.views import Pixels, colorize
 from viewer.views.compare import Difference, signed_picture
 
 
@@ -28,12 +30,12 @@ class DisplayError(RuntimeError):
 @dataclass(frozen=True)
 class InWindow:
     """What the window adds to how a frame is drawn: a bright border around the `selected` primitive, or around all of
-    the selected part of the scene; whether pixels are blended where they are enlarged; and what is highlighted."""
+    the selected part of the scene; whether pixels are blended where they are enlarged; and the fate that stands out."""
 
     selected: int = -1
     selected_part: int = -1
     smooth: bool = True
-    highlight: Highlight = AS_SAVED
+    fate: Fate | None = None
 
 
 PLAIN = InWindow()
@@ -61,13 +63,11 @@ class PictureTexture:
         """Bring a picture (h, w, 3) to the GPU.  Raises DisplayError for what is too much for it."""
         size, most = (pixels.shape[1], pixels.shape[0]), self.context.info["GL_MAX_TEXTURE_SIZE"]
         if max(size) > most:
-            raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, which takes {most} pixels a side")
+            raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, whose limit is {most} pixels a side")
         _ = self.context.error  # of somebody before us
         if self.picture is None or self.picture.size != size:
-            made = self.context.texture(size, 3, alignment=1)
-            self.release()
-            self.picture = made
-            made.repeat_x = made.repeat_y = False
+            self.picture = self.context.texture(size, 3, alignment=1)
+            self.picture.repeat_x = self.picture.repeat_y = False
         self.picture.write(np.ascontiguousarray(pixels), alignment=1)
         filtering = moderngl.LINEAR if smooth else moderngl.NEAREST
         self.picture.filter = (filtering, filtering)
@@ -82,18 +82,16 @@ class PictureTexture:
         assert self._pixels is not None
         return self._pixels
 
-    def release(self) -> None:
-        """Free it."""
-        if self.picture is not None:
-            self.picture.release()
+    def clear(self) -> None:
+        """Let it go."""
         self.picture = self._pixels = None
 
 
 class Display(PictureTexture):
     """The newest frame in its view."""
 
-    def __init__(self, context: moderngl.Context | None = None) -> None:
-        super().__init__(context or moderngl.create_context())
+    def __init__(self, context: moderngl.Context) -> None:
+        super().__init__(context)
         self.frame: Frame | None = None
         self.part_of: NDArray[np.int32] | None = None
         """(primitives,) the part of the scene that each primitive belongs to, needed while one is selected."""
@@ -117,7 +115,7 @@ class Display(PictureTexture):
         if wanted in (self._drawn, self._failed):  # frames are equal only where they are the same
             return
         self._failed = wanted
-        pixels = colorize(frame, draw, window.highlight)
+        pixels = colorize(frame, draw, window.fate)
         if window.selected >= 0:
             pixels[_selected_border(frame, window, self.part_of)] = 255
         self.write(pixels, window.smooth and draw.view.shows_clipped)
@@ -132,8 +130,8 @@ class Display(PictureTexture):
         data = self.context.screen.read(viewport=(0, 0, width, height), components=3, alignment=1)
         return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 3)[::-1])
 
-    def release(self) -> None:
-        super().release()
+    def clear(self) -> None:
+        super().clear()
         self.frame = self._drawn = None
 
 
@@ -151,9 +149,10 @@ class Compared:
             self.difference.write(signed_picture(found, limit, ringed), smooth=False)
             self._drawn = found, limit, ringed
 
-    def release(self) -> None:
-        self.a.release()
-        self.difference.release()
+    def clear(self) -> None:
+        """Let all of it go."""
+        self.a.clear()
+        self.difference.clear()
         self._drawn = None
 
 
@@ -184,19 +183,12 @@ class TextureCache:
 
     def update(self) -> None:
         """Keep, or bring, what was asked for since the last time, and nothing else."""
-        for key in self._textures.keys() - self._wanted:
-            self._textures.pop(key).release()
+        self._textures = {key: texture for key, texture in self._textures.items() if key in self._wanted}
         for shot, small in list(self._wanted - self._textures.keys())[:BROUGHT_IN_A_FRAME]:
+            pixels = shot.thumbnail(THUMBNAIL) if small else shot.pixels()
             self._textures[shot, small] = texture = PictureTexture(self._context)
-            texture.write(
-                shot.thumbnail(THUMBNAIL) if small else shot.pixels(), smooth=small
-            )  # a lone wrong pixel stays
+            texture.write(pixels, smooth=small)  # a lone wrong pixel stays
         self._wanted.clear()
-
-    def release(self) -> None:
-        """Free everything on the GPU."""
-        self._wanted.clear()
-        self.update()
 
 
 class Magnifier:
@@ -222,18 +214,16 @@ class Magnifier:
         wanted = source.glo, zoom, size, source.size, version
         if self._shown.get(name) == wanted:
             return
+        if name not in self._targets or self._targets[name].size != size:
+            self._targets[name] = self._context.framebuffer([self._context.texture(size, 4)])
+        left, top, right, bottom = zoom.shown()
+        program = self._triangle.program
+        program["part"], program["size"] = (left, top, right - left, bottom - top), size
+        source.use(0)
         window = self._context.detect_framebuffer()
         try:
-            target = self._targets.get(name)
-            if target is None or target.size != size:
-                self.drop(name)
-                target = self._targets[name] = self._context.framebuffer([self._context.texture(size, 4)])
-            left, top, right, bottom = zoom.shown()
-            program = self._triangle.program
-            program["part"], program["size"] = (left, top, right - left, bottom - top), size
-            source.use(0)
-            target.use()
-            self._context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+            self._targets[name].use()
+            self._context.enable_only(moderngl.NOTHING)
             self._triangle.render(moderngl.TRIANGLES, vertices=3)
         finally:
             window.use()
@@ -245,16 +235,9 @@ class Magnifier:
         return self._targets[name].color_attachments[0].glo if there else None
 
     def drop(self, name: str) -> None:
-        """Free a copy, if there is one."""
-        target = self._targets.pop(name, None)
+        """Let a copy go, if there is one."""
+        self._targets.pop(name, None)
         self._shown.pop(name, None)
-        if target is not None:
-            target.color_attachments[0].release()
-            target.release()
-
-    def release(self) -> None:
-        for name in list(self._targets):
-            self.drop(name)
 
 
 def _selected_border(frame: Frame, window: InWindow, part_of: NDArray[np.int32] | None) -> NDArray[np.bool_]:

@@ -71,7 +71,7 @@ def test_the_stages_are_those_of_the_paper_with_the_frames_numbers():
         "→ examined anew": s.mode_changes.examined_anew,
     }
     assert figure.title.startswith("a scene, paper, 64 × 48 pixels")
-    assert f"{s.mode_changes.units['fully_rendered']:,} of {sum(s.mode_changes.units.values()):,}" in figure.next_frame
+    assert f"{s.mode_changes.units['fully_rendered']:,} of {sum(s.mode_changes.units.values()):,}" in figure.notes[0]
 
 
 def test_stages_have_their_parts_of_the_time_and_a_part_of_a_picture_is_said():
@@ -80,7 +80,7 @@ def test_stages_have_their_parts_of_the_time_and_a_part_of_a_picture_is_said():
     frame.statistics.phases, frame.statistics.seconds = phases | {"mode setting": 0.04}, 0.5
     figure = figure_of(frame)
     assert [stage.share for stage in figure.stages] == pytest.approx([0.02, 0.04, 0.06, 0.6, 0.0, 0.0, 0.08])
-    assert figure.stages[3].time == "300.0 ms, 60.0 %" and not figure.notes
+    assert figure.stages[3].time == "300.0 ms, 60.0 %" and len(figure.notes) == 1
     assert flows_of(figure)["wrong answers"].number == frame.statistics.wrong.answers
     frame.statistics.part = 0.38
     assert any("38 % of pixels shaded" in note for note in figure_of(frame).notes)

@@ -139,6 +139,7 @@ def asking(d: Driver) -> None:
     d.settle()
     assert run is runs.experiment and run.results is not None and not run.whole
     d.show_panel("Experiment")
+    d.expect(f"Made in {first.name}; open that scene again", f"{first.name}, 64 × 48", "begun at")
     saved_results(d, "Experiment")
     d.drop(first)
     d.wait(lambda: d.c.session.scene.path == first, "the first scene again")

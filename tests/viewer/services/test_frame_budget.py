@@ -1,4 +1,4 @@
-"""How much of a picture is traced before it is shown, by what frames have cost; and how many samples lamps get."""
+"""How much of a picture is traced before it is shown, by what frames have cost; and how many samples lamps have."""
 
 from __future__ import annotations
 
@@ -7,18 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import make_frame, make_scene
 from tracer.frame import Settings
 from tracer.scene.lights import Light, as_lamps
-from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
 from viewer.services.frame_budget import PARTS, Cost, FrameBudget
-from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.refinement import LampSamples, has_lamps
-from viewer.services.render_request import RenderRequest, Traced
-from viewer.state.session import Session
-from viewer.state.view_state import ViewState
-from viewer.state.views import MOST_RECORDED, View
 
 FIXED, RAY, PIXEL = 5e-3, 1e-7, 1e-6
 
@@ -120,91 +113,6 @@ def test_samples_are_those_of_the_lamp_that_has_the_most(radius: float | None, s
         assert table.any == has_lamps(lights, settings) == any(lamp.kind != "point" for lamp in lamps)
 
 
-class Renders:
-    """A render thread that traces at once what it is asked for, with its lamps as they were asked for."""
-
-    busy = False
-
-    def __init__(self) -> None:
-        self.asked: list[RenderRequest] = []
-        self._made: Traced | None = None
-
-    def submit(self, request: RenderRequest) -> None:
-        self.asked.append(request)
-        frame = make_frame(replace(request.settings, samples=request.samples))
-        self._made = Traced(request, frame, FrameStatistics())
-
-    def take(self) -> Traced | None:
-        made, self._made = self._made, None
-        return made
-
-    def reset_modes(self) -> None: ...
-
-
-class Window:
-    """Tracing as the window drives it, of a scene with lamps."""
-
-    def __init__(self, scene: Scene | None = None, **settings: int | float) -> None:
-        state = ViewState(settings=Settings(method="none", samples=2, **settings))
-        self.session, self.renders = Session(state=state), Renders()
-        self.session.open(scene or make_scene())
-        self.scheduler = FrameScheduler(self.renders)
-
-    def request(self, moving: bool = False) -> None:
-        session = self.session
-        self.scheduler.request(FrameInputs(session.state, session.scene, session.camera, (16, 8), moving))
-
-    def rest(self, frames: int = 12, moving: bool = False) -> list[tuple[int | None, int]]:
-        """Samples of lamps, and of pixels, that are asked for in so many frames of the window."""
-        before = len(self.renders.asked)
-        for _ in range(frames):
-            self.scheduler.take()
-            self.request(moving)
-        return [(one.settings.lamp_samples, one.samples) for one in self.renders.asked[before:]]
-
-    def move(self) -> None:
-        camera = self.session.camera
-        x, y, z = camera.position
-        self.session.change(camera=replace(camera, position=(x + 1.0, y, z)))
-
-
-def test_at_idle_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_for_twice():
-    window = Window(lamp_radius=0.5, lamp_samples=64)
-    assert window.rest() == [(4, 1), (64, 2), (64, 2)], "the last knows more about shadows"
-    assert window.rest() == []
-    assert not window.scheduler.refines_lamps and window.scheduler.lamp_samples_shown == 64
-    window.session.change(settings=replace(window.session.settings, lamp_samples=256))
-    assert window.rest(1) == [(256, 2)] and window.scheduler.refines_lamps
-    assert window.rest() == [(256, 2)], "what there is goes on"
-    window.session.change(settings=replace(window.session.settings, lamp_samples=1))
-    assert window.rest() == [(1, 2), (1, 2)]
-    window.session.change(settings=replace(window.session.settings, lamp_samples=16, lamp_radius=0.25))
-    assert window.rest() == [(4, 1), (16, 2), (16, 2)], "lamps of another size"
-
-
-def test_all_pictures_of_a_motion_have_as_many_samples():
-    window = Window(lamp_radius=0.5, lamp_samples=64)
-    window.rest()
-    asked = []
-    for _ in range(5):
-        window.move()
-        asked += window.rest(1, moving=True)
-    assert asked == [(4, 1)] * 5
-    assert window.rest() == [(64, 2), (64, 2)], "the last of them is the first at idle"
-
-
-def test_points_have_one_sample_and_whole_pictures_all_of_them():
-    window = Window(lamp_samples=64)
-    assert set(window.rest()) == {(64, 2)}, "which changes nothing"
-    assert window.scheduler.lamps.wanted == 1 and not window.scheduler.lamps.any
-    sphere = Light("lamp", (0.0, 5.0, 0.0), kind="sphere", radius=1.0, samples=16)
-    window = Window(replace(make_scene(), lights=(sphere,)))
-    assert window.rest() == [(4, 1), (None, 2), (None, 2)], "as the scene says"
-    window.session.set_pace(progressive=False)
-    window.move()
-    assert set(window.rest(3, moving=True)) == {(None, 2)}
-
-
 def test_pixels_cost_by_the_samples_of_lamps():
     budget = FrameBudget()
     pixels, points = 400_000, FrameStatistics(phases={"primary": 1e-3, "shading": 0.1})
@@ -218,42 +126,3 @@ def test_pixels_cost_by_the_samples_of_lamps():
     assert budget.seconds(pixels, 16, 4) == pytest.approx(0.15, rel=0.1)
     assert budget.seconds(pixels, 16, 1) == pytest.approx(costs[0], rel=0.1), "each number for itself"
     assert budget.plan(800, 500, 0.05, lamp_samples=64).parts[0] < budget.plan(800, 500, 0.05).parts[0]
-
-
-def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it():
-    window = Window(lamp_radius=0.5, lamp_samples=16)
-    window.rest()
-    window.session.set_draw(view=View.PENUMBRA)
-    assert window.rest() == [(16, 2)] and window.renders.asked[-1].settings.record_lights
-    window.session.set_draw(view=View.COLOR)
-    assert window.rest() == [], "there is more than the picture needs"
-    many = make_scene(lights=3)
-    window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
-    for view, title in (
-        (View.PENUMBRA, "Penumbra: counting ..."),
-        (View.LIGHTS, "Lights due: none here, colour shown"),
-        (View.FATE, "Fate of shadow rays: none here, colour shown"),
-    ):
-        window.session.set_draw(view=view)
-        window.rest()
-        asked = window.renders.asked[-1].settings
-        assert not asked.record_lights and not asked.record_fates
-        assert window.scheduler.title == title
-
-
-def test_between_steps_it_is_known_that_more_is_to_come():
-    """Whatever the thread is at: it may be between two pictures."""
-    window = Window(lamp_radius=0.5, lamp_samples=64)
-    scheduler, seen = window.scheduler, []
-    assert not scheduler.awaits and not scheduler.adds_samples
-    for _ in range(12):
-        window.request()
-        seen.append((scheduler.lamp_samples_shown, scheduler.awaits, scheduler.refines_lamps))
-        scheduler.take()
-    assert seen[:3] == [(0, True, False), (4, True, True), (64, True, False)], "the last knows more"
-    assert seen[-1] == (64, False, False)
-    window.move()
-    window.request()
-    assert scheduler.awaits
-    scheduler.give_up()
-    assert not scheduler.awaits and not scheduler.adds_samples, "it has failed"

@@ -1,8 +1,7 @@
-"""What the render thread is asked for, at idle and in motion: in which order, with which modes, and verified when."""
+"""What the render thread is asked for, at rest and in motion: in which order, with which modes, and verified when."""
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from threading import Event, Thread
 from types import SimpleNamespace
@@ -10,197 +9,258 @@ from typing import Any
 
 import pytest
 
-from tests.viewer.fakes import FakeRenderer, make_scene
+from tests.viewer.fakes import make_frame, make_scene
 from tracer.culling.mode_changes import ModeChanges
 from tracer.frame import Settings
-from tracer.scene.model import Camera
+from tracer.scene.lights import Light
+from tracer.scene.model import Camera, Scene
 from tracer.statistics import FrameStatistics
-from viewer.services.controller import Controller
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.jobs import Wake
 from viewer.services.refinement import MOST_FRAMES, MOST_LEARNING, Refinement
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
-from viewer.window.app import advance
+from viewer.state.views import MOST_RECORDED, View
 
-CAMERA = Camera((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+SIZE = (16, 8)
 
 
-class Pictures:
-    """A render thread that traces nothing: what it was asked, and what it has next."""
+class Renders:
+    """A render thread that traces at once what it is asked for, with its lamps as they were asked for."""
 
     busy = False
 
     def __init__(self) -> None:
         self.asked: list[RenderRequest] = []
-        self.next: Traced | None = None
-        self.resets = 0
+        self._made: Traced | None = None
 
     def submit(self, request: RenderRequest) -> None:
         self.asked.append(request)
+        frame = make_frame(replace(request.settings, samples=request.samples))
+        self._made = Traced(request, frame, FrameStatistics())
 
     def take(self) -> Traced | None:
-        return self.next
+        made, self._made = self._made, None
+        return made
 
-    def reset_modes(self) -> None:
-        self.resets += 1
+
+class Window:
+    """A scheduler as the window drives it."""
+
+    def __init__(self, scene: Scene | None = None, **settings: Any) -> None:
+        state = ViewState(settings=Settings(**{"method": "none", "samples": 2} | settings))
+        self.session, self.renders = Session(state=state), Renders()
+        self.session.open(scene or make_scene())
+        self.scheduler = FrameScheduler(self.renders)
+
+    def request(self, **inputs: Any) -> None:
+        session = self.session
+        self.scheduler.request(FrameInputs(session.state, session.scene, session.camera, SIZE, **inputs))
+
+    def asked_for(self, frames: int = 12, **inputs: Any) -> list[RenderRequest]:
+        """What is asked for in so many frames of the window."""
+        before = len(self.renders.asked)
+        for _ in range(frames):
+            self.scheduler.take()
+            self.request(**inputs)
+        return self.renders.asked[before:]
+
+    def rest(self, frames: int = 12, **inputs: Any) -> list[tuple[int | None, int]]:
+        """Samples of lamps, and of pixels, that are asked for meanwhile."""
+        return [(one.settings.lamp_samples, one.samples) for one in self.asked_for(frames, **inputs)]
+
+    def see(self, view: View) -> list[RenderRequest]:
+        self.session.set_draw(view=view)
+        return self.asked_for()
+
+    def move(self) -> None:
+        camera = self.session.camera
+        x, y, z = camera.position
+        self.session.change(camera=replace(camera, position=(x + 1.0, y, z)))
+
+
+# --- which frames are asked for ----------------------------------------------------------------------
 
 
 def test_pictures_are_asked_for_once_and_again_after_a_run():
     """A run drops what was asked for, and leaves the world at its own last frame."""
-    pictures, session = Pictures(), Session(state=ViewState(settings=Settings(method="none", samples=1)))
-    session.set_pace(progressive=False)
-    session.open(make_scene())
-    scheduler = FrameScheduler(pictures)
-    here = FrameInputs(session.state, session.scene, session.camera, (16, 8))
+    window = Window(samples=1)
+    window.session.set_pace(progressive=False)
     for _ in range(3):
-        scheduler.request(here)
-    (request,) = pictures.asked[1:] if len(pictures.asked) > 1 else pictures.asked
-    assert (request.settings.width, request.settings.height, request.parts) == (16, 8, (16,))
-    run = SimpleNamespace(label_shown="frame 3", name="experiment", verifies=True)
-    scheduler.request(replace(here, run=run))
-    assert scheduler.title == f"showing frame 3   {View.COLOR.label}"
-    count = len(pictures.asked)
-    scheduler.request(here)
-    assert len(pictures.asked) == count + 1 and pictures.asked[-1] == request
+        window.request()
+    (request,) = window.renders.asked
+    assert (request.settings.width, request.settings.height, request.parts) == (*SIZE, (16,))
+    window.request(run=SimpleNamespace(label_shown="frame 3", name="experiment", verifies=True))
+    assert window.scheduler.title == f"showing frame 3   {View.COLOR.label}"
+    window.request()
+    assert window.renders.asked == [request, request]
+
+
+def test_the_next_frame_of_a_film_waits_until_this_one_can_be_asked_about():
+    window = Window(samples=1)
+    film = {"moving": True, "playing": True, "inspected": True}
+    window.rest(2, **film)
+    for at in (1.0, 2.0, 3.0):
+        window.session.change(time=at)
+        window.request(**film)
+    assert [one.time for one in window.renders.asked] == [0.0, 1.0]
+    window.session.set_settings(method="paper")
+    window.request(**film)
+    assert [one.time for one in window.renders.asked] == [0.0, 1.0, 3.0], "but what is worthless does not delay it"
+    window.session.change(time=4.0)
+    window.scheduler.forget_modes()
+    window.request(**film)
+    assert window.renders.asked[-1].time == 4.0, "nor what has been cut short"
 
 
 @pytest.mark.parametrize(("ready", "method", "traced"), [
     (True, "certified+rest", "certified+rest"), (False, "certified+rest", "none+rest"), (False, "paper", "paper"),
 ])  # fmt: skip
 def test_until_certificates_can_be_made_pictures_come_without(ready: bool, method: str, traced: str):
-    scheduler = FrameScheduler(Pictures())
-    scheduler.request(FrameInputs(ViewState(settings=Settings(method=method)), ready=ready))
-    assert scheduler.settings.method == traced
+    window = Window(method=method)
+    window.request(ready=ready)
+    assert window.scheduler.settings.method == traced
 
 
-def test_a_window_stays_until_nobody_is_just_waking_it():
-    """A thread that refreshed a window which has gone would call into what is no more."""
-    wake, waking, go_on, gone = Wake(), Event(), Event(), Event()
-
-    def refresh() -> None:
-        waking.set()
-        assert go_on.wait(20.0) and not gone.is_set()
-
-    wake.connect(refresh)
-    thread = Thread(target=wake)
-    thread.start()
-    assert waking.wait(20.0)
-
-    def close() -> None:
-        wake.connect(None)
-        gone.set()
-
-    closing = Thread(target=close)
-    closing.start()
-    assert not gone.wait(0.05), "the window has gone while a thread was waking it"
-    go_on.set()
-    thread.join(20.0)
-    closing.join(20.0)
-    assert gone.is_set()
-    wake()  # does nothing
+def test_at_rest_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_for_twice():
+    window = Window(lamp_radius=0.5, lamp_samples=64)
+    assert window.rest() == [(4, 1), (64, 2), (64, 2)], "the last knows more about shadows"
+    assert window.rest() == []
+    assert not window.scheduler.refines_lamps and window.scheduler.lamp_samples_shown == 64
+    window.session.set_settings(lamp_samples=256)
+    assert window.rest(1) == [(256, 2)] and window.scheduler.refines_lamps
+    assert window.rest() == [(256, 2)], "what there is goes on"
+    window.session.set_settings(lamp_samples=1)
+    assert window.rest() == [(1, 2), (1, 2)]
+    window.session.set_settings(lamp_samples=16, lamp_radius=0.25)
+    assert window.rest() == [(4, 1), (16, 2), (16, 2)], "lamps of another size"
+    for _ in range(5):
+        window.move()
+        assert window.rest(1, moving=True) == [(4, 1)], "all pictures of a motion have as many"
+    assert window.rest() == [(16, 2), (16, 2)], "the last of them is the first at rest"
 
 
-SIZE = (16, 8)
+def test_points_have_one_sample_and_whole_pictures_all_of_them():
+    window = Window(lamp_samples=64)
+    assert set(window.rest()) == {(64, 2)}, "which changes nothing"
+    assert window.scheduler.lamps.wanted == 1 and not window.scheduler.lamps.any
+    sphere = Light("lamp", (0.0, 5.0, 0.0), kind="sphere", radius=1.0, samples=16)
+    window = Window(replace(make_scene(), lights=(sphere,)))
+    assert window.rest() == [(4, 1), (None, 2), (None, 2)], "as the scene says"
+    window.session.set_pace(progressive=False)
+    window.move()
+    assert set(window.rest(3, moving=True)) == {(None, 2)}
 
 
-class Desk:
-    """A controller at work on a renderer that traces nothing."""
-
-    def __init__(self, controller: Controller) -> None:
-        self.c, self.renderer = controller, FakeRenderer()
-        controller.show(make_scene(), self.renderer, {})
-        assert self.rest() == [False, False]  # one that teaches the modes, and one that shows what they save
-
-    def rest(self) -> list[bool]:
-        """Tick until all has been traced; for each frame asked for meanwhile, whether it was to be verified."""
-        before, quiet, end = len(self.renderer.asked), 0, time.monotonic() + 20.0
-        while quiet < 10:
-            assert time.monotonic() < end, "it does not come to rest"
-            advance(self.c, SIZE)
-            quiet = 0 if self.c.active else quiet + 1
-            time.sleep(0.002)
-        return [settings.verify for _, settings in self.renderer.asked[before:]]
-
-
-@pytest.fixture
-def desk():
-    controller = Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}}))
-    yield Desk(controller)
-    assert controller.close()
+def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it():
+    window = Window(lamp_radius=0.5, lamp_samples=16)
+    window.rest()
+    window.session.set_draw(view=View.PENUMBRA)
+    assert window.rest() == [(16, 2)] and window.renders.asked[-1].settings.record_lights
+    window.session.set_draw(view=View.COLOR)
+    assert window.rest() == [], "there is more than the picture needs"
+    many = make_scene(lights=3)
+    window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
+    for view, title in (
+        (View.PENUMBRA, "Penumbra: counting ..."),
+        (View.LIGHTS, "Lights due: not available here, colour shown"),
+        (View.FATE, "Fate of shadow rays: not available here, colour shown"),
+    ):
+        window.session.set_draw(view=view)
+        window.rest()
+        asked = window.renders.asked[-1].settings
+        assert not asked.record_lights and not asked.record_fates and window.scheduler.title == title
 
 
-@pytest.mark.parametrize(
-    ("view", "doing", "others"),
-    [
-        (View.SAVED, "counting", (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE)),
-        (View.COST, "counting", (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE)),
-        (View.DIFFERENCE, "verifying", (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH)),
-        (View.WIPE, "verifying", (View.COLOR, View.WIPE, View.DIFFERENCE, View.DEPTH)),
-    ],
-)
-def test_what_a_view_needs_is_traced_once_and_for_such_views_alone(
-    desk: Desk, view: View, doing: str, others: tuple[View, ...]
-):
-    verifies = doing == "verifying"
-    desk.c.session.set_draw(view=view)
-    before = len(desk.renderer.asked)
-    advance(desk.c, SIZE)
-    assert desk.c.scheduler.drawn_view is View.COLOR and desk.c.scheduler.outdated, "it is not there yet"
-    assert doing in desk.c.scheduler.title
-    desk.rest()
-    assert [settings.verify for _, settings in desk.renderer.asked[before:]] == [verifies]
-    assert desk.c.frame.settings.record_work is not verifies and (desk.c.frame.wrong is not None) is verifies
-    assert desk.c.scheduler.drawn_view is view and not desk.c.scheduler.outdated
-    for other in others:
-        desk.c.session.set_draw(view=other)
-        assert desk.rest() == []
-        assert not desk.c.scheduler.outdated
+def test_between_steps_it_is_known_that_more_is_to_come():
+    """Whatever the thread is at: it may be between two pictures."""
+    window = Window(lamp_radius=0.5, lamp_samples=64)
+    scheduler, seen = window.scheduler, []
+    assert not scheduler.awaits and not scheduler.adds_samples
+    for _ in range(12):
+        window.request()
+        seen.append((scheduler.lamp_samples_shown, scheduler.awaits, scheduler.refines_lamps))
+        scheduler.take()
+    assert seen[:3] == [(0, True, False), (4, True, True), (64, True, False)], "the last knows more"
+    assert seen[-1] == (64, False, False)
+    window.move()
+    window.request()
+    assert scheduler.awaits
+    scheduler.give_up()
+    assert not scheduler.awaits and not scheduler.adds_samples, "it has failed"
+
+
+# --- what views need ---------------------------------------------------------------------------------
+
+
+COUNTED, VERIFIED = (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE), (View.WIPE, View.DIFFERENCE, View.DEPTH)
+
+
+@pytest.mark.parametrize(("view", "verifies"), [
+    (View.SAVED, False), (View.COST, False), (View.DIFFERENCE, True), (View.WIPE, True),
+])  # fmt: skip
+def test_what_a_view_needs_is_traced_once_and_for_such_views_alone(view: View, verifies: bool):
+    window = Window(method="paper", samples=1)
+    session, scheduler = window.session, window.scheduler
+    window.rest()
+    session.set_draw(view=view)
+    window.request()
+    assert scheduler.drawn_view is View.COLOR and scheduler.outdated, "it is not there yet"
+    assert ("verifying" if verifies else "counting") in scheduler.title
+    window.rest()
+    assert scheduler.frame.settings.record_work is not verifies and (scheduler.frame.wrong is not None) is verifies
+    assert scheduler.drawn_view is view and not scheduler.outdated
+    for other in VERIFIED if verifies else COUNTED:
+        assert window.see(other) == [] and not scheduler.outdated
     for shown, wanted in ((view, True), (View.COLOR, False)):
-        desk.c.session.set_draw(view=shown)
-        desk.rest()
-        desk.c.motion.step(1)
-        assert set(desk.rest()) == {verifies and wanted}
-        assert desk.c.frame.settings.record_work is (wanted and not verifies)
-    assert not desk.c.session.settings.verify and not desk.c.session.settings.record_work
+        window.see(shown)
+        session.change(time=session.time + 1.0)
+        asked = window.asked_for()
+        assert {one.settings.verify for one in asked} == {verifies and wanted}
+        assert {one.settings.record_work for one in asked} == {wanted and not verifies}
+    assert not session.settings.verify and not session.settings.record_work
 
 
-def test_the_users_own_setting_counts_in_every_view(desk: Desk):
-    desk.c.settings.change(verify=True)
-    assert desk.rest() == [True]
-    desk.c.session.set_draw(view=View.DIFFERENCE)
-    desk.c.settings.change(verify=False)
-    assert desk.rest() == [], "verified it is already"
-    desk.c.session.set_draw(view=View.COLOR)
-    assert desk.rest() == [], "that is more than is asked for"
-    desk.c.scheduler.trace_again()
-    assert desk.rest() == [False]
+def test_the_users_own_setting_counts_in_every_view():
+    window = Window(method="paper", samples=1)
+    window.rest()
+    window.session.set_settings(verify=True)
+    assert [one.settings.verify for one in window.asked_for()] == [True]
+    window.session.set_settings(verify=False)
+    assert window.see(View.DIFFERENCE) == [], "verified it is already"
+    assert window.see(View.COLOR) == [], "that is more than is asked for"
+    window.scheduler.trace_again()
+    assert [one.settings.verify for one in window.asked_for()] == [False]
 
 
-ELSEWHERE = Camera((1.0, 0.0, 0.0), CAMERA.direction, CAMERA.up)
+# --- further frames that know more -------------------------------------------------------------------
 
-
-def traced(request: RenderRequest, certificates: int, part: float = 1.0) -> Traced:
-    """A frame, or a part of one, that made so many certificates."""
-    statistics = FrameStatistics(certificates=certificates, part=part)
-    frame: Any = SimpleNamespace(statistics=statistics, width=8, height=8)
-    return Traced(request, frame, statistics)
+HERE, ELSEWHERE = (Camera((x, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)) for x in (0.0, 1.0))
 
 
 def frames(
-    refinement: Refinement, made: list[int], camera: Camera = CAMERA, view: View = View.COLOR, **settings: Any
+    refinement: Refinement,
+    made: list[int],
+    camera: Camera = HERE,
+    view: View = View.COLOR,
+    changes: list[ModeChanges] | None = None,
+    **settings: Any,
 ) -> int:
-    """How many frames of a view are traced, the k-th of which makes so many certificates."""
+    """How many frames of a view are traced, the k-th of which makes so many certificates, or changes modes so."""
     for k, certificates in enumerate(made):
         request = RenderRequest(0.0, camera, Settings(8, 8, **settings), 1, k)
-        assert not refinement.wants_another(traced(request, certificates, 0.25), view, False), "not whole yet"
-        whole = traced(request, certificates)
-        if not refinement.wants_another(whole, view, False):
+        changed = changes[k] if changes is not None else None
+
+        def follows(part: float) -> bool:
+            statistics = FrameStatistics(certificates=certificates, part=part, mode_changes=changed)  # noqa: B023
+            frame: Any = SimpleNamespace(statistics=statistics, width=8, height=8)
+            return refinement.wants_another(Traced(request, frame, statistics), view, False)  # noqa: B023
+
+        assert not follows(0.25), "not whole yet"
+        if not follows(1.0):
             return k + 1
-        assert not refinement.wants_another(whole, view, False), "once for each frame"
+        assert not follows(1.0), "once for each frame"
     return len(made)
 
 
@@ -226,21 +286,11 @@ def test_frames_follow_as_long_as_they_know_more(method: str, made: list[int], e
 
 def test_frames_follow_until_modes_no_longer_change():
     """As where many primitives are examined anew: one frame says so, one learns, and one shows what that saves."""
-    changes = [ModeChanges(examined_anew=3), ModeChanges(fully_rendered=3, full_shadow=2), ModeChanges(), ModeChanges()]
-    refinement, count = Refinement(), 0
-    for k, changed in enumerate([ModeChanges(fully_rendered=9), *changes]):
-        whole = traced(RenderRequest(0.0, CAMERA, Settings(8, 8, method="paper"), 1, k), 0)
-        whole.frame.statistics.mode_changes = changed
-        count += 1
-        if not refinement.wants_another(whole, View.COLOR, False):
-            break
-    assert count == 4
-    for k in range(20):  # however often they change
-        whole = traced(RenderRequest(0.0, ELSEWHERE, Settings(8, 8, method="paper"), 1, k), 0)
-        whole.frame.statistics.mode_changes = ModeChanges(full_shadow=1)
-        if not refinement.wants_another(whole, View.COLOR, False):
-            break
-    assert k == MOST_LEARNING
+    learning = [ModeChanges(fully_rendered=9), ModeChanges(examined_anew=3), ModeChanges(fully_rendered=3)]
+    settled, refinement = [ModeChanges()] * 20, Refinement()
+    assert frames(refinement, [0] * 20, changes=learning + settled, method="paper") == 4
+    always = [ModeChanges(full_shadow=1)] * 20
+    assert frames(refinement, [0] * 20, ELSEWHERE, changes=always, method="paper") == MOST_LEARNING + 1
 
 
 def test_the_view_of_certificates_asks_for_more_of_them():
@@ -248,3 +298,31 @@ def test_the_view_of_certificates_asks_for_more_of_them():
     assert frames(refinement, [9] * 20, method="auto") == 2
     assert frames(refinement, [9] * 5 + [0] * 3, view=View.CERTIFICATE, method="auto") == 6
     assert frames(refinement, [0] * 5, view=View.CERTIFICATE, method="paper") == 2
+
+
+# --- waking the window -------------------------------------------------------------------------------
+
+
+def test_a_window_stays_until_nobody_is_just_waking_it():
+    """A thread that refreshed a window which has gone would call into what is no more."""
+    wake, waking, go_on, gone = Wake(), Event(), Event(), Event()
+
+    def refresh() -> None:
+        waking.set()
+        assert go_on.wait(20.0) and not gone.is_set()
+
+    def close() -> None:
+        wake.connect(None)
+        gone.set()
+
+    wake.connect(refresh)
+    threads = Thread(target=wake), Thread(target=close)
+    threads[0].start()
+    assert waking.wait(20.0)
+    threads[1].start()
+    assert not gone.wait(0.05), "the window has gone while a thread was waking it"
+    go_on.set()
+    for thread in threads:
+        thread.join(20.0)
+    assert gone.is_set()
+    wake()  # does nothing

@@ -1,19 +1,15 @@
-"""Camera and time, moved by hand, glided and played, and how fast in the preview before the first picture."""
+"""Camera and time, moved by hand, glided and played."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import replace
-from types import SimpleNamespace
 
 import pytest
 
 from tests.viewer.fakes import make_frame, make_scene
 from tracer.scene.model import Camera
-from viewer.services import preview
 from viewer.services.motion import IDLE_AFTER, Motion
-from viewer.services.preview import Preview
-from viewer.services.scene_loader import Arrival
 from viewer.state.navigation import SHORTEST_FLIGHT
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -43,13 +39,6 @@ def moving(monkeypatch: pytest.MonkeyPatch) -> Moving:
     return Moving(monkeypatch)
 
 
-def test_a_hand_that_moves_the_camera_is_motion_for_a_moment(moving: Moving):
-    moving.motion.move(ELSEWHERE)
-    assert moving.session.camera == ELSEWHERE and moving.motion.under_way
-    moving.now += IDLE_AFTER
-    assert not moving.motion.under_way and not moving.motion.is_animating
-
-
 def test_a_glide_ends_where_it_goes_and_a_hand_ends_it(moving: Moving):
     start = moving.session.camera
     for halt in (False, True):
@@ -59,6 +48,8 @@ def test_a_glide_ends_where_it_goes_and_a_hand_ends_it(moving: Moving):
         assert moving.session.camera not in (start, ELSEWHERE) and moving.motion.under_way
         if halt:
             moving.motion.move(start)
+            moving.now += IDLE_AFTER
+            assert not moving.motion.under_way, "a hand that moves the camera is motion for a moment"
         moving.after(3600.0)  # though the window slept on the way
         assert moving.session.camera == (start if halt else ELSEWHERE)
 
@@ -108,13 +99,3 @@ def test_the_pace_is_that_of_the_first_frame_until_another_scene(moving: Moving)
     assert motion.pace == pytest.approx(0.5)
     motion.enter(((-80.0, -80.0, -80.0), (80.0, 80.0, 80.0)))
     assert motion.pace == wide
-
-
-def test_spheres_and_cones_count_where_a_scene_is_too_large_for_a_preview(monkeypatch: pytest.MonkeyPatch):
-    scene, notices = make_scene(), Notices()
-    for most, there in ((preview.triangles_of(scene), True), (scene.triangle_count, False)):
-        monkeypatch.setattr(preview, "MOST_TRIANGLES", most)
-        session, loader = Session(), SimpleNamespace(waiting=Arrival(waits=scene))
-        motion = Motion(session, Preferences(), notices, lambda: False)
-        Preview(session, loader, motion, notices, lambda: None).update(traced=False)
-        assert (session.previewed is not None) == there

@@ -13,19 +13,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from tests.viewer.desk import Desk
-from tests.viewer.fakes import make_frame, make_scene
-from tracer.scene.files import Stamp, noting, stamp
-from tracer.scene.load import load_scene
+from tests.viewer.fakes import make_frame, until
+from tracer.scene.files import stamp
 from tracer.scene.model import SceneError
 from viewer.services.capture_service import CaptureService
-from viewer.services.scene_loader import Arrival, FileWatch, SceneLoader
+from viewer.services.scene_files import FileWatch
+from viewer.services.scene_loader import Arrival, SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
-from viewer.state.views import View
 
 
 class Door:
@@ -46,13 +44,9 @@ class Door:
 
     def arrival(self) -> Arrival | None:
         """What comes of the load that is under way."""
-        end = time.monotonic() + 300.0  # kernels may be compiled first
-        while True:
-            arrival = self.loader.take_finished()
-            if arrival is not None or not self.loader.busy:
-                return arrival
-            assert time.monotonic() < end, "in vain"
-            time.sleep(0.002)
+        came: list[Arrival | None] = []
+        until(lambda: came.append(self.loader.take_finished()) or came[-1] is not None or not self.loader.busy)
+        return came[-1]
 
     @property
     def said(self) -> str:
@@ -62,24 +56,6 @@ class Door:
 @pytest.fixture
 def door(tmp_path: Path) -> Door:
     return Door(tmp_path / "pictures")
-
-
-def test_a_scene_arrives_with_a_renderer_and_what_it_holds(door: Door, tiny_scene_file: Path):
-    door.loader.open(tiny_scene_file)
-    arrival = door.arrival()
-    assert arrival.opened.scene.path == tiny_scene_file and arrival.place is None
-    assert arrival.opened.renderer.scene is arrival.opened.scene and arrival.opened.info["lights"] == 2
-    assert arrival.text.startswith("tiny.aff opened in ") and door.loader.take_finished() is None, "once"
-
-
-def test_what_cannot_be_opened_is_one_line_and_nothing_arrives(door: Door, tmp_path: Path):
-    (tmp_path / "broken.aff").write_text("v from nowhere\n")
-    (tmp_path / "plain.png").write_bytes(b"no picture")
-    for name, said in (("none.aff", "no such file"), ("broken.aff", "broken.aff:1"), ("plain.png", "plain.png"),
-                       ("notes.txt", "not a scene")):  # fmt: skip
-        door.loader.open(tmp_path / name)
-        assert door.arrival() is None
-        assert said in door.said and door.notices.current.error
 
 
 def test_a_question_that_is_denied_opens_nothing(door: Door, tiny_scene_file: Path):
@@ -93,63 +69,50 @@ def test_a_load_that_is_overtaken_never_arrives(door: Door, tiny_scene_file: Pat
     other.write_text(tiny_scene_file.read_text())
     door.loader.open(tiny_scene_file)
     door.loader.open(other)
-    assert door.arrival().opened.scene.path == other
+    assert door.arrival().renderer.scene.path == other
 
 
 def door_opened(door: Door, path: Path):
     door.loader.open(path)
-    return door.arrival().opened.scene
+    return door.arrival().renderer.scene
 
 
-def test_a_saved_picture_of_the_open_scene_is_a_place_in_it(
+def test_settings_of_the_command_line_are_those_of_what_is_opened_first(
     door: Door, tiny_scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
+    """Also where a saved place in it has others."""
     door.session.open(door_opened(door, tiny_scene_file))
-    door.session.set_draw(view=View.DEPTH)
-    frame = make_frame(time=1.0)
-    door.captures.capture(frame, np.zeros((8, 16, 3), np.uint8))
-    (job,) = door.captures.saving
-    assert job.join(20.0)
-    door.captures.report_saved()
+    door.captures.capture(make_frame(time=1.0), np.zeros((8, 16, 3), np.uint8))
+    assert door.captures.saving.pop().join(20.0)
     (picture,) = (tmp_path / "pictures").iterdir()
-    assert door.said == f"saved {picture}" and not door.captures.busy
-    door.loader.open(picture)
-    arrival = door.arrival()
-    assert arrival.opened is None and arrival.text == f"restored {picture.name}"
-    assert (arrival.place.time, arrival.place.draw.view) == (1.0, View.DEPTH)
     door.session.scene = None
     monkeypatch.setattr("viewer.services.scene_loader.warm_up", lambda progress: None)
-    door.loader.start(picture, {"lamp_radius": 0.5})
-    arrival = door.arrival()
-    assert arrival.opened.scene.path == tiny_scene_file and arrival.place.camera == frame.camera
-    assert arrival.place.settings.lamp_radius == 0.5, "as the command line says of what is opened first"
+    door.loader.start({"lamp_radius": 0.5})
     assert door.session.settings.lamp_radius == 0.5, "also where a scene is opened that says nothing of it"
-    door.loader.open(picture)
-    assert door.arrival().place.settings.lamp_radius is None
+    for radius in (0.5, None):
+        door.loader.open(picture)
+        arrival = door.arrival()
+        assert arrival.renderer.scene.path == tiny_scene_file and arrival.place.time == 1.0
+        assert arrival.place.settings.lamp_radius == radius
 
 
 def test_a_cancelled_load_is_gone_at_once_though_it_cannot_stop(door: Door, tiny_scene_file: Path, monkeypatch):
     """As within a library that reads a mesh; and the scene that has waited in vain is let go."""
     deaf, read, opened = threading.Event(), [], door_opened(door, tiny_scene_file)
 
-    def waits(_read, settings, ready, progress, seen):
-        scene = make_scene()
+    def waits(scene, settings, progress):
         read.append(weakref.ref(scene))
-        seen(scene)
         deaf.wait(60.0)
         raise SceneError("no more")
 
-    monkeypatch.setattr("viewer.services.scene_loader.open_scene", waits)
+    monkeypatch.setattr("viewer.services.scene_loader.build", waits)
     door.session.open(opened)
     door.loader.open(tiny_scene_file)
-    end = time.monotonic() + 20.0
-    while door.loader.waiting is None:
-        assert time.monotonic() < end, "in vain"
-        time.sleep(0.002)
+    until(lambda: read)
     job = door.loader.load_job
     door.loader.cancel()
-    assert not door.loader.busy and door.loader.waiting is None
-    assert door.said == "loading cancelled: the scene that was open stays"
+    assert not door.loader.busy
+    assert door.said == "loading cancelled; the open scene stays"
     monkeypatch.undo()
     assert door_opened(door, tiny_scene_file).path == tiny_scene_file, "another is opened meanwhile"
     deaf.set()
@@ -174,7 +137,7 @@ def test_what_has_changed_is_told_once_and_when_it_rests(tmp_path: Path, monkeyp
         (tmp_path / name).write_text(name)
     watch = FileWatch()
     watch.files = {path: stamp(path) for path in (tmp_path / "a.aff", tmp_path / "b.png", tmp_path / "later.png")}
-    monkeypatch.setattr("viewer.services.scene_loader.LOOK_SECONDS", 0.0)
+    monkeypatch.setattr("viewer.services.scene_files.LOOK_SECONDS", 0.0)
 
     def looks() -> str:
         assert watch.changed() == ""
@@ -191,24 +154,6 @@ def test_what_has_changed_is_told_once_and_when_it_rests(tmp_path: Path, monkeyp
     write(tmp_path / "b.png", "new")
     write(tmp_path / "later.png", "what was missed")
     assert [looks(), looks(), looks()] == ["", "b.png and 1 more", ""]
-
-
-def test_all_that_a_scene_names_is_noted(tmp_path: Path, tiny_scene_file: Path):
-    Image.new("RGB", (2, 2)).save(tmp_path / "there.png")
-    part = tmp_path / "part.aff"
-    part.write_text("tt there.png\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\ntt gone.png\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n")
-    tiny_scene_file.write_text(tiny_scene_file.read_text() + "\ni 0 part.aff\n")
-    files: dict[Path, Stamp] = {}
-    with noting(files):
-        load_scene(tiny_scene_file)
-    assert files == {p: stamp(p) for p in (tiny_scene_file, part, tmp_path / "there.png", tmp_path / "gone.png")}
-    assert files[tmp_path / "gone.png"] is None
-
-    part.write_text("p nonsense\n")
-    files = {}
-    with noting(files), pytest.raises(SceneError):
-        load_scene(tiny_scene_file)
-    assert part in files, "also where it is broken"
 
 
 def test_a_scene_is_read_again_in_its_place_and_a_broken_one_is_not(desk: Desk, tiny_scene_file: Path):

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tests.marbles import write_marbles
 from tests.viewer.desk import ELSEWHERE, Desk, is_the_same_picture
-from tests.viewer.fakes import LAST, STEP, write_marbles
 from tracer.experiments import zoom
-from viewer.state.picking import wrong_at
 from viewer.util.resources import embedded_scenes
 
 
@@ -84,64 +82,27 @@ def test_a_step_can_be_gone_to(figure4: Desk) -> None:
     assert desk.c.session.camera == camera and "figure4.aff" in desk.said
 
 
-@pytest.fixture
-def study(tmp_path: Path) -> Iterator[Desk]:
+def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(tmp_path: Path, tiny_scene_file: Path) -> None:
     desk = Desk(write_marbles(tmp_path), tmp_path / "pictures")
-    plan = desk.c.hunts.plan
-    plan.size, plan.last, plan.step, plan.around, plan.keep = (96, 96), LAST, STEP, 3, 4
-    desk.c.settings.change(depth=2)
-    desk.rest()
-    yield desk
-    assert desk.c.close()
-
-
-def test_a_find_is_flown_to_as_it_was_found(study: Desk) -> None:
-    c = study.c
-    here = c.session.state
+    c = desk.c
+    c.hunts.plan.size = (96, 96)
+    c.settings.change(depth=2)
     c.hunts.start()
-    run = c.hunts.hunt
-    assert run is not None and c.runs.current is run
-    study.run_to_its_end()
-    found = c.hunts.found
-    assert run.whole and found is not None and found.finds and (found.frames, run.frames) == (12, 12)
-    assert "hunt done: 12 frames" in study.said
-    for number in (0, len(found.finds) - 1):
-        find = found.finds[number]
-        c.hunts.go(number)
-        assert c.hunts.chosen == number
-        study.run_to_its_end()
-        frame, picked = c.frame, c.selection.picked
-        assert (frame.width, frame.height) == (96, 96) and (frame.time, frame.camera) == (find.time, find.camera)
-        assert tuple(frame.color[find.y, find.x].tolist()) == find.color
-        assert tuple(frame.reference[find.y, find.x].tolist()) == find.reference
-        assert picked is not None and (picked.x, picked.y) == (find.x, find.y) and wrong_at(frame, find.x, find.y) > 0
-        assert c.session.on_path == find.own_camera and c.session.draw.light == find.light
-        assert c.session.settings.method == "paper" and c.session.settings.verify
-        if find.bounces == 0:
-            taught = c.history.origins_of(picked)
-            assert taught is not None
-            lesson = taught.lights[find.light]
-            assert (lesson.lit if find.lit else lesson.blocked) >= 0, "nobody has taught what is wrong"
-    for _ in range(2):
-        c.undo.undo()
-        study.rest()
-    assert c.session.state == here and not c.session.state.pace.fixed_size
-
-
-def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(study: Desk, tiny_scene_file: Path) -> None:
-    c = study.c
-    c.hunts.plan.last, c.hunts.plan.step = None, 1
-    c.hunts.start()
-    study.until(lambda: c.hunts.found is not None and c.hunts.found.finds)
+    desk.until(lambda: c.hunts.found is not None and c.hunts.found.finds)
     c.hunts.go(0)
-    assert "the hunt is still under way" in study.said
+    assert "the hunt is still under way" in desk.said
     c.runs.stop()
-    study.run_to_its_end()
+    desk.run_to_its_end()
     assert c.hunts.found.finds and not c.hunts.hunt.whole
-    study.open(tiny_scene_file)
-    camera = c.session.camera
+    find, before = c.hunts.found.finds[-1], c.session.state
+    c.hunts.go(len(c.hunts.found.finds) - 1)
+    desk.run_to_its_end()
+    assert tuple(c.frame.color[find.y, find.x].tolist()) == find.color
+    assert tuple(c.frame.reference[find.y, find.x].tolist()) == find.reference
+    c.undo.undo()
+    desk.rest()
+    assert c.session.state == before
+    desk.open(tiny_scene_file)
     c.hunts.go(0)
-    assert "open that scene again" in study.said and c.session.camera == camera
-    c.hunts.plan.size = (9999, 16)
-    c.hunts.start()
-    assert "too large for a run" in study.said
+    assert "open that scene again" in desk.said and c.session.camera == c.session.scene.camera
+    assert c.close()

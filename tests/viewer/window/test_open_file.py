@@ -39,16 +39,6 @@ def test_a_path_is_completed_as_far_as_names_agree(folder: Path, typed: str, nam
     assert state.names() == names and state.completed() == completed
 
 
-def test_a_folder_is_read_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    read: list[Path] = []
-    monkeypatch.setattr(dialogs, "names_in", lambda path: read.append(path) or ["a.aff", "b.aff"])
-    state = OpenFileState(folder=folder)
-    for typed in ("", "a", "", "b"):
-        state.typed = typed
-        state.names()
-    assert read == [folder]
-
-
 def test_where_the_desktop_has_a_dialog_it_asks(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[Path] = []
     state, wanted, ready = OpenFileState(folder=folder), [Dialog.OPEN_FILE], [False, False, True]

@@ -14,7 +14,7 @@ from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
 from viewer.window.panels.culling import lights_to_fit, pale, said_of
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, go_to_experiment_frame, pointed_frame, wrong_axis
-from viewer.window.panels.runs import arrange, export_buttons, results_table, start_or_progress, whose
+from viewer.window.panels.runs import Part, results_table, show_run
 from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, in_window_style, outlined, paragraph, properties, row, tooltip
@@ -25,30 +25,19 @@ _FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes
 
 def show(ui: Ui) -> None:
     """The panel: what to measure, the savings frame by frame, and the table."""
-    run = ui.controller.runs.experiment
-    results = run.results if run is not None else None
-    if run is None or results is None:
-        why = "What culling saves of the work of shadow rays, frame by frame, and the paper's Table 1."
-        arrange(lambda: _controls(ui, run), ("Plot", _PLOT, lambda: paragraph(why, QUIET)))
-        return
-    arrange(
-        lambda: _controls(ui, run),
-        ("Table", _TABLE, lambda: _table(ui, run, results)),
-        ("Plot", _PLOT, lambda: _plot(ui, run, results)),
-        heading=lambda: whose(ui, run),
-    )
-
-
-def _controls(ui: Ui, run: Experiment | None) -> None:
-    runner = ui.controller.runs
-    under_way = runner.current is run
-    if run is not None and under_way:
-        said = f"{run.settings.width} x {run.settings.height}, {run.settings.depth} bounces, showing {run.shown}"
-        paragraph(said, QUIET)
-    else:
-        _plan(ui)
-    start_or_progress(ui, run, runner.start_experiment, "Trace the path by each method, and compare them")
-    export_buttons(ui, run)
+    run, parts, doing = ui.controller.runs.experiment, list[Part](), ""
+    if run is not None:
+        doing = f"{run.settings.width} x {run.settings.height}, {run.settings.depth} bounces, showing {run.shown}"
+    if run is not None and (results := run.results) is not None:
+        parts.append(("Table", _TABLE, lambda: _table(ui, run, results)))
+        parts.append(("Plot", _PLOT, lambda: _plot(ui, run, results)))
+    show_run(
+        ui, run, lambda: _plan(ui), ui.controller.runs.start_experiment,
+        tip="Trace the path by each method, and compare them",
+        doing=doing,
+        parts=parts,
+        why="What culling saves of the work of shadow rays, frame by frame, and the paper's Table 1.",
+    )  # fmt: skip
 
 
 def _plan(ui: Ui) -> None:
@@ -67,39 +56,31 @@ def _methods(plan: ExperimentPlan, lights: tuple[int, int]) -> None:
     them, and what has nothing to say of so many lights is pale."""
     opened = imgui.begin_combo("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
     tooltip(", ".join(in_order({REFERENCE, *plan.methods})))
-    if opened:
-        _method_ticks(plan, lights)
-        imgui.end_combo()
-
-
-def _method_ticks(plan: ExperimentPlan, lights: tuple[int, int]) -> None:
+    if not opened:
+        return
     for heading, kinds in groups():
         imgui.separator_text(heading)
         for kind in kinds:
-            if kind.name == REFERENCE:
-                imgui.begin_disabled()
-                _tick(kind.name, True, kind, lights)
-                imgui.end_disabled()
-            elif _tick(kind.name, kind.name in plan.methods, kind, lights):
-                plan.methods ^= {kind.name}
+            imgui.begin_disabled(kind.name == REFERENCE)
+            _tick(plan, kind, {kind.name}, lights)
+            imgui.end_disabled()
     imgui.separator_text("And each of these with")
     bases = [method for method in plan.methods if "+" not in method]
     for kind in additions():
-        combined = {f"{base}+{kind.name}" for base in bases if base != kind.name}
-        there = bool(combined) and combined <= plan.methods
-        if _tick(f"+{kind.name}", there, kind, lights):
-            plan.methods = plan.methods - combined if there else plan.methods | combined
+        _tick(plan, kind, {f"{base}+{kind.name}" for base in bases if base != kind.name}, lights, "+")
+    imgui.end_combo()
 
 
-def _tick(label: str, now: bool, kind: Kind, lights: tuple[int, int]) -> bool:
-    """A tick of a method, pale where that has nothing to say of so many lights; returns whether it was clicked."""
+def _tick(plan: ExperimentPlan, kind: Kind, methods: set[str], lights: tuple[int, int], sign: str = "") -> None:
+    """Show a tick that adds methods to the plan, or takes them away."""
     color = imgui.get_style_color_vec4(imgui.Col_.text) if kind.fits(*lights) else pale()
+    there = bool(methods) and methods <= {REFERENCE, *plan.methods}
     imgui.push_style_color(imgui.Col_.text, color)
     with outlined():
-        clicked = imgui.checkbox(label, now)[0]
+        if imgui.checkbox(f"{sign}{kind.name}", there)[0]:
+            plan.methods = plan.methods - methods if there else plan.methods | methods
     imgui.pop_style_color()
     tooltip(said_of(kind, lights))
-    return clicked
 
 
 def _table(ui: Ui, run: Experiment, results: Results) -> None:
@@ -107,7 +88,7 @@ def _table(ui: Ui, run: Experiment, results: Results) -> None:
     rows: list[Row] = ui.cached("table 1", results, 0, lambda: experiment.table(results))
     said = in_window_style("; ".join(caveats(results, in_window=True)))
     paragraph(f"{said[:1].upper()}{said[1:]}.", QUIET)
-    results_table("table 1", [METHOD, *table_1(run.settings.verify)], rows)
+    results_table("table 1", [METHOD, *table_1(results)], rows)
 
 
 def _plot(ui: Ui, run: Experiment, results: Results) -> None:

@@ -11,24 +11,11 @@ from tracer.scene.model import Scene
 from viewer.output.reports import findings
 from viewer.services.hunts import Hunts
 from viewer.window.panels.culling import method_list
-from viewer.window.panels.runs import (
-    arrange,
-    export_buttons,
-    frames_row,
-    results_table,
-    start_or_progress,
-)
+from viewer.window.panels.rays import show_rays
+from viewer.window.panels.runs import Part, frames_row, results_table, show_run
 from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
-from viewer.window.widgets import (
-    QUIET,
-    in_window_style,
-    paragraph,
-    properties,
-    row,
-    same_line_for,
-    tooltip,
-)
+from viewer.window.widgets import QUIET, in_window_style, paragraph, properties, row, same_line_for, tooltip
 
 _LIST, _DETAILS = 13.0, 14.0  # ems of width
 
@@ -36,29 +23,20 @@ _LIST, _DETAILS = 13.0, 14.0  # ems of width
 def show(ui: Ui) -> None:
     """The panel: what to search, the list of findings, and the one that was clicked."""
     hunts, scene = ui.controller.hunts, ui.controller.session.scene
-    found, parts = hunts.found, []
-    if found is None or hunts.hunt is None:
-        why = (
-            "Where is a method wrong, and how badly? Start: the worst wrong pixels are listed here. Click one to "
-            "fly there; the inspector explains it."
-        )
-        parts.append(("Findings", _LIST, lambda: paragraph(why, QUIET)))
-    elif scene is None or not hunts.hunt.is_of(scene):
-        made = f"The last hunt was made {hunts.hunt.made_in(scene)}."
-        parts.append(("Findings", _LIST, lambda: paragraph(made, QUIET)))
-    else:
+    found, parts = hunts.found, list[Part]()
+    if found is not None and hunts.hunt is not None and scene is not None and hunts.hunt.is_of(scene):
         parts.append(("Findings", _LIST, lambda: _findings(ui, hunts, found, scene)))
         if hunts.chosen is not None and hunts.chosen < len(found.finds):
             find, number = found.finds[hunts.chosen], hunts.chosen
-            parts.append(("Details", _DETAILS, lambda: _details(ui, hunts, number, find, scene)))
-    arrange(lambda: _controls(ui, hunts), *parts)
-
-
-def _controls(ui: Ui, hunts: Hunts) -> None:
-    start_or_progress(ui, hunts.hunt, hunts.start, "Search the frames for the worst wrong pixels of the method")
-    if ui.controller.runs.current is not hunts.hunt or hunts.hunt is None:
-        _plan(ui, hunts)
-    export_buttons(ui, hunts.hunt)
+            parts.append(("Details", _DETAILS, lambda: _details(ui, number, find, scene)))
+    show_run(
+        ui, hunts.hunt, lambda: _plan(ui, hunts), hunts.start,
+        tip="Search the frames for the worst wrong pixels of the method",
+        doing="Searching for wrong pixels",
+        parts=parts,
+        why="Where is a method wrong, and how badly? Start: the worst wrong pixels are listed here. Click one to "
+        "fly there; the inspector explains it.",
+    )  # fmt: skip
 
 
 def _plan(ui: Ui, hunts: Hunts) -> None:
@@ -76,8 +54,8 @@ def _findings(ui: Ui, hunts: Hunts, found: hunt.Results, scene: Scene) -> None:
     """A line for each, the worst first; a click flies there."""
     paragraph(in_window_style(found.summary), QUIET)
     if found.finds:
-        columns = findings(scene, {id(find): rank for rank, find in enumerate(found.finds, 1)})
         tip = lambda find: f"Fly there. {counterexample.in_its_frame(find)}"  # noqa: E731
+        columns = findings(scene, found.finds)
         results_table("findings", columns, found.finds, lambda number: _fly(ui, number), hunts.chosen, tip)
 
 
@@ -86,7 +64,7 @@ def _fly(ui: Ui, number: int) -> None:
     ui.show_panel("Inspector")
 
 
-def _details(ui: Ui, hunts: Hunts, number: int, find: Counterexample, scene: Scene) -> None:
+def _details(ui: Ui, number: int, find: Counterexample, scene: Scene) -> None:
     """What can be done with a finding, and what is wrong there, in colours and words."""
     imgui.begin_disabled(ui.controller.runs.current is not None)
     if imgui.button(f"{icons.ICON_FA_PAPER_PLANE}  Fly there"):
@@ -95,7 +73,7 @@ def _details(ui: Ui, hunts: Hunts, number: int, find: Counterexample, scene: Sce
     rays = f"{icons.ICON_FA_CODE_BRANCH}  Rays"
     same_line_for(rays)
     if imgui.button(rays):
-        ui.show_rays()
+        show_rays(ui)
     tooltip(f"what became of each ray of the pixel{ui.key('Rays of the clicked pixel')}")
     for sentence in (*counterexample.in_words(find, scene), counterexample.in_its_frame(find)):
         paragraph(in_window_style(sentence))

@@ -1,4 +1,4 @@
-"""What the panels of runs share: rows of a plan, three parts beside each other, progress, results, and their files."""
+"""The panels of runs: what to do, how far it is, and what was found; and what these are made of."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.experiments.experiment import Experiment
+from tracer.experiments.hunt import Hunt
 from tracer.experiments.runner import Run
 from tracer.experiments.zoom import ZoomTest
-from viewer.output.reports import Column
-from viewer.services.runs import described, duration
+from viewer.output.reports import Column, title
+from viewer.services.runs import duration
 from viewer.state.plans import FilmPlan, HuntPlan
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
@@ -22,6 +23,7 @@ from viewer.window.widgets import (
     clipped,
     em,
     in_window_style,
+    paragraph,
     right,
     row,
     same_line_for,
@@ -55,13 +57,42 @@ def either(no: str, yes: str, now: bool) -> bool:
     return second or (now and not first)
 
 
-def arrange(
-    controls: Callable[[], None],
-    *parts: tuple[str, float, Callable[[], None]],
-    heading: Callable[[], None] = lambda: None,
+Part = tuple[str, float, Callable[[], None]]
+"""A part of the results: its name, its least width in ems, and what shows it."""
+
+
+def show_run(
+    ui: Ui,
+    run: Experiment | ZoomTest | Hunt | None,
+    plan: Callable[[], None],
+    start: Callable[[], None],
+    tip: str,
+    doing: str,
+    parts: Sequence[Part],
+    why: str,
 ) -> None:
-    """Show controls, and beside them the parts of the results (name, least ems of width, function that shows it) below
-    a heading: next to each other, or as tabs where there is no room for that.
+    """Show a panel: what starts a run or stops it, the plan or what it is doing, and beside these what it has found.
+
+    Without results it says `why` one would start."""
+
+    def controls() -> None:
+        start_or_progress(ui, run, start, tip)
+        if run is not None and ui.controller.runs.current is run:
+            paragraph(doing, QUIET)
+        else:
+            plan()
+        if run is not None:
+            _export_buttons(ui, run)
+
+    if run is None or run.results is None:
+        _arrange(controls, lambda: paragraph(why, QUIET), ())
+    else:
+        _arrange(controls, lambda: _heading(ui, run), parts)
+
+
+def _arrange(controls: Callable[[], None], heading: Callable[[], None], parts: Sequence[Part]) -> None:
+    """Show controls, and beside them parts below a heading: next to each other, or as tabs where there is no room for
+    that.
 
     In a panel that is too narrow for results beside controls, all lie below one another."""
     room, spacing = imgui.get_content_region_avail(), imgui.get_style().item_spacing.x
@@ -120,7 +151,7 @@ def results_table(
     for column in columns:
         imgui.table_next_column()
         clipped(column.heading, QUIET)
-        tooltip(column.meaning.strip())
+        tooltip(column.meaning)
     clipper = imgui.ListClipper()
     clipper.begin(len(rows))
     while clipper.step():
@@ -140,10 +171,13 @@ def results_table(
     imgui.end_table()
 
 
-def whose(ui: Ui, run: Experiment | ZoomTest) -> None:
-    """Say of which scene the results are, in a line that stands out where that is not the one that is open."""
-    text, elsewhere = described(run, ui.controller.session.scene)
-    clipped(f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {text}" if elsewhere else text, WARNING if elsewhere else QUIET)
+def _heading(ui: Ui, run: Experiment | ZoomTest | Hunt) -> None:
+    """Say what the results are of, in a line that stands out where that is not the scene that is open."""
+    scene = ui.controller.session.scene
+    if scene is not None and not run.is_of(scene):
+        paragraph(f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  Made {run.made_in(scene)}.", WARNING)
+    if run.results is not None:
+        clipped(f"{title(run.results)}, begun at {run.began:%H:%M}", QUIET)
 
 
 def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: str) -> None:
@@ -165,14 +199,13 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
         runner.stop()
 
 
-def export_buttons(ui: Ui, run: Run | None) -> None:
+def _export_buttons(ui: Ui, run: Run) -> None:
     """Show one small button for each kind of file; none before there are results."""
-    kinds = ui.controller.runs.exports_of(run) if run is not None else {}
-    for number, ending in enumerate(kinds):
+    for number, ending in enumerate(ui.controller.runs.exports_of(run)):
         name, tip = _SAVED_AS[ending]
         label = f"{icons.ICON_FA_FLOPPY_DISK} {name}"
         if number:
             same_line_for(label)
-        if run is not None and imgui.button(label):
+        if imgui.button(label):
             ui.controller.runs.export(run, ending)
         tooltip(tip)

@@ -9,14 +9,14 @@ from imgui_bundle import ImVec2, imgui, implot
 
 from tracer.experiments.zoom import Approach, Results, Step
 from viewer.output.filmstrip import Shot
-from viewer.output.reports import STEPS, Column, changes_in_words, happenings
+from viewer.output.reports import STEPS, changes_in_words, happenings
 from viewer.services.runs import RecordedZoomTest
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
-from viewer.window.panels.runs import arrange, export_buttons, results_table, start_or_progress, whose
+from viewer.window.panels.runs import Part, results_table, show_run
 from viewer.window.setting_rows import plan_rows
 from viewer.window.style import GREY, MARK
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, paragraph, properties, row, tooltip
+from viewer.window.widgets import ERROR, WARNING, clipped, count, em, properties, row, tooltip
 
 _PLOT, _TABLE = 14.0, 15.0  # ems of width
 _LOW = 8.5  # ems of height below which a plot has no legend
@@ -26,29 +26,17 @@ _LARGE = 20.0  # ems of a picture that is pointed at
 
 def show(ui: Ui) -> None:
     """The panel: how to go, the counts on the way, and what happened at which step."""
-    test = ui.controller.runs.zoom_test
-    results = test.results if test is not None else None
-    if test is None or results is None:
-        why = "Does a shadow that can only be seen from close up appear in time? Click a primitive, and start."
-        arrange(lambda: _controls(ui, test), ("Plot", _PLOT, lambda: paragraph(why, QUIET)))
-        return
-    arrange(
-        lambda: _controls(ui, test),
-        ("Plot", _PLOT, lambda: _plot_and_films(ui, test, results)),
-        ("Table", _TABLE, lambda: _table(ui, test, results)),
-        heading=lambda: whose(ui, test),
-    )
-
-
-def _controls(ui: Ui, test: RecordedZoomTest | None) -> None:
-    c = ui.controller
-    under_way = c.runs.current is test
-    if test is not None and under_way:
-        paragraph(f"towards primitive {test.start.primitive}", QUIET)
-    else:
-        _plan(ui)
-    start_or_progress(ui, test, c.runs.start_zoom_test, "Move towards the primitive, once with each factor")
-    export_buttons(ui, test)
+    test, parts = ui.controller.runs.zoom_test, list[Part]()
+    if test is not None and (results := test.results) is not None:
+        parts.append(("Plot", _PLOT, lambda: _plot_and_films(ui, test, results)))
+        parts.append(("Table", _TABLE, lambda: _table(ui, results)))
+    show_run(
+        ui, test, lambda: _plan(ui), ui.controller.runs.start_zoom_test,
+        tip="Move towards the primitive, once with each factor",
+        doing=f"Towards primitive {test.start.primitive}" if test is not None else "",
+        parts=parts,
+        why="Does a shadow that can only be seen from close up appear in time? Click a primitive, and start.",
+    )  # fmt: skip
 
 
 def _plan(ui: Ui) -> None:
@@ -170,23 +158,11 @@ def _counts(pixels: Iterable[int]) -> np.ndarray:
     return np.array([max(count, 0.5) for count in pixels], np.float64)
 
 
-Line = tuple[Approach, Step]
-
-
-def _of_step(column: Column[Step]) -> Column[Line]:
-    return Column(column.heading, column.meaning, lambda line: column.cell(line[1]),
-                  lambda line: column.wrong(line[1]), column.text)  # fmt: skip
-
-
-_COLUMNS = (Column[Line]("factor", "zoom factor", lambda line: f"{line[0].factor:g}"), *map(_of_step, STEPS))
-
-
-def _table(ui: Ui, test: RecordedZoomTest, results: Results) -> None:
-    """The steps where something happens; a click shows what was recorded there."""
-    lines = [(approach, step) for approach in results.approaches for step in happenings(approach)]
+def _table(ui: Ui, results: Results) -> None:
+    """The steps where something happens; a click flies there."""
+    rows = happenings(results)
 
     def go(number: int) -> None:
-        ui.controller.go_to_step(lines[number][1])
+        ui.controller.go_to_step(rows[number][1])
 
-    results_table("steps", _COLUMNS, lines, go,
-                  tip=lambda line: "\n".join(["fly there", *changes_in_words(line[1].changes)]))  # fmt: skip
+    results_table("steps", STEPS, rows, go, tip=lambda row: "\n".join(["fly there", *changes_in_words(row[1].changes)]))
