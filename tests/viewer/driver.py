@@ -94,36 +94,15 @@ class Driver:
         app._set_frame_rate = with_errands  # type: ignore[method-assign]
         if not dozes:
             app.params.fps_idling.fps_max = FASTEST
-        self._fill_only_what_is_seen()
+        self._watch_frames()
 
-    def _fill_only_what_is_seen(self) -> None:
+    def _watch_frames(self) -> None:
         """Fill the window's pixels in those frames only of which a picture is taken: where a processor draws, that is
-        half of the time that a scenario takes.  All else is done in each frame, and the views are drawn as ever."""
-        app, call = self.app, self.app.params.callbacks
-        before_render, before_swap = call.before_imgui_render, call.before_swap
+        half of the time that a scenario takes.  All else is done in each frame, and the views are drawn as ever.  And
+        have ImGui's own log say what a frame writes, where that is wanted: from the menus, which come first, on."""
+        app, call, context = self.app, self.app.params.callbacks, imgui.get_current_context()
+        show_menus, before_render, before_swap = call.show_menus, call.before_imgui_render, call.before_swap
         filled = True
-
-        def begin() -> None:
-            nonlocal filled
-            before_render()
-            filled = bool(self._of_window) or app._capture_this_frame
-            if not filled:
-                self.ui.graphics.display.context.enable_direct(RASTERIZER_DISCARD)
-
-        def end() -> None:
-            if not filled:
-                self.ui.graphics.display.context.disable_direct(RASTERIZER_DISCARD)
-            before_swap()
-            while filled and self._of_window:
-                self._of_window.pop()()
-
-        call.before_imgui_render, call.before_swap = begin, end
-        self._can_read()
-
-    def _can_read(self) -> None:
-        """Have ImGui's own log say what a frame writes, where that is wanted: from the menus, which come first, on."""
-        call, context = self.app.params.callbacks, imgui.get_current_context()
-        show_menus, before_render = call.show_menus, call.before_imgui_render
 
         def begin() -> None:
             if self._reading is not None:
@@ -131,13 +110,24 @@ class Driver:
                 context.log_window = imgui.internal.find_window_by_name("Debug##Default")  # not the menus' alone
             show_menus()
 
-        def end() -> None:
+        def render() -> None:
+            nonlocal filled
             if self._reading is not None and context.log_enabled:
                 self._reading.append(context.log_buffer.c_str())
                 imgui.log_finish()
             before_render()
+            filled = bool(self._of_window) or app._capture_this_frame
+            if not filled:
+                self.ui.graphics.display.context.enable_direct(RASTERIZER_DISCARD)
 
-        call.show_menus, call.before_imgui_render = begin, end
+        def swap() -> None:
+            if not filled:
+                self.ui.graphics.display.context.disable_direct(RASTERIZER_DISCARD)
+            before_swap()
+            while filled and self._of_window:
+                self._of_window.pop()()
+
+        call.show_menus, call.before_imgui_render, call.before_swap = begin, render, swap
 
     # Waiting
 

@@ -221,6 +221,11 @@ def with_cell_lights(frame: Frame) -> Frame:
     return replace(frame, layers=frame.layers | {"cell lights": np.where(frame.primitive >= 0, asked, np.int32(-1))})
 
 
+def with_everything(frame: Frame) -> Frame:
+    """The frame with whatever any view shows."""
+    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(frame))))))
+
+
 def in_part(frame: Frame) -> Frame:
     """The frame while every second column has been shaded: nothing is known of what lights send to the others."""
     shaded = np.indices(frame.primitive.shape)[1] % 2 == 0
@@ -305,18 +310,3 @@ class FakeRenderer:
         if self.failing is not None:
             raise self.failing
         return make_frame(self.settings, time, camera)
-
-
-FLYER_SCENE = """\
-v from 0 1 4 at 0 0 0 up 0 1 0 angle 50 hither 1 resolution 32 32
-a 0 9 10
-l 2 4 3 1 1 1
-l -3 4 2 0.5 0.5 0.5
-f 0.8 0.6 0.4 0.9 0.1 10 0.3 1
-p 4 -1 -0.5 -1 -1 -0.5 1 1 -0.5 1 1 -0.5 -1
-f 0.3 0.5 0.8 0.9 0.1 10 0 1
-s 0 0 0 0.5
-x flyer { p 3 -0.2 0.8 0 0.2 0.8 0 0 1.1 0 }
-k flyer { transl 4 -1 0 0 0 0 0 0  0 0 0 0 0 0 0  9 1 0 0 0 0 0  10 1 0 0 0 0 0 }
-"""
-"""A small scene in AFF with two lights, in which something flies."""

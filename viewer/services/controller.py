@@ -27,7 +27,6 @@ from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
 from viewer.services.named_states import Bookmarks, Presets
 from viewer.services.pictures import Pictures
-from viewer.services.preview import Preview
 from viewer.services.questions import Questions
 from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
@@ -79,7 +78,6 @@ class Controller:
         self.table = SceneTable(session, selection, preferences, notices, captures, editing, wake)
         self.questions = questions = Questions(runs, captures, wake)
         self.loader = loader = SceneLoader(session, preferences, notices, questions.before_opening, wake)
-        self.preview = Preview(session, loader, motion, notices, wake)
         self.pictures = pictures = Pictures(
             session, preferences, scheduler, self.history, loader, runs, captures, notices
         )
@@ -114,7 +112,7 @@ class Controller:
 
     def take_scene(self) -> None:
         """Show the scene that has been read, if one has."""
-        session, arrival, flown = self.session, self.loader.take_finished(), self.preview.flown
+        session, arrival = self.session, self.loader.take_finished()
         if arrival is None:
             return
         place, playing, said = arrival.place, arrival.again and session.playing, arrival.text
@@ -128,8 +126,6 @@ class Controller:
             self.restore(place)
         elif session.scene is not None:
             said = f"{said}. {remark_on(session.scene.lights, session.settings)}".removesuffix(". ")
-        if flown is not None:  # while the scene was waiting for its kernels
-            session.change(camera=flown)
         session.playing, self.reloaded = playing and session.animated, arrival.again
         self.notices.say(said)
 
@@ -155,7 +151,6 @@ class Controller:
             frame = newest.frame
         self.reloaded = False
         self.motion.look_around(frame)
-        self.selection.refresh(frame)
 
     def move(self) -> None:
         """Bring time and camera to where they should be now."""

@@ -27,8 +27,6 @@ MOST_FRAMES = 40
 SECONDS = 0.4
 """That each of these may spend on certificates: the picture is there already, and a movement ends them at once."""
 FIRST_LAMP_SAMPLES = 4
-MOST_RADII = 16
-"""Radii of lamps whose samples are known at once."""
 
 
 class Refinement:
@@ -120,8 +118,6 @@ class LampSamples:
         """Return the samples of the lamp that has the most; 1 where all lights are points, or there are none."""
         radius = settings.lamp_radius
         if radius not in self._by_scene:  # there may be thousands of lights, and it is asked for many times a frame
-            if len(self._by_scene) >= MOST_RADII:
-                self._by_scene.clear()
             lamps = (light for light in as_lamps(self._lights, radius, None) if light.kind != "point")
             self._by_scene[radius] = max((lamp.samples for lamp in lamps), default=0)
         by_scene = self._by_scene[radius]

@@ -162,7 +162,7 @@ class RenderThread:
             try:
                 turn()
             except Exception as problem:  # a task that raises though it must not
-                self._complain(problem, "work in the background failed")
+                self._complain(problem, "background work failed")
                 self._wake()
 
     def _complain(self, problem: Exception, what: str) -> None:

@@ -8,6 +8,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+from imgui_bundle import imgui
+
 from tracer.method import Kind, Method, additions, bases
 from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
@@ -18,10 +20,11 @@ from viewer.state.pixels import FIT, MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window.command import Command, Condition, scene_open
-from viewer.window.panels import rays, slicing, what_if
+from viewer.window.panels import rays, what_if
 from viewer.window.panels.camera import camera_commands, time_commands
 from viewer.window.panels.find import FindState
-from viewer.window.panels.pixels import pointed_at, zoom_by
+from viewer.window.panels.pixels import zoom_by
+from viewer.window.panels.view import step_slice
 from viewer.window.setting_rows import setting_command
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
@@ -43,7 +46,7 @@ def _file(ui: Ui) -> list[Command]:
 
     def copy_command() -> None:
         if (words := c.pictures.command()) is not None:
-            ui.desktop.copy(words)
+            imgui.set_clipboard_text(words)
 
     def up() -> str | None:
         return up_in_studio(c.session.scene) if c.session.scene is not None else None
@@ -86,7 +89,7 @@ def _file(ui: Ui) -> list[Command]:
         Command("Send to tev", "File", lambda: c.pictures.to_tev(c.frame), enabled=there,
                 tip="the frame and its buffers, to tev or HDRView; the panel Saving says where it listens"),
         Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset), separated=True),
-        Command("Quit", "File", lambda: ui.desktop.exit(), "Ctrl+Q", separated=True),
+        Command("Quit", "File", lambda: ui.exit(), "Ctrl+Q", separated=True),
     ]  # fmt: skip
 
 
@@ -133,9 +136,9 @@ def _view(ui: Ui) -> list[Command]:
         Command("Previous view", "View", partial(another, -1)),
         Command("Next light", "View", partial(light, 1), "L", enabled=lit, separated=True),
         Command("Previous light", "View", partial(light, -1), "Shift+L", enabled=lit),
-        Command("Next layer of the slice", "View", partial(slicing.step, ui, 1), "Shift+RightBracket", enabled=sliced,
+        Command("Next layer of the slice", "View", partial(step_slice, ui, 1), "Shift+RightBracket", enabled=sliced,
                 separated=True, repeats=True),
-        Command("Previous layer of the slice", "View", partial(slicing.step, ui, -1), "Shift+LeftBracket",
+        Command("Previous layer of the slice", "View", partial(step_slice, ui, -1), "Shift+LeftBracket",
                 enabled=sliced, repeats=True),
         setting_command(ui, "savings", "View", "Shift+B", separated=True),
         setting_command(ui, "draw.legend", "View", "N"),
@@ -179,7 +182,7 @@ def _interface(ui: Ui) -> list[Command]:
         Command("Interface at 100 %", "View", partial(size, 0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
         Command("Hide panels", "View", hide_panels, "Tab", checked=lambda: ui.panels_hidden, separated=True),
         Command("Full screen", "View", fill_screen, "F11", checked=lambda: ui.full_screen.wanted),
-        Command("Default layout", "View", lambda: ui.desktop.reset_layout()),
+        Command("Default layout", "View", lambda: ui.reset_layout()),
     ]  # fmt: skip
 
 
@@ -195,15 +198,16 @@ def _picture(ui: Ui) -> list[Command]:
     enlarged = Condition(lambda: not session.draw.zoom.fits, "the whole picture is shown")
     toned = Condition(lambda: not session.draw.tone.neutral, "colours are shown as traced")
     return [
-        Command("Zoom in", "Picture", lambda: zoom_by(ui, STEP, pointed_at(ui)), "Equal", repeats=True,
+        Command("Zoom in", "Picture", partial(zoom_by, ui, STEP), "Equal", repeats=True,
                 enabled=larger, other_keys=("Shift+Equal", "KeypadAdd")),
-        Command("Zoom out", "Picture", lambda: zoom_by(ui, 1.0 / STEP, pointed_at(ui)), "Minus", repeats=True,
+        Command("Zoom out", "Picture", partial(zoom_by, ui, 1.0 / STEP), "Minus", repeats=True,
                 enabled=enlarged, other_keys=("KeypadSubtract",)),
         Command("Fit picture", "Picture", lambda: session.set_draw(zoom=FIT), "Shift+F", enabled=enlarged),
         setting_command(ui, "pixel_values", "Picture", separated=True),
         Command("Brighter", "Picture", partial(expose, _STOPS), "RightBracket", repeats=True, separated=True),
         Command("Darker", "Picture", partial(expose, -_STOPS), "LeftBracket", repeats=True),
-        Command("Colours as traced", "Picture", lambda: session.set_draw(tone=NEUTRAL), enabled=toned),
+        Command("Colours as traced", "Picture", lambda: session.set_draw(tone=NEUTRAL), enabled=toned,
+                tip="reset exposure, white and tone curve"),
         setting_command(ui, "draw.clipping", "Picture", "Shift+M"),
     ]  # fmt: skip
 
@@ -249,7 +253,7 @@ def _culling(ui: Ui) -> list[Command]:
                        checked=lambda: method().kind is kind)  # fmt: skip
 
     def addition(kind: Kind) -> Command:
-        fits = Condition(lambda: method().kind is not kind, "it is the method itself")
+        fits = Condition(lambda: method().kind is not kind, "it is the chosen method")
         return Command(f"Method +{kind.name}", "Culling", partial(change, toggled, kind.name), tip=kind.summary,
                        checked=lambda: method().has(kind.name), enabled=fits)  # fmt: skip
 
@@ -281,7 +285,7 @@ def _run(ui: Ui) -> list[Command]:
         elif runs.current is not None:
             runs.stop()
         else:
-            c.selection.picked = None
+            c.selection.clear()
 
     idle = Condition(
         lambda: c.session.scene is not None and runs.current is None, "no scene is open, or a run is in progress"

@@ -64,8 +64,6 @@ def close_newest(ui: Ui) -> bool:
         _close_list()
     elif ui.dialogs:
         ui.dialogs.pop()
-    elif ui.controller.notices.newest_fault is not None:
-        ui.controller.notices.dismiss_faults()
     else:
         return False
     return True

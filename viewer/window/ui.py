@@ -20,7 +20,6 @@ from viewer.window.display import Compared, Display, Magnifier, TextureCache
 from viewer.window.gl_window import FullScreen
 from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard, Keymap, is_key
-from viewer.window.preview import PreviewDisplay
 
 
 class CaptureKind(Enum):
@@ -60,16 +59,6 @@ class Picture:
 
 
 @dataclass
-class Desktop:
-    """What commands ask of the window itself, and of the clipboard."""
-
-    exit: Callable[[], None] = lambda: None
-    reset_layout: Callable[[], None] = lambda: None
-    paste: Callable[[], str] = lambda: ""
-    copy: Callable[[str], None] = lambda text: None
-
-
-@dataclass
 class Graphics:
     """What lives as long as the window's GL context, and is None without one.  `capture_view` is the view that a
     picture is wanted of."""
@@ -79,7 +68,6 @@ class Graphics:
     textures: TextureCache | None = None
     compared: Compared | None = None
     magnifier: Magnifier | None = None
-    preview: PreviewDisplay | None = None
     capture_view: View | None = None
 
 
@@ -99,7 +87,8 @@ class Ui:
     dialogs: list[Dialog] = field(default_factory=list)
     keyboard: Keyboard = field(default_factory=Keyboard)
     fate_shown: Fate | None = None
-    desktop: Desktop = field(default_factory=Desktop)
+    exit: Callable[[], None] = lambda: None
+    reset_layout: Callable[[], None] = lambda: None
     graphics: Graphics = field(default_factory=Graphics)
     show_panel: Callable[[str], Any] = lambda label: None
     panel_labels: tuple[str, ...] = ()

@@ -32,6 +32,17 @@ def centred(width: float, pivot: float = 0.5) -> None:
     imgui.set_next_window_size(ImVec2(min(width, 0.95 * viewport.work_size.x), 0.0))
 
 
+def begin_modal(title: str, width: float) -> tuple[bool, bool]:
+    """Begin a dialog that has the keyboard to itself, so many ems wide; returns whether it is shown, and then has to be
+    ended by `imgui.end_popup`, and whether the user wants it closed."""
+    if not imgui.is_popup_open(title):
+        imgui.open_popup(title)
+    centred(em(width))
+    flags = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_saved_settings
+    shown, stays = imgui.begin_popup_modal(title, True, int(flags))
+    return shown, not stays or imgui.is_key_pressed(imgui.Key.escape)
+
+
 @contextmanager
 def properties(name: str, label_width: float = 7.0) -> Iterator[bool]:
     """A table of two columns, names on the left; yields whether it is visible."""
@@ -221,14 +232,6 @@ def packed(color: tuple[float, float, float], alpha: float = 1.0) -> int:
 def heading(text: str) -> None:
     imgui.dummy(ImVec2(0.0, em(0.15)))
     imgui.separator_text(text)
-
-
-def short(number: float) -> str:
-    """A large number in few characters: 1.23 M."""
-    for limit, unit in ((1e9, " G"), (1e6, " M"), (1e4, " k")):
-        if abs(number) >= limit:
-            return f"{number / (limit if limit != 1e4 else 1e3):.4g}{unit}"
-    return f"{number:.0f}"
 
 
 def in_window_style(text: str) -> str:

@@ -72,7 +72,7 @@ def _from_the_inspector(d: Driver) -> None:
     d.frames(3)
     picked = c.selection.picked
     assert picked is not None
-    taught = c.history.origins_of(picked)
+    taught = c.history.origins_of(c.frame, picked.primitive)
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
     moment = c.history.records.get(lesson.lit)
     d.scroll_down("Inspector")

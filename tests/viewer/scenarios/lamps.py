@@ -67,12 +67,12 @@ def lamps(d: Driver) -> None:
     d.press("Shift+L")
     y, x = np.argwhere(between)[between.sum() // 2]
     d.c.selection.select(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
-    d.wait(lambda: d.c.inspector.answer is not None, "an answer about the penumbra", 20.0)
-    one = d.c.inspector.answer.reasons[d.c.session.draw.light]
+    d.wait(lambda: d.c.inspector.why is not None, "an answer about the penumbra", 20.0)
+    one = d.c.inspector.why.reasons[d.c.session.draw.light]
     reached = int(frame.reached[y, x, d.c.session.draw.light])
     assert (one.lit, one.samples) == (reached, int(frame.asked[y, x, d.c.session.draw.light]))
     d.frames(3)
-    d.c.selection.picked = None
+    d.c.selection.clear()
 
     d.hold(KEY.d, 0.3)
     assert d.c.frame.settings.lamp_samples in (1, 4), "few in motion"

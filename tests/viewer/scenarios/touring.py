@@ -102,7 +102,7 @@ def _shown_and_skipped(d: Driver) -> None:
     d.frames(5)
     assert d.c.session.settings.method == "paper" and d.c.frame.statistics.shadow.dynamic_only > 0, "it stays so"
     _shown(d, SHADOW)
-    assert d.c.session.draw.view is View.COLOR
+    assert d.c.session.draw.view is View.SHADOW
     d.click(SKIP)
     assert tour.step is ZOOM
     d.click("//Picture/**/Finish")

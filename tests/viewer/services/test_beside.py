@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.commands import ROOM
 from tests.tracing.same import assert_same
-from tests.viewer.fakes import FLYER_SCENE, PATIENCE, FakeRenderer, make_frame, until
+from tests.viewer.fakes import PATIENCE, FakeRenderer, make_frame, until
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
@@ -229,7 +230,7 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
 
 
 def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
-    (tmp_path / "scene.aff").write_text(FLYER_SCENE)
+    (tmp_path / "scene.aff").write_text(ROOM)
     scene = load_scene(tmp_path / "scene.aff")
     settings = Settings(width=48, height=32, threads=1, method="paper+rest")
     window, alone = Renderer(scene, settings), Renderer(scene, settings)
@@ -259,7 +260,7 @@ def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
 @pytest.mark.parametrize("keeps_modes", [True, False])
 def test_neither_knows_what_the_other_has_found_out(tmp_path, keeps_modes):
     """While an object moves, and when it rests, which counts as static for one of the methods alone."""
-    (tmp_path / "scene.aff").write_text(FLYER_SCENE)
+    (tmp_path / "scene.aff").write_text(ROOM)
     scene = load_scene(tmp_path / "scene.aff")
     settings = Settings(width=48, height=32, threads=1, modes=keeps_modes, record_work=True)
     methods = "paper", "certified"

@@ -12,7 +12,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.scene.model import Camera
 from viewer.state import navigation
-from viewer.state.picking import extent_at, part_points, point_at, primitive_points
+from viewer.state.picking import extent_at, point_at, points_of
 from viewer.state.preferences import NAVIGATION
 from viewer.window import menus
 from viewer.window.command import Command, Condition, scene_open
@@ -85,7 +85,7 @@ def camera_commands(ui: Ui) -> list[Command]:
         mode("orbit", "O"),
         Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True,
                 tip="on what is under the pointer, or is selected"),
-        Command("Reset camera", "Camera", c.motion.reset_camera, "R", enabled=here),
+        Command("Reset camera", "Camera", lambda: c.motion.follow_path(True), "R", enabled=here),
         Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.on_path), "P",
                 checked=lambda: c.session.on_path, enabled=here),
         Command("Copy camera", text, lambda: _copy(ui), "Ctrl+Shift+C", enabled=here, separated=True,
@@ -119,13 +119,13 @@ def time_commands(ui: Ui) -> list[Command]:
 def focus(ui: Ui) -> None:
     """Turn to what is under the pointer, else to what is selected, and go near it; orbits turn around it then."""
     c = ui.controller
-    at, pixel = c.selection.hovered, c.selection.pixel
-    if at is None and pixel is not None and c.selection.part is None and c.frame is not None:
+    at, picked, pixel = c.selection.hovered, c.selection.picked, c.selection.pixel
+    if at is None and pixel is not None and picked is not None and picked.part is None and c.frame is not None:
         at = (pixel[0] + 0.5) / c.frame.width, (pixel[1] + 0.5) / c.frame.height
-    if at is None and c.selection.picked is not None:
+    if at is None and picked is not None:
         fly_to_selected(ui)
     elif at is None or c.frame is None:
-        c.notices.say("point at something, or click it, to focus on it")
+        c.notices.say("Point at something, or click it, to focus on it.")
     else:
         point, extent = point_at(c.frame, *at), extent_at(c.frame, *at)
         if point is None or extent is None:
@@ -137,10 +137,10 @@ def focus(ui: Ui) -> None:
 def fly_to_selected(ui: Ui) -> None:
     """Go near what is selected, whether or not it is seen from here; orbits turn around it then."""
     c = ui.controller
-    now, picked, part, time = c.session.edited, c.selection.picked, c.selection.part, c.session.time
+    now, picked = c.session.edited, c.selection.picked
     if now is None or picked is None:
         return
-    points = primitive_points(now.scene, picked.primitive, time) if part is None else part_points(now, part, time)
+    points = points_of(now, picked, c.session.time)
     if not len(points):
         c.notices.say("the selection is not in the scene at this time")
         return
@@ -156,7 +156,7 @@ def _go_near(ui: Ui, point: np.ndarray, radius: float) -> None:
 
 
 def _copy(ui: Ui) -> None:
-    ui.desktop.copy(json.dumps(ui.controller.session.camera.to_json()))
+    imgui.set_clipboard_text(json.dumps(ui.controller.session.camera.to_json()))
     ui.controller.notices.say("camera copied as JSON")
 
 
@@ -164,7 +164,7 @@ def _paste(ui: Ui) -> None:
     """Fly to the camera on the clipboard; what its JSON leaves out stays as it is."""
     c = ui.controller
     try:
-        data = c.session.camera.to_json() | {"position": None} | json.loads(ui.desktop.paste() or "")
+        data = c.session.camera.to_json() | {"position": None} | json.loads(imgui.get_clipboard_text() or "")
         c.motion.glide(Camera.from_json(data))
     except (TypeError, ValueError, RecursionError):
         c.notices.say("no camera pasted: the clipboard holds no camera as JSON", error=True)

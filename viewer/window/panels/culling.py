@@ -73,7 +73,7 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
     if c.frame is None or not c.frame.settings.verify:
         return None
     if c.runs.current is not None:
-        return f"wrong answers of the {c.runs.current.name} are in its own panel", QUIET
+        return f"The panel of the {c.runs.current.name} shows its wrong answers.", QUIET
     if c.frame.settings.method != c.scheduler.settings.method:
         return None
     said, color = verified.in_words(c.frame.statistics), ERROR if verified.is_wrong(c.frame.statistics) else QUIET
@@ -102,7 +102,7 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
                 choose(with_base(method, kind.name))
             _sentence(kind, fits)
     if combined:
-        imgui.separator_text("Added to it, any number of them")
+        imgui.separator_text("Additions, any number of them")
         for kind in additions(parsed.base):
             with outlined():
                 changed, _ = imgui.checkbox(f"+{kind.name}", parsed.has(kind.name))

@@ -15,7 +15,7 @@ from imgui_bundle import portable_file_dialogs as native
 from viewer.services.scene_files import CAPTURE_SUFFIXES, SCENE_SUFFIXES, refusal
 from viewer.window.panels import command_palette, keys, named_states, saving
 from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import ERROR, QUIET, centred, clipped, em, paragraph
+from viewer.window.widgets import ERROR, QUIET, begin_modal, centred, clipped, em, paragraph
 
 OPEN = Dialog.OPEN_FILE.value
 _PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # which portable_file_dialogs asks, outside macOS and Windows
@@ -61,16 +61,12 @@ def _question(ui: Ui) -> None:
     if question is None:
         return
     name = f"{question.title}###question"
-    if not imgui.is_popup_open(name):
-        imgui.open_popup(name)
-    centred(em(30.0))
-    flags = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_saved_settings
-    shown, stays = imgui.begin_popup_modal(name, True, int(flags))
+    shown, closed = begin_modal(name, 30.0)
     if not shown:
         return
     paragraph(question.text)
     imgui.spacing()
-    chosen = question.answers[0][0] if not stays or imgui.is_key_pressed(imgui.Key.escape) else ""
+    chosen = question.answers[0][0] if closed else ""
     for number, (answer, _) in enumerate(question.answers):
         if number:
             imgui.same_line()
@@ -164,10 +160,8 @@ def _open(ui: Ui, path: Path) -> None:
 def _ask(ui: Ui, state: OpenFileState) -> None:
     """Show a dialog of our own, which needs nothing from the desktop."""
     if not imgui.is_popup_open(OPEN):
-        imgui.open_popup(OPEN)
         state.typed, state.problem, state.listed = "", "", None
-    centred(em(38.0))
-    shown, stays = imgui.begin_popup_modal(OPEN, True, int(imgui.WindowFlags_.no_resize))
+    shown, cancelled = begin_modal(OPEN, 38.0)
     if not shown:
         return
     clipped(str(state.folder), QUIET)
@@ -177,7 +171,7 @@ def _ask(ui: Ui, state: OpenFileState) -> None:
     paragraph(state.problem or "  ".join(names[:_MOST]) + more, ERROR if state.problem else QUIET)
     entered = imgui.button("Open", ImVec2(em(6.0), 0.0)) or entered
     imgui.same_line()
-    cancelled = imgui.button("Cancel", ImVec2(em(6.0), 0.0)) or imgui.is_key_pressed(imgui.Key.escape) or not stays
+    cancelled = imgui.button("Cancel", ImVec2(em(6.0), 0.0)) or cancelled
     path = state.inside / state.part.strip()
     opened = False
     if entered and state.typed.strip() and path.is_dir():

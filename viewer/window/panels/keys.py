@@ -8,7 +8,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.window.command import MENUS
 from viewer.window.keyboard import HELD
 from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
+from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, properties, tooltip, value
 
 _KEY = 7.6  # width of a key in ems
 _POINTER = (
@@ -19,7 +19,7 @@ _POINTER = (
     ("Shift", "while flying: faster"),
     ("Ctrl + wheel, Ctrl + left drag", "zoom into the picture itself around the pointer; move it"),
     ("Drag the wipe's line", "compare the picture with the right one, or A with B"),
-    ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
+    ("Drag the legend", "move it within the picture"),
     ("Click", "inspect a pixel, and draw its shadow rays; click the background to clear the selection"),
 )
 
@@ -72,13 +72,13 @@ def _head(ui: Ui, conflicts: int) -> None:
     if imgui.button("Reset all keys"):
         ui.keymap.reset()
     imgui.end_disabled()
-    tooltip("give every command its usual key again")
+    tooltip("Restore the default keys of all commands.")
     if conflicts:
         imgui.same_line(0.0, em(1.0))
         imgui.text_colored(ERROR, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {conflicts} conflicts")
     paragraph(
-        f"Press a key for {waiting}, or Escape to leave it." if waiting else
-        "Click a key to choose another; the right button offers more. Keys without Ctrl or Alt are places on the "
+        f"Press a key for {waiting}, or Escape to cancel." if waiting else
+        "Click a key to change it, right-click for more. Keys without Ctrl or Alt are places on the "
         "keyboard, shown by what is printed there.",
         None if waiting else QUIET,
     )  # fmt: skip
@@ -119,7 +119,7 @@ def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
         if imgui.menu_item("No key", "", False, bool(keymap.of(name)))[0]:
             keymap.choose(name, [])
         usual = ", ".join(map(ui.keyboard.label, keymap.usual(name))) or "no key"
-        if imgui.menu_item(f"The usual key: {usual}", "", False, keymap.changed(name))[0]:
+        if imgui.menu_item(f"Default key: {usual}", "", False, keymap.changed(name))[0]:
             keymap.reset(name)
         imgui.end_popup()
     imgui.same_line()
@@ -131,12 +131,6 @@ def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
 def _pointer() -> None:
     """Show what the pointer does on the picture."""
     imgui.separator_text("On the picture")
-    if imgui.begin_table("pointer", 2):
-        imgui.table_setup_column("gesture", int(imgui.TableColumnFlags_.width_fixed), em(10.0))
-        imgui.table_setup_column("meaning", int(imgui.TableColumnFlags_.width_stretch))
-        for gesture, meaning in _POINTER:
-            imgui.table_next_column()
-            imgui.text_unformatted(gesture)
-            imgui.table_next_column()
-            paragraph(meaning, QUIET)
-        imgui.end_table()
+    with properties("pointer", 10.0) as shown:
+        for gesture, meaning in _POINTER if shown else ():
+            value(gesture, meaning, wraps=True)

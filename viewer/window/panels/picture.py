@@ -8,16 +8,13 @@ when it was pressed on the picture itself.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import replace
 
 from imgui_bundle import ImVec2, imgui
 
 from viewer.state import navigation, verified
 from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
-from viewer.state.pixels import FIT, STEP, panned
+from viewer.state.pixels import STEP, panned
 from viewer.util.numbers import whole_percent
 from viewer.window.menus import ANY_POPUP
 from viewer.window.panels import (
@@ -26,14 +23,14 @@ from viewer.window.panels import (
     pixels,
     savings,
     sides,
-    slicing,
     status,
     timeline,
     tour,
     what_if,
 )
-from viewer.window.panels.area import Area, pointer, size_of, write_lines
+from viewer.window.panels.area import Area, inside, pointer, size_of, write_lines
 from viewer.window.panels.legend import LegendState
+from viewer.window.panels.view import show_words_in_space
 from viewer.window.setting_rows import ALL
 from viewer.window.style import ON_PICTURE_ERROR
 from viewer.window.ui import Ui
@@ -83,8 +80,6 @@ def _picture(ui: Ui, room: ImVec2) -> None:
             left, top, size = _fitted(ui.picture.shape, room)
             imgui.set_cursor_pos(ImVec2(left, top))
             imgui.image(imgui.ImTextureRef(texture), size)
-        elif (area := _preview(ui, room)) is not None:
-            _drag(ui, area, 0.0)
         else:
             _placeholder(ui, room)
     elif texture is not None and c.session.scene is not None:
@@ -99,7 +94,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
         left, top, size = _fitted(ui.picture.shape, room, 2, gap)
         area = _area(ui, "picture of A", left, top, size)
         sides.draw_a(ui, area)
-        _pointer(ui, area, takes_edits=False)
+        _pointer(ui, area)
         pixels.draw(ui, area, seen.a)
         left += size.x + gap
     else:
@@ -107,17 +102,17 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     area = _area(ui, "picture", left, top, size)
     sides.draw_picture(ui, sides.PICTURE, texture, area)
     sides.draw_wiped(ui, area)
-    with _inside(area):
+    with inside(area):
         overlays.show(ui, area)
     _pointer(ui, area)
     pixels.draw(ui, area)
-    with _inside(area):
-        what_if.show_lights(ui, area.whole, area.whole_end)
+    with inside(area):
+        what_if.show_lights(ui, area)
     lower = _title(ui, area)
     sides.show(ui, area, lower)
     legend.show(ui, area.corner, area.end)
     overlays.show_missing(ui, area.corner, area.end)
-    slicing.show(ui)
+    show_words_in_space(ui)
 
 
 def _fitted(shape: tuple[int, int], room: ImVec2, count: int = 1, gap: float = 0.0) -> tuple[float, float, ImVec2]:
@@ -139,42 +134,19 @@ def _area(ui: Ui, name: str, left: float, top: float, size: ImVec2) -> Area:
     return Area(corner, size, ui.controller.session.draw.zoom)
 
 
-@contextmanager
-def _inside(area: Area) -> Iterator[None]:
-    """What is drawn over the picture does not go beyond it."""
-    draw = imgui.get_window_draw_list()
-    draw.push_clip_rect(area.corner, area.end, True)
-    try:
-        yield
-    finally:
-        draw.pop_clip_rect()
-
-
 def _placeholder(ui: Ui, room: ImVec2) -> None:
     """What stands there before the first picture: what goes on, and how far it is."""
     c = ui.controller
     job, text = c.loader.warm_up_job or c.loader.load_job, status.first_picture(c)
     if c.session.scene is None and job is None:
         text = f"Open a scene{ui.key('Open...')}, or drop one on this window"
-    at, width = imgui.get_cursor_pos(), min(room.x, max(imgui.calc_text_size(text).x, em(16.0)))
+    at, width = imgui.get_cursor_pos(), min(room.x, max(imgui.calc_text_size(text).x, em(24.0)))
     left = at.x + (room.x - width) / 2.0
     imgui.set_cursor_pos(ImVec2(left, at.y + room.y / 2.0))
     clipped(text, QUIET)
     if job is not None:
         imgui.set_cursor_pos_x(left)
-        imgui.progress_bar(job.fraction, ImVec2(width, 0.0))
-
-
-def _preview(ui: Ui, room: ImVec2) -> Area | None:
-    """The preview, if there is any, and what it is; returns its place, which takes the pointer."""
-    texture = ui.graphics.preview.texture_id if ui.graphics.preview is not None else None
-    if texture is None:
-        return None
-    at = imgui.get_cursor_pos()
-    area = replace(_area(ui, "preview", at.x, at.y, room), zoom=FIT)
-    imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), area.corner, area.end)
-    write_lines(["Preview: no shadows, no reflections, no textures", status.first_picture(ui.controller)], area.corner)
-    return area
+        imgui.progress_bar(job.fraction, ImVec2(width, 0.0), job.label)  # with the time that is left
 
 
 def _title(ui: Ui, area: Area) -> float:
@@ -205,8 +177,8 @@ def _title(ui: Ui, area: Area) -> float:
 # --- the pointer and the keys that fly -------------------------------------------------------------
 
 
-def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
-    """Hovering, clicking and dragging on the picture, which is ImGui's last item; of lights too if it `takes_edits`."""
+def _pointer(ui: Ui, area: Area) -> None:
+    """Hovering, clicking and dragging on the picture, which is ImGui's last item."""
     c = ui.controller
     if ui.picture.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.picture.pivot, ui.picture.pivot_scene = None, c.session.scene
@@ -215,8 +187,6 @@ def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
         c.selection.hovered = (u, v)
         if imgui.get_io().mouse_wheel:
             _wheel(ui, imgui.get_io().mouse_wheel, (u, v))
-    if takes_edits and what_if.handle(ui, area.whole, area.whole_size):
-        return
     if sides.drag_line(ui, area):
         return
     if imgui.is_item_activated() and not imgui.get_io().key_ctrl:
@@ -270,7 +240,7 @@ def _wheel(ui: Ui, notches: float, at: tuple[float, float]) -> None:
     """Zoom into the picture with Ctrl; else come nearer to what is seen at this point of it, or fly faster."""
     c, speed = ui.controller, ALL["speed"]
     if imgui.get_io().key_ctrl:
-        pixels.zoom_by(ui, STEP**notches, pixels.pointed_at(ui))
+        pixels.zoom_by(ui, STEP**notches)
     elif c.preferences.navigation == "orbit":
         _take_pivot(ui, at)
         if ui.picture.pivot is not None:
@@ -284,7 +254,7 @@ def fly(ui: Ui) -> None:
     """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
     c, io = ui.controller, imgui.get_io()
     chord = io.key_ctrl or io.key_alt or io.key_super
-    if ui.keyboard.wanted_for or io.want_text_input or chord or c.session.seen is None:
+    if ui.keyboard.wanted_for or io.want_text_input or chord or c.session.scene is None:
         return
     if imgui.is_popup_open("", ANY_POPUP):
         return

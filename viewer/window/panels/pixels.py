@@ -10,12 +10,12 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from viewer.state.comparison import Side
-from viewer.state.pixels import FIT, GRID_FROM, Point, pixels_shown, zoomed
+from viewer.state.pixels import FIT, GRID_FROM, pixels_shown, zoomed
 from viewer.state.views import can_draw
 from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
 from viewer.window.panels import sides
-from viewer.window.panels.area import Area
+from viewer.window.panels.area import Area, inside
 from viewer.window.setting_rows import ALL, setting_switch
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, count, em, paragraph, right
@@ -134,16 +134,14 @@ def draw(ui: Ui, area: Area, side: Side | None = None) -> None:
     if found is None or not ui.controller.preferences.pixel_values:
         return
     frame, words = found
-    made = imgui.get_window_draw_list()
-    made.push_clip_rect(area.corner, area.end, True)
-    _grid(made, area, frame.width, frame.height)
-    _numbers(made, area, frame.width, frame.height, words)
-    made.pop_clip_rect()
+    with inside(area):
+        _grid(area, frame.width, frame.height)
+        _numbers(area, frame.width, frame.height, words)
 
 
-def _grid(made: imgui.ImDrawList, area: Area, width: int, height: int) -> None:
+def _grid(area: Area, width: int, height: int) -> None:
     """Lines between the picture's pixels, where these are large."""
-    across, down = area.whole_size.x / width, area.whole_size.y / height
+    made, across, down = imgui.get_window_draw_list(), area.whole_size.x / width, area.whole_size.y / height
     if min(across, down) < GRID_FROM:
         return
     color, (columns, rows) = imgui.get_color_u32(_GRID), pixels_shown(area.zoom, width, height)
@@ -155,9 +153,7 @@ def _grid(made: imgui.ImDrawList, area: Area, width: int, height: int) -> None:
         made.add_line(ImVec2(area.corner.x, at), ImVec2(area.end.x, at), color)
 
 
-def _numbers(
-    made: imgui.ImDrawList, area: Area, width: int, height: int, words: Callable[[int, int], tuple[str, ...]]
-) -> None:
+def _numbers(area: Area, width: int, height: int, words: Callable[[int, int], tuple[str, ...]]) -> None:
     """The value of each pixel in it, as large as fits, where all fit."""
     across, down = area.whole_size.x / width, area.whole_size.y / height
     columns, rows = pixels_shown(area.zoom, width, height)
@@ -170,7 +166,7 @@ def _numbers(
     part = min(0.9 * across / widest, 0.9 * down / tallest, 1.0) if widest and tallest else 0.0
     if part < _SMALLEST:
         return
-    font, size = imgui.get_font(), part * letters
+    made, font, size = imgui.get_window_draw_list(), imgui.get_font(), part * letters
     back, front = imgui.get_color_u32(_BACK), imgui.get_color_u32(_FRONT)
     for (x, y), lines in texts.items():
         middle = area.to_screen((x + 0.5) / width, (y + 0.5) / height)
@@ -182,18 +178,13 @@ def _numbers(
             made.add_text(font, size, ImVec2(middle.x - halves[number], top + number * size), front, line)
 
 
-# --- zoom, which commands change as well ---------------------------------------------------------------
+# --- zoom, by the wheel and by commands ---------------------------------------------------------------
 
 
-def pointed_at(ui: Ui) -> tuple[float, float]:
-    """Return where the pointer is in the picture's room, else its middle."""
-    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.draw.zoom
-    if hovered is None:
-        return 0.5, 0.5
-    return (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale
-
-
-def zoom_by(ui: Ui, factor: float, at: Point = (0.5, 0.5)) -> None:
-    """Enlarge the picture; `at`, 0 to 1 in the room that it has, stays where it is."""
-    session = ui.controller.session
-    session.set_draw(zoom=zoomed(session.draw.zoom, factor, at))
+def zoom_by(ui: Ui, factor: float) -> None:
+    """Enlarge the picture around what is under the pointer, which stays where it is; else around its middle."""
+    session, hovered = ui.controller.session, ui.controller.selection.hovered
+    zoom, at = session.draw.zoom, (0.5, 0.5)
+    if hovered is not None:
+        at = (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale
+    session.set_draw(zoom=zoomed(zoom, factor, at))

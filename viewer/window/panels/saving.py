@@ -13,7 +13,7 @@ from viewer.window import menus
 from viewer.window.panels.runs import either, frames_row, start_or_progress
 from viewer.window.setting_rows import in_panel, plan_rows, setting_row, setting_switches
 from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import QUIET, WARNING, centred, em, paragraph, properties, row, tooltip
+from viewer.window.widgets import QUIET, WARNING, begin_modal, em, paragraph, properties, row, tooltip
 
 NAME = "The dialog that saves a picture"
 TITLE = Dialog.SAVE_AS.value
@@ -40,10 +40,7 @@ def show_dialog(ui: Ui) -> None:
     """The dialog, while it is open."""
     if Dialog.SAVE_AS not in ui.dialogs:
         return
-    if not imgui.is_popup_open(TITLE):
-        imgui.open_popup(TITLE)
-    centred(em(27.0))
-    shown, stays = imgui.begin_popup_modal(TITLE, True, int(imgui.WindowFlags_.no_resize))
+    shown, done = begin_modal(TITLE, 27.0)
     if not shown:
         return
     pictures = ui.controller.pictures
@@ -54,7 +51,6 @@ def show_dialog(ui: Ui) -> None:
                 plan_rows(ui, pictures.plan, "legend", "caption")
                 tooltip(TEMPLATE_HELP)
     imgui.spacing()
-    done = not stays or imgui.is_key_pressed(imgui.Key.escape)
     width, height = pictures.size
     paragraph(f"{width} x {height} pixels, into {ui.controller.preferences.picture_folder}", QUIET)
     imgui.spacing()

@@ -15,7 +15,7 @@ from viewer.state.palette import LESS, MORE, Color
 from viewer.state.picking import pixel_at
 from viewer.state.views import View
 from viewer.views import words_at
-from viewer.views.base import Highlight, Pixels, Words
+from viewer.views.base import Pixels, Words
 from viewer.views.compare import composed, difference_legend
 from viewer.views.legend import Legend
 from viewer.views.wipe import wipe_column
@@ -55,7 +55,7 @@ def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
         compared.draw_difference(seen.difference, comparing.limit(seen.difference), options.mark_wrong)
     else:
         of_a = replace(options, view=seen.a.view, light=seen.a.light)
-        compared.a.draw(seen.a.frame, of_a, InWindow(smooth=smooth, highlight=Highlight(line=False)))
+        compared.a.draw(seen.a.frame, of_a, InWindow(smooth=smooth))
 
 
 def filling(ui: Ui) -> PictureTexture | None:
