@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from tracer.frame import Frame
 from viewer.state.palette import FATE_COLORS, Color, hex_color, label_color
-from viewer.state.savings import WOULD_OPACITY, bar_of, counters_in_words
+from viewer.state.savings import WOULD_OPACITY, bar_of, counters, in_words, places
 from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, TEXT, Legend, fitting, wrapped
 
 # The least size of letters in pixels, and how many lines of them the picture's shorter side holds.
@@ -51,11 +51,11 @@ def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None
     if comparison is None:
         return pixels
     bar, size = bar_of(frame), _letter_size(pixels, *OF_STRIP)
-    height, margin, pad = round(1.35 * size) if bar.parts else 0, round(0.6 * size), round(0.35 * size)
-    words = ", ".join(filter(None, (counters_in_words(frame), comparison)))
+    height, margin, pad = round(1.35 * size) if bar else 0, round(0.6 * size), round(0.35 * size)
+    words = ", ".join(filter(None, (in_words(counters(frame)), comparison)))
     strip = _strip(pixels, words, BACKDROP, TEXT, height)
     draw, letters, bottom = ImageDraw.Draw(strip), font(size), strip.height - margin
-    for part, left, right in bar.places(margin, strip.width - margin):
+    for part, left, right in places(bar, margin, strip.width - margin):
         if right > left:
             color, there = FATE_COLORS[part.fate], WOULD_OPACITY if part.would else 1.0
             drawn = np.multiply(there, color) + np.multiply(1.0 - there, BACKDROP)

@@ -58,15 +58,13 @@ def prepare(folder: Path, video: Path | None) -> None:
         check_writable(video)
     try:
         folder.mkdir(exist_ok=True)
-        taken = sorted((path for path in folder.iterdir() if re.fullmatch(r"\d{4,}\.png", path.name)),
-                       key=lambda path: int(path.stem))  # fmt: skip
+        taken = any(re.fullmatch(r"\d{4,}\.png", path.name) for path in folder.iterdir())
     except FileNotFoundError:
         raise OSError(f"{folder}: there is no folder {folder.parent}") from None
     except OSError as error:
         raise OSError(f"{folder}: no folder for the pictures: {error.strerror or error}") from None
     if taken:
-        which = taken[0].name if len(taken) == 1 else f"{taken[0].name} to {taken[-1].name}"
-        raise OSError(f"{folder}: there are numbered pictures in it already, {which}; give another folder")
+        raise OSError(f"{folder}: there are numbered pictures in it already; give another folder")
 
 
 def frame_count(frames: tuple[int, int], stops: int | None, seconds: float, fps: float) -> int:

@@ -31,8 +31,7 @@ FIRST_LAMP_SAMPLES = 4
 
 class Refinement:
     """Decides, each time a whole picture has come, whether one more of the same view is worth tracing.  `proves` says
-    that they follow to make certificates, and not only to learn modes, and `ended_early` that none is to come though
-    more certificates could be made."""
+    that they follow to make certificates, and not only to learn modes."""
 
     def __init__(self) -> None:
         self.forget()
@@ -42,7 +41,7 @@ class Refinement:
         self._considered: tuple[RenderRequest, bool, bool] | None = None  # what was decided about last
         self._settled: RenderRequest | None = None  # the view that `_left` speaks of
         self._left = 0  # frames of it that may still follow
-        self.proves = self.ended_early = False
+        self.proves = False
 
     def wants_another(self, newest: Traced | None, view: View, keep_tracing: bool) -> bool:
         """Whether one more frame should follow the newest; true once for each."""
@@ -63,15 +62,8 @@ class Refinement:
         elif not _has_learnt(statistics, self.proves):
             self._left = 0
         another = keep_tracing or self._left > 0
-        self.ended_early = statistics.certificates > 0 and proves and not another
         self._left -= another
         return another
-
-    @property
-    def progress(self) -> tuple[int, int]:
-        """Which frame with certificates is under way, and how many there may be at most; 0, 0 while none is to follow
-        for these."""
-        return (MOST_FRAMES - self._left, MOST_FRAMES) if self.proves and self._left > 0 else (0, 0)
 
 
 def _has_learnt(statistics: FrameStatistics, proves: bool) -> bool:

@@ -10,7 +10,7 @@ from viewer.services.controller import Controller
 from viewer.services.runs import missing_in
 from viewer.state.methods import missing
 from viewer.state.parts import parts_of
-from viewer.state.savings import comparison_in_words
+from viewer.state.savings import Tone, comparison, in_words
 from viewer.state.views import View
 from viewer.window.display import Compared, Display, InWindow, Magnifier, TextureCache
 from viewer.window.panels import legend, savings, sides
@@ -81,8 +81,8 @@ def capture(ui: Ui) -> None:
         described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
         state = c.pictures.state_of(c.frame, options.view) if c.frame is not None and not compared else None
         if state is not None and c.frame is not None and state.draw.savings is not None:
-            said = comparison_in_words(c.frame, savings.standing(c))
-            state = state.with_draw(savings=said)
+            known = (one for one in comparison(c.frame, savings.standing(c)) if one.tone is not Tone.QUIET)
+            state = state.with_draw(savings=in_words(known))
         take = c.captures.copy if wanted is CaptureKind.CLIPBOARD else c.captures.capture
         take(c.frame, pixels, described, state)
 

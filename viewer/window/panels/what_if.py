@@ -15,7 +15,7 @@ from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
-from viewer.state.comparison import CompareMode, Source
+from viewer.state.comparison import CompareMode
 from viewer.state.picking import same_place
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.view_state import one_by_one
@@ -218,7 +218,7 @@ def _changed(ui: Ui) -> None:
             comparing.end()
         else:
             comparing.kept = before
-            comparing.change(source=Source.KEPT)
+            comparing.trace_by("")
             comparing.start(CompareMode.DIFFERENCE)
     then, now = before.frame.statistics.shadow, frame.statistics.shadow
     for name in ("due", "saved", "traced"):
