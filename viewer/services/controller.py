@@ -137,12 +137,12 @@ class Controller:
         if frame_failed:
             self.session.playing = False
             self.scheduler.give_up()
-        run = self.runs.take_progress()
-        if run.ended:
+        of_run, ended = self.runs.take_progress()
+        if ended:
             self.scheduler.trace_once_more()  # else the world might stay where the run has put it
-        if run.picture is not None:
-            self.scheduler.traced = run.picture
-            frame = run.picture.frame
+        if of_run is not None:
+            self.scheduler.traced = of_run
+            frame = of_run.frame
         else:
             newest = self.scheduler.take()
             self.history.take(self.renderer.take_learnt(), newest, self.drawn_seconds)

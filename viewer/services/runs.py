@@ -13,7 +13,6 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 from tracer.experiments import experiment, hunt, zoom
 from tracer.experiments.experiment import Experiment
@@ -92,13 +91,6 @@ def duration(seconds: float) -> str:
 # --- one at a time ------------------------------------------------------------------------------------
 
 
-class Progress(NamedTuple):
-    """What has become of the run since it was last asked: a frame that is to be the picture, and whether it ended."""
-
-    picture: Traced | None = None
-    ended: bool = False
-
-
 class Runs:
     """`experiment` and `zoom_test` are the last of their kind: under way, done or stopped; `current` is under way."""
 
@@ -165,20 +157,20 @@ class Runs:
         if self.current is not None:
             self.current.stop()
 
-    def take_progress(self) -> Progress:
-        """Take what has become of the run since the last time, and report one that has ended."""
+    def take_progress(self) -> tuple[Traced | None, bool]:
+        """Take a frame that is to be the picture, and whether the run has ended since the last time, which is said."""
         run = self.current
         if run is None:
-            return Progress()
+            return None, False
         done = run.done  # before its last frame is taken: none comes after
         frame = run.take()
         if done:
             self.current = None
             self._report(run)
         if frame is None or run.stopping or not run.is_of(self._session.scene):
-            return Progress(ended=done)
+            return None, done
         request = RenderRequest(frame.time, frame.camera, frame.settings)
-        return Progress(Traced(request, frame, frame.statistics), done)
+        return Traced(request, frame, frame.statistics), done
 
     def _report(self, run: Run) -> None:
         where = f", in {run.output}" if run.output is not None else ""

@@ -46,7 +46,7 @@ def _plan(ui: Ui, hunts: Hunts) -> None:
             return
         row("Method", "The method whose wrong pixels are searched; an exact one has none.")
         method_list(ui, "##method", plan.method, lambda name: setattr(plan, "method", name), combined=False)
-        frames_row(plan, hunts.frames, "First and last frame of the path, traced one after another.")
+        frames_row(ui, plan, "First and last frame of the path, traced one after another.")
         plan_rows(ui, plan, "step", "around", "radius", "seed", "size")
 
 

@@ -14,7 +14,7 @@ from tracer.experiments.runner import Run
 from tracer.experiments.zoom import ZoomTest
 from viewer.output.reports import Column, title
 from viewer.services.runs import duration
-from viewer.state.plans import FilmPlan, HuntPlan
+from viewer.state.plans import PathPlan
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
@@ -41,10 +41,10 @@ _ROW = int(imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allo
 Row = TypeVar("Row")
 
 
-def frames_row(plan: FilmPlan | HuntPlan, frames: tuple[int, int], tip: str) -> None:
+def frames_row(ui: Ui, plan: PathPlan, tip: str) -> None:
     """Show the row of the first and the last frame."""
     row("Frames", tip)
-    changed, span = imgui.input_int2("##frames", list(frames))
+    changed, span = imgui.input_int2("##frames", list(plan.frames(ui.controller.session.scene)))
     if changed:
         plan.first, plan.last = max(0, span[0]), max(0, span[1])
 

@@ -91,7 +91,7 @@ def _way(ui: Ui, films: Films) -> None:
         row("Along", "The frames of the animation, or a flight through the bookmarks at an even speed.")
         plan.through_bookmarks = either("path", f"bookmarks ({marks})###bookmarks", plan.through_bookmarks)
         if not plan.through_bookmarks:
-            frames_row(plan, films.frames, "First and last frame of the animation.")
+            frames_row(ui, plan, "First and last frame of the animation.")
             row("Camera", "The scene's own camera, or the one in the picture now, which stays where it is.")
             plan.from_here = either("own", "as here", plan.from_here)
         plan_rows(ui, plan, "seconds", "fps")
