@@ -11,10 +11,10 @@ import pytest
 
 from tests.commands import complaint, run
 from tests.terminal import Terminal
+from tracer.experiments import figures
 from tracer.version import program_version
 from viewer.__main__ import main
 from viewer.cli.console import Work
-from viewer.output import figures
 
 SMALL = ["bench", "figure4", "--path-frames", "6", "--size", "48x32"]
 
