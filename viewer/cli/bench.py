@@ -26,7 +26,7 @@ ALL = "all"  # methods that are worth comparing in the scene
 EPILOG = f"""\
 examples:
   shadowcull bench kitchen.aff --path-frames 100
-  shadowcull bench Robot.aff --frames 100-199 --size 256x256 --verify
+  shadowcull bench Robot.aff --frames 100:200 --size 256x256 --verify
   shadowcull bench kitchen.aff --path-frames 100 --methods paper,cells,certified,certified+cache
   shadowcull bench default --methods none,paper --symmetric --json default.json --csv default.csv
   shadowcull bench kitchen.aff --path-frames 100 --verify --plot kitchen.svg
@@ -50,8 +50,7 @@ def parser() -> Parser:
     )
     add("--methods", type=arguments.methods_or_all, default=["paper"], metavar="METHOD,...", help=help_)
     add("--path-frames", type=count(1, 1_000_000), metavar="N", help="resample the animation to N frames")
-    help_ = "the frames A to B of the path, or one (default: all)"
-    add("--frames", type=arguments.frame_span, metavar="A-B", help=help_)
+    add("--frames", metavar="A:B", help="the frames A to B - 1 of the path; either may be left out (default: all)")
     options.add_size(parser)
     options.add_settings(parser, Settings, "verify")
     add("--json", type=Path, metavar="FILE", help="every figure of every frame")
@@ -76,18 +75,28 @@ def run(given: Namespace) -> int:
         if ALL in given.methods:  # and those that are named besides
             methods = experiment.with_reference([*line_up(len(scene.lights)), *methods])
         times = experiment.path_times(scene, given.path_frames)
-        first, last = given.frames or (0, len(times) - 1)
-        if last >= len(times):
-            raise ValueError(f"--frames {first}-{last}: the path has {len(times)} frames, counted from 0")
+        numbers = frame_range(given.frames or ":", len(times))
         options.prepare_kernels(work, len(scene.lights), given.accelerator, *methods)
         world = World(scene, times[0], settings.accelerator, work.progress)
-        measured = Experiment(scene, settings, methods, times, range(first, last + 1))
+        measured = Experiment(scene, settings, methods, times, numbers)
         results = work.perform(measured, world)
         failures = exports.write_files(results, wanted)
     print_table(bench_table(results, terminal_width()))
     if failures:
         raise OSError("; ".join(failures))
     return 0 if measured.whole else INTERRUPTED
+
+
+def frame_range(text: str, count: int) -> range:
+    """Read `A:B`, the frames A to B - 1 of a path of `count`; either may be left out."""
+    first, colon, last = text.partition(":")
+    try:
+        numbers = range(int(first or 0), int(last or count))
+    except ValueError:
+        numbers = range(0)
+    if not colon or not numbers or not 0 <= numbers.start < numbers.stop <= count:
+        raise ValueError(f"--frames {text}: give A:B, the frames A to B - 1 of the {count} there are")
+    return numbers
 
 
 def bench_table(results: Results, width: int | None) -> Table:

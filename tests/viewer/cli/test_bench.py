@@ -34,7 +34,7 @@ def printed_row(out: str, method: str) -> list[str]:
 
 def test_bench_writes_an_entry_per_frame_and_prints_the_table(tmp_path: Path, capsys):
     lines, plot = tmp_path / "table.csv", tmp_path / "plot.svg"
-    more = ["--frames", "1-4", "--verify", "--methods", "none, paper"]
+    more = ["--frames", "1:5", "--verify", "--methods", "none, paper"]
     results = bench(tmp_path, *more, "--csv", str(lines), "--plot", str(plot))
     assert list(results)[:4] == ["scene", "size", "frames", "methods"] and plot.read_text().startswith("<?xml")
     out = capsys.readouterr().out
@@ -86,8 +86,8 @@ def test_options_of_the_paper_reach_it(tmp_path: Path):
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        (["--frames", "5-2"], "give the first and the last"),
-        (["--frames", "0-99"], "--frames 0-99: the path has 6 frames, counted from 0"),
+        (["--frames", "5:2"], "give A:B, the frames A to B - 1 of the 6 there are"),
+        (["--frames", "1-4"], "--frames 1-4: give A:B"),
         (["--zoom-factor", "0"], "argument --zoom-factor: 0 is not a number from 1 up"),
         (["--method", "none"], "unrecognized arguments: --method none"),
         (["--methods", "telepathy"], "argument --methods: invalid choice: 'telepathy'; it is one of none"),
@@ -149,7 +149,7 @@ def test_cancelled_before_any_frame_is_done_there_is_nothing_to_keep(tmp_path: P
 
 
 def test_progress_shows_frame_method_time_gone_and_time_left():
-    terminal = Terminal("bench", "default", "--frames", "0-7", "--size", "160x160")
+    terminal = Terminal("bench", "default", "--frames", ":8", "--size", "160x160")
     *_, said = terminal.lines()
     assert terminal.end() == 0
     shown = re.findall(r"frame (\d) of 8, (?:none|paper) \S+ (\d:\d\d:\d\d) (\d:\d\d:\d\d) left", said)
@@ -176,7 +176,7 @@ def test_ctrl_c_keeps_whole_frames(tmp_path: Path):
 
 
 def test_all_methods_have_a_line_each(tmp_path: Path, capsys) -> None:
-    results = bench(tmp_path, "--methods", "all, paper+rest,paper", "--frames", "0-2")
+    results = bench(tmp_path, "--methods", "all, paper+rest,paper", "--frames", ":3")
     assert {"none", "paper", "certified", "free", "certified+cache", "paper+rest"} <= set(results["methods"])
     out = capsys.readouterr().out
     assert all(printed_row(out, name) for name in results["methods"])
