@@ -1,72 +1,48 @@
 """Short steps through the program: each says what to do, and ends when the user has done it.
 
-A step is an entry of `STEPS`: a text, in which {Next light} is the key of that command, and its parts, one after
-another: a condition that must hold once, and what brings it about when the step is shown to the user."""
+A step is an entry of `STEPS`: a text, in which {Next light} is the key of that command, and conditions that must hold
+once, one after another."""
 
 from __future__ import annotations
 
-import itertools
 import re
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
-from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.method import Method
 from viewer.services.controller import Controller
-from viewer.state import navigation
-from viewer.state.methods import BY_MODES, with_base
+from viewer.state.methods import BY_MODES
 from viewer.state.views import View
 
-SECONDS = 2.0  # that a picture stays when it is shown
-PATIENCE = 20.0  # seconds that a part may take to be shown
 LAST_WORD = (
     "Next: BART's Kitchen (File > Open), methods compared along a path as in Table 1 (panel Experiment), and "
     "docs/viewer.md, which explains all panels."
 )
-_ZOOMED = 150.0  # pixels of what a shown zoom test goes to: few enough to become many, and many enough to be seen
-_PLACES = itertools.cycle(
-    sorted(  # where a shadow is looked for, in parts of the picture's width and height: from its middle on
-        ((x / 14.0, y / 14.0) for x in range(1, 14) for y in range(1, 14)),
-        key=lambda at: (at[0] - 0.5) ** 2 + (at[1] - 0.5) ** 2,
-    )
-)
-
 Condition = Callable[[Controller], bool]
-Act = Callable[[Controller], object]
-"""Brings a condition about; called in each frame of the window until that holds."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """See the module.  `panel` is the one to look at; `shown` is what is to be seen while the step is done for the
-    user, where `text` does not say so."""
+    """See the module."""
 
     title: str
     text: str | Callable[[Controller], str]
-    parts: tuple[tuple[Condition, Act], ...]
-    panel: str = ""
-    shown: str = ""
+    conditions: tuple[Condition, ...]
 
 
 class Tour:
     """`step` is the one that is next, None while no tour is being taken; `over` says that the last one was done, until
     that is dismissed."""
 
-    def __init__(self, controller: Controller, open_panel: Callable[[str], None], key: Callable[[str], str]) -> None:
+    def __init__(self, controller: Controller, key: Callable[[str], str]) -> None:
         """`key` returns the key of a command as the user reads it, or else where its menu is."""
-        self._c, self._open_panel, self._key = controller, open_panel, key
+        self._c, self._key = controller, key
         self.step: Step | None = None
         self.over = False
-        self._held = 0  # of the step's parts
-        self._shows, self._since = False, 0.0
+        self._held = 0  # of the step's conditions
 
     def text(self, step: Step) -> str:
-        """Return what to do in a step, as things are, with the keys that do it now, or what is being done."""
-        if self._shows and step is self.step and step.shown:
-            return step.shown
+        """Return what to do in a step, as things are, with the keys that do it now."""
         text = step.text if isinstance(step.text, str) else step.text(self._c)
         return re.sub(r"\{(.+?)\}", lambda name: self._key(name[1]), text)
 
@@ -88,34 +64,17 @@ class Tour:
         if self.step is not None:
             self._go_to(next(iter(STEPS[STEPS.index(self.step) + 1 :]), None))
 
-    def show(self) -> None:
-        """Do the step for the user."""
-        if self.step is not None:
-            self._shows, self._since = True, time.monotonic()
-            if self.step.panel:
-                self._open_panel(self.step.panel)
-
     def update(self) -> None:
-        """See whether the next part of the step is done, once per frame, or do it."""
+        """See whether what is next of the step is done, once per frame."""
         if self.step is None or self._c.frame is None:
             return
-        now, parts = time.monotonic(), self.step.parts
-        if self._shows and now < self._since:
-            return  # what was done is being looked at
-        if self._held == len(parts):
+        self._held += self.step.conditions[self._held](self._c)
+        if self._held == len(self.step.conditions):
             self.skip()
             self.over = self.step is None
-            return
-        holds, act = parts[self._held]
-        self._shows = self._shows and now < self._since + PATIENCE
-        if self._shows:
-            act(self._c)
-        if holds(self._c):
-            self._held += 1
-            self._since = now + SECONDS
 
     def _go_to(self, step: Step | None) -> None:
-        self.step, self.over, self._held, self._shows = step, False, 0, False
+        self.step, self.over, self._held = step, False, 0
 
 
 # --- conditions ------------------------------------------------------------------------------------
@@ -147,83 +106,16 @@ def _shows(view: View) -> Condition:
     return lambda c: c.session.draw.view is view
 
 
-def _shadowed(c: Controller) -> int | None:
-    """Return a light in whose shadow the pixel is that was clicked: that of another primitive."""
+def _in_shadow(c: Controller) -> bool:
+    """Return whether the pixel that was clicked is in the shadow of another primitive."""
     picked, answer = c.selection.picked, c.inspector.why
     if picked is None or answer is None:
-        return None
-    by_others = (one.light for one in answer.reasons if not one.lit and one.blocker not in (-1, picked.primitive))
-    return next(by_others, None)
-
-
-def _in_shadow(c: Controller) -> bool:
-    return _shadowed(c) is not None
+        return False
+    return any(not one.lit and one.blocker not in (-1, picked.primitive) for one in answer.reasons)
 
 
 def _tests(c: Controller) -> bool:
     return c.runs.current is not None and c.runs.current is c.runs.zoom_test
-
-
-# --- what brings them about ------------------------------------------------------------------------
-
-
-def _fly(c: Controller) -> None:
-    c.motion.glide(navigation.fly(c.session.camera, 0.0, 0.0, 0.5 * c.motion.pace, c.motion.world_up))
-
-
-def _stop_culling(c: Controller) -> None:
-    """Switch culling off, once it is seen; a method that may cull nothing gives way first."""
-    before = c.session.settings.method
-    if Method.parse(before).adaptive:
-        c.settings.change(method=with_base(before, BY_MODES))
-        c.notices.say(f"the method is {c.session.settings.method} now, as {before} may cull nothing here")
-    elif _shows_culling(c):
-        c.settings.toggle_culling()
-
-
-def _cull_again(c: Controller) -> None:
-    if not Method.parse(c.session.settings.method).culls:
-        c.settings.toggle_culling()
-
-
-def _show(view: View) -> Act:
-    return lambda c: c.session.set_draw(view=view)
-
-
-def _click_a_shadow(c: Controller) -> None:
-    """Click one place after another, and choose the light in whose shadow one is."""
-    light = _shadowed(c)
-    if light is not None:
-        c.settings.set_light(light)
-    elif c.selection.picked is None or c.inspector.why is not None:
-        c.session.set_draw(view=View.COLOR)
-        c.selection.select(next(_PLACES))
-
-
-def _start_zoom_test(c: Controller) -> None:
-    """Go towards a small primitive that is fully rendered, if the picture has one: what is not has no count to grow
-    from, and what is large cannot become so many times as large."""
-    small = _small_primitive(c)
-    if c.scheduler.awaits or c.runs.current is not None:
-        return
-    if small is not None:
-        c.selection.select_primitive(small)
-    if c.selection.picked is None or c.selection.picked.dynamic:
-        _click_a_shadow(c)
-    else:
-        c.runs.start_zoom_test()
-
-
-def _small_primitive(c: Controller) -> int | None:
-    """Return the number of a static primitive, in the scene as it was read, that is fully rendered in about `_ZOOMED`
-    pixels; None where there is none."""
-    now, frame = c.session.edited, c.frame
-    if now is None or frame is None or not frame.settings.keeps_modes or Method.parse(frame.settings.method).uses_cells:
-        return None
-    whole = (occlusion_mode(frame.modes) == OcclusionMode.FULLY_RENDERED) & (frame.pixel_count > 0)
-    numbers = np.nonzero(whole)[0]
-    numbers = numbers[np.argsort(np.abs(np.log(frame.pixel_count[numbers] / _ZOOMED)), kind="stable")]
-    return next((int(now.primitives[n]) for n in numbers if now.scene.object_of(int(n)) == 0), None)
 
 
 # --- the steps -------------------------------------------------------------------------------------
@@ -251,32 +143,26 @@ STEPS = (
         "Fly",
         "Hold {Fly forward}, {Fly left}, {Fly back} or {Fly right} to move, and drag the picture with the mouse to "
         "look around. {Reset camera} takes you back.",
-        ((_flies, _fly),),
+        (_flies,),
     ),
-    Step(
-        "Turn culling off and on", _how_to_toggle,
-        ((_shows_all_traced, _stop_culling), (_shows_culling, _cull_again)), "Statistics",
-        f"Culling is on, then off, and on again, as it stays. {_THE_SAME}",
-    ),
+    Step("Turn culling off and on", _how_to_toggle, (_shows_all_traced, _shows_culling)),
     Step(
         "See the modes",
         f"Press {{{View.OCCLUSION.label}}}: green surfaces were fully rendered, orange ones are partly hidden. Then "
         f"press {{{View.SHADOW.label}}}: what is in the shadow of one light, lit by it, or both. {{Next light}} "
         f"chooses the next light, {{{View.COLOR.label}}} shows the picture again.",
-        tuple((_shows(view), _show(view)) for view in (View.OCCLUSION, View.SHADOW)), "View",
+        (_shows(View.OCCLUSION), _shows(View.SHADOW)),
     ),
     Step(
         "Click a shadow",
         "Click a dark spot in the picture. The Inspector says in a sentence why its shadow ray is culled or traced, "
         "and lines show the shadow rays.",
-        ((_in_shadow, _click_a_shadow),), "Inspector",
+        (_in_shadow,),
     ),
     Step(
         "Run a zoom test",
         "Open the panel Zoom test and press Start. The camera moves towards the surface that you clicked, and the plot "
         "shows whether culling misses a shadow that can only be seen from close up.",
-        ((_tests, _start_zoom_test), (lambda c: not _tests(c), lambda c: None)), "Zoom test",
-        "The camera moves towards a small primitive, once with each zoom factor. When its pixels, the blue line, have "
-        "reached the green limit, so many times their highest number, it is examined anew (§2.6). Red: wrong pixels.",
+        (_tests, lambda c: not _tests(c)),
     ),
-)  # fmt: skip
+)

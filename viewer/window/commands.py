@@ -13,6 +13,7 @@ from imgui_bundle import imgui
 from tracer.method import Kind, Method, additions, bases
 from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
+from viewer.services.questions import Question
 from viewer.state.comparison import CompareMode
 from viewer.state.draw_options import NEUTRAL, brighter
 from viewer.state.methods import toggled, with_base
@@ -29,6 +30,10 @@ from viewer.window.setting_rows import setting_command
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
 _STOPS = 0.5  # of exposure by a key
+_ABOUT = """A ray tracer that remembers its shadows.
+
+Shadow results are kept on each primitive and reused in later frames, so that most shadow rays need not be traced: \
+Nah, Lee, Park and Han, A Shadow Culling Algorithm for Interactive Ray Tracing."""
 
 
 def build(ui: Ui) -> list[Command]:
@@ -306,11 +311,13 @@ def _run(ui: Ui) -> list[Command]:
 
 
 def _help(ui: Ui) -> list[Command]:
-    def dialog(which: Dialog, key: str = "", also: str = "") -> Command:
-        return Command(which.value, "Help", lambda: ui.toggle(which), key, lambda: which in ui.dialogs, also=also)
+    def about() -> None:
+        text = f"{_ABOUT}\n\nDrawn by {ui.graphics.renderer_name}"
+        ui.controller.questions.question = Question("About Shadowcull", text, (("Close", lambda: None),))
 
     return [
         Command("Tour", "Help", ui.tour.toggle, checked=lambda: ui.tour.step is not None),
-        dialog(Dialog.KEYS, "F1", "keys shortcuts"),
-        dialog(Dialog.ABOUT),
-    ]
+        Command(Dialog.KEYS.value, "Help", lambda: ui.toggle(Dialog.KEYS), "F1", also="keys shortcuts",
+                checked=lambda: Dialog.KEYS in ui.dialogs),
+        Command("About Shadowcull", "Help", about),
+    ]  # fmt: skip

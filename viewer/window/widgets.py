@@ -25,11 +25,12 @@ def em(size: float) -> float:
     return hello_imgui.em_size(size)
 
 
-def centred(width: float, pivot: float = 0.5) -> None:
-    """Put the next window, so wide, at the middle; `pivot` is the part of its height that lies above that."""
-    viewport = imgui.get_main_viewport()
-    imgui.set_next_window_pos(viewport.get_work_center(), int(imgui.Cond_.appearing), ImVec2(0.5, pivot))
-    imgui.set_next_window_size(ImVec2(min(width, 0.95 * viewport.work_size.x), 0.0))
+def centred(width: float, height: float = 0.0) -> None:
+    """Put the next window at the middle, so large at first; without a height it is as high as its content."""
+    viewport, appearing = imgui.get_main_viewport(), int(imgui.Cond_.appearing)
+    size = ImVec2(min(width, 0.95 * viewport.work_size.x), min(height, 0.92 * viewport.work_size.y))
+    imgui.set_next_window_pos(viewport.get_work_center(), appearing, ImVec2(0.5, 0.5))
+    imgui.set_next_window_size(size, appearing if height else int(imgui.Cond_.always))
 
 
 def begin_modal(title: str, width: float) -> tuple[bool, bool]:

@@ -167,7 +167,7 @@ def explaining(d: Driver) -> None:
     d.settle()
     inspector, traced = d.c.inspector, d.c.history.frames
     assert inspector.why is None
-    shadow, lit = (_places(d, lit) for lit in (False, True))
+    shadow, lit = (places(d, lit) for lit in (False, True))
 
     def answered(blocked: bool) -> None:
         d.wait(lambda: inspector.why is not None and _is_blocked(d) == blocked, "an answer about a pixel", 20.0)
@@ -218,7 +218,7 @@ def _lines_drawn(d: Driver) -> int:
     return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()
 
 
-def _places(d: Driver, lit: bool) -> tuple[float, float]:
+def places(d: Driver, lit: bool) -> tuple[float, float]:
     """A pixel of the square, on the picture, that a light which is due reaches, or does not, and so its neighbours."""
     renderer = Renderer(d.c.session.scene, replace(d.c.frame.settings, method="none", record_lights=True))
     frame = renderer.render(d.c.frame.time, d.c.frame.camera)

@@ -149,9 +149,10 @@ def browsing(d: Driver) -> None:
     d.frames(2)
     d.type("bo")
     d.press(KEY.tab)
-    assert state.typed == "box/" and state.names() == ["inner/", "plot.png", "wheel.aff", "whole.aff"]
-    d.type("WHO")
-    assert state.names() == ["whole.aff"]
+    names = ("inner/", "plot.png", "wheel.aff", "whole.aff")
+    assert state.typed == "box/" and state.found == [f"box/{name}" for name in names]
+    d.type("who")
+    assert state.found == ["box/whole.aff"]
     d.press(KEY.tab)
     d.press(KEY.enter)
     assert not d.ui.dialogs and state.folder == box

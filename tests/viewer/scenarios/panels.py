@@ -30,7 +30,7 @@ def panels(d: Driver) -> None:
     d.press(KEY.f1)
     d.choose("Help/About Shadowcull")
     d.expect("A Shadow Culling Algorithm for Interactive Ray Tracing")
-    d.ui.close(Dialog.ABOUT)
+    d.click("//About Shadowcull###question/Close")
     d.press("Ctrl+O")
     d.frames(4)
     assert d.ui.dialogs == [Dialog.OPEN_FILE]

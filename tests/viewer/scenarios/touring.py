@@ -2,42 +2,27 @@
 
 from __future__ import annotations
 
-from unittest.mock import patch
-
 from imgui_bundle import imgui
-from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
+from tests.viewer.scenarios.culling import places
 from tracer.why_in_words import Words, plain
-from viewer.services import tour as tours
-from viewer.services.tour import STEPS, Step
+from viewer.services.tour import STEPS
 from viewer.state.preferences import load_preferences
-from viewer.state.views import View
 from viewer.window.panels.status import doing
 
 KEY = imgui.Key
 FLY, CULLING, MODES, SHADOW, ZOOM = STEPS
-
-
-SHOW, SKIP = f"//Picture/**/{icons.ICON_FA_PLAY}  Show me", "//Picture/**/Skip"
+SKIP = "//Picture/**/Skip"
 
 
 def touring(d: Driver) -> None:
-    """The tour comes on the first start; a step is done by doing it, by "Show me", or skipped; Help has it again."""
-    with patch.object(tours, "SECONDS", 0.3):  # nobody looks
-        assert d.ui.tour.step is FLY and not d.c.preferences.tour, "a first start begins with the tour, and only that"
-        _by_hand(d)
-        _shown_and_skipped(d)
-    d.press(KEY.c)
-    d.settle()
+    """The tour comes on the first start; a step is done by doing it, or skipped; Help has it again."""
+    assert d.ui.tour.step is FLY and not d.c.preferences.tour, "a first start begins with the tour, and only that"
+    _by_hand(d)
+    _skipped(d)
     d.c.settings.finish()
     assert not load_preferences()[0].tour
-
-
-def _shown(d: Driver, next_step: Step | None) -> None:
-    """Have the step shown until this one is next."""
-    d.click(SHOW)
-    d.wait(lambda: d.ui.tour.step is next_step, "the step that is shown", 120.0)
 
 
 def _by_hand(d: Driver) -> None:
@@ -70,40 +55,30 @@ def _by_hand(d: Driver) -> None:
     d.context.mouse_click(0)  # the sky
     d.frames(5)
     assert tour.step is SHADOW
-    _shown(d, ZOOM)
-    assert d.c.selection.picked is not None
-    chosen = d.c.inspector.why.reasons[d.c.session.draw.light]
+    d.pick(*places(d, lit=False))
+    d.wait(lambda: tour.step is ZOOM, "a shadow that was clicked", 20.0)
+    chosen = next(one for one in d.c.inspector.why.reasons if one.blocker >= 0)
     words = plain(Words(d.c.session.scene, d.c.inspector.why).answer(chosen))
     assert words.startswith("In shadow: blocked by "), f"it says which light is blocked, and by what: {words}"
     d.c.runs.zoom_plan.steps, d.c.runs.zoom_plan.size = 3, (32, 32)
-    _shown(d, None)
-    assert d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole
-    assert all(one.seen_whole for one in d.c.runs.zoom_test.results.approaches), "else there is no limit to see"
-    assert tour.over
+    d.choose("Run/Zoom test")
+    d.wait(lambda: tour.over, "the end of the zoom test", 120.0)
+    assert d.c.runs.zoom_test.whole and tour.step is None
     d.settle()
     d.click("//Picture/**/Close")
-    assert not tour.over and not d.has(SHOW)
+    assert not tour.over and not d.has(SKIP)
 
 
-def _shown_and_skipped(d: Driver) -> None:
+def _skipped(d: Driver) -> None:
     tour = d.ui.tour
     d.choose("Help/Tour")
-    assert tour.step is FLY
     for size in ((1400, 900), (900, 600)):
         d.resize(*size)
-        _, top, right, bottom = d.place(SHOW)
+        _, top, right, bottom = d.place(SKIP)
         assert d.picture_edges()[3] <= top, f"the tour covers the picture at {size}"
         assert right < size[0] and bottom < size[1], f"the tour is cut off at {size}"
-    camera = d.c.session.camera
-    _shown(d, CULLING)
-    assert d.c.session.camera != camera
-    d.change(method="auto")  # there is more to read then, and the button lies higher
-    _shown(d, MODES)
-    d.frames(5)
-    assert d.c.session.settings.method == "paper" and d.c.frame.statistics.shadow.dynamic_only > 0, "it stays so"
-    _shown(d, SHADOW)
-    assert d.c.session.draw.view is View.SHADOW
-    d.click(SKIP)
-    assert tour.step is ZOOM
+    for step in STEPS[:-1]:
+        assert tour.step is step
+        d.click(SKIP)
     d.click("//Picture/**/Finish")
-    assert tour.step is None
+    assert tour.step is None and not tour.over

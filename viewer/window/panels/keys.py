@@ -7,7 +7,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.window.command import MENUS
 from viewer.window.keyboard import HELD
-from viewer.window.ui import Dialog, Ui
+from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, properties, tooltip, value
 
 _KEY = 7.6  # width of a key in ems
@@ -25,27 +25,14 @@ _POINTER = (
 
 
 def show(ui: Ui) -> None:
-    """Show the dialog, while it is open."""
-    if Dialog.KEYS not in ui.dialogs:
-        ui.keyboard.wanted_for = ""
-        return
-    viewport = imgui.get_main_viewport()
-    size = ImVec2(min(em(58.0), 0.96 * viewport.work_size.x), min(em(46.0), 0.92 * viewport.work_size.y))
-    imgui.set_next_window_pos(viewport.get_work_center(), int(imgui.Cond_.appearing), ImVec2(0.5, 0.5))
-    imgui.set_next_window_size(size, int(imgui.Cond_.appearing))
-    flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_collapse
-    shown, open_ = imgui.begin(Dialog.KEYS.value, True, int(flags))
-    if not open_:
-        ui.close(Dialog.KEYS)
-    if shown:
-        _capture(ui)
-        conflicts = ui.keymap.conflicts()
-        _head(ui, len(conflicts))
-        if imgui.begin_child("all keys"):
-            _groups(ui, conflicts)
-            _pointer()
-        imgui.end_child()
-    imgui.end()
+    """Show what is in the dialog."""
+    _capture(ui)
+    conflicts = ui.keymap.conflicts()
+    _head(ui, len(conflicts))
+    if imgui.begin_child("all keys"):
+        _groups(ui, conflicts)
+        _pointer()
+    imgui.end_child()
 
 
 def _capture(ui: Ui) -> None:

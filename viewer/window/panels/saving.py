@@ -15,7 +15,6 @@ from viewer.window.setting_rows import in_panel, plan_rows, setting_row, setting
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import QUIET, WARNING, begin_modal, em, paragraph, properties, row, tooltip
 
-NAME = "The dialog that saves a picture"
 TITLE = Dialog.SAVE_AS.value
 
 

@@ -37,7 +37,6 @@ def show(ui: Ui, width: float) -> None:
             number, last = STEPS.index(step) + 1, step is STEPS[-1]
             _head(
                 f"Step {number} of {len(STEPS)}:  {step.title}",
-                (f"{icons.ICON_FA_PLAY}  Show me", tour.show, "Do this step for me."),
                 ("Finish" if last else "Skip", tour.skip, _AGAIN if last else "Go on to the next step."),
                 (f"{icons.ICON_FA_XMARK}##end", tour.end, _AGAIN),
             )
