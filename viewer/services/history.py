@@ -91,24 +91,41 @@ class FrameRecord:
     """What it takes to come back to a traced frame, by its `number` in the plots.
 
     `camera` is where it was seen from; `state` has the settings that were chosen, `settings` are those that the frame
-    was traced with; `size` is that of the window's picture then, of which this may be a coarser version; `whole` says
-    that all of its pixels were shaded, so that it set modes."""
+    was traced with; `size` is that of the window's picture then, of which this may be a coarser version; `part` is how
+    much of its pixels was shaded, 1 for all."""
 
     number: int
     state: ViewState
     camera: Camera
     settings: Settings
     size: tuple[int, int]
-    whole: bool
+    part: float
 
 
-class Plots:
-    """The `counters` of the last frames, as series; `frames` counts all that were ever added."""
+class FrameHistory:
+    """`counters` of the last frames, as series; `records` of those that can be gone back to by their numbers; and the
+    origins of the modes.  `frames` counts all that were ever added."""
 
-    def __init__(self, capacity: int = CAPACITY) -> None:
-        self.frames = 0
-        self._counters: deque[dict[str, float]] = deque(maxlen=capacity)
+    def __init__(self, session: Session, clock: Callable[[], float] = time.monotonic) -> None:
+        self._session, self._clock = session, clock
+        # Origins look at all units of each frame, for which the window need not wait.
+        self._worker = ThreadPoolExecutor(1, "shadowcull mode origins")
+        self._counters: deque[dict[str, float]] = deque(maxlen=CAPACITY)
         self._series: dict[str, NDArray[np.float64]] = {}  # as plots are drawn more often than frames come
+        self.clear()
+
+    def clear(self) -> None:
+        """Begin anew: another scene is open."""
+        self.hide()
+        self.frames = 0
+        self.records: dict[int, FrameRecord] = {}
+        self._came: deque[float] = deque()  # when the newest frames came
+        self._request: RenderRequest | None = None
+        self._shown: Key | None = None
+        self._repeats: dict[tuple[int, int], tuple[Hashable, int]] = {}  # by size: what set the modes, and how often
+        self.forget_modes()
+
+    # --- the plots --------------------------------------------------------------------------------
 
     def add(self, frame: Frame, drawn_seconds: float, again: bool = False) -> None:
         """Append one traced frame's numbers, or put them in the place of the last where it is that frame `again`, with
@@ -118,11 +135,6 @@ class Plots:
         self._counters.append(counters(frame, drawn_seconds))
         self._series.clear()
         self.frames += not again
-
-    def clear(self) -> None:
-        """Begin to count anew."""
-        self.hide()
-        self.frames = 0
 
     def hide(self) -> None:
         """Plot what comes from here on; frames keep their numbers."""
@@ -150,40 +162,7 @@ class Plots:
         shaded, every = (np.maximum(self.values(pixels), 1.0) for pixels in ("pixels", "all_pixels"))
         return (self.values(name) - of_all) / shaded + of_all / every
 
-    def shaded_of(self, number: int) -> float:
-        """The part of a frame's pixels that is shaded, 0 to 1, by its number; 1 for one that is no longer plotted."""
-        place = number - self.first
-        kept = self._counters[place] if 0 <= place < len(self) else {}
-        return kept["pixels"] / max(kept["all_pixels"], 1.0) if kept else 1.0
-
-
-class FrameHistory(Plots):
-    """Counters of the last frames, `records` of those that can be gone back to by their numbers, and the origins of the
-    modes."""
-
-    def __init__(self, session: Session, clock: Callable[[], float] = time.monotonic) -> None:
-        super().__init__()
-        self._session, self._clock = session, clock
-        # Origins look at all units of each frame, for which the window need not wait.
-        self._worker = ThreadPoolExecutor(1, "shadowcull mode origins")
-        self.clear()
-
-    def clear(self) -> None:
-        """Begin anew: another scene is open."""
-        super().clear()
-        self.records: dict[int, FrameRecord] = {}
-        self._came: deque[float] = deque()  # when the newest frames came
-        self._request: RenderRequest | None = None
-        self._shown: Key | None = None
-        self._repeats: dict[tuple[int, int], tuple[Hashable, int]] = {}  # by size: what set the modes, and how often
-        self.forget_modes()
-
-    def forget_modes(self, blank: bool = True) -> None:
-        """Forget who set which mode; `blank` says that no modes are left from frames before."""
-        self._origins: dict[Key, ModeOrigins] = {}
-        self._lights: dict[Key, NDArray[np.float64]] = {}
-        self._blank = blank
-        self._repeats = {} if blank else dict.fromkeys(self._repeats, (None, 0))
+    # --- frames as they come ----------------------------------------------------------------------
 
     @property
     def frames_per_second(self) -> float | None:
@@ -217,12 +196,20 @@ class FrameHistory(Plots):
         state = self._session.state_of(frame).with_settings(  # of these the frame may have had others
             samples=chosen.samples, lamp_samples=chosen.lamp_samples, verify=chosen.verify, method=chosen.method
         )
-        self.records[number] = FrameRecord(number, state, frame.camera, frame.settings, traced.full_size, traced.whole)
+        part, size = frame.statistics.part, traced.full_size
+        self.records[number] = FrameRecord(number, state, frame.camera, frame.settings, size, part)
         if len(self.records) > MOST_RECORDS:
             del self.records[next(iter(self.records))]
         return number
 
     # --- which frame set which mode ---------------------------------------------------------------
+
+    def forget_modes(self, blank: bool = True) -> None:
+        """Forget who set which mode; `blank` says that no modes are left from frames before."""
+        self._origins: dict[Key, ModeOrigins] = {}
+        self._lights: dict[Key, NDArray[np.float64]] = {}
+        self._blank = blank
+        self._repeats = {} if blank else dict.fromkeys(self._repeats, (None, 0))
 
     def _note_origins(self, traced: Traced, number: int) -> None:
         frame, scene = traced.frame, self._session.scene

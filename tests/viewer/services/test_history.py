@@ -1,4 +1,4 @@
-"""Back to a frame that was traced; which frames set a mode, against a record kept mode by mode; frames a second."""
+"""Back to a frame that was traced; which frames set a mode; frames a second."""
 
 from __future__ import annotations
 
@@ -11,13 +11,9 @@ import tracer
 from tests.viewer.desk import ELSEWHERE, Desk
 from tests.viewer.fakes import make_frame, make_scene
 from tracer.culling import modes
-from tracer.culling.modes import FULLY_RENDERED
-from tracer.experiments import warmup_frames
-from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
-from tracer.mode_origins import NEVER, ModeOrigins
+from tracer.mode_origins import NEVER
 from tracer.scene.edits import NO_EDITS, Edits
-from tracer.scene.model import Camera
 from viewer.services.history import FrameHistory
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.session import Session
@@ -166,62 +162,6 @@ def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
         picked = c.selection.picked
         assert (picked is None) == (here.primitive < 0) == bool(edits)
         assert picked is None or (picked.primitive == here.primitive and picked.seen)
-
-
-UNITS = 600
-
-
-@pytest.mark.parametrize(("lights", "word"), [(3, np.uint32), (20, np.uint64)])
-def test_the_first_frame_of_each_answer_is_known(lights: int, word: type) -> None:
-    """Words drawn by lot, which gain and lose modes; and lights that move, so that what they had was forgotten."""
-    lots, origins = np.random.default_rng(3), ModeOrigins(lights)
-    first: dict[tuple[int, int], int] = {}  # by unit and bit
-    whole: dict[int, int] = {}
-    words = np.zeros(UNITS, word)
-    for number in range(12):
-        moved = lots.random(lights) < 0.2
-        gained = lots.integers(0, 1 << 62, UNITS).astype(word) & lots.integers(0, 1 << 62, UNITS).astype(word)
-        lost = np.where(lots.random(UNITS) < 0.1, lots.integers(0, 1 << 62, UNITS), 0).astype(word)
-        gained &= word(4 ** (lights + 1) - 1)
-        before, words = words, (words | np.where(lots.random(UNITS) < 0.3, gained, word(0))) & ~lost
-        origins.add(number, words, moved)
-        for unit in range(UNITS):
-            for bit in range(2, 2 + 2 * lights):
-                has, had = int(words[unit]) >> bit & 1, int(before[unit]) >> bit & 1 and not moved[(bit - 2) // 2]
-                if has and not had:
-                    first[unit, bit] = number
-                elif not has:
-                    first.pop((unit, bit), None)
-            is_whole = int(words[unit]) & 3 == FULLY_RENDERED
-            if is_whole and (int(before[unit]) & 3 != FULLY_RENDERED or moved.any()):
-                whole[unit] = number
-            elif not is_whole:
-                whole.pop(unit, None)
-    assert len(first) > UNITS and whole
-    for unit in range(UNITS):
-        known = origins.of(unit)
-        for light in range(lights):
-            expected = tuple(first.get((unit, 2 + 2 * light + bit), NEVER) for bit in (0, 1))
-            assert expected == (NEVER, NEVER) if known is None else known.lights[light] == expected
-        assert (NEVER if known is None else known.whole) == whole.get(unit, NEVER)
-
-
-def test_memory_is_bounded() -> None:
-    origins = ModeOrigins(3, most_bytes=100 * 4 * 7)
-    origins.add(0, np.full(UNITS, 4, np.uint32))
-    assert origins.full and origins.of(99) is not None and origins.of(100) is None
-    origins.add(1, np.full(UNITS, 4 | 8, np.uint32))
-    assert origins.of(7).lights[0] == (0, 1) and origins.of(-1) is None and origins.of(UNITS) is None
-
-
-def test_frames_before_a_picture_are_json() -> None:
-    frames = (WarmupFrame(0.1), WarmupFrame(1 / 3, Camera((1, 2, 3), (0, 0, -1), angle=33.0)))
-    data = warmup_frames.to_json(frames)
-    assert warmup_frames.from_json(data) == frames == warmup_frames.from_json({"before": data})
-    for wrong in ("x", {}, [[1]], [["a", None]], [[float("nan"), None]], [[0.0, {"position": 1}]]):
-        with pytest.raises(ValueError) as raised:
-            warmup_frames.from_json(wrong)
-        assert "\n" not in str(raised.value)
 
 
 def took(history: FrameHistory, seconds: float = 0.0, parts: int = 1) -> None:

@@ -171,9 +171,8 @@ def _go_to_frame(ui: Ui, number: int, values: list[str]) -> None:
     if record is None:
         return
     ui.state(PlotsState).pointed = number
-    width, height, part = record.settings.width, record.settings.height, c.history.shaded_of(number)
-    shaded = f", {whole_percent(part)} shaded" if part < 1.0 else ""
-    said = f"{record.state.time:.3f} s, {record.settings.method}, {width} x {height}{shaded}"
+    settings, shaded = record.settings, f", {whole_percent(record.part)} shaded" if record.part < 1.0 else ""
+    said = f"{record.state.time:.3f} s, {settings.method}, {settings.width} x {settings.height}{shaded}"
     if _clicked([c.navigator.name_of(number), said, *values]):
         c.navigator.go(number)
 
