@@ -13,9 +13,11 @@ from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, imgui
 
+from tracer.setting import setting_of
 from viewer.state import navigation, verified
 from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
+from viewer.state.preferences import Preferences
 from viewer.util.numbers import whole_percent
 from viewer.window.panels import (
     legend,
@@ -265,7 +267,7 @@ def _wheel(ui: Ui, notches: float) -> None:
         if ui.picture.pivot is not None:
             c.motion.move(navigation.dolly(c.session.camera, ui.picture.pivot, notches))
     elif notches:
-        c.preferences.speed = min(max(c.preferences.speed * 1.2**notches, 0.001), 1000.0)
+        c.preferences.speed = setting_of(Preferences, "speed").clamped(c.preferences.speed * 1.2**notches)
         c.notices.say(f"flying speed {c.preferences.speed:.3g}")
 
 
