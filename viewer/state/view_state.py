@@ -174,9 +174,11 @@ class EditKind(NamedTuple):
 
 EDITS = {
     "lights_off": EditKind("light {}", "off", "on", "--without-light", "N", "switch off this light"),
-    "moved_lights": EditKind("light {}", "moved", "where it was", "--move-light", "N=X,Y,Z", "put this light elsewhere"),
+    "moved_lights": EditKind("light {}", "moved", "where it was", "--move-light", "N=X,Y,Z",
+                             "put this light elsewhere"),
     "hidden": EditKind("{}", "hidden", "shown", "--hide", "NAME", "hide this object"),
-    "hidden_primitives": EditKind("primitive {}", "hidden", "shown", "--hide-primitive", "N", "hide this primitive alone"),
+    "hidden_primitives": EditKind("primitive {}", "hidden", "shown", "--hide-primitive", "N",
+                                  "hide this primitive alone"),
     "static": EditKind("{}", "static", "moving", "--make-static", "NAME=T",
                        "freeze a moving object where it is at T seconds, as static geometry"),
     "moving": EditKind("{}", "moving", "static", "--make-moving", "NAME",

@@ -14,8 +14,6 @@ from typing import Any, NamedTuple
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
-from viewer.util.files import write_text
-from viewer.window.gl_window import Rect
 from viewer.window.panels import (
     camera,
     compare,
@@ -105,7 +103,7 @@ class Layout:
             hello_imgui.DockingSplit(of, space, side, share) for space, of, side, share in SPACES
         ]
         self._docking.dockable_windows = [self._window(panel) for panel in PANELS.values()]
-        ui.show_panel, ui.panel_labels, ui.desktop.reset_layout = self.show, SIDES, self.reset
+        ui.show_panel, ui.panel_labels, ui.reset_layout = self.show, SIDES, self.reset
 
     # --- what the commands ask for ---------------------------------------------------------------
 
@@ -226,15 +224,6 @@ def ready_file(folder: Path) -> Path:
         if path.exists() and not is_whole(path.read_text(encoding="utf-8", errors="replace")):
             path.unlink()
     return path
-
-
-def put_window(path: Path, place: Rect) -> None:
-    """Let the window begin there next time, where Hello ImGui has written the place of one that was full."""
-    with suppress(OSError):
-        text = path.read_text(encoding="utf-8", errors="replace")
-        for name, (x, y) in (("Position", place[:2]), ("Size", place[2:])):
-            text = re.sub(rf"^Window{name}=.*$", f"Window{name}={x},{y}", text, count=1, flags=re.MULTILINE)
-        write_text(path, text)
 
 
 def is_whole(text: str) -> bool:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from viewer.window.command import MENUS, Command
 from viewer.window.keyboard import works_while_typing
 from viewer.window.ui import Ui
-from viewer.window.widgets import tooltip
+from viewer.window.widgets import em, tooltip, wide_button
 
 ANY_POPUP = int(imgui.PopupFlags_.any_popup_id) | int(imgui.PopupFlags_.any_popup_level)
 Contents = Mapping[str, Callable[[], None]]
@@ -19,6 +19,22 @@ Contents = Mapping[str, Callable[[], None]]
 def run(ui: Ui, command: Command) -> None:
     """Run a command; what goes wrong in it ends nothing else."""
     ui.guard.step(f"The command {command.name}", command.run)
+
+
+def button(ui: Ui, name: str, icon: str, words: str = "", columns: int = 1, width: float = 0.0) -> None:
+    """Show a button that runs a command, where it can be run, and is explained by it and its key: a wide one, or one of
+    the icon alone, of a `width` in ems."""
+    command = next(one for one in ui.commands if one.name == name)
+    tip = f"{command.tip or name}{ui.key(name)}"
+    imgui.begin_disabled(not command.enabled())
+    if width:
+        clicked = imgui.button(f"{icon}##{name}", ImVec2(em(width), 0.0))
+        tooltip(tip)
+    else:
+        clicked = wide_button(f"{icon}  {words or name}", tip, columns)
+    imgui.end_disabled()
+    if clicked:
+        run(ui, command)
 
 
 # --- keys ------------------------------------------------------------------------------------------
@@ -48,8 +64,6 @@ def close_newest(ui: Ui) -> bool:
         _close_list()
     elif ui.dialogs:
         ui.dialogs.pop()
-    elif ui.controller.notices.newest_fault is not None:
-        ui.controller.notices.dismiss_faults()
     else:
         return False
     return True
@@ -98,8 +112,7 @@ def _menu(ui: Ui, path: str, more: Contents) -> None:
 
 def _menu_item(ui: Ui, command: Command) -> None:
     label = command.label if command.label == command.name else f"{command.label}###{command.name}"
-    checked = command.checked() if command.checked is not None else False
-    clicked, _ = imgui.menu_item(label, ui.key_label(command.name), checked, command.enabled())
+    clicked, _ = imgui.menu_item(label, ui.key_label(command.name), command.is_checked, command.enabled())
     if command.tip:
         tooltip(command.tip)
     if clicked:

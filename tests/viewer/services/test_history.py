@@ -114,14 +114,14 @@ def test_a_mode_names_the_frames_that_taught_it(desk: Desk) -> None:
     c.selection.select((0.5, 0.75))
     picked = c.selection.picked
     assert picked is not None and picked.primitive >= 0
-    taught = c.history.origins_of(picked)
+    taught = c.history.origins_of(c.frame, picked.primitive)
     assert taught is not None
     scene = c.session.scene
     again = tracer.Renderer(scene, world=tracer.World(scene))
     first: dict[tuple[int, bool], int] = {}
     for n, state in learnt.items():
         again.settings = replace(state.settings, verify=False, samples=1)
-        word = again.render(state.time, state.camera or scene.camera_at(state.time)).modes[picked.unit]
+        word = again.render(state.time, state.camera or scene.camera_at(state.time)).modes[picked.primitive]
         for light in range(2):
             for lit, bit in ((False, modes.FULL_SHADOW), (True, modes.NON_SHADOW)):
                 if int(modes.shadow_mode(word, light)) & bit:

@@ -10,14 +10,12 @@ from tracer.frame import Settings
 from viewer.services.tour import STEPS, Tour
 
 CULLING = next(step for step in STEPS if step.title == "Turn culling off and on")
-
-
 KEYS = {"Shadow culling": "Q", "Trace again": "T"}
 
 
 def tour_of(method: str, frame=None) -> tuple[SimpleNamespace, Tour]:
     c = SimpleNamespace(frame=frame, session=SimpleNamespace(settings=Settings(16, 8, method=method)), active=False)
-    return c, Tour(c, lambda panel: None, KEYS.__getitem__)
+    return c, Tour(c, KEYS.__getitem__)
 
 
 def test_the_way_to_see_culling_can_be_gone_in_order_from_every_method():
@@ -35,17 +33,9 @@ def test_the_way_to_see_culling_can_be_gone_in_order_from_every_method():
     assert "has culled nothing here yet. Press T" in tour.text(CULLING)
 
 
-def test_while_a_step_is_shown_nobody_is_told_to_do_it():
-    _, tour = tour_of("auto", make_frame())
-    tour.at = STEPS.index(CULLING)
-    tour.show()
-    assert tour.text(CULLING) == CULLING.shown and "Press" not in CULLING.shown
-
-
 def test_the_readme_takes_the_same_way():
     """Its steps are the tour's, and it presses the key at once: the method at the start culls, as the tour knows."""
     readme = " ".join((Path(__file__).parents[3] / "README.md").read_text(encoding="utf-8").split())
-    for number, step in enumerate(STEPS, 1):
-        assert f"{number}. **{step.title}.**" in readme
+    assert all(f"{number}. **{step.title}.**" in readme for number, step in enumerate(STEPS, 1))
     _, tour = tour_of(Settings().method)
     assert "Press `C` twice." in readme and tour.text(CULLING).startswith("Press Q twice.")

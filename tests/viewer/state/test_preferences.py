@@ -42,8 +42,8 @@ def test_what_a_window_starts_with_is_what_the_last_one_remembered():
 
 def test_of_an_older_format_what_has_the_same_name_is_read(tmp_path: Path):
     marks = {"/a.aff": [{"name": "here", "state": {"time": 1.0}}]}
-    old = {"method": "auto", "depth": 4, "outlines": True, "theme": "light", "presets": [{"name": "mine", "choices": {}}],
-           "bookmarks": marks}  # fmt: skip
+    old = {"method": "auto", "depth": 4, "outlines": True, "theme": "light", "bookmarks": marks}
+    old["presets"] = [{"name": "mine", "choices": {}}]
     (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(old))
     read, problem = load_preferences(tmp_path)
     assert problem is None and (read.theme, read.format) == ("light", prefs.FORMAT)

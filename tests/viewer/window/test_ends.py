@@ -13,7 +13,7 @@ from tests.platforms import posix_only
 pytest.importorskip("imgui_bundle")
 from viewer.window import app
 from viewer.window.gl_window import closing_by_signals
-from viewer.window.layout import END, put_window, ready_file
+from viewer.window.layout import END, ready_file
 
 
 @posix_only
@@ -50,10 +50,3 @@ def test_only_a_layout_that_is_whole_is_read(tmp_path: Path, written: str, stays
     path = ready_file(tmp_path / "new")
     path.write_text(written)
     assert ready_file(path.parent) == path and path.exists() is stays
-
-
-def test_a_window_that_was_full_begins_at_its_own_place(tmp_path: Path) -> None:
-    path = tmp_path / "layout.ini"
-    path.write_text("[AppWindow]\nWindowPosition=0,0\nWindowSize=1600,1000\n")
-    put_window(path, (5, -6, 700, 800))
-    assert path.read_text() == "[AppWindow]\nWindowPosition=5,-6\nWindowSize=700,800\n"

@@ -1,4 +1,4 @@
-"""What the status bar and the statistics say in words."""
+"""What the status bar, the statistics and the panel Culling say in words."""
 
 from __future__ import annotations
 
@@ -9,8 +9,12 @@ import pytest
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.settings import Settings
 from viewer.state import terms
+from viewer.state.draw_options import DrawOptions
+from viewer.state.views import View
+from viewer.window.panels.culling import trust, wrong_answers
 from viewer.window.panels.inspector import unanswered
 from viewer.window.panels.status import doing, first_picture
+from viewer.window.widgets import ERROR
 
 
 def job(title: str, label: str = "", fraction: float = 0.5) -> SimpleNamespace:
@@ -48,11 +52,11 @@ def run(traced: int, label: str) -> SimpleNamespace:
     [
         ({"warm_up_job": KERNELS}, "Compiling the tracer (first start only): 50 %"),
         ({"warm_up_job": KERNELS, "compiles": True, "frame": FRAME},
-         "compiling what makes certificates (first start only): 50 %"),
-        ({"warm_up_job": KERNELS, "frame": FRAME}, "loading what makes certificates: 50 %"),
+         "compiling the kernels of certificates (first start only): 50 %"),
+        ({"warm_up_job": KERNELS, "frame": FRAME}, "loading the kernels of certificates: 50 %"),
         ({"runs": run(0, "starting")}, "experiment is starting   (Escape stops it)"),
         ({"runs": run(1, "frame 1 of 5, none")}, "experiment, traced: frame 1 of 5, none   (Escape stops it)"),
-        ({"certifies": True, "frame": FRAME}, "preparing (cells settled in the last picture: 1)"),
+        ({"certifies": True, "frame": FRAME}, "making certificates (cells settled in the last picture: 1)"),
         ({}, "idle"),
     ],
 )  # fmt: skip
@@ -102,3 +106,37 @@ def test_modes_that_are_only_looked_at_are_named_as_no_part_of_the_time() -> Non
         assert beside == f"{label} (for display)" and why.startswith(tip) and "no part of the frame's time" in why
     assert terms.phase("shading", Settings(modes=True)) == terms.PHASES["shading"]
     assert terms.phase("new", Settings()) == ("new", "")
+
+
+# --- beside the method ---------------------------------------------------------------------------------
+
+
+def shown(method: str, **more: object) -> SimpleNamespace:
+    """A controller with a frame by a method, which is the one that is chosen."""
+    settings = Settings(16, 8, method=method, **more)
+    session = SimpleNamespace(settings=settings, draw=DrawOptions(View.DIFFERENCE))
+    return SimpleNamespace(frame=make_frame(settings), scheduler=SimpleNamespace(settings=settings), session=session,
+                           runs=SimpleNamespace(current=None))  # fmt: skip
+
+
+def test_wrong_answers_are_those_of_the_method_that_is_shown() -> None:
+    c = shown("paper", verify=True)
+    text, color = wrong_answers(c)
+    assert text.startswith("3 wrong answers (") and color == ERROR
+    c.session.settings = Settings(16, 8, method="paper")
+    assert wrong_answers(c)[0] == f"{text} (verified for the view Difference)", "the box Verify is not ticked"
+    c.runs.current = SimpleNamespace(name="zoom test")
+    text, color = wrong_answers(c)
+    assert text == "The panel of the zoom test shows its wrong answers." and color != ERROR
+    c.runs.current, c.scheduler.settings = None, Settings(16, 8, method="auto", verify=True)
+    assert wrong_answers(c) is None
+
+
+def test_below_a_method_stands_what_it_trusts_whether_it_is_exact_and_what_it_does_now() -> None:
+    first, second = trust(shown("paper+cache")).split(" cache: ")
+    assert first.startswith("paper: Trusts ") and "Wrong now and then." in first and second.endswith("as the method.")
+    c = shown("auto")
+    c.frame.statistics.decision = "Every shadow ray is traced."
+    assert trust(c).endswith(" Exact. Every shadow ray is traced.")
+    c.session.settings = Settings(16, 8, method="certified")
+    assert "Every shadow ray" not in trust(c), "the picture is another method's"
