@@ -12,6 +12,7 @@ from rich.table import Table
 
 from tracer.experiments import experiment
 from tracer.experiments.experiment import REFERENCE, Experiment, Results
+from tracer.experiments.titles import title
 from tracer.geometry.world import World
 from tracer.method import line_up
 from tracer.scene.load import check_scene_file
@@ -20,7 +21,7 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
 from viewer.cli.console import columns_help, fitted, listed, print_table, terminal_width, working
 from viewer.output import exports
-from viewer.output.reports import METHOD, TABLE_1, caveats, table_1, title
+from viewer.output.reports import METHOD, TABLE_1, caveats, table_1
 
 ALL = "all"  # methods that are worth comparing in the scene
 EPILOG = f"""\

@@ -21,7 +21,8 @@ from rich.text import Text
 from tracer.experiments.runner import Results, Run
 from tracer.geometry.world import World
 from tracer.scene.model import Cancelled
-from viewer.util.messages import in_one_line, printable, say
+from tracer.text import printable
+from viewer.util.messages import in_one_line, say
 
 if TYPE_CHECKING:
     from viewer.output.reports import Column

@@ -20,6 +20,7 @@ from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
+from tracer.text import printable
 from tracer.told_rays import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.why import why
 from tracer.why_in_words import Words, plain
@@ -28,7 +29,6 @@ from viewer.cli.arguments import Parser, count
 from viewer.cli.console import working
 from viewer.output.ray_rows import RayFilter, RayRow, RayRows, RaySubset, totals
 from viewer.services.inspector import with_origins
-from viewer.util.messages import printable
 
 MOST_LIGHTS = 3  # that are named before a sentence that they share; of more, the number is said
 EPILOG = """\

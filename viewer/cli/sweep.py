@@ -23,13 +23,13 @@ from tracer.experiments.study import Study, read_study
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Cancelled, Scene
+from tracer.text import printable
 from viewer.cli import options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
 from viewer.cli.console import Work, columns_help, fitted, listed, print_table, terminal_width, working
 from viewer.output.reports import METHOD, Column
 from viewer.state import terms
 from viewer.util import numbers
-from viewer.util.messages import printable
 from viewer.util.resources import embedded_scenes
 
 if TYPE_CHECKING:  # these need pyarrow

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from tracer.experiments import zoom
+from tracer.experiments.titles import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
 from tracer.experiments.zoom import ZoomTest
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
@@ -18,7 +19,7 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import columns_help, listed, print_table, working
 from viewer.output import exports
-from viewer.output.reports import NEVER_WHOLE, STEPS, WRONG_PIXELS, happenings, never_whole, title
+from viewer.output.reports import STEPS
 from viewer.state.methods import NO_CULLING
 from viewer.state.plans import parse_factors
 from viewer.util.messages import say

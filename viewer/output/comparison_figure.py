@@ -20,12 +20,13 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from viewer.output import figures
+from tracer.experiments import figures
+from tracer.experiments.figures import COLORS, bare, styled
 from viewer.output.comparison import Crop, Shown, texts_of_file
-from viewer.output.figures import COLORS, bare, styled
 from viewer.state.palette import color_map
 from viewer.state.session import Session
 from viewer.state.views import View
+from viewer.util.files import write_bytes
 from viewer.util.numbers import several
 
 _COLUMN, _LABELS, _BAR = 3.1, 1.7, 1.1  # inches of a method's column, of the names of rows, and of the colour bar
@@ -37,7 +38,8 @@ _LEAST = 1e-3  # the top of the colour range where nothing differs
 
 def save(shown: Shown, path: Path, text: str) -> None:
     """Write the figure as one of ENDINGS with what it carries; raises OSError in one line."""
-    figures.save(figure(shown), path, texts_of_file(path.suffix.lower(), text))
+    kept = texts_of_file(path.suffix.lower(), text)
+    write_bytes(path, figures.file_of(figure(shown), path.suffix, kept))
 
 
 @styled()

@@ -16,14 +16,15 @@ from pathlib import Path
 
 from tracer.experiments import experiment, hunt, zoom
 from tracer.experiments.experiment import Experiment
+from tracer.experiments.filmstrip import Filmstrip
 from tracer.experiments.runner import STARTING, Run
 from tracer.experiments.zoom import Step, ZoomTest
+from tracer.frame import Frame
 from tracer.method import in_order
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output import exports
-from viewer.output.filmstrip import Filmstrip
 from viewer.services.capture_service import CaptureService
 from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Task, Traced
@@ -35,6 +36,7 @@ from viewer.state.session import Session
 from viewer.state.views import Record, View
 from viewer.util.messages import failure
 from viewer.util.numbers import several
+from viewer.views.difference import ringed
 
 
 class FileRun(Run[Path]):
@@ -45,13 +47,17 @@ class FileRun(Run[Path]):
 
 
 class RecordedZoomTest(ZoomTest):
-    """A zoom test that keeps the picture of each step."""
+    """A zoom test that keeps the picture of each step, with rings around wrong pixels."""
 
     def __init__(
         self, scene: Scene, settings: Settings, start: zoom.Aim, factors: Sequence[float], steps: int, ratio: float
     ) -> None:
         self.filmstrip = Filmstrip()
-        super().__init__(scene, settings, start, factors, steps, ratio, self.filmstrip.record)
+
+        def record(factor: float, number: int, frame: Frame) -> None:
+            self.filmstrip.record(factor, number, ringed(frame))
+
+        super().__init__(scene, settings, start, factors, steps, ratio, record)
 
 
 # --- in words -----------------------------------------------------------------------------------------

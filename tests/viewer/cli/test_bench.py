@@ -11,10 +11,10 @@ import pytest
 
 from tests.commands import complaint, run
 from tests.terminal import Terminal
+from tracer.experiments import figures
 from tracer.version import program_version
 from viewer.__main__ import main
 from viewer.cli.console import Work
-from viewer.output import figures
 
 SMALL = ["bench", "figure4", "--path-frames", "6", "--size", "48x32"]
 
@@ -130,7 +130,7 @@ def test_a_file_that_fails_takes_nothing_else_along(tmp_path: Path, capsys, monk
     def full(*_: object) -> None:
         raise OSError("plot.png: not written: No space left on device")
 
-    monkeypatch.setattr(figures, "save", full)
+    monkeypatch.setattr(figures, "file_of", full)
     paths = [tmp_path / name for name in ("plot.png", "figures.json", "table.csv")]
     assert main([*SMALL, "--plot", str(paths[0]), "--json", str(paths[1]), "--csv", str(paths[2])]) == 1
     out, err = capsys.readouterr()

@@ -6,17 +6,10 @@ import pytest
 
 from tracer.experiments import zoom
 from tracer.experiments.experiment import Results, Row
+from tracer.experiments.titles import happenings, title
 from tracer.experiments.zoom import Approach, Change, Step
 from tracer.scene.model import Camera
-from viewer.output.reports import (
-    SPEED_UP,
-    WRONG,
-    caveats,
-    changes_in_words,
-    happenings,
-    table_1,
-    title,
-)
+from viewer.output.reports import SPEED_UP, WRONG, caveats, changes_in_words, table_1
 
 
 def row(method: str, steps: float = 0.0, tests: float = 0.0, speed_up: float = 1.0, spread: float = 0.01) -> Row:

@@ -11,8 +11,9 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.experiments.experiment import Experiment
 from tracer.experiments.hunt import Hunt
 from tracer.experiments.runner import Run
+from tracer.experiments.titles import title
 from tracer.experiments.zoom import ZoomTest
-from viewer.output.reports import Column, title
+from viewer.output.reports import Column
 from viewer.services.runs import duration
 from viewer.state.plans import PathPlan
 from viewer.window.ui import Ui

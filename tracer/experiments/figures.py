@@ -6,11 +6,12 @@ matplotlib settings shows, and the same data give the same file.
 
 from __future__ import annotations
 
+import io
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from matplotlib import style
@@ -21,10 +22,9 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, PercentFor
 
 from tracer.experiments import zoom
 from tracer.experiments.experiment import REFERENCE, Results, Row, table
-from viewer.output.filmstrip import Filmstrip, Shot
-from viewer.output.reports import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
-from viewer.util.files import write_whole
-from viewer.util.numbers import saved
+from tracer.experiments.filmstrip import Filmstrip, Shot
+from tracer.experiments.titles import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
+from tracer.text import saved
 
 ENDINGS = (".png", ".svg", ".pdf")
 # Okabe and Ito's colours, those that read well as letters first; in greys, dashes and marks distinguish methods.
@@ -66,16 +66,12 @@ def check_ending(path: Path) -> None:
 
 
 @styled()
-def save(figure: Figure, path: Path, kept: Mapping[str, str] | None = None) -> None:
-    """Write a figure as its ending says, one of ENDINGS, whole or not at all, with texts to be kept in it; raises
-    OSError in one line."""
-    kind = path.suffix.lower()[1:]
-    no_date: dict[str, dict[str, Any]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
-
-    def write(file: BinaryIO) -> None:
-        figure.savefig(file, format=kind, dpi=_DPI, metadata={**no_date.get(kind, {}), **(kept or {})})
-
-    write_whole(path, write)
+def file_of(figure: Figure, ending: str, kept: Mapping[str, str] | None = None) -> bytes:
+    """Return a figure as a file with this ending, one of ENDINGS, with texts to be kept in it."""
+    no_date: dict[str, dict[str, Any]] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    file, metadata = io.BytesIO(), {**no_date.get(ending.lower(), {}), **(kept or {})}
+    figure.savefig(file, format=ending.lower()[1:], dpi=_DPI, metadata=metadata)
+    return file.getvalue()
 
 
 def page(title: str, size: tuple[float, float] = SIZE) -> Figure:

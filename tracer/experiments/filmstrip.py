@@ -1,6 +1,6 @@
 """The pictures of a zoom test, kept as it goes: the filmstrip of the paper's Figure 4.
 
-Each is the traced picture with rings around wrong pixels, as a PNG.  Memory is bounded: where they take too much, every
+Each is kept as a PNG.  Memory is bounded: where they take too much, every
 second step's is given up, then every second of the rest, for all zoom factors alike.
 """
 
@@ -13,9 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
-
-from tracer.frame import Frame
-from viewer.views.difference import ringed
 
 MOST_BYTES = 64_000_000
 
@@ -51,14 +48,14 @@ class Filmstrip:
         self._shots: list[Shot] = []
         self._every = 1
 
-    def record(self, factor: float, number: int, frame: Frame) -> None:
-        """Keep the picture of a step's verified frame."""
+    def record(self, factor: float, number: int, pixels: NDArray[np.uint8]) -> None:
+        """Keep the picture of a step, (height, width, 3)."""
         if number % self._every:
             return
         file = io.BytesIO()
-        Image.fromarray(ringed(frame)).save(file, "PNG", compress_level=1)
+        Image.fromarray(pixels).save(file, "PNG", compress_level=1)
         with self._lock:
-            self._shots.append(Shot(factor, number, frame.width, frame.height, file.getvalue()))
+            self._shots.append(Shot(factor, number, pixels.shape[1], pixels.shape[0], file.getvalue()))
             while sum(len(one.png) for one in self._shots) > self._most_bytes and any(s.number for s in self._shots):
                 self._every *= 2
                 self._shots = [shot for shot in self._shots if shot.number % self._every == 0]
