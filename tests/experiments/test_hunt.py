@@ -13,9 +13,7 @@ from tests.marbles import LAST, STEP, write_marbles
 from tracer.experiments import counterexample, hunt, warmup_frames
 from tracer.experiments.counterexample import AROUND, PATH
 from tracer.experiments.hunt import Results, Search
-from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.ray_tree import ray_tree
-from tracer.scene.model import Camera
 from viewer.services.hunts import crop_of
 
 SETTINGS = tracer.Settings(width=96, height=96, depth=2, method="paper", threads=1)
@@ -177,13 +175,3 @@ def test_cameras_beside_the_path_look_at_what_is_wrong(world: tracer.World, monk
         assert 0.5 / 1.25 <= ratio <= 1.25 * 1.25
         cosines = [float(way @ c.basis()[2] / np.linalg.norm(way)) for way, c in ((before, camera), (after, moved))]
         assert cosines[1] == pytest.approx(cosines[0], abs=0.15)
-
-
-def test_frames_before_a_picture_are_json() -> None:
-    frames = (WarmupFrame(0.1), WarmupFrame(1 / 3, Camera((1, 2, 3), (0, 0, -1), angle=33.0)))
-    data = warmup_frames.to_json(frames)
-    assert warmup_frames.from_json(data) == frames == warmup_frames.from_json({"before": data})
-    for wrong in ("x", {}, [[1]], [["a", None]], [[float("nan"), None]], [[0.0, {"position": 1}]]):
-        with pytest.raises(ValueError) as raised:
-            warmup_frames.from_json(wrong)
-        assert "\n" not in str(raised.value)

@@ -1,4 +1,4 @@
-"""Which frames set a mode, against a record kept mode by mode."""
+"""Which frame taught a mode, against a record kept mode by mode."""
 
 from __future__ import annotations
 

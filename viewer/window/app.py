@@ -274,7 +274,8 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(self.ui, {"Panels": self.layout.menu}, {"Edit/Presets": lambda: named_states.presets_menu(self.ui)})
+        menus.show(self.ui, [*self.ui.commands, *named_states.preset_commands(self.ui)])
+        self.layout.show_menu()
 
     def _ready(self) -> None:
         """The window and its GL context exist."""

@@ -5,8 +5,6 @@ they were."""
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Callable, Collection, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -120,11 +118,13 @@ class Layout:
             window.is_visible = window.label in labels
         self._docking.layout_reset = True
 
-    def menu(self) -> None:
-        """Show what is in the menu of panels: a tick for each that is open."""
-        for label in SIDES:
-            window = self._docking.dockable_window_of_name(label)
-            _, window.is_visible = imgui.menu_item(label, "", window.is_visible, True)
+    def show_menu(self) -> None:
+        """Show the menu of panels: a tick for each that is open."""
+        if imgui.begin_menu("Panels"):
+            for label in SIDES:
+                window = self._docking.dockable_window_of_name(label)
+                _, window.is_visible = imgui.menu_item(label, "", window.is_visible, True)
+            imgui.end_menu()
 
     # --- one frame -------------------------------------------------------------------------------
 
@@ -211,25 +211,9 @@ def _in_main_window(label: str) -> bool:
 
 # --- its file --------------------------------------------------------------------------------------
 
-LAYOUT_FILE = "layout.ini"
-END = ";;;<<<SplitIds>>>;;;"
-"""What Hello ImGui writes last of the layout, with JSON in the line after it; words of ours may follow."""
-
 
 def ready_file(folder: Path) -> Path:
-    """Return the file that Hello ImGui reads the layout from, and writes it to; one that is not whole is removed."""
-    path = folder / LAYOUT_FILE
+    """Return the file that Hello ImGui reads the layout from, and writes it to, in a folder that is there."""
     with suppress(OSError):  # then the layout is not remembered; saving the settings says why
         folder.mkdir(parents=True, exist_ok=True)
-        if path.exists() and not is_whole(path.read_text(encoding="utf-8", errors="replace")):
-            path.unlink()
-    return path
-
-
-def is_whole(text: str) -> bool:
-    """Return whether a layout was written to its end: on a full disk ImGui writes as much as there is room for."""
-    found = re.search(rf"^{END}\s*^(.*)$", text, re.MULTILINE)
-    try:
-        return found is not None and isinstance(json.loads(found[1]), dict)
-    except ValueError:
-        return False
+    return folder / "layout.ini"

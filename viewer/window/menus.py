@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, imgui
 
@@ -13,7 +12,6 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import em, tooltip, wide_button
 
 ANY_POPUP = int(imgui.PopupFlags_.any_popup_id) | int(imgui.PopupFlags_.any_popup_level)
-Contents = Mapping[str, Callable[[], None]]
 
 
 def run(ui: Ui, command: Command) -> None:
@@ -80,21 +78,19 @@ def _close_list() -> None:
 # --- menus -----------------------------------------------------------------------------------------
 
 
-def show(ui: Ui, others: Contents, more: Contents) -> None:
-    """Show all menus of the menu bar, and `others` after them.  Some menus, by their paths, have `more` after their
-    commands."""
-    contents: dict[str, Callable[[], None]] = {name: partial(_menu, ui, name, more) for name in MENUS}
-    for name, show_content in (contents | dict(others)).items():
+def show(ui: Ui, commands: Sequence[Command]) -> None:
+    """Show all menus of the menu bar, made of these commands."""
+    for name in MENUS:
         if imgui.begin_menu(name):
-            show_content()
+            _menu(ui, name, commands)
             imgui.end_menu()
 
 
-def _menu(ui: Ui, path: str, more: Contents) -> None:
+def _menu(ui: Ui, path: str, commands: Sequence[Command]) -> None:
     """Show the commands of a menu, and the menus within it where the first of their commands stands."""
     inner: list[str] = []
     first = True
-    for command in ui.commands:
+    for command in commands:
         here = command.menu == path and bool(command.label)
         begins = command.menu.startswith(f"{path}/") and command.menu not in inner
         if (here or begins) and command.separated and not first:
@@ -105,8 +101,7 @@ def _menu(ui: Ui, path: str, more: Contents) -> None:
         elif begins:
             inner.append(command.menu)
             if imgui.begin_menu(command.menu.removeprefix(f"{path}/")):
-                _menu(ui, command.menu, more)
-                more.get(command.menu, lambda: None)()
+                _menu(ui, command.menu, commands)
                 imgui.end_menu()
 
 

@@ -130,7 +130,7 @@ def test_a_file_that_fails_takes_nothing_else_along(tmp_path: Path, capsys, monk
     def full(*_: object) -> None:
         raise OSError("plot.png: not written: No space left on device")
 
-    monkeypatch.setattr(figures, "save", full)
+    monkeypatch.setattr(figures, "file_of", full)
     paths = [tmp_path / name for name in ("plot.png", "figures.json", "table.csv")]
     assert main([*SMALL, "--plot", str(paths[0]), "--json", str(paths[1]), "--csv", str(paths[2])]) == 1
     out, err = capsys.readouterr()

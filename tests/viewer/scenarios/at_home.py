@@ -112,7 +112,7 @@ def _presets(d: Driver) -> None:
     assert d.c.presets.all[0].name == "ours" and d.ui.state(NameFields).place is None
     d.press(KEY.escape)
     assert not d.ui.dialogs
-    d.choose("Edit/Presets/ours##preset 5")
+    d.choose("Edit/Presets/###preset ours")
     d.settle()
     assert d.c.session.settings == kept and d.c.undo.undoes == "preset ours"
 

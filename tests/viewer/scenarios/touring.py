@@ -39,7 +39,7 @@ def _by_hand(d: Driver) -> None:
     d.expect("Press C twice")
     d.change(method="auto")
     assert not d.c.frame.statistics.shadow.dynamic_only
-    d.expect("Choose paper")
+    d.expect("Choose paper, the published method, at the top of the Culling panel, and then press C twice")
     d.change(method="paper")
     d.press(KEY.c)
     d.settle()

@@ -6,7 +6,6 @@ from collections import Counter
 
 import pytest
 
-from tracer.method import DEFAULT_METHOD
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window.command import MENUS, Command, Kind
@@ -49,18 +48,6 @@ def test_views_are_chosen_and_ticked(ui: Ui, by_name) -> None:
     assert by_name[View.SHADOW.label].is_checked and not by_name[View.COLOR.label].is_checked
 
 
-@pytest.mark.parametrize("method", [DEFAULT_METHOD, "cells+cache"])
-def test_culling_is_switched_and_comes_back_as_it_was(ui: Ui, by_name, method: str) -> None:
-    ui.controller.settings.change(method=method)
-    for expected in ("none", method):
-        by_name["Shadow culling"].run()
-        assert ui.controller.session.settings.method == expected
-
-
-def test_what_one_panel_needs_is_not_kept_for_all() -> None:
-    assert len(Ui.__slots__) <= 21, "keep it in the panel's own state: ui.state(YourState)"
-
-
 # --- the palette -----------------------------------------------------------------------------------
 
 
@@ -85,12 +72,6 @@ def test_what_was_used_last_comes_first(ui: Ui) -> None:
     assert [item.name for item in find("", everything, ["Zoom test", "Depth"])[:2]] == ["Zoom test", "Depth"]
     assert find("next", everything, [])[0].name == "Next view"
     assert find("next", everything, ["Next light"])[0].name == "Next light"
-
-
-def test_what_cannot_be_run_says_why_and_stays_open(ui: Ui, by_name) -> None:
-    finder, play = Finder(), by_name["Play"]
-    assert play.why_not == "nothing moves in this scene" and play.key == "Space"
-    assert not finder.enter(play) and "nothing moves" in finder.problem
 
 
 def looked_for(ui: Ui, typed: str) -> Finder:

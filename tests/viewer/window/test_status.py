@@ -43,53 +43,40 @@ FRAME.statistics.certificates = 1
 KERNELS = job("Compiling the tracer (first start only)", "compiling shading")
 
 
+def answers(c: SimpleNamespace) -> str:
+    return unanswered(SimpleNamespace(controller=c))
+
+
 def run(traced: int, label: str) -> SimpleNamespace:
     return SimpleNamespace(current=SimpleNamespace(name="experiment", label=label, traced=traced))
 
 
 @pytest.mark.parametrize(
-    ("state", "said"),
+    ("says", "state", "said"),
     [
-        ({"warm_up_job": KERNELS}, "Compiling the tracer (first start only): 50 %"),
-        ({"warm_up_job": KERNELS, "compiles": True, "frame": FRAME},
+        (doing, {"warm_up_job": KERNELS}, "Compiling the tracer (first start only): 50 %"),
+        (doing, {"warm_up_job": KERNELS, "compiles": True, "frame": FRAME},
          "compiling the kernels of certificates (first start only): 50 %"),
-        ({"warm_up_job": KERNELS, "frame": FRAME}, "loading the kernels of certificates: 50 %"),
-        ({"runs": run(0, "starting")}, "experiment is starting   (Escape stops it)"),
-        ({"runs": run(1, "frame 1 of 5, none")}, "experiment, traced: frame 1 of 5, none   (Escape stops it)"),
-        ({"activity": Activity.CERTIFYING, "frame": FRAME},
+        (doing, {"warm_up_job": KERNELS, "frame": FRAME}, "loading the kernels of certificates: 50 %"),
+        (doing, {"runs": run(0, "starting")}, "experiment is starting   (Escape stops it)"),
+        (doing, {"runs": run(1, "frame 1 of 5, none")}, "experiment, traced: frame 1 of 5, none   (Escape stops it)"),
+        (doing, {"activity": Activity.CERTIFYING, "frame": FRAME},
          "making certificates (cells settled in the last picture: 1)"),
-        ({}, "idle"),
+        (doing, {}, "idle"),
+        (first_picture, {}, "No picture has been traced yet."),
+        (first_picture, {"renderer": BUSY}, "Tracing the first picture ..."),
+        (first_picture, {"session": NO_SCENE}, "No scene is open"),
+        (first_picture, {"load_job": job("Opening office.aff", "reading")},
+         "Opening office.aff: reading   (Escape cancels)"),
+        (answers, {}, "Tracing its shadow rays ..."),
+        (answers, {"activity": Activity.ADDING_SAMPLES}, "Answered after this sample."),
+        (answers, {"activity": Activity.SAMPLING_LAMPS}, "Answered after the samples of lamps."),
+        (answers, {"renderer": BUSY}, "Answered after this picture."),
+        (answers, {"motion": SimpleNamespace(is_animating=True)}, "Answered when nothing moves."),
     ],
 )  # fmt: skip
-def test_the_bar_says_one_thing_that_goes_on(state: dict[str, object], said: str) -> None:
-    assert doing(idle(**state)) == said
-
-
-@pytest.mark.parametrize(
-    ("state", "said"),
-    [
-        ({}, "No picture has been traced yet."),
-        ({"renderer": BUSY}, "Tracing the first picture ..."),
-        ({"session": NO_SCENE}, "No scene is open"),
-        ({"load_job": job("Opening office.aff", "reading")}, "Opening office.aff: reading   (Escape cancels)"),
-    ],
-)
-def test_without_a_picture_it_is_said_what_goes_on(state: dict[str, object], said: str) -> None:
-    assert first_picture(idle(**state)) == said
-
-
-@pytest.mark.parametrize(
-    ("state", "said"),
-    [
-        ({}, "Tracing its shadow rays ..."),
-        ({"activity": Activity.ADDING_SAMPLES}, "Answered after this sample."),
-        ({"activity": Activity.SAMPLING_LAMPS}, "Answered after the samples of lamps."),
-        ({"renderer": BUSY}, "Answered after this picture."),
-        ({"motion": SimpleNamespace(is_animating=True)}, "Answered when nothing moves."),
-    ],
-)
-def test_what_was_asked_says_what_it_waits_for(state: dict[str, object], said: str) -> None:
-    assert unanswered(SimpleNamespace(controller=idle(**state))) == said
+def test_the_bar_the_empty_picture_and_the_inspector_say_what_goes_on(says, state: dict[str, object], said: str):
+    assert says(idle(**state)) == said
 
 
 def test_beams_are_named_where_they_ask() -> None:

@@ -14,11 +14,12 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from tracer.frame import Frame
 from viewer.state.pixels import Zoom
 from viewer.state.projection import Stroke
+from viewer.views.legend import BACKDROP, TEXT
 from viewer.window.widgets import em
 
-_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
+BACK, FRONT = ImVec4(*BACKDROP, 0.9), ImVec4(*TEXT, 1.0)
 _PAD = 0.4  # ems around words
-SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
+SHADE = ImVec4(*BACKDROP, 0.6)
 """Around what is drawn, so that it is seen on any picture."""
 
 
@@ -64,10 +65,10 @@ def size_of(lines: Sequence[str]) -> tuple[float, float]:
     return width + 2.0 * em(_PAD), imgui.get_text_line_height() * len(lines) + 2.0 * em(_PAD)
 
 
-def write_lines(lines: Sequence[str], at: ImVec2, color: ImVec4 = _FRONT) -> None:
+def write_lines(lines: Sequence[str], at: ImVec2, color: ImVec4 = FRONT) -> None:
     """Write a few lines on a dark ground, from a corner on."""
     (width, height), pad, draw = size_of(lines), em(_PAD), imgui.get_window_draw_list()
-    draw.add_rect_filled(at, ImVec2(at.x + width, at.y + height), imgui.get_color_u32(_BACK), em(0.3))
+    draw.add_rect_filled(at, ImVec2(at.x + width, at.y + height), imgui.get_color_u32(BACK), em(0.3))
     for number, text in enumerate(lines):
         below = number * imgui.get_text_line_height()
         draw.add_text(ImVec2(at.x + pad, at.y + pad + below), imgui.get_color_u32(color), text)

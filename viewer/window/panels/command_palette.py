@@ -15,6 +15,7 @@ from viewer.window import setting_rows
 from viewer.window.command import Command, Kind
 from viewer.window.finder import Finder
 from viewer.window.menus import ANY_POPUP, run
+from viewer.window.panels.named_states import preset_commands
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, fitted, paragraph, tooltip
 
@@ -149,9 +150,7 @@ def items(ui: Ui) -> list[Command]:
 def _others(ui: Ui) -> Iterator[Command]:
     """Return presets, panels, bookmarks and scenes."""
     c, own = ui.controller, embedded_scenes()
-    for name in c.presets.states:
-        apply = partial(c.presets.apply, name)
-        yield Command(f"preset {name}", "Edit/Presets", apply, title=name, kind=Kind.PRESET, also="apply")
+    yield from preset_commands(ui)
     for label in ui.panel_labels:
         yield Command(f"panel {label}", "Panels", partial(ui.show_panel, label), title=f"Panel {label}", also="open")
     for number, mark in enumerate(c.bookmarks.all):

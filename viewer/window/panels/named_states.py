@@ -10,6 +10,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.named_states import BUILT_IN, NamedStates
+from viewer.window.command import Command, Kind
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, em, fitted, heading, paragraph, tooltip
 
@@ -60,15 +61,15 @@ def show_presets(ui: Ui) -> None:
         tooltip(preset.tip)
 
 
-def presets_menu(ui: Ui) -> None:
-    """Those that can be applied, in the menu Edit."""
-    presets, tips = ui.controller.presets, {preset.name: preset.tip for preset in BUILT_IN}
-    for number, name in enumerate(presets.states):
-        if number in (0, len(BUILT_IN)):
-            imgui.separator()
-        if imgui.menu_item(f"{name}##preset {number}", "", False, True)[0]:
-            ui.guard.step("Applying a preset", partial(presets.apply, name))
-        tooltip(tips.get(name, "saved by you"))
+def preset_commands(ui: Ui) -> list[Command]:
+    """Return all presets as they are now, for the menu Edit and the palette."""
+    presets = ui.controller.presets
+    tips = [preset.tip for preset in BUILT_IN] + ["saved by you"] * len(presets.all)
+    return [
+        Command(f"preset {name}", "Edit/Presets", partial(presets.apply, name), title=name, kind=Kind.PRESET,
+                also="apply", tip=tip, separated=number in (0, len(BUILT_IN)))
+        for number, (name, tip) in enumerate(zip(presets.states, tips, strict=True))
+    ]  # fmt: skip
 
 
 def _new(ui: Ui, states: NamedStates, hint: str, button: str, width: float) -> None:

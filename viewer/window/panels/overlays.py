@@ -14,7 +14,7 @@ from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
 from viewer.state.picking import outline_of, points_of, primitive_points
 from viewer.state.projection import Stroke, strokes
 from viewer.window.panels import rays
-from viewer.window.panels.area import Area, Pen
+from viewer.window.panels.area import BACK, FRONT, Area, Pen
 from viewer.window.panels.links import Pointed
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, paragraph, tooltip
@@ -27,7 +27,6 @@ _HIDER, _WHITE = ImVec4(*FATE_COLORS[Fate.PARTLY_OCCLUDED], 1.0), ImVec4(1.0, 1.
 _SAME, _MISSED = ImVec4(0.6, 0.64, 0.7, 1.0), ImVec4(0.3, 0.85, 0.95, 1.0)
 _SIDE = 0.5  # ems, of a pixel's square at least
 _NOTE, _LEAST = 26.0, 8.0  # in ems of width: of a note, and of a picture that has room for one
-_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
 
 
 def show(ui: Ui, area: Area) -> None:
@@ -128,10 +127,10 @@ def show_missing(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
         return
     width = min(em(_NOTE), room)
     imgui.set_cursor_screen_pos(ImVec2((corner.x + end.x - width) / 2.0, corner.y + (end.y - corner.y) / 3.0))
-    imgui.push_style_color(imgui.Col_.child_bg, _BACK)
+    imgui.push_style_color(imgui.Col_.child_bg, BACK)
     flags = imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.always_use_window_padding
     if imgui.begin_child("missing", ImVec2(width, 0.0), int(flags)):
-        paragraph(found.text, _FRONT)
+        paragraph(found.text, FRONT)
         imgui.begin_disabled(run is not None)
         if found.base and imgui.button(f"Use {found.base}##instead"):
             c.settings.change(method=with_base(c.session.settings.method, found.base))
