@@ -75,16 +75,12 @@ def magnify(ui: Ui, options: DrawOptions) -> None:
         return
     seen, compared = ui.controller.comparing.seen, ui.graphics.compared
     a = compared.a if compared is not None else None
+    smooth = options.smooth and zoom.fits
     beside = seen is not None and (seen.has_line or seen.mode is CompareMode.SIDE)
     for name, drawn in ((PICTURE, filling(ui)), (OF_A, a if beside else None)):
         picture = drawn.picture if drawn is not None else None
         view = seen.a.view if seen is not None and drawn is a else options.view
-        blended = (
-            options.smooth
-            and zoom.fits
-            and view.shows_clipped
-            and (compared is None or drawn is not compared.difference)
-        )
+        blended = smooth and view.shows_clipped and (compared is None or drawn is not compared.difference)
         enlarged = picture is not None and (size[0] > picture.size[0] or not zoom.fits)
         if drawn is not None and enlarged and not blended:
             magnifier.draw(name, picture, drawn.version, zoom, size)
