@@ -31,7 +31,6 @@ from viewer.views.legend import lights_in_words
 
 CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
 METHODS = "a method of the list below, with additions as in certified+cache"
-MOST_PIXELS = 1 << 26  # 8192 × 8192; a frame's buffers then take some 4 GB
 INDEX = count(0, 2**31 - 1)
 _LISTED = 8  # names that a message lists, at most
 _METAVARS: dict[type, str] = {int: "N", float: "X", Slice: "AXIS:PART"}
@@ -267,8 +266,7 @@ def add_lamps(parser: argparse._ActionsContainer, many: bool = False) -> None:
 def tracing_settings(options: Namespace, **more: Any) -> Settings:
     """Return what the options say of tracing, and `more`, which wins; raises ValueError in one line."""
     width, height = options.size
-    if width * height > MOST_PIXELS:
-        raise ValueError(f"--size {width}x{height}: more than {MOST_PIXELS:,} pixels")
+    stills.check_size(width, height)
     given = {one.name: getattr(options, one.name, None) for one in settings_of(Settings) if one.option}
     given = {"width": width, "height": height} | {name: value for name, value in given.items() if value is not None}
     return Settings(**given | more).validated()

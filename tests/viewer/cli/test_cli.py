@@ -233,7 +233,7 @@ def test_warm_up_makes_culling_act(capfd: pytest.CaptureFixture[str], room: Path
         output = tmp_path / f"{warm_up}.png"
         given = ("-o", output, "--frame", 4, "--warmup", warm_up, "--method", "paper")
         assert render(capfd, room, *given)[0] == 0
-        shadow = capture.read_data(output)["statistics"]["shadow"]
+        shadow = capture.read_carried(output).statistics["shadow"]
         saved.append(shadow["culled"] + shadow["dynamic_only"])
     assert saved[0] == 0 < saved[1]
 
