@@ -38,19 +38,7 @@ def pixels(path: str) -> np.ndarray:
 
 
 def test_pictures_stay_true_until_something_changes(capfd: pytest.CaptureFixture[str]) -> None:
-    modes = (
-        "--method",
-        "paper",
-        "--view",
-        "shadow:1",
-        "--frame",
-        5,
-        "--warmup",
-        4,
-        "--legend",
-        "--caption",
-        "A {view}",
-    )
+    modes = ("--view", "shadow:1", "--frame", 5, "--warmup", 4, "--legend", "--caption", "A {view}")
     assert run(capfd, "render", "room.aff", "-o", "modes.png", *SIZE, *modes)[0] == 0
     assert run(capfd, "render", "room.aff", "-o", "plain.png", *SIZE, "--samples", 3)[0] == 0
     code, lines = verdict(capfd, "modes.png", "plain.png")

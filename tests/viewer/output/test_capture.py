@@ -69,22 +69,10 @@ def test_templates_become_file_names(template: str, name: str):
     assert capture.file_name(template, VALUES, NOW) == name
 
 
-WRONG = (
-    "{sceen}",
-    "{frame:zz}",
-    "{",
-    "}",
-    "{frame!q}",
-    "",
-    " .png",
-    "{scene.__class__}",
-    "{frame:99999999d}",
-    "{0}",
-    "{}",
-)
-
-
-@pytest.mark.parametrize("template", WRONG)
+@pytest.mark.parametrize(
+    "template",
+    ["{sceen}", "{frame:zz}", "{", "}", "{frame!q}", "", " .png", "{scene.__class__}", "{frame:99999999d}", "{0}", "{}"],
+)  # fmt: skip
 def test_templates_that_are_wrong(template: str):
     with pytest.raises(capture.CaptureError, match="template") as caught:
         capture.file_name(template, VALUES, NOW)
