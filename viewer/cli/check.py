@@ -124,11 +124,8 @@ class Checker:
         """Make a file again and compare; return whether it is the same, and in words what is.
 
         Raises SceneError, ValueError or OSError, in one line, where it cannot be made again."""
-        again = (
-            self._figure_again(path, carried, kept)
-            if carried.figure is not None
-            else self._picture_again(path, carried, kept)
-        )
+        make_again = self._picture_again if carried.figure is None else self._figure_again
+        again = make_again(path, carried, kept)
         if kept.ndim == 1:
             same, size, different = "byte for byte", "", "the PDF differs"
         else:
