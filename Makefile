@@ -29,7 +29,7 @@ unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
-	@$(RUN) -m viewer --or-picture $(ARGS)
+	@$(RUN) tools/run.py $(ARGS)
 
 kernels:  ## compile all that the tests use
 	@tools/environment.sh dev

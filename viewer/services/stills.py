@@ -124,7 +124,8 @@ def draw(
         legend = legend_of(frame, options, scene.lights)
         described = with_legend(pixels, legend, options.legend_at) if legend is not None else None
         if described is None:
-            missing = f"no legend: {'the picture is too small for it' if legend else 'the traced picture needs none'}"
+            none = f"the view {options.view.value} needs none"
+            missing = f"no legend: {'the picture is too small for it' if legend is not None else none}"
         pixels = pixels if described is None else described
     pixels = with_savings(pixels, frame, options.savings)
     return with_caption(pixels, options.caption), missing
