@@ -129,6 +129,3 @@ def test_a_window_that_shows_nothing_is_not_trusted() -> None:
     nothing = {"frames": {state: [] for state in STATES}, "traced": dict.fromkeys(STATES, 0), "kernels": "cold"}
     found = window_times.faults_of(nothing | {"seen": {"window": 1.0}})
     assert "no full picture was seen" in found and "tracing: nothing was traced" in found
-    assert "cold kernels, and no preview was seen" in found
-    early = window_times.faults_of(nothing | {"seen": {"window": 1.0, "preview": 2.0}, "kernels": "warm"})
-    assert "warm kernels, and a preview was seen" in early

@@ -90,7 +90,7 @@ def still(d: Driver) -> None:
     d.c.settings.change(samples=SAMPLES)
     d.wait(lambda: d.c.frame.settings.samples == SAMPLES, "all samples")
     d.c.selection.select(CLICKED)
-    d.wait(lambda: d.c.inspector.answer is not None, "the pixel's shadow rays")
+    d.wait(lambda: d.c.inspector.why is not None, "the pixel's shadow rays")
     d.wait(lambda: (known := d.c.baseline.measured) is not None and known.settled, "the speed beside none")
     d.settle()
     Image.fromarray(d.window()).save(FOLDER / "viewer.png", optimize=True)

@@ -30,7 +30,6 @@ from tracer.told_rays import AWAY, NUMBER_OF, TRACED, PathRay, RayKind, RayTree,
 if TYPE_CHECKING:
     from tracer.frame import Frame
     from tracer.frame_in_progress import FrameInProgress
-    from tracer.geometry.visits import Visit
     from tracer.geometry.world import World
     from tracer.methods.interface import ShadowMethod, Stage
     from tracer.renderer import Renderer
@@ -81,34 +80,6 @@ def ray_tree(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel
     _, costs = world.closest_hits_each(ray_batch([ray.origin for ray in rays], [ray.direction for ray in rays]))
     counted_rays = (replace(ray, steps=int(n), tests=int(m)) for ray, (n, m) in zip(rays, costs, strict=True))
     return RayTree(frame, x, y, tuple(counted_rays), samples)
-
-
-def visits_of(world: World, tree: RayTree, ray: int, place: int | None = None) -> list[Visit]:
-    """Follow a ray of a tree through the acceleration structure, node by node.
-
-    Parameters
-    ----------
-    world : World
-        The scene placed at the time of the tree's frame, in either structure.
-    tree : RayTree
-        The rays.
-    ray : int
-        The number of a primary, reflected or refracted ray.
-    place : int, optional
-        Which of the shadow rays from its point is meant instead. One that was not traced is followed as it would have
-        been; where only moving objects were asked, it is followed through these.
-
-    Returns
-    -------
-    list of Visit
-        The nodes that it enters, in their order.
-    """
-    sent = tree.rays[ray]
-    if place is None or sent.shadows is None:
-        return world.visits(ray_batch(sent.origin[None], sent.direction[None]), 0, nearest=True)
-    start = tree.samples[place : place + 1]
-    which = DYNAMIC_OBJECTS if sent.shadows.asked_moving[place] else EVERYTHING
-    return world.visits(ray_batch(start, sent.end - start, LIGHT_MARGIN, 1.0), 0, which)
 
 
 def _go_on(cancelled: Cancel) -> None:

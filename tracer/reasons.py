@@ -8,7 +8,7 @@ from enum import Enum
 from tracer.culling.fate import Fate
 from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode
 from tracer.culling.verdicts import Verdict
-from tracer.occluded_by import OccludedBy, Pixel, Reference
+from tracer.occluded_by import OccludedBy, Reference
 from tracer.ray_reasons import unused
 from tracer.told_rays import RayTree
 
@@ -117,16 +117,12 @@ WHY_TRACED: dict[str, str] = {
 
 @dataclass(frozen=True)
 class TaughtBy:
-    """The frame that gave a primitive its mode: its number, and what it is called.
-
-    `lit` says which answer was met, None where the frame saw the primitive whole.  `pixel` is one that met it, None
-    where only reflected or refracted rays did, or where that is not `known`."""
+    """The frame that gave a primitive its mode: its number, what it is called, and whether some of the primitive was
+    lit in it or in shadow, None where the frame saw the primitive whole."""
 
     frame: int
     name: str
-    pixel: Pixel | None = None
     lit: bool | None = None
-    known: bool = True
 
 
 @dataclass(frozen=True)

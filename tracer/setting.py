@@ -135,7 +135,7 @@ class Setting:
         if self.choices:
             return f"one of {', '.join(str(choice) for choice in self.choices)}{also}"
         if self.kind not in (int, float):
-            return self.kind.__name__ + also
+            return ("text" if self.kind is str else self.kind.__name__) + also
         number = "a whole number" if self.kind is int else "a number"
         if math.isinf(self.high):
             return f"{number} from {scale * self.low:g} up{also}" if math.isfinite(self.low) else number + also

@@ -215,14 +215,9 @@ class Words:
         if not reason.taught:
             return ("PARTIAL_SHADOW, as some of its shadow rays were blocked and others were not ", *section)
         newest = max(one.frame for one in reason.taught)
-        last = [one for one in reason.taught if one.frame == newest]
-        if not all(one.known for one in last):
-            did = "saw the light" if last[-1].lit else "was in shadow"
-            return ("PARTIAL_SHADOW since ", _frame(last[0]), f", in which some of it {did} ", *section)
-        said: list[str | Link] = ["PARTIAL_SHADOW since ", _frame(last[0]), ": "]
-        for number, one in enumerate(last):
-            said += [" and "] * (number > 0) + [*_met(one)]
-        return (*said, " ", *section)
+        last = [one for one in reason.taught if one.frame == newest][-1]
+        did = "saw the light" if last.lit else "was in shadow"
+        return ("PARTIAL_SHADOW since ", _frame(last), f", in which some of it {did} ", *section)
 
     def _known(self, reason: Reason) -> Sentence:
         assert reason.verdict is not None
@@ -281,15 +276,7 @@ def _section(number: str) -> Sentence:
 
 
 def _frame(taught: TaughtBy) -> Link:
-    return Link(taught.name, frame=taught.frame, pixel=taught.pixel)
-
-
-def _met(taught: TaughtBy) -> Sentence:
-    """What a frame has taught, and which pixel of it."""
-    did = "saw the light" if taught.lit else "was in shadow"
-    if taught.pixel is None:
-        return (f"a reflected or refracted ray {did}",)
-    return (Link(f"pixel ({taught.pixel[0]}, {taught.pixel[1]})", pixel=taught.pixel, frame=taught.frame), f" {did}")
+    return Link(taught.name, frame=taught.frame)
 
 
 def _pixels(number: int) -> str:

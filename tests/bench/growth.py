@@ -33,12 +33,12 @@ from tests.bench.frame_times import machine
 from tests.bench.meshes import bumpy_sphere, frequency_for
 from tests.bench.rays import Surfaces, incoherent_rays, points_of, primary_rays, shadow_rays
 from tests.tracing.worlds import scene
+from tracer.experiments.figures import COLORS, SIZE, file_of, styled
 from tracer.geometry.queries import STEPS, TESTS, batch_of
 from tracer.geometry.rays import Hits, Rays
 from tracer.geometry.world import World
 from tracer.scene.model import Camera
 from viewer.cli.console import print_table
-from viewer.output.figures import COLORS, SIZE, save, styled
 from viewer.util.messages import say
 
 KINDS = ("primary", "shadow", "incoherent")
@@ -205,7 +205,7 @@ def main(arguments: list[str] | None = None) -> int:
     for path in (options.json, options.plot):
         path.parent.mkdir(parents=True, exist_ok=True)
     options.json.write_text(json.dumps({"machine": machine(), "costs": rows, "fits": fitted}, indent=1) + "\n")
-    save(plot(rows, fitted), options.plot)
+    options.plot.write_bytes(file_of(plot(rows, fitted), options.plot.suffix))
     print_table(table(rows))
     print_table(fit_table(fitted))
     print(f"all figures in {options.json}, drawn in {options.plot}")

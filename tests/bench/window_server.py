@@ -61,8 +61,6 @@ class Watch:
     def after(self) -> None:
         self.frames[self.state].append((time.perf_counter() - self._began, time.thread_time() - self._worked))
         self._saw("window")
-        if self.app.ui.graphics.preview is not None and self.app.ui.graphics.preview.texture_id is not None:
-            self._saw("preview")
         if (
             self.c.traced is not None
             and self.app.ui.graphics.display is not None

@@ -36,10 +36,7 @@ from viewer.util.screen import has_display, no_display_reason
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEN = ("window", "first picture", "full picture")
-PREVIEW = "preview"  # is seen as well where kernels are compiled
-ORDER = ("window", PREVIEW, "first picture", "full picture")
 GOALS = {"cold": 30.0, "warm": 2.0}  # seconds to the full picture
-PREVIEW_GOAL = 12.0  # seconds to the preview
 MEDIAN, HIGH = 20.0, 50.0  # milliseconds a frame, and of the 99th percentile
 TRACING = ("tracing", "moving")
 
@@ -60,8 +57,6 @@ def measure(scene: Path, size: str, seconds: float, cache: Path) -> dict[str, An
 def faults_of(result: dict[str, Any]) -> list[str]:
     """What shows that the times are not what they are said to be."""
     found = [f"no {what} was seen" for what in SEEN if what not in result["seen"]]
-    if (PREVIEW in result["seen"]) != (result["kernels"] == "cold"):
-        found.append(f"{result['kernels']} kernels, and {'a' if PREVIEW in result['seen'] else 'no'} preview was seen")
     for state in TRACING:
         found += [] if result["frames"][state] else [f"{state}: the window drew nothing"]
         found += [] if result["traced"][state] else [f"{state}: nothing was traced"]
@@ -85,15 +80,15 @@ def _starts(results: list[dict[str, Any]]) -> Table:
         title="From the start of the process",
         title_justify="left",
         title_style="bold",
-        caption=f"goal for the preview: {PREVIEW_GOAL:g} s; seconds of processors are those of the window's process",
+        caption="seconds of processors are those of the window's process",
         caption_justify="left",
     )
     made.add_column("scene")
     made.add_column("kernels")
-    for what in (*ORDER, "goal", "processors", "load"):
+    for what in (*SEEN, "goal", "processors", "load"):
         made.add_column(what if what == "load" else f"{what}, s", justify="right")
     for result in results:
-        seen = [f"{result['seen'][what]:.2f}" if what in result["seen"] else "" for what in ORDER]
+        seen = [f"{result['seen'][what]:.2f}" if what in result["seen"] else "" for what in SEEN]
         rest = (f"{GOALS[result['kernels']]:g}", f"{result['worked']['full picture']:.1f}", f"{result['load']:.1f}")
         made.add_row(Path(result["scene"]).name, result["kernels"], *seen, *rest)
     return made

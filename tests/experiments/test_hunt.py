@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tracer
-from tests.viewer.fakes import LAST, STEP, write_marbles
+from tests.marbles import LAST, STEP, write_marbles
 from tracer.experiments import counterexample, hunt, warmup_frames
 from tracer.experiments.counterexample import AROUND, PATH
 from tracer.experiments.hunt import Results, Search

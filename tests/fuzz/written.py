@@ -13,11 +13,12 @@ from PIL import Image
 
 from tests.fuzz.kills import Written
 from tests.viewer.fakes import make_frame
+from tracer.experiments import figures
 from tracer.frame import Frame, Settings
-from viewer.output import capture, exports, exr, figures
+from viewer.output import capture, exports, exr
 from viewer.services.film import video
 from viewer.state.preferences import SETTINGS_FILE, NamedState, Preferences, save_preferences
-from viewer.util.files import write_new, write_text, write_whole
+from viewer.util.files import write_bytes, write_new, write_text, write_whole
 
 SIZE = (96, 128)
 
@@ -119,7 +120,8 @@ def _drawing():
 
 
 def _figure(folder: Path, number: int) -> None:
-    figures.save(_drawing(), folder / ("plot.pdf" if number % 2 else "plot.png"))
+    ending = ".pdf" if number % 2 else ".png"
+    write_bytes(folder / f"plot{ending}", figures.file_of(_drawing(), ending))
 
 
 def _check_figure(folder: Path) -> None:

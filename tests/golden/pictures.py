@@ -30,7 +30,7 @@ from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
-from viewer.output.light_cube import picture_of
+from viewer.output.light_cube import by_depths, by_lists
 from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.views import LIGHT_CUBES, View
 from viewer.util.resources import embedded_scenes
@@ -123,12 +123,14 @@ OF_METHODS = (
 
 
 def light_cube() -> NDArray[np.uint8]:
-    """What the first light of the third figure sees."""
+    """What the first light of the third figure sees: what is known of its cells, and where shadow begins."""
     scene = load_scene(embedded_scenes()["figure3"])
     renderer = Renderer(scene, Settings(width=8, height=8, method="lightbuffer", light_buffer_side=64, threads=2))
     cube = renderer.render().structures[LIGHT_CUBES][0].cube
     assert cube is not None
-    return picture_of(cube)
+    lists, depths = by_lists(cube, "").picture, by_depths(cube).picture
+    gap = np.broadcast_to(lists[0, 0], (len(lists), 4, 3))
+    return np.concatenate([lists, gap, depths], axis=1)
 
 
 @dataclass(frozen=True)

@@ -5,28 +5,66 @@ The nodes are the tracer's, and so is where the ray meets each primitive (tests/
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tests.tracing.naive_tree import F, Line, Traversal
-from tracer.geometry.lazy_tree.node import LOWER_MOVES, OBJECTS, SUBTREE, UPPER_MOVES
-from tracer.geometry.lazy_tree.walk import Told, node_at
+from tracer.geometry.lazy_tree.build import HEADER, open_node
+from tracer.geometry.lazy_tree.node import KIND, LOWER_MOVES, OBJECTS, SUBTREE, UNBUILT, UPPER_MOVES
+from tracer.geometry.lazy_tree.structure import Parts
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING, STATIC_GEOMETRY
 
 REMEMBERED = 8
 
 
+class Node(NamedTuple):
+    """A node as it lies in memory; `flags` say where something moves, and an upper one has a list of `objects`."""
+
+    kind: int
+    flags: int
+    plane: np.float32
+    first: int
+    second: int
+
+    @property
+    def objects(self) -> list[int]:
+        n = ctypes.c_int32.from_address(self.second).value
+        return list((ctypes.c_int32 * n).from_address(self.second + 4))
+
+    @property
+    def subtree(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        """The words and items of a SUBTREE, copied."""
+        words, items = (ctypes.c_int64 * 2).from_address(self.first)
+        both = (ctypes.c_int32 * (words + items)).from_address(self.first + HEADER)
+        numbers = np.array(both, np.int32)
+        return numbers[:words], numbers[words:]
+
+
+def node_at(address: int, pause: int = 0) -> Node:
+    """The node at an address, built if nobody has been there yet."""
+    while True:
+        words = tuple((ctypes.c_int64 * 4).from_address(address))
+        kind = words[0] & KIND
+        if kind < UNBUILT or kind in (SUBTREE, OBJECTS):
+            plane = np.array([words[1]], np.int64).astype(np.int32).view(np.float32)[0]
+            return Node(kind, words[0] & ~KIND, plane, words[2], words[3])
+        open_node.call(address, pause, 0, 0, 0)
+
+
 class LazyTraversal(Traversal):
     """One ray's way to an answer.  `steps` nodes were entered and `tests` primitives tested."""
 
-    def __init__(self, told: Told, line: Line, t_min: float, t_max: float, meets: np.ndarray) -> None:
+    def __init__(self, parts: Parts, line: Line, t_min: float, t_max: float, meets: np.ndarray) -> None:
         super().__init__(None, line, t_min, t_max, meets)  # type: ignore[arg-type]
-        self.told, self.searched = told, list[int]()
+        self.world, self.searched = parts, list[int]()
         self.over: object = None  # the way through a moving object that has ended with a hit
-        first, last = line.within(told.moving_box, self.t_min, self.t_max)
-        self.meets_moving = told.moves and first <= last
+        first, last = line.within(parts.moving_box, self.t_min, self.t_max)
+        self.meets_moving = parts.moves and first <= last
 
     def closest(self) -> tuple[np.float32, int]:
         for _, leaf in self._ways(EVERYTHING, lambda: self.nearest, lambda kind: False):
@@ -56,9 +94,9 @@ class LazyTraversal(Traversal):
     ) -> Iterator[tuple[tuple[int, object], list[int]]]:
         if not self.meets_moving:
             which &= ~DYNAMIC_OBJECTS
-        enter, leave = self.line.within(self.told.bounds, self.t_min, self.t_max)
+        enter, leave = self.line.within(self.world.bounds, self.t_min, self.t_max)
         if enter <= leave and which:
-            yield from self._world(self.told.root, which, enter, leave, limit, skip)
+            yield from self._world(self.world.root, which, enter, leave, limit, skip)
 
     def _world(self, address: int, which: int, enter, leave, limit, skip) -> Iterator:
         """Leaves below a node of the world: of what never moves, and of the objects that hang there."""
@@ -76,15 +114,15 @@ class LazyTraversal(Traversal):
                 if enter > limit():
                     return
             for o in node.objects:
-                kind = STATIC_GEOMETRY if self.told.rests[o] else DYNAMIC_OBJECTS
+                kind = STATIC_GEOMETRY if self.world.rests[o] else DYNAMIC_OBJECTS
                 if not which & kind or skip(kind) or o in self.searched[-REMEMBERED:]:
                     continue
                 self.searched.append(o)
-                line, way = self.line.carried(self.told.to_object[o]), object()
-                first, last = line.within(self.told.object_boxes[o], self.t_min, limit())
+                line, way = self.line.carried(self.world.to_object[o]), object()
+                first, last = line.within(self.world.object_boxes[o], self.t_min, limit())
                 if first > last:
                     continue
-                for leaf in self._object(int(self.told.object_roots[o]), line, first, last, limit):
+                for leaf in self._object(int(self.world.object_roots[o]), line, first, last, limit):
                     yield (kind, way), leaf
                     if self.over is way:
                         break

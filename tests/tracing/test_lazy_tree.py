@@ -13,7 +13,7 @@ from numba.core.runtime import _nrt_python, rtsys
 import tracer
 from tests.bench.meshes import bumpy_sphere, frequency_for
 from tests.tracing import brute
-from tests.tracing.naive_lazy_tree import LazyTraversal
+from tests.tracing.naive_lazy_tree import LazyTraversal, node_at
 from tests.tracing.naive_tree import Line
 from tests.tracing.nasty_worlds import flattened_walk, nasty_walk
 from tests.tracing.random_worlds import END, quickly, scenes
@@ -25,7 +25,6 @@ from tracer.geometry.boxes import transform_boxes
 from tracer.geometry.layout import triangle_rows
 from tracer.geometry.lazy_tree.hierarchy import LEAST, Hierarchy, hierarchy_over
 from tracer.geometry.lazy_tree.node import OBJECTS, SUBTREE
-from tracer.geometry.lazy_tree.walk import node_at
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING, STATIC_GEOMETRY, batch_of
 from tracer.geometry.rays import Hits, Rays
 from tracer.scene.model import Camera
@@ -36,20 +35,20 @@ def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray) -> np.nd
     n, placed, structure = len(rays.t_min), world.placed, world.structure
     met = brute.meet_all(world, rays, there)
     hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
-    blocked, sums, told = np.zeros(n, np.uint8), np.zeros((4, 2), np.int64), structure.told
+    blocked, sums, parts = np.zeros(n, np.uint8), np.zeros((4, 2), np.int64), structure.parts
     nearest = batch_of(rays, hits)
     for i in range(n):
         line = Line(tuple(rays.origin[:, i]), tuple(rays.direction[:, i]))
         counts = np.zeros((4, 2), np.int64)
         structure.closest.call(placed.data, nearest.ctypes.data, i, i + 1, counts[0].ctypes.data)
-        twin = LazyTraversal(told, line, rays.t_min[i], rays.t_max[i], met.t[i])
+        twin = LazyTraversal(parts, line, rays.t_min[i], rays.t_max[i], met.t[i])
         assert (hits.t[i], hits.primitive[i]) == twin.closest()
         assert (hits.t[i], hits.primitive[i]) == (met.t[i].min(initial=np.inf), met.closest()[i])
         expected = [[twin.steps, twin.tests]]
         for which in (STATIC_GEOMETRY, DYNAMIC_OBJECTS, EVERYTHING):
             batch = batch_of(rays, blocked=blocked, which=which)
             structure.any_hit.call(placed.data, batch.ctypes.data, i, i + 1, counts[which].ctypes.data)
-            twin = LazyTraversal(told, line, rays.t_min[i], rays.t_max[i], met.t[i])
+            twin = LazyTraversal(parts, line, rays.t_min[i], rays.t_max[i], met.t[i])
             assert blocked[i] == twin.what(which)
             expected.append([twin.steps, twin.tests])
         assert (blocked[i] != 0) == (hits.primitive[i] >= 0)
@@ -121,14 +120,12 @@ def test_little_is_built_for_few_rays_and_no_more_for_the_same_ones() -> None:
 
 def test_rays_that_ask_for_what_moves_enter_no_node_without() -> None:
     world, rays = a_large_world()
-    entered = 0
-    for i in range(200):
-        trees = [visit.tree for visit in world.visits(rays, i, DYNAMIC_OBJECTS)]
-        assert "static" not in trees
-        entered += len(trees)
-    assert 0 < entered < sum(len(world.visits(rays, i)) for i in range(200)) / 4
+    (moving, _), (everything, _) = (
+        world.occluders_each(rays, which)[1].sum(0) for which in (DYNAMIC_OBJECTS, EVERYTHING)
+    )
+    assert 0 < moving < everything / 4
     world.place(0.0, np.ones(5, np.bool_))
-    assert not any(world.visits(rays, i, DYNAMIC_OBJECTS) for i in range(200)), "all of it rests"
+    assert not world.occluders_each(rays, DYNAMIC_OBJECTS)[1].any(), "all of it rests"
 
 
 def primitives_of(hierarchy: Hierarchy, group: int) -> list[int]:
@@ -168,7 +165,7 @@ def test_splits_lie_at_the_borders_of_pieces() -> None:
     part_of = np.repeat(np.arange(2, dtype=np.int32), [len(table), 200])
     pieces = (replace(made.objects[0], parts=("one", "two"), part_of=part_of),)
     world = tracer.World(replace(made, objects=pieces), 0.0, LAZY)
-    root = node_at(world.structure.told.root)
+    root = node_at(world.structure.parts.root)
     borders = np.array([corners[: len(table)].reshape(-1, 3).max(0)[0], corners[len(table) :].reshape(-1, 3).min(0)[0]])
     assert root.kind == 0 and np.abs(borders - root.plane).min() < 1e-6
 
@@ -176,8 +173,8 @@ def test_splits_lie_at_the_borders_of_pieces() -> None:
 def test_objects_hang_where_they_are_and_only_there() -> None:
     rng = np.random.default_rng(8)
     world = tracer.World(scene(random_corners(rng, 2000, 0.02), dynamic=movers(rng, 20, 4)), 0.0, LAZY)
-    told, seen = world.structure.told, set()
-    boxes = transform_boxes(told.object_boxes.astype(np.float64), world.pose(0.0).to_world)
+    parts, seen = world.structure.parts, set()
+    boxes = transform_boxes(parts.object_boxes.astype(np.float64), world.pose(0.0).to_world)
 
     def descend(address: int, box: np.ndarray) -> None:
         node = node_at(address)
@@ -193,7 +190,7 @@ def test_objects_hang_where_they_are_and_only_there() -> None:
             half[node.kind if side else node.kind + 3] = node.plane
             descend(child, half)
 
-    descend(told.root, told.bounds)
+    descend(parts.root, parts.bounds)
     assert seen == set(range(1, 21))
 
 

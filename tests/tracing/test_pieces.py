@@ -111,20 +111,6 @@ def test_what_is_measured_finds_all_built() -> None:
     assert built(world).primitives == built(world).of
 
 
-def test_ways_through_pieces_are_told_and_built() -> None:
-    made, rays = large(), random_rays(np.random.default_rng(1), 20)
-    lazy, whole = tracer.World(made, 0.0, lazy=True), tracer.World(made, 0.0)
-    hits = whole.closest_hits(rays)
-    for i in range(20):
-        ways = [
-            [visit._replace(node=0, corners=()) for visit in world.visits(rays, i, nearest=True)]
-            for world in (lazy, whole)
-        ]
-        assert ways[0] == ways[1]
-        met = {number for visit in ways[0] for number, t in visit.hits if t == hits.t[i]}
-        assert np.isinf(hits.t[i]) or hits.primitive[i] in met
-
-
 @pytest.mark.parametrize("method", [*(kind.name for kind in bases(True)), "certified+cache+rest"])
 def test_pictures_and_counters_are_those_of_a_tree_that_was_there(method: str) -> None:
     made = large(300)

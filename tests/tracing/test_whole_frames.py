@@ -49,19 +49,15 @@ CULLED = {"culled", "dynamic_only", "wrong", "occlusion_tests"}
 @pytest.mark.parametrize(
     "lights, method, examples, counted",
     [
-        (0, "paper", 4, {"primary", "secondary", "occlusion_tests"}),
-        (1, "paper", 6, SHADOW_TESTED | CULLED),
-        (3, "paper", 6, SHADOW_TESTED | CULLED),
-        (17, "paper", 4, SHADOW_TESTED | CULLED),  # words of 64 bits
-        (33, "paper", 3, SHADOW_TESTED | CULLED),  # lights past what they hold
         (3, "none", 4, SHADOW_TESTED),
         (3, "cells", 5, SHADOW_TESTED | CULLED),
+        (17, "cells", 3, SHADOW_TESTED | CULLED),  # words of 64 bits
     ],
 )
 def test_frames_of_random_scenes_are_what_the_naive_twin_says(
     lights: int, method: str, examples: int, counted: set[str]
 ):
-    """Moving cameras, lights and objects; modes from frame to frame."""
+    """Moving cameras, lights and objects; modes from frame to frame.  `paper` is held against `tracer.reference`."""
     seen: Counter[str] = Counter()
 
     @quickly(examples)

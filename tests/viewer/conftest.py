@@ -9,7 +9,11 @@ import pytest
 
 from tests.viewer.desk import Desk
 from tests.viewer.fakes import TINY_SCENE
+from viewer.services.controller import Controller
+from viewer.state.preferences import Preferences
 from viewer.util.resources import embedded_scenes
+from viewer.window import commands
+from viewer.window.ui import Ui
 
 
 @pytest.fixture(autouse=True)
@@ -40,3 +44,12 @@ def figure4(tmp_path: Path) -> Iterator[Desk]:
     desk = Desk(embedded_scenes()["figure4"], tmp_path / "pictures")
     yield desk
     assert desk.c.close()
+
+
+@pytest.fixture
+def ui() -> Iterator[Ui]:
+    """What panels share, with its commands, without a window."""
+    ui = Ui(Controller(Preferences(keys={"Focus": ["Hyper+X", "Ctrl+J", "Nonsense", ""], "No command": ["X"]})))
+    ui.take_commands(commands.build(ui))
+    yield ui
+    ui.controller.close()

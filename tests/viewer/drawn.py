@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,30 +42,10 @@ def words_in(frame: Frame, view: View, light: int, x: int, y: int, **more: Any) 
     return words_at(frame, options(view, light, **more), x, y)
 
 
-class Counted(NamedTuple):
-    """A class as a legend counts it."""
-
-    name: str
-    color: Color
-    units: int
-    pixels: int
-    striped: bool
-
-
-def classes_in(frame: Frame, view: View, light: int = 0) -> list[Counted]:
-    """What a legend of modes or certificates counts."""
+def units_in(frame: Frame, view: View, light: int = 0) -> dict[str, int]:
+    """How many primitives or cells a legend of modes or certificates counts, by the name of the class."""
     found = legend_in(frame, view, light)
-    said = [entry for entry in found.entries if entry.color] if found is not None else []
-    pixels = [re.search(r"([\d,]+) pixels$", entry.meaning) for entry in said]
-    return [
-        Counted(entry.name, entry.color, _whole(entry.values[1]), _whole(at[1]), bool(entry.stripes))
-        for entry, at in zip(said, pixels, strict=True)
-        if at is not None and entry.color is not None
-    ]
-
-
-def _whole(text: str) -> int:
-    return int(text.replace(",", ""))
+    return {one.name: int(one.values[1].replace(",", "")) for one in found.entries} if found is not None else {}
 
 
 def luminance(color: Color) -> float:

@@ -1,17 +1,15 @@
 """A user's hands and eyes in the real window: what scenarios drive it with.
 
 Items are called as ImGui's test engine does, "//Panel/**/label": a panel, any groups in it, and a label.  What is not
-there fails within seconds, with its name and those of the nearest items that are there.
+there fails within seconds, with its name.
 """
 
 from __future__ import annotations
 
-import re
 import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from difflib import SequenceMatcher, get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -37,7 +35,6 @@ FASTEST = 1000.0  # frames a second: they are counted here, not timed
 # while it only makes sure that nothing more comes.
 SELDOM, BUSY, SETTLING = 0.02, 0.05, 0.004
 RASTERIZER_DISCARD = 0x8C89  # what OpenGL calls: to draw up to where pixels would be filled
-_NAMED = re.compile(r"0x[0-9A-F]+: depth \d+: '(.+)' in window '(.+)'")
 
 Rect = tuple[float, float, float, float]
 T = TypeVar("T")
@@ -54,47 +51,18 @@ class Hands:
 
         def checked(*arguments: Any) -> Any:
             wanted = arguments[0] if arguments and isinstance(arguments[0], str) else ""
-            if name.startswith(("item_", "mouse_")) and name != "item_exists" and wanted.startswith("//"):
-                self._await(wanted)
+            end = time.monotonic() + SOON
+            while (
+                name != "item_exists" and name.startswith(("item_", "mouse_")) and wanted.startswith("//")
+                and not self._context.item_exists(wanted)
+            ):  # fmt: skip
+                assert time.monotonic() < end, f"there is no item {wanted!r}"
+                self._context.yield_()
             found = act(*arguments)
             assert not self._context.is_error(), f"{name} failed: {', '.join(map(repr, arguments))}"
             return found
 
         return checked
-
-    def _await(self, item: str) -> None:
-        end = time.monotonic() + SOON
-        while not self._context.item_exists(item):
-            assert time.monotonic() < end, f"there is no item {item!r}; {self._nearest(item)}"
-            self._context.yield_()
-
-    def _nearest(self, item: str) -> str:
-        """Say which items are called nearly like this, those of its window first."""
-        window, label = item.removeprefix("//").split("/")[0], item.split("/")[-1]
-        there = self.items()
-        nearest = sorted(there, key=lambda one: (one[0] != window, -_likeness(label, one[1])))[:6]
-        said = ", ".join(repr(name) if owner == window else f"{name!r} in {owner}" for owner, name in nearest)
-        hidden = "" if any(owner == window for owner, _ in there) else f"; {window} is not shown"
-        return f"nearest are {said or 'none'}{hidden}"
-
-    def items(self) -> list[tuple[str, str]]:
-        """Return the window and the label of each item that is drawn."""
-        engine = imgui.test_engine
-        settings, found = engine.get_io(hello_imgui.get_imgui_test_engine()), engine.TestItemList()
-        windows = [w.name for w in imgui.get_current_context().windows if w.was_active and not w.hidden]
-        for name in windows:
-            self._context.gather_items(found, f"//{name}", -1)
-        said, settings.config_verbose_level = settings.config_verbose_level, engine.TestVerboseLevel.debug
-        before = self._context.test_output.log.get_text_len()
-        self._context.log_item_list(found)  # labels are told in the log alone
-        settings.config_verbose_level = said
-        told = _NAMED.findall(self._context.test_output.log.get_text()[before:])
-        return list(dict.fromkeys((window.split("/")[0], label) for label, window in told))
-
-
-def _likeness(wanted: str, there: str) -> float:
-    """How much of a text another has, 0 to 1."""
-    return SequenceMatcher(None, wanted.lower(), there.lower()).ratio()
 
 
 class Driver:
@@ -126,36 +94,15 @@ class Driver:
         app._set_frame_rate = with_errands  # type: ignore[method-assign]
         if not dozes:
             app.params.fps_idling.fps_max = FASTEST
-        self._fill_only_what_is_seen()
+        self._watch_frames()
 
-    def _fill_only_what_is_seen(self) -> None:
+    def _watch_frames(self) -> None:
         """Fill the window's pixels in those frames only of which a picture is taken: where a processor draws, that is
-        half of the time that a scenario takes.  All else is done in each frame, and the views are drawn as ever."""
-        app, call = self.app, self.app.params.callbacks
-        before_render, before_swap = call.before_imgui_render, call.before_swap
+        half of the time that a scenario takes.  All else is done in each frame, and the views are drawn as ever.  And
+        have ImGui's own log say what a frame writes, where that is wanted: from the menus, which come first, on."""
+        app, call, context = self.app, self.app.params.callbacks, imgui.get_current_context()
+        show_menus, before_render, before_swap = call.show_menus, call.before_imgui_render, call.before_swap
         filled = True
-
-        def begin() -> None:
-            nonlocal filled
-            before_render()
-            filled = bool(self._of_window) or app._capture_this_frame
-            if not filled:
-                self.ui.graphics.display.context.enable_direct(RASTERIZER_DISCARD)
-
-        def end() -> None:
-            if not filled:
-                self.ui.graphics.display.context.disable_direct(RASTERIZER_DISCARD)
-            before_swap()
-            while filled and self._of_window:
-                self._of_window.pop()()
-
-        call.before_imgui_render, call.before_swap = begin, end
-        self._can_read()
-
-    def _can_read(self) -> None:
-        """Have ImGui's own log say what a frame writes, where that is wanted: from the menus, which come first, on."""
-        call, context = self.app.params.callbacks, imgui.get_current_context()
-        show_menus, before_render = call.show_menus, call.before_imgui_render
 
         def begin() -> None:
             if self._reading is not None:
@@ -163,13 +110,24 @@ class Driver:
                 context.log_window = imgui.internal.find_window_by_name("Debug##Default")  # not the menus' alone
             show_menus()
 
-        def end() -> None:
+        def render() -> None:
+            nonlocal filled
             if self._reading is not None and context.log_enabled:
                 self._reading.append(context.log_buffer.c_str())
                 imgui.log_finish()
             before_render()
+            filled = bool(self._of_window) or app._capture_this_frame
+            if not filled:
+                self.ui.graphics.display.context.enable_direct(RASTERIZER_DISCARD)
 
-        call.show_menus, call.before_imgui_render = begin, end
+        def swap() -> None:
+            if not filled:
+                self.ui.graphics.display.context.disable_direct(RASTERIZER_DISCARD)
+            before_swap()
+            while filled and self._of_window:
+                self._of_window.pop()()
+
+        call.show_menus, call.before_imgui_render, call.before_swap = begin, render, swap
 
     # Waiting
 
@@ -239,9 +197,7 @@ class Driver:
         """Wait until the window writes all of these."""
         end = time.monotonic() + patience
         while missing := [text for text in texts if text not in (seen := self.text())]:
-            if time.monotonic() > end:
-                lines = sorted(seen.splitlines(), key=lambda line: -_likeness(missing[0], line))[:6]
-                raise AssertionError(f"the window does not say {missing[0]!r}; nearest are {lines}")
+            assert time.monotonic() < end, f"the window does not say {missing[0]!r}, but: {seen}"
 
     @property
     def said(self) -> str:
@@ -349,13 +305,7 @@ class Driver:
 
     def choose(self, entry: str) -> None:
         """Choose an entry of a menu: "View/Depth"."""
-        try:
-            self.context.menu_click(f"//##MainMenuBar/{entry}")
-        except AssertionError:
-            there = [f"{command.menu}/{command.name}" for command in self.ui.commands]
-            raise AssertionError(
-                f"no menu has {entry!r}; nearest are {get_close_matches(entry, there, 5, 0.0)}"
-            ) from None
+        self.context.menu_click(f"//##MainMenuBar/{entry}")
         self.frames(3)
 
     def enter(self, item: str, value: float | str) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -30,7 +29,6 @@ from tracer.scene.model import (
     empty_quadrics,
 )
 from tracer.statistics import BuiltPart, CutCounts, FrameStatistics, WrongCounts
-from viewer.util.resources import embedded_scenes
 
 TINY_SCENE = """
 b 0.3 0.4 0.5
@@ -223,6 +221,11 @@ def with_cell_lights(frame: Frame) -> Frame:
     return replace(frame, layers=frame.layers | {"cell lights": np.where(frame.primitive >= 0, asked, np.int32(-1))})
 
 
+def with_everything(frame: Frame) -> Frame:
+    """The frame with whatever any view shows."""
+    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(frame))))))
+
+
 def in_part(frame: Frame) -> Frame:
     """The frame while every second column has been shaded: nothing is known of what lights send to the others."""
     shaded = np.indices(frame.primitive.shape)[1] % 2 == 0
@@ -307,40 +310,3 @@ class FakeRenderer:
         if self.failing is not None:
             raise self.failing
         return make_frame(self.settings, time, camera)
-
-
-FLYER_SCENE = """\
-v from 0 1 4 at 0 0 0 up 0 1 0 angle 50 hither 1 resolution 32 32
-a 0 9 10
-l 2 4 3 1 1 1
-l -3 4 2 0.5 0.5 0.5
-f 0.8 0.6 0.4 0.9 0.1 10 0.3 1
-p 4 -1 -0.5 -1 -1 -0.5 1 1 -0.5 1 1 -0.5 -1
-f 0.3 0.5 0.8 0.9 0.1 10 0 1
-s 0 0 0 0.5
-x flyer { p 3 -0.2 0.8 0 0.2 0.8 0 0 1.1 0 }
-k flyer { transl 4 -1 0 0 0 0 0 0  0 0 0 0 0 0 0  9 1 0 0 0 0 0  10 1 0 0 0 0 0 }
-"""
-"""A small scene in AFF with two lights, in which something flies."""
-
-_PIXEL = 2.0 * math.tan(math.radians(15.0)) * 20.0 / 96  # of a picture of 96 × 96, seen from where the path begins
-_LAMP, _PLACES = (2.0, 3.0, 8.0), (-12 * _PIXEL, 0.0, 12 * _PIXEL)  # the shadows lie between rays
-STEP, LAST = 3, 24
-"""Of the path: the frames that are searched here, while all of the triangles are to be seen."""
-
-
-def write_marbles(folder: Path) -> Path:
-    """Write Figure 4 of the paper three times, side by side: each triangle has a shadow that only shows after
-    zooming in; triangles 0 to 2 in the light of two lamps, then a marble for each."""
-    text = embedded_scenes()["figure4"].read_text()
-    start, middle, end = text.index("# 0 the receiver"), text.index("# 1 the occluder"), text.index("a 0 6 60")
-    fill, paint = (text[a:b].splitlines()[1] for a, b in ((start, middle), (middle, end)))
-    parts = [text[:start], "l -6 4 9  0.1 0.1 0.1\n", fill, ""]
-    for x in _PLACES:
-        parts.append(f"p 3\n{x - 0.6} -0.9 0\n{x + 0.6} -0.9 0\n{x} 0.95 0")
-    parts.append(paint)
-    for x in _PLACES:
-        parts.append("s {} {} {} 0.03".format(*((a + b) / 2.0 for a, b in zip((x, 0.0, 0.0), _LAMP))))
-    path = folder / "marbles.aff"
-    path.write_text("\n".join(parts) + "\n" + text[end:])
-    return path

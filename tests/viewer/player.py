@@ -21,7 +21,7 @@ class Player:
     """Plays scenarios; starts its process when there is none, and has it end after one that went wrong."""
 
     def __init__(self) -> None:
-        self._process: subprocess.Popen | None = None
+        self._process: subprocess.Popen[bytes] | None = None
         self._said = tempfile.TemporaryFile()  # noqa: SIM115
         # Windows on one screen take the keyboard from each other, and other processes may be testing as well.
         made = with_screen.start_screen() if shutil.which("Xvfb") else None
@@ -30,50 +30,39 @@ class Player:
     def play(self, name: str, size: tuple[int, int], scene: Path, settings: Path, last: bool) -> tuple[int, str]:
         """The exit code of the window, of its process if it is to be the `last` one there, and what was said."""
         if self._process is None:
-            self._process = self._start()
+            environment = os.environ | {"DISPLAY": self._display, "LIBGL_ALWAYS_SOFTWARE": "1"}
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "tests.viewer.real_window"], cwd=ROOT, env=environment,
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._said,
+            )  # fmt: skip
         before = self._said.seek(0, os.SEEK_END)
         asked = {"name": name, "size": size, "scene": str(scene), "folder": str(scene.parent)}
         self._process.stdin.write(json.dumps(asked | {"settings": str(settings)}).encode() + b"\n")
         self._process.stdin.flush()
         ready = select.select([self._process.stdout], [], [], LONGEST)[0]
-        answer = self._process.stdout.readline() if ready else b""
-        code = int(answer or 1)
+        code = int((self._process.stdout.readline() if ready else b"") or 1)
         if code or last:
-            code = code or self._end()
-            self.stop()
+            code = self.stop() or code
         self._said.seek(before)
         return code, self._said.read().decode(errors="replace")
 
-    def stop(self) -> None:
-        """End the process, however it is."""
-        if self._process is not None:
-            self._process.kill()
-            self._process.communicate()
-            self._process = None
+    def stop(self) -> int:
+        """Ask for no more, so that the process ends by itself; its exit code."""
+        if self._process is None:
+            return 0
+        process, self._process = self._process, None
+        process.stdin.close()
+        try:
+            return process.wait(timeout=60.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            return process.wait()
 
     def close(self) -> None:
-        """End the process, which must go by itself, and the screen."""
-        code = 0 if self._process is None else self._end()
-        self.stop()
+        """End the process and the screen."""
+        code = self.stop()
         if self._screen is not None:
             self._screen.terminate()
             self._screen.wait()
         self._said.close()
         assert code == 0, "the process that opens windows did not end well"
-
-    def _start(self) -> subprocess.Popen:
-        environment = os.environ | {"DISPLAY": self._display, "LIBGL_ALWAYS_SOFTWARE": "1"}
-        return subprocess.Popen(
-            [sys.executable, "-m", "tests.viewer.real_window"],
-            cwd=ROOT,
-            env=environment,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._said,
-        )
-
-    def _end(self) -> int:
-        """The exit code of the process, which ends as nobody asks it for more."""
-        self._process.stdin.close()
-        self._process.stdin = None
-        return self._process.wait(timeout=60.0)

@@ -25,7 +25,7 @@ from PIL import Image
 
 from tests.viewer.driver import PATIENCE, Driver
 from tests.viewer.scenarios import SCENARIOS
-from tests.viewer.scenarios.previewing import first_start
+from tests.viewer.scenarios.starting import first_start
 from viewer.services import refinement
 from viewer.window import app as viewer_app
 from viewer.window.app import App
@@ -67,7 +67,7 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
         # The scenario says itself what went wrong; the engine only notices that a window closed meanwhile.
         testing.run(test_function=test, runner_params=params, add_ons_params=add_ons, raise_on_error=False)
 
-    with first_start() if name == "previewing" else nullcontext():
+    with first_start() if name == "starting" else nullcontext():
         code = app.run(runner)
     if not played:
         failed.append(AssertionError("no window came"))

@@ -43,10 +43,26 @@ def test_what_is_wrong_is_said_before_a_window_opens(monkeypatch: pytest.MonkeyP
         viewer.show("default")
 
 
+SCRIPT = """
+import sys
+from dataclasses import replace
+import tracer, viewer
+
+scene, seen = tracer.load_scene(sys.argv[1]), []
+last = viewer.show(scene, lambda frame: seen.append(frame) or len(seen) < 2, method="paper", samples=2)
+assert last is not None and last.settings.method == "paper"
+assert len(seen) == 2 and all(frame.statistics.part == 1.0 for frame in seen)
+made = replace(scene, path=scene.path.with_name("made.aff"), lights=scene.lights[:1])
+last = viewer.show(made, lambda frame: False)
+assert last is not None and last.lights == 1
+print("shown", [frame.color.shape == frame.pixels.shape for frame in seen])
+"""
+
+
 @pytest.mark.gui
 @pytest.mark.slow
-def test_a_script_opens_the_window(tiny_scene_file: Path) -> None:
+def test_a_script_opens_the_window_twice(tiny_scene_file: Path) -> None:
     environment = os.environ | {"PYTHONPATH": str(ROOT), "LIBGL_ALWAYS_SOFTWARE": "1"}
-    command = [sys.executable, "-m", "tests.viewer.show", str(tiny_scene_file)]
+    command = [sys.executable, "-c", SCRIPT, str(tiny_scene_file)]
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=240)
     assert done.returncode == 0 and "shown [True, True]" in done.stdout, done.stdout + done.stderr

@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tracer.experiments.experiment import REFERENCE, Results, run, saved_of, speed_up, with_reference
-from tracer.experiments.runner import Run
+from tracer.experiments.experiment import REFERENCE, Results, run, saved_of, speed_up
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.scene.lights import as_lamps
@@ -116,33 +115,3 @@ def _row(results: Results, method: str) -> LampRow:
         speed_up=faster,
         share_of_free=faster / _speed_up(results, CEILING),
     )
-
-
-class LampExperiment(Run[LampResults]):
-    """An experiment under several kinds of lamps as a run."""
-
-    name = "experiment"
-
-    def __init__(
-        self,
-        scene: Scene,
-        settings: Settings,
-        methods: list[str],
-        kinds: Sequence[tuple[float | None, int | None]],
-        times: list[float],
-        numbers: range,
-    ) -> None:
-        self.settings, self.kinds, self.times, self.numbers = settings, kinds, times, numbers
-        self.methods = with_reference([*methods, CEILING])
-        super().__init__(scene, len(kinds) * len(numbers) * len(self.methods))
-
-    def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[LampResults]:
-        each = len(self.numbers) * len(self.methods)
-
-        def on_frame(number: int, method: str, frame: Frame) -> None:
-            frame_of = f"frame {number - self.numbers.start + 1} of {len(self.numbers)}"
-            self.progressed(f"lamps {self.traced // each + 1} of {len(self.kinds)}, {frame_of}, {method}", frame)
-
-        return run_lamps(
-            scene, self.settings, self.methods, self.kinds, self.times, self.numbers, cancel, world, on_frame
-        )

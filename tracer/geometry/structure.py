@@ -14,9 +14,7 @@ from numpy.typing import NDArray
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import WorldTriangles
 from tracer.geometry.queries import Placed
-from tracer.geometry.rays import Ray
 from tracer.geometry.tree_parts import TreeParts
-from tracer.geometry.visits import Visit
 from tracer.kernels import Entry
 from tracer.scene.arrays import Float64
 
@@ -56,9 +54,6 @@ class Structure(Protocol):
 
     def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
         """The triangles of the object of this number where to_world (3, 4) takes it, just as rays meet them."""
-
-    def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
-        """The nodes that a ray enters on its way to its nearest hit, or to any on `which` geometry."""
 
     def build(self) -> None:
         """Build now what waits for rays, where it need not; for who measures frames."""

@@ -21,10 +21,9 @@ from tracer.geometry.lazy_tree.structure import LazyKdTree
 from tracer.geometry.poses import Poses, poses_at
 from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
 from tracer.geometry.queries import EVERYTHING, batch_of
-from tracer.geometry.rays import Hits, Ray, Rays
+from tracer.geometry.rays import Hits, Rays
 from tracer.geometry.structure import Built, Structure
 from tracer.geometry.tree_parts import TreeParts
-from tracer.geometry.visits import Visit
 from tracer.kernels import Entry
 from tracer.parallel import for_each_chunk, thread_count
 from tracer.scene.chains import Chains
@@ -270,29 +269,6 @@ class World:
         blocked, found = np.empty(n, np.uint8), np.empty(n, np.int32)
         batch = batch_of(rays, blocked=blocked, which=which, occluders=found)
         return found, self._ask_each(self.structure.any_hit, batch, n, cancelled)
-
-    def visits(self, rays: Rays, i: int, which: int = EVERYTHING, nearest: bool = False) -> list[Visit]:
-        """Follow a ray through the trees.
-
-        Parameters
-        ----------
-        rays : Rays
-            Rays, made by `RayBatch`.
-        i : int
-            Which of them is followed.
-        which : int
-            What is asked, as for `occluders_each`.
-        nearest : bool
-            Whether its nearest hit is looked for, among everything, or anything that blocks it.
-
-        Returns
-        -------
-        list of Visit
-            The nodes that it enters, in their order. In the kd-tree these are its traversal steps. In the 8-wide trees
-            a packet of rays may enter more.
-        """
-        ray = Ray._make([*rays.origin[:, i], *rays.direction[:, i], rays.t_min[i], rays.t_max[i]])
-        return self.structure.visits(ray, which, nearest, self._poses)
 
     def _ask_each(
         self, query: Entry, batch: NDArray[np.int64], n: int, cancelled: Callable[[], bool] | None

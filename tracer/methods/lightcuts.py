@@ -7,8 +7,6 @@ not exact, unless no error is allowed: then every light is looked at, and the pi
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import carray
 from numpy.typing import NDArray
@@ -23,7 +21,7 @@ from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.scene.lamps import Lamps
 from tracer.shading.lightcuts.block import BLOCK, DARK, POINTS, ROOM, Clusters, CutWork
 from tracer.shading.lightcuts.drawn import Draws
-from tracer.shading.lightcuts.seen import BLOCKS, LIMITED, MOST_NODES, NODE_ROWS, NODES, TALLIES, Seen
+from tracer.shading.lightcuts.seen import BLOCKS, LIMITED, MOST_NODES, NODES, TALLIES, Seen
 from tracer.shading.lightcuts.shade import Cuts, block_at, shade_by_cut
 from tracer.shading.lightcuts.tree import CutTree, build_cut_tree
 from tracer.shading.points import points_in
@@ -38,15 +36,6 @@ _NONE, _NO_INTS = np.empty(0, np.float32), np.empty(0, np.int32)
 NO_DRAWS = Draws(np.empty((0, 2), np.int32), _NO_INTS, _NONE, _NONE, np.empty((0, POINTS), np.float32), 0)
 
 
-class Watched(NamedTuple):
-    """A pixel, by its number, -1 for none, and its cut, as `Seen` has it."""
-
-    pixel: int
-    cut: NDArray[np.int32]
-    nodes: NDArray[np.float32]
-
-
-NOBODY = Watched(-1, _NO_INTS, np.empty((0, NODE_ROWS), np.float32))
 cuts_at = reading(Cuts)
 
 
@@ -67,7 +56,6 @@ class Lightcuts(ShadowMethod):
         self._lamps: Lamps | None = None
         self._tree: CutTree | None = None
         self._work: list[CutWork] = []
-        self._watched = NOBODY
 
     def begin(self, frame: FrameView) -> None:
         pixels = frame.settings.width * frame.settings.height
@@ -99,26 +87,12 @@ class Lightcuts(ShadowMethod):
         settings, buffers = frame.settings, frame.buffers
         limit = min(settings.lightcuts_nodes, len(frame.shading.lamps.samples))
         self._make_room(frame.workers, limit)
-        none = np.empty(0, np.int32)
-        seen = Seen(none, np.empty(0, np.float32), none, none, np.zeros(TALLIES, np.int64), *self._watched)
+        seen = Seen(_NO_INTS, _NONE, _NO_INTS, _NO_INTS, np.zeros(TALLIES, np.int64))
         if learns:
-            seen = Seen(self._nodes, self._bound, buffers.cost, buffers.saved, self._tally[worker], *NOBODY)
+            seen = Seen(self._nodes, self._bound, buffers.cost, buffers.saved, self._tally[worker])
         return Cuts(
             self._clusters(frame), self._draws(frame), self._work[worker], seen, settings.lightcuts_error, limit
         )
-
-    def watching(self, frame: FrameView, pixel: int) -> tuple[Stage, Watched] | None:
-        """A stage that shades as this frame was shaded and tells the cut of a pixel, by its number, into what is
-        returned with it; None where no cuts take part."""
-        if not self._shades(frame):
-            return None
-        limit = min(frame.settings.lightcuts_nodes, len(frame.shading.lamps.samples))
-        watched = Watched(pixel, np.zeros(limit + 1, np.int32), np.zeros((limit, NODE_ROWS), np.float32))
-        self._watched = watched
-        try:
-            return self.stages(frame, 0, learns=False)[0], watched
-        finally:
-            self._watched = NOBODY
 
     def _draws(self, frame: FrameView) -> Draws:
         """How representatives are drawn: they are not."""

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import weakref
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import wraps
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,20 +36,28 @@ class Thing:
         return self.index > 0
 
 
-_known: dict[int, tuple[weakref.ref[Scene], tuple[Thing, ...]]] = {}  # by the identity of scenes that are in use
+Made = TypeVar("Made")
 
 
+def once_per_scene(make: Callable[[Scene], Made]) -> Callable[[Scene], Made]:
+    """Keep what a function makes of a scene for as long as the scene is in use."""
+    known: dict[int, tuple[weakref.ref[Scene], Made]] = {}  # by identity, as arrays have no hash
+
+    @wraps(make)
+    def kept(scene: Scene) -> Made:
+        key = id(scene)
+        found = known.get(key)
+        if found is None or found[0]() is not scene:
+            found = known[key] = weakref.ref(scene, lambda _: known.pop(key, None)), make(scene)
+        return found[1]
+
+    return kept
+
+
+@once_per_scene
 def things(scene: Scene) -> tuple[Thing, ...]:
-    """All things of a scene, named once: first the parts of what never moves, then the objects that can move."""
-    key = id(scene)
-    known = _known.get(key)
-    if known is None or known[0]() is not scene:
-        known = _known[key] = weakref.ref(scene, lambda _: _known.pop(key, None)), _named(scene)
-    return known[1]
-
-
-def _named(scene: Scene) -> tuple[Thing, ...]:
-    """Its things, each with a name that no other has."""
+    """All things of a scene, each with a name that no other has: first the parts of what never moves, then the objects
+    that can move."""
     found: list[tuple[str, int, int]] = []
     for index, one in enumerate(scene.objects):
         if one.part_of is not None:

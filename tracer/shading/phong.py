@@ -11,6 +11,7 @@ from tracer.shading.wave import row_of
 from tracer.simd import (
     any_lane,
     f32x16,
+    lane_of,
     load_f32x16,
     load_three,
     mask16,
@@ -51,6 +52,12 @@ def highlight(reached, shine, exponent, mirrored):
     if not any_lane(shines):
         return f32x16(ZERO)
     return select(shines, power(mirrored, exponent), ZERO)
+
+
+@inlined
+def one_highlight(mirrored, exponent):
+    """Phong's specular term of one point that shines."""
+    return lane_of(power(f32x16(mirrored), f32x16(exponent)), 0)
 
 
 @inlined

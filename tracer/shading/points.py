@@ -214,6 +214,17 @@ def colors_at(shading, attributes, there, primitive, w, u, v, against, cone):
     return _texture(shading, textured, primitive, w, u, v, across, maximum(against, -against), cone)
 
 
+@subkernel
+def one_color(shading, primitive, u, v, against, cone):
+    """The colour that one point has by textures, 1 where there are none."""
+    rows = local_memory(64)
+    store(rows, i32x16(np.int32(primitive)))
+    attributes = load_columns(address_of(shading.attributes), rows, ATTRIBUTE_COLUMNS)
+    weights = f32x16(ONE - u - v), f32x16(u), f32x16(v)
+    color = colors_at(shading, attributes, 1, i32x16(np.int32(primitive)), *weights, f32x16(against), f32x16(cone))
+    return lane_of(color[0], 0), lane_of(color[1], 0), lane_of(color[2], 0)
+
+
 @inlined
 def material_at(shading, material):
     """The columns of the rows of materials."""

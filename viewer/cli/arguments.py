@@ -79,11 +79,6 @@ def number(least: float = -math.inf, most: float = math.inf) -> Callable[[str], 
     return Setting("", "", least, most, kind=float).parse
 
 
-def several(parse: Callable[[str], T]) -> Callable[[str], list[T]]:
-    """Read values with commas between them."""
-    return lambda text: [parse(part.strip()) for part in text.split(",")]
-
-
 def _form(
     pattern: str, kind: type, wanted: str, right: Callable[..., bool] = lambda *_: True
 ) -> Callable[[str], tuple[Any, ...]]:

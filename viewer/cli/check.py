@@ -24,6 +24,7 @@ from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene, SceneError
 from tracer.settings import Settings
+from tracer.text import printable
 from tracer.version import program_version
 from viewer.cli import options
 from viewer.cli.arguments import FAILED, Parser
@@ -37,7 +38,7 @@ from viewer.services.scene_files import find_scene
 from viewer.state.methods import NO_CULLING
 from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
-from viewer.util.messages import ERROR, in_one_line, printable
+from viewer.util.messages import ERROR, in_one_line
 
 EPILOG = """\
 examples:

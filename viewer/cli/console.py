@@ -21,7 +21,8 @@ from rich.text import Text
 from tracer.experiments.runner import Results, Run
 from tracer.geometry.world import World
 from tracer.scene.model import Cancelled
-from viewer.util.messages import in_one_line, printable, say
+from tracer.text import printable
+from viewer.util.messages import in_one_line, say
 
 if TYPE_CHECKING:
     from viewer.output.reports import Column
@@ -193,4 +194,4 @@ def fitted(
 def columns_help(columns: Sequence[Column[Row]]) -> str:
     """Say in a line for each column of a table what it means."""
     width = max(len(column.heading) for column in columns)
-    return "columns:\n" + "".join(f"  {column.heading:{width}}  {column.meaning.strip()}\n" for column in columns)
+    return "columns:\n" + "".join(f"  {column.heading:{width}}  {column.meaning}\n" for column in columns)

@@ -7,7 +7,6 @@ import math
 from argparse import Namespace
 from typing import Any
 
-import numpy as np
 from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
@@ -21,15 +20,15 @@ from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
+from tracer.text import printable
 from tracer.told_rays import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.why import why
 from tracer.why_in_words import Words, plain
 from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import working
-from viewer.output.ray_rows import Filter, RayRows, Row, Shown, totals
+from viewer.output.ray_rows import RayFilter, RayRow, RayRows, RaySubset, totals
 from viewer.services.inspector import with_origins
-from viewer.util.messages import printable
 
 MOST_LIGHTS = 3  # that are named before a sentence that they share; of more, the number is said
 EPILOG = """\
@@ -56,8 +55,7 @@ def parser() -> Parser:
     options.add_size(parser)
     help_ = f"how shadow rays are culled: {options.METHODS} (default: {DEFAULT_METHOD})"
     add("--method", type=arguments.method, metavar="METHOD", help=help_)
-    only = ("all", "traced", "untraced", "blocked", "wrong")
-    add("--only", choices=only, default="all", help="which shadow rays are listed (default: all)")
+    add("--only", choices=list(RaySubset), default="all", help="which shadow rays are listed (default: all)")
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
     add("--json", action="store_true", help="all rays as JSON on standard output")
     add("--camera", type=arguments.camera, metavar="JSON", help=f"another camera: {options.CAMERA}")
@@ -83,8 +81,9 @@ def run(given: Namespace) -> int:
         time = options.moment(scene, given)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
-        times = options.warmup_times(scene, time, given.warmup, work)
-        times += [time] * _repeats(given)
+        # The frame itself comes once before where no others do, as in the window at rest.
+        repeats = given.repeat if given.repeat is not None else 0 if given.warmup or given.before else 1
+        times = [*options.warmup_times(scene, time, given.warmup, work), *[time] * repeats]
         before = [*given.before, *(WarmupFrame(then, given.camera) for then in times)]
         origins, places = ModeOrigins(len(scene.lights)), None
         for done, earlier in enumerate(before):
@@ -103,18 +102,8 @@ def run(given: Namespace) -> int:
     title = (
         f"{given.path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
     )
-    _print(found, tree, scene, Filter(Shown(given.only), light), title)
+    _print(found, tree, scene, RayFilter(RaySubset(given.only), light), title)
     return 0
-
-
-def _repeats(given: Namespace) -> int:
-    """Return how often the frame itself is traced before.
-
-    Where no others come before it, that is once, as in the window at rest, so that what culls by earlier frames has
-    seen one."""
-    if given.repeat is not None:
-        return int(given.repeat)
-    return 0 if given.warmup or given.before else 1
 
 
 def _with_origins(found: Why, frame: Frame, modes: ModeOrigins, before: int) -> Why:
@@ -128,7 +117,7 @@ def _with_origins(found: Why, frame: Frame, modes: ModeOrigins, before: int) -> 
     return found if origins is None else with_origins(found, origins, name)
 
 
-def _print(found: Why, tree: RayTree, scene: Scene, shown: Filter, title: str) -> None:
+def _print(found: Why, tree: RayTree, scene: Scene, shown: RayFilter, title: str) -> None:
     console = Console()
     if not console.is_terminal:
         console = Console(width=100_000, soft_wrap=True)  # a line for each row, whatever reads it
@@ -136,7 +125,7 @@ def _print(found: Why, tree: RayTree, scene: Scene, shown: Filter, title: str) -
     for line in why_lines(found, scene, shown.light):
         console.print(Text(printable(line)))
     said = [totals(tree)]
-    if shown != Filter():
+    if shown != RayFilter():
         of = "" if shown.light is None else f" of {named_light(scene.lights, shown.light)}"
         said.append(f"shadow rays shown: {shown.shown.value}{of}")
     drawn = Tree(Text("\n".join(said), "bold"), guide_style="dim")
@@ -147,7 +136,7 @@ def _print(found: Why, tree: RayTree, scene: Scene, shown: Filter, title: str) -
         console.print(Text(tree.frame.statistics.decision, "italic"))
 
 
-def _add(tree: Tree, row: Row) -> None:
+def _add(tree: Tree, row: RayRow) -> None:
     """Add a row, and those below it, but for the single samples and lights of many with the same fate."""
     red, green, blue = (round(255 * channel) for channel in row.color)
     below = tree.add(Text(printable(row.text), f"rgb({red},{green},{blue})" if len(row.places) else "bold"))
@@ -186,78 +175,51 @@ def why_data(found: Why, scene: Scene) -> list[dict[str, Any]]:
     words = Words(scene, found)
     return [
         {
-            "light": one.light,
-            "rule": one.rule.name,
-            "section": one.rule.section or None,
-            "fate": one.fate.name,
-            "sentence": plain(words.reason(one)),
-            "answer": plain(words.answer(one)) or None,
+            "light": one.light, "rule": one.rule.name, "section": one.rule.section or None, "fate": one.fate.name,
+            "sentence": plain(words.reason(one)), "answer": plain(words.answer(one)) or None,
         }
         for one in found.reasons
-    ]
+    ]  # fmt: skip
 
 
 def ray_data(tree: RayTree, scene: Scene) -> dict[str, Any]:
-    """The pixel, how it was rendered, and its rays with all shadow rays that are due."""
-    settings = tree.frame.settings
+    """Return the pixel, how it was rendered, and its rays with all shadow rays that are due, as data for JSON."""
+    frame, settings = tree.frame, tree.frame.settings
     return {
-        "pixel": [tree.x, tree.y],
-        "size": [tree.frame.width, tree.frame.height],
-        "time": tree.frame.time,
-        "method": settings.method,
-        "accelerator": settings.accelerator,
-        "color": _numbers(tree.color),
-        "due": tree.due,
-        "traced": tree.traced,
+        "pixel": [tree.x, tree.y], "size": [frame.width, frame.height], "time": frame.time,
+        "method": settings.method, "accelerator": settings.accelerator, "color": _numbers(tree.color),
+        "due": tree.due, "traced": tree.traced,
         "verdicts": {verdict.value: number for verdict, number in tree.counts.items()},
         "rays": [_ray(tree, ray, scene) for ray in tree.rays],
-    }
+    }  # fmt: skip
 
 
 def _ray(tree: RayTree, ray: PathRay, scene: Scene) -> dict[str, Any]:
-    data: dict[str, Any] = {
-        "ray": ray.number,
-        "parent": ray.parent if ray.parent >= 0 else None,
-        "kind": ray.kind.value,
-        "bounce": ray.bounce,
-        "origin": _numbers(ray.origin),
-        "direction": _numbers(ray.direction),
-        "weight": _numbers(ray.weight),
-        "light": _numbers(ray.light),
-        "traversal_steps": ray.steps,
-        "intersection_tests": ray.tests,
-        "hit": None,
-        "shadow_rays": [],
-    }
-    if ray.shadows is not None:
-        data["hit"] = {"t": ray.t, **_primitive(ray.primitive, scene), "point": _numbers(ray.point)}
-        data["shadow_rays"] = [
-            _shadow_ray(tree, ray.shadows, int(place), scene)
-            for place in np.flatnonzero([VERDICTS[number].due for number in ray.shadows.verdict])
-        ]
-        data["facing_away"] = len(ray.shadows.light) - len(data["shadow_rays"])
-    return data
+    s, hit = ray.shadows, None
+    due = [] if s is None else [place for place, number in enumerate(s.verdict) if VERDICTS[number].due]
+    if s is not None:
+        hit = {"t": ray.t, **_primitive(ray.primitive, scene), "point": _numbers(ray.point)}
+    data = {
+        "ray": ray.number, "parent": ray.parent if ray.parent >= 0 else None,
+        "kind": ray.kind.value, "bounce": ray.bounce,
+        "origin": _numbers(ray.origin), "direction": _numbers(ray.direction),
+        "weight": _numbers(ray.weight), "light": _numbers(ray.light),
+        "traversal_steps": ray.steps, "intersection_tests": ray.tests,
+        "hit": hit, "shadow_rays": [_shadow_ray(tree, s, place, scene) for place in due if s is not None],
+    }  # fmt: skip
+    return data if s is None else data | {"facing_away": len(s.light) - len(due)}
 
 
 def _shadow_ray(tree: RayTree, s: ShadowRays, place: int, scene: Scene) -> dict[str, Any]:
-    light, verdict = int(s.light[place]), VERDICTS[s.verdict[place]]
-    blocker = int(s.blocker[place])
+    light, blocker, met = int(s.light[place]), int(s.blocker[place]), int(s.met[place])
     return {
-        "light": light,
-        "sample": place - s.of_light(light).start,
-        "position": _numbers(tree.samples[place]),
-        "verdict": verdict.value,
-        "lit": bool(s.lit[place]),
-        "wrong": bool(s.wrong[place]),
+        "light": light, "sample": place - s.of_light(light).start, "position": _numbers(tree.samples[place]),
+        "verdict": VERDICTS[s.verdict[place]].value, "lit": bool(s.lit[place]), "wrong": bool(s.wrong[place]),
         "blocker": {**_primitive(blocker, scene), "t": float(s.blocked_at[place])} if blocker >= 0 else None,
-        "met": int(s.met[place]) if s.met[place] >= 0 else None,
-        "moving_objects_asked": bool(s.asked_moving[place]),
-        "traversal_steps": int(s.steps[place]),
-        "intersection_tests": int(s.tests[place]),
-        "names": list(s.named.get(place, ())),
-        "known": s.known.get(place),
-        "told": s.told.get(place),
-    }
+        "met": met if met >= 0 else None, "moving_objects_asked": bool(s.asked_moving[place]),
+        "traversal_steps": int(s.steps[place]), "intersection_tests": int(s.tests[place]),
+        "names": list(s.named.get(place, ())), "known": s.known.get(place), "told": s.told.get(place),
+    }  # fmt: skip
 
 
 def _primitive(number: int, scene: Scene) -> dict[str, Any]:

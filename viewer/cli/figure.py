@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file
+from tracer.text import printable
 from viewer.cli import arguments, options, pictures
 from viewer.cli.arguments import Parser
 from viewer.cli.console import print_table, titled, working
@@ -15,7 +16,6 @@ from viewer.output.comparison import ENDINGS, Comparison, Crop
 from viewer.services import stills
 from viewer.state.views import View
 from viewer.util.files import check_writable
-from viewer.util.messages import printable
 
 EPILOG = """\
 examples:

@@ -13,6 +13,7 @@ from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
 from tracer.settings import Settings
+from tracer.text import printable
 from viewer.cli import arguments, options, pictures
 from viewer.cli.arguments import INTERRUPTED, Parser, number
 from viewer.cli.console import working
@@ -21,7 +22,6 @@ from viewer.services import film as films
 from viewer.services import stills
 from viewer.state.navigation import Stop
 from viewer.state.preferences import load_preferences
-from viewer.util.messages import printable
 
 EPILOG = """\
 examples:

@@ -10,18 +10,19 @@ from pathlib import Path
 
 from tracer.experiments import hunt
 from tracer.experiments.hunt import Hunt, Search
+from tracer.experiments.titles import title
 from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Cancelled, Scene
+from tracer.text import printable
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, listed, print_table, working
 from viewer.output import exports
-from viewer.output.reports import findings, title
+from viewer.output.reports import findings
 from viewer.services import hunts, stills
 from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
-from viewer.util.messages import printable
 
 EPILOG = """\
 examples:

@@ -10,7 +10,6 @@ from typing import Any
 
 from rich.table import Table
 
-from tracer.scene.framing import bounds, framing_camera, framing_lights
 from tracer.scene.load import load_scene, scene_info
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.meshes import MESH_EXTENSIONS
@@ -65,12 +64,8 @@ def _gets_studio(scene: Scene, work: Work, folders: Sequence[Path]) -> bool:
     ending = scene.path.suffix.lower()
     if ending not in MESH_EXTENSIONS or not scene.triangle_count:
         return False
-    if ending not in (".gltf", ".glb"):
-        return True  # the others know neither cameras nor lights
-    box = bounds(scene.objects, scene.animation, 0.0)
-    if scene.camera != framing_camera(box) or scene.lights != framing_lights(box, scene.camera):
-        return False  # it has its own
-    return up_in_studio(load_scene(scene.path, work.progress, folders, IN_STUDIO)) is not None
+    may_have_its_own = ending in (".gltf", ".glb")  # the others know neither cameras nor lights
+    return not may_have_its_own or up_in_studio(load_scene(scene.path, work.progress, folders, IN_STUDIO)) is not None
 
 
 def _table(path: Path, facts: dict[str, Any]) -> Table:

@@ -36,7 +36,6 @@ COMMANDS = {
     "zoom": ("SCENE", "move towards a primitive, and see whether its shadows stay right"),
     "explain": ("SCENE", "say what became of each ray of one pixel"),
     "hunt": ("SCENE", "search a path for the worst wrong pixels of a method"),
-    "cube": ("SCENE", "save what a light sees in each direction, as a picture"),
     "figure": ("SCENE", "draw a frame by several methods side by side"),
     "check": ("FILE", "render saved pictures and figures again, and say whether they are still true"),
     "info": ("SCENE", "say what a scene holds"),
@@ -116,14 +115,15 @@ def _view(arguments: list[str], open_window: OpenWindow) -> int:
 
 def viewer_parser() -> Parser:
     """Make the parser of the command that opens the window."""
-    from viewer.cli.options import add_lamps, add_meshes, add_scene
+    from tracer.settings import Settings
+    from viewer.cli.options import add_meshes, add_scene, add_settings
 
     lines = [("[SCENE]", "open the viewer")]
     lines += [(f"{name} {what}", summary) for name, (what, summary) in COMMANDS.items()]
     commands = "commands:\n" + "".join(f"  shadowcull {words:13} {summary}\n" for words, summary in lines)
     parser = Parser("", "An interactive ray tracer that shows shadow culling at work.", commands + _EXAMPLES)
     add_scene(parser)
-    add_lamps(parser)
+    add_settings(parser, Settings, "lamp_radius", "lamp_samples")
     add_meshes(parser)
     parser.add_argument("--version", action="version", version=f"shadowcull {program_version()}")
     return parser

@@ -6,7 +6,6 @@ import argparse
 import math
 import os
 from argparse import Namespace
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +18,9 @@ from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
 from tracer.scene.things import things
-from tracer.setting import Setting, setting_of, settings_of
+from tracer.setting import settings_of
 from tracer.settings import Settings
-from viewer.cli.arguments import UPS, Parser, before, count, light_at, number, several, size
+from viewer.cli.arguments import UPS, Parser, before, count, light_at, number, size
 from viewer.cli.console import Work
 from viewer.services import stills
 from viewer.state.draw_options import Slice
@@ -216,51 +215,34 @@ def add_size(parser: Parser) -> None:
 
 
 def add_settings(parser: argparse._ActionsContainer, holder: type, *names: str, **defaults: Any) -> None:
-    """Add the options of settings, as these are declared; `defaults` are those of the command where they differ."""
+    """Add the options of settings, as these are declared; `defaults` are those of the command where they differ.
+
+    A value has the setting's name in the namespace."""
     for one in settings_of(holder):
-        if one.name in names:
-            add_setting(parser, one, defaults.get(one.name, one.default))
+        if one.name not in names:
+            continue
+        help_, default = f"{one.help[:1].lower()}{one.help[1:].rstrip('.')}", defaults.get(one.name, one.default)
+        if one.kind is bool:
+            kept: dict[str, Any] = {"action": "store_const", "const": not one.default}
+            help_ = f"do not {help_}" if one.default else help_
+        else:
+            choices = "|".join(map(str, one.choices))
+            kept = {"type": one.parse, "metavar": choices or _METAVARS.get(one.kind, one.name.upper())}
+            meanings = "; ".join(f"{choice}: {meaning}" for choice, meaning in one.choices.items() if meaning)
+            told = f"as the {one.unset} says" if default is None else str(default).removesuffix(".0")
+            help_ += f"{f'. {meanings}' if meanings else ''} (default: {told})"
+        parser.add_argument(one.option, dest=one.name, default=default, help=help_.replace("%", "%%"), **kept)
 
 
-def add_setting(
-    parser: argparse._ActionsContainer,
-    one: Setting,
-    default: Any,
-    parse: Callable[[str], Any] | None = None,
-    more: str = "",
-) -> None:
-    """Add the option of one setting, whose value has the setting's name in the namespace."""
-    help_ = f"{one.help[:1].lower()}{one.help[1:].rstrip('.')}{more}"
-    if one.kind is bool:
-        kept: dict[str, Any] = {"action": "store_const", "const": not one.default}
-        help_ = f"do not {help_}" if one.default else help_
-    else:
-        names = "|".join(map(str, one.choices))
-        kept = {"type": parse or one.parse, "metavar": names or _METAVARS.get(one.kind, one.name.upper())}
-        meanings = "; ".join(f"{choice}: {meaning}" for choice, meaning in one.choices.items() if meaning)
-        told = f"as the {one.unset} says" if default is None else str(default).removesuffix(".0")
-        help_ += f"{f'. {meanings}' if meanings else ''} (default: {told})"
-    parser.add_argument(one.option, dest=one.name, default=default, help=help_.replace("%", "%%"), **kept)
-
-
-def add_tracing(parser: Parser, accelerator: str = BVH8, many_lamps: bool = False, zoom_factor: bool = True) -> None:
+def add_tracing(parser: Parser, accelerator: str = BVH8, zoom_factor: bool = True) -> None:
     """Add what all commands that trace have in common, with the structure that is theirs by default.
 
-    `many_lamps`: several kinds of lamps are taken; `zoom_factor`: it is an option."""
-    others = ["method", "verify", "samples", "lamp_radius", "lamp_samples"] + ([] if zoom_factor else ["zoom_factor"])
+    `zoom_factor`: it is an option."""
+    others = ["method", "verify", "samples"] + ([] if zoom_factor else ["zoom_factor"])
     common = [one.name for one in settings_of(Settings) if one.option and one.name not in others]
     group = parser.add_argument_group("how it is traced")
     add_settings(group, Settings, *common, accelerator=accelerator)
-    add_lamps(group, many_lamps)
     add_meshes(parser)
-
-
-def add_lamps(parser: argparse._ActionsContainer, many: bool = False) -> None:
-    """Add what makes lamps of a scene's lights; without it, they are as the scene, or a saved picture, says."""
-    for name in ("lamp_radius", "lamp_samples"):
-        one = setting_of(Settings, name)
-        more = "; several, with commas, are measured one after another" if many else ""
-        add_setting(parser, one, None, several(one.parse) if many else None, more)
 
 
 def tracing_settings(options: Namespace, **more: Any) -> Settings:

@@ -20,6 +20,7 @@ from tracer.frame import Frame, Settings
 from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
+from tracer.text import printable
 from viewer.cli import options, pictures
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import print_table, titled, working
@@ -31,7 +32,6 @@ from viewer.state import terms
 from viewer.state.frame_rows import rows
 from viewer.state.view_state import ViewState
 from viewer.util.files import check_writable, write_whole
-from viewer.util.messages import printable
 
 PICTURES = (*capture.KINDS, exr.ENDING)
 EPILOG = """\

@@ -1,4 +1,4 @@
-"""The command `sweep`: a study by several processes, kept frame by frame, and what it found as a table and a plot.
+"""The command `sweep`: a study by several processes, kept frame by frame, and what it found as a table.
 
 Ctrl-C ends it at once: what is traced is kept, and the same command goes on from there.
 """
@@ -23,14 +23,13 @@ from tracer.experiments.study import Study, read_study
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Cancelled, Scene
+from tracer.text import printable
 from viewer.cli import options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
 from viewer.cli.console import Work, columns_help, fitted, listed, print_table, terminal_width, working
 from viewer.output.reports import METHOD, Column
 from viewer.state import terms
 from viewer.util import numbers
-from viewer.util.files import check_writable
-from viewer.util.messages import printable
 from viewer.util.resources import embedded_scenes
 
 if TYPE_CHECKING:  # these need pyarrow
@@ -68,7 +67,7 @@ def _saved(line: Line, value: float, spread: float = math.nan) -> str:
 EPILOG = f"""\
 examples:
   shadowcull sweep study.toml
-  shadowcull sweep study.toml --workers 8 --plot study.svg
+  shadowcull sweep study.toml --workers 8
   shadowcull sweep study.toml --scheduler tcp://10.0.0.1:8786
   shadowcull sweep study.toml --table
 
@@ -112,30 +111,25 @@ def parser() -> Parser:
     help_ = "the workers of a Dask scheduler that runs there, such as tcp://10.0.0.1:8786"
     who("--scheduler", metavar="ADDRESS", help=help_)
     add("--table", action="store_true", help="trace nothing; print the table of what there is")
-    add("--plot", type=Path, metavar="FILE", help="draw what there is at the end: a .png, .svg or .pdf")
     add("--anew", action="store_true", help="throw away what there is, and trace all of it")
     return parser
 
 
 def run(given: Namespace) -> int:
-    """Trace what is missing of a study, print its table, draw it.
+    """Trace what is missing of a study, and print its table.
 
     Raises SceneError, ValueError and OSError, each in one line, or Cancelled where no frame was finished."""
     path = given.study
     check_dask()
     from tracer.experiments import sweep as sweeping
     from tracer.experiments.sweep_store import Store
+    from tracer.experiments.sweep_summary import summary
 
     study = read_study(path, embedded_scenes())
-    if given.plot is not None:
-        from viewer.output.figures import check_ending
-
-        check_ending(given.plot)
-        check_writable(given.plot)
     store = Store(given.output or path.with_name(path.stem + RESULTS))
     if given.table and not store.folder.is_dir():
         raise OSError(f"{store.folder}: no results yet; leave out --table to trace the study")
-    whole, report = True, sweeping.Report()
+    report: Report | None = sweeping.Report()
     with working() as work:
         scenes = _scenes(study, work)
         if given.table:
@@ -146,22 +140,30 @@ def run(given: Namespace) -> int:
                 if given.anew:
                     store.clear()
                 plan = sweeping.planned(study, scenes, store)
-                whole, report = _trace(plan, store, given, work)
+                report = _trace(plan, store, given, work)
             finally:
                 store.unlock()
-    lines = _summary(plan, store)
-    for table in tables(study, lines, terminal_width()) if lines else ():
-        print_table(table)
-    if given.plot is not None:
-        _plot(study, lines, given.plot)
+    lines = summary(store.read(), (key for task in plan.tasks for key in sweeping.frames_of(task)))
+    if lines:
+        for table in tables(study, [replace(line, scene=study.label(line.scene)) for line in lines], terminal_width()):
+            print_table(table)
     if not given.table and store.results.exists():
         print(printable(store.results))
-    _check(report)
-    return 0 if whole else INTERRUPTED
+    if report is None:
+        return INTERRUPTED
+    if report.unequal:
+        task, number, names = report.unequal[0]
+        raise OSError(
+            f"{len(report.unequal)} frames were not the same when they were traced again, the first of them frame "
+            f"{number} of {task.in_words()}: {names}; what was kept first has stayed"
+        )
+    if report.failures:
+        raise OSError(sweeping.in_words(report.failures))
+    return 0
 
 
 def _scenes(study: Study, work: Work) -> dict[str, Scene]:
-    """The scenes of a study, read once; whoever traces gets them from here."""
+    """Read the scenes of a study, once; whoever traces gets them from here."""
     found = {}
     for file in study.scenes.values():
         check_scene_file(file)
@@ -172,44 +174,39 @@ def _scenes(study: Study, work: Work) -> dict[str, Scene]:
     return found
 
 
-def _trace(plan: Plan, store: Store, given: Namespace, work: Work) -> tuple[bool, Report]:
-    """Trace what is missing; returns whether it was not stopped, and what came of it."""
+def _trace(plan: Plan, store: Store, given: Namespace, work: Work) -> Report | None:
+    """Trace what is missing; returns what came of it, None where it was cancelled."""
     from tracer.experiments import sweep as sweeping
 
-    report = sweeping.Report()
     for change in plan.changes:
         work.note(f"the study has changed: {change}")
-    missing = plan.missing
-    if not missing:
-        work.note(f"nothing is missing: all {plan.frames:,} frames are kept in {store.folder}")
-        store.set_study(sweeping.identity(plan.study, plan.scenes))
-        store.merge()
-        return True, report
-    if plan.done:
-        work.note(f"{plan.done:,} of {plan.frames:,} frames are kept; going on from there")
+    missing, done = plan.missing, plan.done
+    if done:
+        goes_on = "going on from there" if missing else "nothing is missing"
+        work.note(f"{done:,} of {plan.frames:,} frames are kept in {store.folder}; {goes_on}")
     if given.scheduler is None:
         for lights, accelerator in {(len(plan.scenes[t.scene].lights), t.settings.accelerator) for t in missing}:
             methods = {task.settings.method for task in missing if task.settings.accelerator == accelerator}
             options.prepare_kernels(work, lights, accelerator, *methods)
     store.set_study(sweeping.identity(plan.study, plan.scenes))
-    done = plan.done
     try:
+        if not missing:
+            return sweeping.Report()
         with _cluster_of(given, len(missing)) as cluster:
             watch = _Watch(cluster, work)
 
             def on_progress(now: int) -> None:
                 nonlocal done
                 done = now
-                watch.look()
                 work.count(f"frame {min(now + 1, plan.frames):,} of {plan.frames:,}, {watch}", now, plan.frames)
 
             on_progress(done)
             report = sweeping.sweep(plan, store, cluster, work.cancelled, on_progress)
-            watch.look(at_once=True)
-            return True, report
+            watch.look()
+            return report
     except Cancelled:
         work.note(f"cancelled after {done:,} of {plan.frames:,} frames; these are kept, and the same command goes on")
-        return False, report
+        return None
     finally:
         store.merge()
 
@@ -223,61 +220,25 @@ def _cluster_of(options: Namespace, tasks: int) -> AbstractContextManager[Cluste
 
 
 class _Watch:
-    """Says how many processes there are, and when one has died, as they were when it last looked: once a second."""
+    """Says how many processes there are, and when one has died; it looks once a second."""
 
     def __init__(self, cluster: Cluster, work: Work) -> None:
-        self._cluster, self._work, self._known = cluster, work, set(cluster.process_ids())
-        self._started, self._next = 0, 0.0
+        self._cluster, self._work = cluster, work
+        self._known, self._said, self._next = set(cluster.process_ids()), "", 0.0
 
-    def look(self, at_once: bool = False) -> None:
-        """Note which processes have died since."""
-        if time.monotonic() < self._next and not at_once:
-            return
-        self._next, self._started = time.monotonic() + 1.0, self._cluster.started()
-        now = set(self._cluster.process_ids())
+    def look(self) -> None:
+        """Note which processes have died since, and how many there are."""
+        now, started, size = set(self._cluster.process_ids()), self._cluster.started(), self._cluster.size()
         for number in self._known - now:
             self._work.note(f"process {number} has died; another takes its place, and does its task again")
-        self._known = now
+        self._known, self._next = now, time.monotonic() + 1.0
+        working = f"{started} of {size} workers" if started < size else numbers.several(size, "worker")
+        self._said = working if started else "waiting for workers"
 
     def __str__(self) -> str:
-        started = self._started
-        size = self._cluster.size() if self._cluster.is_local else started
-        if not started:
-            return "waiting for workers"
-        return f"{started} of {size} workers" if started < size else f"{size} worker{'s' * (size > 1)}"
-
-
-def _summary(plan: Plan, store: Store) -> list[Line]:
-    from tracer.experiments.sweep import frames_of
-    from tracer.experiments.sweep_summary import summary
-
-    lines = summary(store.read(), (key for task in plan.tasks for key in frames_of(task)))
-    return [replace(line, scene=plan.study.label(line.scene)) for line in lines]
-
-
-def _plot(study: Study, lines: list[Line], path: Path) -> None:
-    from viewer.output.figures import save, sweep_figure
-
-    try:
-        figure = sweep_figure(study.title, lines)
-    except ValueError as error:
-        raise ValueError(f"--plot: {error}") from None
-    save(figure, path)
-    print(printable(path))
-
-
-def _check(report: Report) -> None:
-    """Raise OSError, in one line, where not everything went well."""
-    from tracer.experiments.sweep import in_words
-
-    if report.unequal:
-        task, number, names = report.unequal[0]
-        raise OSError(
-            f"{len(report.unequal)} frames were not the same when they were traced again, the first of them frame "
-            f"{number} of {task.in_words()}: {names}; what was kept first has stayed"
-        )
-    if report.failures:
-        raise OSError(in_words(report.failures))
+        if time.monotonic() >= self._next:
+            self.look()
+        return self._said
 
 
 def tables(study: Study, lines: list[Line], width: int | None) -> Sequence[Table]:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from tracer.experiments import zoom
+from tracer.experiments.titles import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
 from tracer.experiments.zoom import ZoomTest
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
@@ -18,7 +19,7 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import columns_help, listed, print_table, working
 from viewer.output import exports
-from viewer.output.reports import APPROACHES, NEVER_WHOLE, STEPS, happenings, never_whole, title
+from viewer.output.reports import STEPS
 from viewer.state.methods import NO_CULLING
 from viewer.state.plans import parse_factors
 from viewer.util.messages import say
@@ -92,9 +93,7 @@ def run(given: Namespace) -> int:
         test = ZoomTest(scene, settings, start, given.factors, given.steps, given.ratio)
         results = work.perform(test, world)
         failures = exports.write_files(results, wanted)
-    print_table(listed(STEPS, happenings(results), section=lambda row: row[0]))
-    caption = "wrong pixels: those of this primitive\nculled, dynamic only: shares of the shadow rays due"
-    print_table(listed(APPROACHES, results.approaches, title(results), caption))
+    print_table(listed(STEPS, happenings(results), title(results), f"wrong: {WRONG_PIXELS}", lambda row: row[0]))
     if never_whole(results):
         say(f"primitive {results.primitive}: {NEVER_WHOLE}")
     if failures:

@@ -40,6 +40,7 @@ FIELDS = {
     "date": "today, e.g. 2024-05-31",
     "time": "now, e.g. 14-05-09",
 }
+TEMPLATE_HELP = "Fields:\n" + "\n".join(f"{{{name}}}  {meaning}" for name, meaning in FIELDS.items())
 KINDS = {
     ".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".tif": "TIFF", ".tiff": "TIFF", ".bmp": "BMP", ".ppm": "PPM",
 }  # fmt: skip

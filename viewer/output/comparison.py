@@ -22,8 +22,6 @@ from viewer.views import colorize
 
 ENDINGS = (".png", ".pdf")
 MOST_METHODS, MOST_CROPS = 6, 6
-EDITION = 2
-"""Of the words in which a title says what came before: figures keep theirs, so that they can be drawn again."""
 _IN_PDF = re.compile(rb"/Keywords \(shadowcull:([A-Za-z0-9+/=]+)\)")
 
 
@@ -45,13 +43,12 @@ class Crop(NamedTuple):
 @dataclass(frozen=True)
 class Comparison:
     """What a figure shows of a state: a column for each of the methods, rectangles that are enlarged, pixels (x, y)
-    that are marked in these, and words below the title, which is of an `edition`."""
+    that are marked in these, and words below the title."""
 
     methods: tuple[str, ...]
     crops: tuple[Crop, ...] = ()
     marks: tuple[tuple[int, int], ...] = ()
     words: str = ""
-    edition: int = EDITION
 
     def checked(self, size: tuple[int, int]) -> Comparison:
         """Return it; raises ValueError, in one line, for what cannot be drawn of a picture of this size."""
@@ -71,8 +68,7 @@ class Comparison:
 
 def comparison_of(data: Any, size: tuple[int, int]) -> Comparison:
     """Return what a figure carries beside its state; raises ValueError in one line."""
-    found = {"edition": 1} | data if isinstance(data, dict) else data
-    return codec.from_json(found, Comparison, "its figure").checked(size)
+    return codec.from_json(data, Comparison, "its figure").checked(size)
 
 
 @dataclass(frozen=True)

@@ -20,12 +20,14 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from viewer.output import figures
+from tracer.experiments import figures
+from tracer.experiments.figures import COLORS, bare, styled
 from viewer.output.comparison import Crop, Shown, texts_of_file
-from viewer.output.figures import COLORS, bare, styled
 from viewer.state.palette import color_map
 from viewer.state.session import Session
 from viewer.state.views import View
+from viewer.util.files import write_bytes
+from viewer.util.numbers import several
 
 _COLUMN, _LABELS, _BAR = 3.1, 1.7, 1.1  # inches of a method's column, of the names of rows, and of the colour bar
 _COUNT = 0.21  # inches of a line of counts
@@ -36,7 +38,8 @@ _LEAST = 1e-3  # the top of the colour range where nothing differs
 
 def save(shown: Shown, path: Path, text: str) -> None:
     """Write the figure as one of ENDINGS with what it carries; raises OSError in one line."""
-    figures.save(figure(shown), path, texts_of_file(path.suffix.lower(), text))
+    kept = texts_of_file(path.suffix.lower(), text)
+    write_bytes(path, figures.file_of(figure(shown), path.suffix, kept))
 
 
 @styled()
@@ -92,19 +95,10 @@ def figure(shown: Shown) -> Figure:
 
 def _title(shown: Shown) -> str:
     state, (width, height) = shown.state, shown.state.size
-    number = Session(shown.scene).frame_at(state.time)
-    warm = _warm(shown.warmed, shown.comparison.edition) if shown.warmed else ""
+    number, view = Session(shown.scene).frame_at(state.time), state.draw.view.label.lower()
+    before = f", with what {several(shown.warmed, 'earlier frame')} taught" if shown.warmed else ""
     samples = f", {state.settings.samples} samples" if state.settings.samples > 1 else ""
-    return (
-        f"{shown.scene.path.name}, frame {number}{warm}, {width} × {height}{samples}; {state.draw.view.label.lower()}"
-    )
-
-
-def _warm(frames: int, edition: int) -> str:
-    """How many frames were traced before."""
-    if edition < 2:
-        return f", after {'the frame' if frames == 1 else f'the {frames} frames'} before it"
-    return f", with what {frames} earlier frame{'s' * (frames != 1)} taught"
+    return f"{shown.scene.path.name}, frame {number}{before}, {width} × {height}{samples}; {view}"
 
 
 def _row_name(kind: str, crop: int | None) -> str:
@@ -169,16 +163,10 @@ def _color_bars(page: Figure, shown: Shown, top: float, size: tuple[float, float
     if top > _LEAST:
         bars.append(((0.0, top), "inferno", "difference to none, of 1"))
     for number, (span, colors, words) in enumerate(bars):
-        height = 0.8 / len(bars) - 0.08
-        bottom = 0.5 - height / 2 if len(bars) == 1 else 0.1 + (1 - number) * 0.4
-        place = (1.0 - 0.92 * _BAR / size[0], bottom, 0.12 / size[0], min(height, 0.4))
-        _color_bar(page, place, span, colors, words)
-
-
-def _color_bar(
-    page: Figure, place: tuple[float, float, float, float], span: tuple[float, float], colors: Any, words: str
-) -> None:
-    bar = page.colorbar(ScalarMappable(Normalize(*span), colors), cax=page.add_axes(place))
-    bar.set_label(words, fontsize=10.5)
-    bar.ax.tick_params(labelsize=9.5)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+        height = 0.4 if len(bars) == 1 else 0.32
+        bottom = 0.3 if len(bars) == 1 else 0.1 + (1 - number) * 0.4
+        axes = page.add_axes((1.0 - 0.92 * _BAR / size[0], bottom, 0.12 / size[0], height))
+        bar = page.colorbar(ScalarMappable(Normalize(*span), colors), cax=axes)
+        bar.set_label(words, fontsize=10.5)
+        bar.ax.tick_params(labelsize=9.5)
+        bar.outline.set_visible(False)  # type: ignore[operator]

@@ -19,16 +19,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.experiments import experiment, lamp_experiment, zoom
+from tracer.experiments import experiment, zoom
 from tracer.version import program_version
 from viewer.output import reports
 from viewer.state.scene_rows import COLUMNS, Table, Values
-from viewer.util.files import check_writable, whole_file, write_new, write_text
+from viewer.util.files import check_writable, whole_file, write_bytes, write_new, write_text
 
 if TYPE_CHECKING:
-    from viewer.output.filmstrip import Filmstrip
+    from tracer.experiments.filmstrip import Filmstrip
 
-Results = experiment.Results | lamp_experiment.LampResults | zoom.Results
+Results = experiment.Results | zoom.Results
 
 ENDINGS = {".json": "json", ".csv": "csv", ".png": "plot"}
 """The window's files, by their endings; the commands have an option of each kind's name."""
@@ -44,9 +44,13 @@ def write(results: Results, path: Path, kind: str = "") -> None:
     elif kind == "csv":
         write_csv(path, *reports.table_of(results))
     else:
-        from viewer.output import figures  # loads matplotlib
+        from tracer.experiments import figures  # loads matplotlib
 
-        figures.save(figures.figure_of(results), path)
+        if isinstance(results, zoom.Results):
+            figure = figures.zoom_figure(results)
+        else:
+            figure = figures.savings_figure(results)
+        write_bytes(path, figures.file_of(figure, path.suffix))
 
 
 def write_json(path: Path, figures: Mapping[str, Any], indent: int | None = None) -> None:
@@ -56,9 +60,9 @@ def write_json(path: Path, figures: Mapping[str, Any], indent: int | None = None
 
 def write_film(film: Filmstrip, results: zoom.Results, path: Path) -> None:
     """Write the filmstrip of a zoom test, as a picture; raises as `write`."""
-    from viewer.output import figures
+    from tracer.experiments import figures
 
-    figures.save(figures.film_figure(film, results), path)
+    write_bytes(path, figures.file_of(figures.film_figure(film, results), path.suffix))
 
 
 def wanted_files(options: Namespace) -> dict[str, Path]:
@@ -66,7 +70,7 @@ def wanted_files(options: Namespace) -> dict[str, Path]:
     written."""
     wanted = {kind: path for kind in ENDINGS.values() if (path := getattr(options, kind)) is not None}
     if "plot" in wanted:
-        from viewer.output import figures
+        from tracer.experiments import figures
 
         figures.check_ending(wanted["plot"])
     for path in wanted.values():

@@ -136,7 +136,7 @@ _SHOW_WHAT_IS_MADE = {
 def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
     s, bar = frame.statistics, bar_of(frame)
     always = (Fate.CULLED, Fate.DYNAMIC_ONLY, Fate.TRACED) if method.culls or by_modes else (Fate.TRACED,)
-    rays = dict.fromkeys(always, 0) | {part.fate: part.rays for part in bar.parts}
+    rays = dict.fromkeys(always, 0) | {part.fate: part.rays for part in bar}
     if method.uses_modes:
         rule = (
             "Of a fully rendered primitive, FULL_SHADOW: culled. NON_SHADOW: only dynamic objects are tested. All "
@@ -151,10 +151,11 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
         )
     else:
         rule = "All rays are traced."
-    names = palette.FATE_WOULD if bar.would and by_modes else palette.FATE_NAMES
+    would = any(part.would for part in bar)
+    names = palette.FATE_WOULD if would and by_modes else palette.FATE_NAMES
     flows = tuple(
         Flow(names[fate], number, palette.FATE_COLORS[fate], palette.FATE_MEANING[fate], View.FATE,
-             percent(number, s.shadow.due), hollow=bar.would and fate.is_saved)
+             percent(number, s.shadow.due), hollow=would and fate.is_saved)
         for fate, number in sorted(rays.items())
     )  # fmt: skip
     if s.wrong is not None and s.cuts is None:

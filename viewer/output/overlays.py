@@ -3,7 +3,6 @@ that go with the picture's."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -12,15 +11,13 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from tracer.frame import Frame
-from viewer.state.palette import FATE_COLORS, Color, label_color
-from viewer.state.savings import WOULD_OPACITY, bar_of, counters_in_words
-from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, TEXT, Legend, Swatch, fitting, wrapped
-from viewer.views.shadow import STRIPE
+from viewer.state.palette import FATE_COLORS, Color, hex_color, label_color
+from viewer.state.savings import WOULD_OPACITY, bar_of, counters, in_words, places
+from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, TEXT, Legend, fitting, wrapped
 
 # The least size of letters in pixels, and how many lines of them the picture's shorter side holds.
-LEGEND_SMALLEST, LEGEND_LINES = 11, 42
-CAPTION_SMALLEST, CAPTION_LINES = 12, 36
-PAPER, INK = (255, 255, 255), (20, 22, 26)
+OF_LEGEND, OF_STRIP = (11, 42), (12, 36)
+PAPER, INK = (1.0, 1.0, 1.0), hex_color("14161A")
 
 
 @cache
@@ -37,19 +34,13 @@ def in_bytes(color: Color) -> tuple[int, int, int]:
     return red, green, blue
 
 
+def _letter_size(pixels: NDArray[np.uint8], least: int, lines: int) -> int:
+    return max(least, round(min(pixels.shape[:2]) / lines))
+
+
 def with_caption(pixels: NDArray[np.uint8], caption: str) -> NDArray[np.uint8]:
     """Return a picture (h, w, 3) with a white strip below it, as high as the words need; without any, the picture."""
-    if not caption:
-        return pixels
-    height, width = pixels.shape[:2]
-    size = max(CAPTION_SMALLEST, round(min(width, height) / CAPTION_LINES))
-    letters, margin, step = font(size), round(0.6 * size), round(1.35 * size)
-    lines = _broken(caption, lambda text: letters.getlength(text) <= width - 2 * margin)
-    strip = Image.new("RGB", (width, 2 * margin + step * len(lines)), PAPER)
-    draw = ImageDraw.Draw(strip)
-    for number, line in enumerate(lines):
-        draw.text((margin, margin + number * step), line, INK, letters)
-    return np.concatenate([pixels, np.asarray(strip)])
+    return np.concatenate([pixels, np.asarray(_strip(pixels, caption, PAPER, INK))]) if caption else pixels
 
 
 def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None) -> NDArray[np.uint8]:
@@ -59,40 +50,32 @@ def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None
     What is said there of steps and time is the `comparison`; all else is read off the frame's counters."""
     if comparison is None:
         return pixels
-    height, width = pixels.shape[:2]
-    size = max(CAPTION_SMALLEST, round(min(width, height) / CAPTION_LINES))
-    letters, margin, step = font(size), round(0.6 * size), round(1.35 * size)
-    words = ", ".join(filter(None, (counters_in_words(frame), comparison)))
-    lines, bar = wrapped(words, letters.getlength, width - 2 * margin), bar_of(frame)
-    strip = Image.new("RGB", (width, 2 * margin + step * (len(lines) + bool(bar.parts))), in_bytes(BACKDROP))
-    draw = ImageDraw.Draw(strip)
-    for number, line in enumerate(lines):
-        draw.text((margin, margin + number * step), line, in_bytes(TEXT), letters)
-    top, pad = margin + len(lines) * step, round(0.35 * size)
-    for part, left, right in bar.places(margin, width - margin):
+    bar, size = bar_of(frame), _letter_size(pixels, *OF_STRIP)
+    height, margin, pad = round(1.35 * size) if bar else 0, round(0.6 * size), round(0.35 * size)
+    words = ", ".join(filter(None, (in_words(counters(frame)), comparison)))
+    strip = _strip(pixels, words, BACKDROP, TEXT, height)
+    draw, letters, bottom = ImageDraw.Draw(strip), font(size), strip.height - margin
+    for part, left, right in places(bar, margin, strip.width - margin):
         if right > left:
             color, there = FATE_COLORS[part.fate], WOULD_OPACITY if part.would else 1.0
             drawn = np.multiply(there, color) + np.multiply(1.0 - there, BACKDROP)
-            draw.rectangle((left, top, right - 1, top + step - 1), in_bytes((drawn[0], drawn[1], drawn[2])))
+            draw.rectangle((left, bottom - height, right - 1, bottom - 1), in_bytes((drawn[0], drawn[1], drawn[2])))
             text = part.label(letters.getlength, right - left - 2 * pad)
             said = TEXT if part.would else label_color(color)
-            draw.text((left + pad, top + round(0.1 * size)), text, in_bytes(said), letters)
+            draw.text((left + pad, bottom - height + round(0.1 * size)), text, in_bytes(said), letters)
     return np.concatenate([np.asarray(strip), pixels])
 
 
-def _broken(text: str, fits: Callable[[str], bool]) -> list[str]:
-    """The words in lines that fit; a word that is too long by itself is broken where it must be."""
-    lines = [""]
-    for word in text.split():
-        if fits(longer := f"{lines[-1]} {word}".strip()):
-            lines[-1] = longer
-            continue
-        lines.append("")
-        for letter in word:
-            if lines[-1] and not fits(lines[-1] + letter):
-                lines.append("")
-            lines[-1] += letter
-    return list(filter(None, lines))
+def _strip(pixels: NDArray[np.uint8], text: str, paper: Color, ink: Color, below: int = 0) -> Image.Image:
+    """Return a strip as wide as a picture, with a text, and room for what comes `below` it, so many pixels high."""
+    width, size = pixels.shape[1], _letter_size(pixels, *OF_STRIP)
+    letters, margin, step = font(size), round(0.6 * size), round(1.35 * size)
+    lines = wrapped(text, letters.getlength, width - 2 * margin)
+    strip = Image.new("RGB", (width, 2 * margin + step * len(lines) + below), in_bytes(paper))
+    draw = ImageDraw.Draw(strip)
+    for number, line in enumerate(lines):
+        draw.text((margin, margin + number * step), line, in_bytes(ink), letters)
+    return strip
 
 
 def with_legend(pixels: NDArray[np.uint8], legend: Legend, place: tuple[float, float]) -> NDArray[np.uint8] | None:
@@ -100,7 +83,7 @@ def with_legend(pixels: NDArray[np.uint8], legend: Legend, place: tuple[float, f
 
     `place` says where in the room that is left: 0, 0 is the upper left corner, 1, 1 the lower right."""
     height, width = pixels.shape[:2]
-    size = max(LEGEND_SMALLEST, round(min(width, height) / LEGEND_LINES))
+    size = _letter_size(pixels, *OF_LEGEND)
     letters, margin = font(size), round(0.5 * size)
     room = width - 2 * margin, height - 2 * margin
     layout = fitting(legend, letters.getlength, 1.2 * size, *room)
@@ -113,22 +96,11 @@ def with_legend(pixels: NDArray[np.uint8], legend: Legend, place: tuple[float, f
     backdrop = Image.new("RGB", (box[2] - left, box[3] - top), in_bytes(BACKDROP))
     area.paste(Image.blend(area.crop(box), backdrop, BACKDROP_OPACITY), box)
     draw = ImageDraw.Draw(area)
-    for swatch in layout.swatches:
-        _fill(area, draw, swatch, left, top)
+    for one in layout.boxes:
+        x, y = left + one.x, top + one.y
+        corners = round(x), round(y), round(x + one.width) - 1, round(y + one.height) - 1
+        if corners[2] >= corners[0]:
+            draw.rectangle(corners, in_bytes(one.color))
     for words in layout.words:
         draw.text((left + words.x, top + words.y), words.text, in_bytes(words.color), letters)
     return np.asarray(area)
-
-
-def _fill(image: Image.Image, draw: ImageDraw.ImageDraw, swatch: Swatch, left: int, top: int) -> None:
-    x, y = left + round(swatch.x), top + round(swatch.y)
-    width, height = max(1, round(swatch.width)), max(1, round(swatch.height))
-    if swatch.color is None:
-        colors = np.round(swatch.colors(width) * 255.0).astype(np.uint8)
-        bar = np.broadcast_to(colors, (height, width, 3))
-        image.paste(Image.fromarray(np.ascontiguousarray(bar)), (x, y))
-        return
-    draw.rectangle((x, y, x + width - 1, y + height - 1), in_bytes(swatch.color))
-    if swatch.stripes is not None:
-        rows, columns = np.nonzero(np.add.outer(np.arange(height), np.arange(width)) // STRIPE % 2)
-        draw.point(np.stack([x + columns, y + rows], axis=1).reshape(-1).tolist(), in_bytes(swatch.stripes))

@@ -19,9 +19,9 @@ from tracer.culling.verdicts import Verdict
 from tracer.reasons import MEANING, WHY_TRACED
 from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
-from tracer.told_rays import AWAY, TRACED, VERDICTS, PathRay, RayTree, ShadowRays
+from tracer.told_rays import AWAY, TRACED, VERDICTS, RayTree, ShadowRays
 from tracer.why_in_words import primitive_in_words
-from viewer.state.palette import Color
+from viewer.state.palette import WRONG, Color
 from viewer.util.numbers import count, several
 
 SAID: dict[Verdict, str] = {
@@ -48,7 +48,7 @@ SAID: dict[Verdict, str] = {
 }
 
 
-class Shown(StrEnum):
+class RaySubset(StrEnum):
     """Which shadow rays are to be seen."""
 
     ALL = "all"
@@ -57,48 +57,47 @@ class Shown(StrEnum):
     BLOCKED = "blocked"
     WRONG = "wrong"
 
-    @property
-    def meaning(self) -> str:
-        return {
-            Shown.ALL: "all lights, also those that the surface faces away from",
-            Shown.TRACED: "shadow rays that were traced through the scene",
-            Shown.UNTRACED: "shadow rays that were due and not traced: culled, dynamic only, candidates and cache",
-            Shown.BLOCKED: "shadow rays that do not reach their light",
-            Shown.WRONG: "shadow rays with a wrong answer",
-        }[self]
+
+SUBSET_HELP: dict[RaySubset, str] = {
+    RaySubset.ALL: "all lights, also those that the surface faces away from",
+    RaySubset.TRACED: "shadow rays that were traced through the scene",
+    RaySubset.UNTRACED: "shadow rays that were due and not traced: culled, dynamic only, candidates and cache",
+    RaySubset.BLOCKED: "shadow rays that do not reach their light",
+    RaySubset.WRONG: "shadow rays with a wrong answer",
+}
 
 
-class Filter(NamedTuple):
+class RayFilter(NamedTuple):
     """Which shadow rays are to be seen, and of which light, None for all."""
 
-    shown: Shown = Shown.ALL
+    shown: RaySubset = RaySubset.ALL
     light: int | None = None
 
     def places(self, rays: ShadowRays) -> NDArray[np.int64]:
         """The places of the rays that are to be seen."""
         kept = {
-            Shown.ALL: np.ones(len(rays.light), np.bool_),
-            Shown.TRACED: rays.verdict == TRACED,
-            Shown.UNTRACED: (rays.verdict != TRACED) & (rays.verdict != AWAY),
-            Shown.BLOCKED: (rays.verdict != AWAY) & ~rays.lit,
-            Shown.WRONG: rays.wrong,
+            RaySubset.ALL: np.ones(len(rays.light), np.bool_),
+            RaySubset.TRACED: rays.verdict == TRACED,
+            RaySubset.UNTRACED: (rays.verdict != TRACED) & (rays.verdict != AWAY),
+            RaySubset.BLOCKED: (rays.verdict != AWAY) & ~rays.lit,
+            RaySubset.WRONG: rays.wrong,
         }[self.shown]
         return np.flatnonzero(kept if self.light is None else kept & (rays.light == self.light))
 
 
-GREY: Color = (0.52, 0.55, 0.60)
+NOT_DUE: Color = (0.52, 0.55, 0.60)
 LIT: Color = (0.94, 0.89, 0.26)
 DARK: Color = (0.34, 0.71, 0.91)
 PARTLY: Color = (0.90, 0.55, 0.20)
-WRONG: Color = (1.0, 0.0, 0.66)
+PATH_COLOR: Color = (0.86, 0.88, 0.92)
 
 
 def color_of(rays: ShadowRays, places: Places) -> Color:
-    """Yellow for what is lit, blue for what is dark, orange where both are, grey for what was not asked, magenta for
-    what is wrong."""
+    """Yellow for what is lit, blue for what is dark, orange where both are, grey for what is not due, magenta for what
+    is wrong."""
     due = places[rays.verdict[places] != AWAY]
     if not len(due):
-        return GREY
+        return NOT_DUE
     if rays.wrong[due].any():
         return WRONG
     return LIT if rays.lit[due].all() else PARTLY if rays.lit[due].any() else DARK
@@ -107,28 +106,27 @@ def color_of(rays: ShadowRays, places: Places) -> Color:
 MOST_LIGHTS = 12
 """Lights of a point that have a row each; of more, those with the same fate have one together."""
 MOST_NAMED = 3  # primitives that are named in a row
-PATH_COLOR: Color = (0.86, 0.88, 0.92)
 
-Key = tuple[int | str, ...]
+RayKey = tuple[int | str, ...]
 Places = NDArray[np.int64]
-Fate = tuple[int, int, str, int, str]  # verdict, lit, what blocks it, wrong, what was known
+Outcome = tuple[int, int, str, int, str]  # verdict, lit, what blocks it, wrong, what was known
 
 
 @dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
-class Row:
+class RayRow:
     """`ray` is the path ray it is about, and `places` are the shadow rays of that which it stands for, none for the
     path ray itself; `tip` says more about it."""
 
-    key: Key
+    key: RayKey
     text: str
     tip: str
     color: Color
     ray: int
     places: Places = field(default_factory=lambda: np.empty(0, np.int64))
-    below: Callable[[], list[Row]] | None = None
+    below: Callable[[], list[RayRow]] | None = None
 
     @cached_property
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[RayRow]:
         """What is below it."""
         return [] if self.below is None else self.below()
 
@@ -136,91 +134,80 @@ class Row:
 class RayRows:
     """The rows of a tree of rays of a scene, as a filter lets them be seen."""
 
-    def __init__(self, tree: RayTree, scene: Scene, shown: Filter) -> None:
+    def __init__(self, tree: RayTree, scene: Scene, shown: RayFilter) -> None:
         self.tree, self._scene, self._filter = tree, scene, shown
 
     @cached_property
-    def top(self) -> list[Row]:
+    def top(self) -> list[RayRow]:
         """The primary ray's row."""
         return [self._path(number) for number in self.tree.children.get(-1, ())]
 
-    def _path(self, number: int) -> Row:
+    def _path(self, number: int) -> RayRow:
         """A ray on its way, and below it its shadow rays and the rays that it sends on."""
         ray = self.tree.rays[number]
-        met = "leaves the scene" if ray.primitive < 0 else f"{self.name(ray.primitive)} at {ray.t:.4g}"
+        met = "leaves the scene" if ray.primitive < 0 else f"{self._name(ray.primitive)} at {ray.t:.4g}"
         tip = [
             f"ray {ray.number}, bounce {ray.bounce}; weight {ray.weight.max():.3g}; "
             f"{count(ray.steps)} steps and {count(ray.tests)} tests, traced alone",
             "adds ({:.3g}, {:.3g}, {:.3g}) to the pixel".format(*ray.light),
         ]
         if ray.shadows is not None:
-            tip.append("shadow rays: " + self.summary(ray.shadows, np.arange(len(ray.shadows.light))))
+            tip.append("shadow rays: " + self._summary(ray.shadows, np.arange(len(ray.shadows.light))))
         text, key = f"{ray.kind.value} ray: {met}", ("ray", number)
-        return Row(key, text, "\n".join(tip), PATH_COLOR, number, below=lambda: self._below(ray, key))
 
-    def _below(self, ray: PathRay, key: Key) -> list[Row]:
-        found, s = [], ray.shadows
-        if s is not None:
-            places = self._filter.places(s)
-            many = len(np.unique(s.light[places])) > MOST_LIGHTS
-            found = (self._fates if many else self._lights)(ray, s, places, key)
-        return found + [self._path(number) for number in self.tree.children.get(ray.number, ())]
+        def below() -> list[RayRow]:
+            s = ray.shadows
+            shadows = [] if s is None else self._shadows(number, s, self._filter.places(s), key, of_point=True)
+            return shadows + [self._path(one) for one in self.tree.children.get(number, ())]
 
-    # --- shadow rays: by light, by what became of them, and one by one ---------------------------------
+        return RayRow(key, text, "\n".join(tip), PATH_COLOR, number, below=below)
 
-    def _lights(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
-        """A row for each light."""
-        own = np.split(places, np.flatnonzero(np.diff(s.light[places])) + 1) if len(places) else []
-        return [self._group(ray, s, of, (*above, "light", int(s.light[of[0]])), self._light(s, of[0])) for of in own]
+    def _shadows(self, ray: int, s: ShadowRays, places: Places, above: RayKey, of_point: bool = False) -> list[RayRow]:
+        """Rows of shadow rays: those of a point by light, or of many lights by what became of them; below that those of
+        a light by what became of them, and those with the same fate one by one."""
+        outcomes, lights = self._by_outcome(s, places), len(np.unique(s.light[places]))
+        if lights <= MOST_LIGHTS if of_point else lights > 1 and len(outcomes) == 1:
+            own = np.split(places, np.flatnonzero(np.diff(s.light[places])) + 1) if len(places) else []
+            return [
+                self._group(ray, s, of, (*above, "light", int(s.light[of[0]])), self._light(s, of[0])) for of in own
+            ]
+        name, rows = self._light if lights > 1 else self._sample, []
+        if len(outcomes) > 1 or of_point:
+            for one, same in sorted(outcomes.items()):
+                named = name(s, same[0]) if len(same) == 1 else ""
+                rows.append(self._group(ray, s, np.array(same), (*above, "fate", *one), named))
+            return rows
+        return [self._group(ray, s, np.array([one]), (*above, one), self._sample(s, one)) for one in places.tolist()]
 
-    def _fates(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
-        """A row for those with each fate."""
-        one, rows = len(np.unique(s.light[places])) == 1, []
-        for fate, same in sorted(self._by_fate(s, places).items()):
-            name = "" if len(same) > 1 else self._sample(s, same[0]) if one else self._light(s, same[0])
-            rows.append(self._group(ray, s, np.array(same), (*above, "fate", *fate), name))
-        return rows
-
-    def _samples(self, ray: PathRay, s: ShadowRays, places: Places, above: Key) -> list[Row]:
-        """A row for each sample of a light."""
-        return [self._single(ray, s, place, (*above, place), self._sample(s, place)) for place in places.tolist()]
-
-    def _group(self, ray: PathRay, s: ShadowRays, places: Places, key: Key, name: str) -> Row:
-        """A row for several: of those alike what they share, else how many have which fate; of one its own."""
-        first, named = int(places[0]), f"{name}: " if name else ""
-        one = len(np.unique(s.light[places])) == 1
+    def _group(self, ray: int, s: ShadowRays, places: Places, key: RayKey, name: str) -> RayRow:
+        """A row for shadow rays: of those alike what they share, else how many have which fate."""
+        first, outcomes = int(places[0]), list(self._by_outcome(s, places))
+        one_light = bool((s.light[places] == s.light[first]).all())
         if len(places) == 1:
-            return self._single(ray, s, first, key, name)
-        fates = list(self._by_fate(s, places))
-        if len(fates) > 1:
-            text, tip, below = f"{named}{self.summary(s, places)}", "", partial(self._fates, ray, s, places, key)
+            text, tip = self._fate(s, places), self._tip(s, first)
+        elif len(outcomes) > 1:
+            text, tip = self._summary(s, places), ""
         else:
-            what = "samples" if one else "rays"
-            text = f"{named}{count(len(places))} {what} {self.fate(s, places, fates[0][2])}"
-            tip = MEANING[VERDICTS[s.verdict[first]]]
-            below = partial(self._samples if one else self._lights, ray, s, places, key)
-        away = one and (s.verdict[places] == AWAY).all()
-        return Row(key, text, tip, color_of(s, places), ray.number, places, None if away else below)
+            what, by = "samples" if one_light else "rays", outcomes[0][2]
+            text, tip = f"{count(len(places))} {what} {self._fate(s, places, by)}", MEANING[VERDICTS[s.verdict[first]]]
+        folds = len(places) > 1 and not (one_light and (s.verdict[places] == AWAY).all())
+        below = partial(self._shadows, ray, s, places, key) if folds else None
+        return RayRow(key, f"{name}: {text}" if name else text, tip, color_of(s, places), ray, places, below)
 
-    def _single(self, ray: PathRay, s: ShadowRays, place: int, key: Key, name: str) -> Row:
-        places = np.array([place])
-        text = f"{name}: {self.fate(s, places)}"
-        return Row(key, text, self._tip(s, place), color_of(s, places), ray.number, places)
-
-    def _by_fate(self, s: ShadowRays, places: Places) -> dict[Fate, list[int]]:
+    def _by_outcome(self, s: ShadowRays, places: Places) -> dict[Outcome, list[int]]:
         """The places with each fate; what blocks them counts where they are of one light."""
-        fates: dict[Fate, list[int]] = {}
+        outcomes: dict[Outcome, list[int]] = {}
         one = len(np.unique(s.light[places])) == 1
         for place in places.tolist():
             blocked = one and s.verdict[place] != AWAY and not s.lit[place] and s.blocker[place] >= 0
             by = self._scene.name_of(int(s.blocker[place])) if blocked else ""
-            fate = int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place]), s.known.get(place, "")
-            fates.setdefault(fate, []).append(place)
-        return fates
+            outcome = int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place]), s.known.get(place, "")
+            outcomes.setdefault(outcome, []).append(place)
+        return outcomes
 
     # --- words -----------------------------------------------------------------------------------------
 
-    def fate(self, s: ShadowRays, places: Places, by: str = "") -> str:
+    def _fate(self, s: ShadowRays, places: Places, by: str = "") -> str:
         """What became of a shadow ray in words, or of several with the same fate, `by` the object that blocks them."""
         place, alike = int(places[0]), len(places) > 1
         verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
@@ -235,7 +222,7 @@ class RayRows:
         return text
 
     def _blocked(self, s: ShadowRays, place: int) -> str:
-        return f"blocked by {self.name(int(s.blocker[place]))}" if s.blocker[place] >= 0 else "in shadow by its mode"
+        return f"blocked by {self._name(int(s.blocker[place]))}" if s.blocker[place] >= 0 else "in shadow by its mode"
 
     def _tip(self, s: ShadowRays, place: int) -> str:
         verdict = VERDICTS[s.verdict[place]]
@@ -243,19 +230,19 @@ class RayRows:
         if place in s.told:
             parts.append(s.told[place])
         if place in s.named:
-            names = [self.name(number) for number in s.named[place][:MOST_NAMED]]
+            names = [self._name(number) for number in s.named[place][:MOST_NAMED]]
             more = len(s.named[place]) - len(names)
             parts.append("Named: " + ", ".join(names) + (f" and {more} more." if more else "."))
         if s.asked_moving[place]:
             parts.append(f"Testing dynamic objects took {s.steps[place]} steps and {s.tests[place]} tests.")
         if verdict is Verdict.TRACED and s.met[place] not in (-1, s.blocker[place]):
-            parts.append(f"Tracing hit {self.name(int(s.met[place]))} first.")
+            parts.append(f"Tracing hit {self._name(int(s.met[place]))} first.")
         if s.wrong[place]:
             truth = f"it is {self._blocked(s, place)}" if s.blocker[place] >= 0 else "nothing blocks the ray"
             parts.append(f"This answer is wrong: {truth}.")
         return "\n".join(parts)
 
-    def summary(self, s: ShadowRays, places: Places) -> str:
+    def _summary(self, s: ShadowRays, places: Places) -> str:
         """How many of some shadow rays have each verdict, and how many of these are lit."""
         parts = []
         for number in np.unique(s.verdict[places]):
@@ -264,7 +251,7 @@ class RayRows:
             parts.append(f"{count(len(same))} {SAID[VERDICTS[number]]}" + (f" ({count(lit)} lit)" if lit else ""))
         return ", ".join(parts)
 
-    def name(self, primitive: int) -> str:
+    def _name(self, primitive: int) -> str:
         """A primitive as people find it again."""
         return primitive_in_words(self._scene, primitive)
 
@@ -275,7 +262,7 @@ class RayRows:
         return f"sample {place - s.of_light(int(s.light[place])).start}"
 
 
-def unfolded(rows: list[Row], is_open: Callable[[Row], bool], level: int = 0) -> Iterator[tuple[int, Row]]:
+def unfolded(rows: list[RayRow], is_open: Callable[[RayRow], bool], level: int = 0) -> Iterator[tuple[int, RayRow]]:
     """The rows that are seen where some are open, each with its level."""
     for row in rows:
         yield level, row

@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, fields
-from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from tracer.experiments import counterexample, experiment, hunt, lamp_experiment, zoom
+from tracer.experiments import counterexample, experiment, zoom
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.experiment import REFERENCE, Row
-from tracer.experiments.lamp_experiment import CEILING, LampResults, LampRow
-from tracer.experiments.zoom import Approach, Change, Step
+from tracer.experiments.titles import WRONG_PIXELS, FactorStep
+from tracer.experiments.zoom import Change, Step
 from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
-from viewer.state import terms
-from viewer.util.messages import printable
-from viewer.util.numbers import memory, saved
+from tracer.text import printable, saved
+from viewer.util.numbers import memory
 
 T = TypeVar("T")
 
@@ -68,37 +66,18 @@ TABLE_1: tuple[Column[Row], ...] = (
     Column("extra / pixel", "extra occlusion tests per pixel", lambda row: f"{row.extra_tests_per_pixel:.3f}"),
     Column("median frame", "time of a frame, median", lambda row: f"{1000.0 * row.frame_seconds:,.0f} ms"),
     Column("all frames", "time of all frames", lambda row: f"{row.path_seconds:,.2f} s"),
-    Column("preparing", "  of it preparing",
+    Column("preparing", "time of all frames that was spent on preparing",
            lambda row: f"{row.build_seconds:,.2f} s" if row.build_seconds >= 0.005 else ""),
     Column("memory", "memory of the method", lambda row: memory(row.memory_bytes) if row.memory_bytes else ""),
 )  # fmt: skip
 """What the paper's Table 1 says of a method."""
 
 
-def table_1(verified: bool) -> list[Column[Row]]:
-    """Return the columns that mean anything: wrong answers are counted only where frames were `verified`, and then
-    traced rays that are culled are in the times."""
-    return [column for column in TABLE_1 if column is not (SPEED_UP if verified else WRONG)]
+def table_1(results: experiment.Results) -> list[Column[Row]]:
+    """Return the columns that mean anything: wrong answers are counted only where frames were verified, and then rays
+    that are culled are traced as well, which takes time."""
+    return [column for column in TABLE_1 if column is not (SPEED_UP if results.settings.get("verify") else WRONG)]
 
-
-def lamps_in_words(row: LampRow) -> tuple[str, str]:
-    """Return their radius and their samples."""
-    radius = "scene's" if row.lamp_radius is None else f"{row.lamp_radius:g}"
-    return radius, "scene's" if row.lamp_samples is None else str(row.lamp_samples)
-
-
-LAMPS: tuple[Column[LampRow], ...] = (
-    Column("radius", "of the lamps", lambda row: lamps_in_words(row)[0]),
-    Column("samples", "of each lamp", lambda row: lamps_in_words(row)[1]),
-    METHOD,
-    Column("frame, median", "time of a frame", lambda row: f"{1000.0 * row.frame_seconds:,.1f} ms"),
-    Column("speed-up", f"over {REFERENCE}, all frames", lambda row: f"{row.speed_up:.2f}"),
-    Column("of free", f"of the speed-up of {CEILING}, for which shadow rays cost nothing",
-           lambda row: f"{row.share_of_free:.1%}"),
-    Column("saved", f"shadow rays {terms.MEANINGS[terms.SAVED]}",
-           lambda row: "" if row.method in (REFERENCE, CEILING) else f"{row.known:.1%}"),
-    Column("shadow rays", "due per frame", lambda row: f"{row.shadow_rays:,.0f}"),
-)  # fmt: skip
 
 PREPARING = 0.05
 """The part of a method's time from which on it is worth a word that this was preparing."""
@@ -121,79 +100,19 @@ def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
     return said
 
 
-def frames_in_words(results: experiment.Results) -> str:
-    """Return which frames of which path there are, e.g. "frames 0 to 19 of 200" or "70 of 100 frames, stopped"."""
-    done, path = len(results.frames), results.path_frames
-    if results.planned < path:
-        first, last = results.frames[0], results.frames[-1]
-        text = f"frames {first} to {last} of {path}" if done > 1 else f"frame {first} of {path}"
-    elif done < path:
-        text = f"{done} of {path} frames"
-    else:
-        text = f"{done} frames over the whole path" if done > 1 else "1 frame"
-    return text + ", stopped" * results.stopped
-
-
-def title(results: experiment.Results | zoom.Results | hunt.Results) -> str:
-    """Return what was measured, in one line."""
-    if isinstance(results, experiment.Results):
-        what = frames_in_words(results)
-    elif isinstance(results, zoom.Results):
-        what = f"{results.time:.3f} s, towards primitive {results.primitive}"
-    else:
-        what = f"method {results.method}"
-    width, height = results.size
-    return f"{printable(Path(results.scene).name)}, {width} × {height}, {what}"
-
-
 # --- zoom tests ------------------------------------------------------------------------------------
-
-WRONG_PIXELS = "wrong pixels of this primitive"
-NEVER_WHOLE = "never fully rendered, so it is never culled, and the zoom factor does not matter"
-
-
-def never_whole(results: zoom.Results) -> bool:
-    """Return whether NEVER_WHOLE applies to the primitive: nothing was tested then."""
-    return any(a.steps for a in results.approaches) and not any(a.seen_whole for a in results.approaches)
-
-
-FactorStep = tuple[float, Step]
-"""A step, behind the zoom factor that it was made with."""
-
-
-def happenings(results: zoom.Results) -> list[FactorStep]:
-    """Return the steps where a mode changes, or the primitive's wrong pixels become more or fewer."""
-    found = []
-    for approach in results.approaches:
-        wrong_before = [0, *(step.wrong_of_primitive for step in approach.steps)]
-        for step, wrong in zip(approach.steps, wrong_before):
-            if step.changes or step.wrong_of_primitive != wrong:
-                found.append((approach.factor, step))
-    return found
 
 
 def changes_in_words(changes: Sequence[Change]) -> list[str]:
     """Say what changes, e.g. "lights 0, 2: init → non shadow"; lights that change alike are named together."""
-    return [f"{who}{_spoken(before)} → {_spoken(after)}" for who, before, after in _gathered(changes)]
-
-
-def modes_in_words(changes: Sequence[Change]) -> str:
-    """Say which modes are new in a step, shorter: "fully rendered, lights 0, 2: non shadow"."""
-    return ", ".join(f"{who}{_spoken(after)}" for who, _, after in _gathered(changes))
-
-
-def _gathered(changes: Sequence[Change]) -> list[tuple[str, str, str]]:
-    """(whose mode, before, after), the occlusion mode first."""
-    lights: dict[tuple[str, str], list[str]] = {}
+    alike: dict[tuple[bool, str, str], list[str]] = {}
     for change in changes:
-        if change.light is not None:
-            lights.setdefault((change.before, change.after), []).append(str(change.light))
-    own = [("", change.before, change.after) for change in changes if change.light is None]
-    return own + [(f"light{'s' * (len(n) > 1)} {', '.join(n)}: ", *modes) for modes, n in lights.items()]
-
-
-def _spoken(mode: str) -> str:
-    return mode.replace("_", " ").lower()
+        alike.setdefault((change.light is None, change.before, change.after), []).append(str(change.light))
+    said = []
+    for (own, before, after), lights in alike.items():
+        whose = "" if own else f"light{'s' * (len(lights) > 1)} {', '.join(lights)}: "
+        said.append(f"{whose}{before} → {after}".replace("_", " ").lower())
+    return said
 
 
 STEPS: tuple[Column[FactorStep], ...] = (
@@ -202,29 +121,10 @@ STEPS: tuple[Column[FactorStep], ...] = (
     Column("pixels", "pixels that the primitive covers", lambda row: f"{row[1].pixels:,}"),
     Column("wrong", WRONG_PIXELS, lambda row: f"{row[1].wrong_of_primitive:,}",
            wrong=lambda row: row[1].wrong_of_primitive > 0),
-    Column("modes", "modes from that step on, where they change",
-           lambda row: modes_in_words(row[1].changes), text=True),
+    Column("changes", "modes that change", lambda row: "; ".join(changes_in_words(row[1].changes)), text=True),
     Column("in picture", "wrong pixels of the whole picture", lambda row: f"{row[1].wrong:,}"),
     Column("highest", "highest pixel count so far", lambda row: f"{row[1].highest:,}"),
     Column("distance", "from the camera to the primitive", lambda row: f"{row[1].distance:.4g}"),
-)  # fmt: skip
-
-
-def _share(approach: Approach, name: str) -> str:
-    return f"{sum(getattr(s, name) for s in approach.steps) / max(1, sum(s.due for s in approach.steps)):.1%}"
-
-
-APPROACHES: tuple[Column[Approach], ...] = (
-    Column("factor", "zoom factor", lambda a: f"{a.factor:g}"),
-    Column("re-examined", "when the primitive is examined anew",
-           lambda a: f"step {', '.join(map(str, a.examined_anew))}" if a.examined_anew else "never", text=True),
-    Column("wrong pixels", WRONG_PIXELS,
-           lambda a: f"step {a.wrong_steps[0]} to {a.wrong_steps[-1]}" if a.wrong_steps else "none", text=True),
-    Column("most", f"most {WRONG_PIXELS}", lambda a: f"{a.most_wrong:,}"),
-    Column("at the end", f"{WRONG_PIXELS} in the last step",
-           lambda a: f"{a.steps[-1].wrong_of_primitive:,}" if a.steps else ""),
-    Column(terms.CULLED, "share of the shadow rays due", lambda a: _share(a, "culled")),
-    Column(terms.DYNAMIC_ONLY, "share of the shadow rays due", lambda a: _share(a, "dynamic_only")),
 )  # fmt: skip
 
 
@@ -256,13 +156,12 @@ def findings(scene: Scene, finds: Sequence[Counterexample]) -> tuple[Column[Coun
 # --- tables for files -------------------------------------------------------------------------------
 
 
-def table_of(results: experiment.Results | LampResults | zoom.Results) -> tuple[list[str], list[Sequence[object]]]:
+def table_of(results: experiment.Results | zoom.Results) -> tuple[list[str], list[Sequence[object]]]:
     """Return the headings and the rows of results, parts of 1 and seconds as they are.
 
     Of a zoom test that is a row for each step of each factor."""
-    if not isinstance(results, zoom.Results):
-        lines = lamp_experiment.table(results) if isinstance(results, LampResults) else experiment.table(results)
-        return [f.name for f in fields(lines[0])], [astuple(line) for line in lines]
+    if isinstance(results, experiment.Results):
+        return [f.name for f in fields(Row)], [astuple(row) for row in experiment.table(results)]
     plain = [f.name for f in fields(Step) if f.name not in ("camera", "shadows", "changes")]
     lights = max((len(step.shadows) for approach in results.approaches for step in approach.steps), default=0)
     rows: list[Sequence[object]] = []

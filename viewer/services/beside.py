@@ -9,7 +9,7 @@ they are.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass, replace
 
@@ -63,12 +63,10 @@ class Pair:
         self._second.take_scene(self._first)
         first, second = request.refine(self._first, cancel), request.refine(self._second, cancel)
         with closing(first) as ours, closing(second) as theirs:
-            begun = False
-            for frame, _ in ours:
+            for number, (frame, _) in enumerate(ours):
                 try:
-                    if begun:
+                    if number > 0:
                         self._second.take_turn(request.time)
-                    begun = True
                     other, _ = next(theirs)
                 finally:
                     self._first.take_turn(request.time)
@@ -84,10 +82,6 @@ class Subject:
     camera: Camera
     settings: Settings
     methods: tuple[str, ...]
-
-    def is_of(self, other: Subject) -> bool:
-        """Return whether it is the same picture, by whichever methods."""
-        return replace(self, methods=other.methods) == other
 
 
 def subject_of(traced: Traced, second: str = "") -> Subject | None:
@@ -105,17 +99,13 @@ def subject_of(traced: Traced, second: str = "") -> Subject | None:
 
 
 class Rounds:
-    """Measures a subject, a frame at a time, and goes on from what is known of it.  `so_far`, and `why_not` where it
-    failed, may be read from any thread."""
+    """Measures a subject, a frame at a time.  `so_far`, and `why_not` where it failed, may be read from any thread."""
 
-    def __init__(self, subject: Subject, so_far: InTurn | None = None) -> None:
-        self.subject = subject
-        self.so_far = so_far or InTurn(subject.methods)
-        self.why_not = ""
+    def __init__(self, subject: Subject) -> None:
+        self.subject, self.so_far, self.why_not = subject, InTurn(subject.methods), ""
         self._renderers: dict[str, Renderer] = {}
-        self._preparing = list(subject.methods)
-        self._prepared = 0  # frames of the first of these
-        self._round: dict[str, FrameStatistics] = {}
+        self._turns = self._all_turns()
+        self._turn = next(self._turns)
 
     @property
     def ended(self) -> bool:
@@ -126,63 +116,55 @@ class Rounds:
         """Trace one more frame, in the world of this renderer; returns whether more are to come.
 
         Raises Cancelled, and then the frame is traced again by the next step; all else that goes wrong ends it."""
-        if self.so_far.settled or self.why_not:
+        if self.ended:
             return False
         try:
-            if self._preparing:
-                self._prepare(renderer, cancelled)
-            else:
-                self._count(renderer, cancelled)
+            self._turn = self._turns.send(self._trace(renderer, self._turn, cancelled))
+        except StopIteration:
+            self._renderers = {}  # with all that they have learnt
         except Cancelled:
             raise
         except Exception as problem:
-            self.why_not = f"{FAILED}: {one_line(problem)}"
+            self.why_not, self._renderers = f"{FAILED}: {one_line(problem)}", {}
             raise
-        finally:
-            if self.ended:
-                self._renderers = {}  # with all that they have learnt
-        return not self.so_far.settled
+        return not self.ended
 
-    def _prepare(self, renderer: Renderer, cancelled: Cancel) -> None:
-        """A frame that does not count: until nothing is left to be made for the picture."""
-        method = self._preparing[0]
-        made = self._trace(renderer, method, cancelled, proves=True).certificates
-        self._prepared += 1
-        if self._prepared >= FIRST and (not made or self._prepared >= MOST_PROVING):
-            self._preparing, self._prepared = self._preparing[1:], 0
+    def _all_turns(self) -> Generator[Settings, FrameStatistics, None]:
+        """Yield the settings of the next frame, and get what was measured of it.
 
-    def _count(self, renderer: Renderer, cancelled: Cancel) -> None:
-        """A frame of the round; who comes first changes from round to round, as what drifts concerns all alike."""
-        methods = self.subject.methods
-        order = methods if self.so_far.count % 2 == 0 else methods[::-1]
-        method = next(method for method in order if method not in self._round)
-        self._round[method] = self._trace(renderer, method, cancelled)
-        if len(self._round) < len(methods):
-            return
-        rounds = (*self.so_far.rounds, tuple(self._round[method] for method in methods))
-        self._round = {}
-        so_far = InTurn(methods, rounds, prepares=False)
-        speeds = [so_far.speed(method, methods[0]) for method in methods[1:]]
-        self.so_far = replace(so_far, settled=len(rounds) >= MOST or (so_far.tells and all(map(_is_narrow, speeds))))
+        Before the first round, until nothing is left to be made for the picture, frames do not count.  Who comes first
+        changes from round to round, as what drifts concerns all alike."""
+        methods, settings = self.subject.methods, self.subject.settings
+        for method in methods:
+            for number in range(1, MOST_PROVING + 1):
+                found = yield replace(settings, method=method, certificate_seconds=PROVING, patient=True)
+                if number >= FIRST and not found.certificates:
+                    break
+        while not self.so_far.settled:
+            one = {}
+            for method in methods if self.so_far.count % 2 == 0 else methods[::-1]:
+                one[method] = yield replace(settings, method=method)
+            now = InTurn(methods, (*self.so_far.rounds, tuple(one[method] for method in methods)))
+            narrow = now.tells and all(_is_narrow(now.speed(method, methods[0])) for method in methods[1:])
+            self.so_far = replace(now, settled=narrow or now.count >= MOST)
 
-    def _trace(self, renderer: Renderer, method: str, cancelled: Cancel, proves: bool = False) -> FrameStatistics:
+    def _trace(self, renderer: Renderer, settings: Settings, cancelled: Cancel) -> FrameStatistics:
         """Trace a frame, beginning with the modes that the window has."""
-        subject, own = self.subject, self._renderers.get(method)
+        own = self._renderers.get(settings.method)
         if own is None:
-            own = self._renderers[method] = renderer.beside()
-            own.settings = replace(subject.settings, method=method)
+            own = self._renderers[settings.method] = renderer.beside()
+            own.settings = settings
             own.take_modes(renderer)
-        seconds = PROVING if proves else subject.settings.certificate_seconds
-        own.settings = replace(subject.settings, method=method, certificate_seconds=seconds, patient=proves)
-        return own.render(subject.time, subject.camera, cancelled).statistics
+        own.settings = settings
+        return own.render(self.subject.time, self.subject.camera, cancelled).statistics
 
 
-def _is_narrow(speed: Spread | None) -> bool:
-    return speed is not None and speed.margin <= max(NARROW, CLEAR * abs(speed.median - 1.0))
+def _is_narrow(speed: Spread) -> bool:
+    return speed.margin <= max(NARROW, CLEAR * abs(speed.median - 1.0))
 
 
 class Baseline:
-    """Measures what is shown.  `moving` says that nothing can be measured, as pictures keep coming."""
+    """Measures what is shown; `why_not` says why nothing can be measured of it."""
 
     def __init__(
         self, in_spare_time: Callable[[Spare | None], None], clock: Callable[[], float] = time.monotonic
@@ -190,63 +172,51 @@ class Baseline:
         """`in_spare_time` has rounds measured by the render thread, until it is given others or None."""
         self._in_spare_time, self._clock = in_spare_time, clock
         self._known: dict[Subject, Rounds] = {}  # of the picture that is shown, by whichever methods
-        self._subject: Subject | None = None
+        self._shown: Subject | None = None
         self._at_work: Rounds | None = None
         self._still_since: float | None = None
-        self.moving = False
         self.why_not = ""
 
     @property
     def measured(self) -> InTurn | None:
         """What is known of the picture that is shown; None where nothing is measured of it."""
-        rounds = self._known.get(self._subject) if self._subject is not None else None
+        rounds = self._known.get(self._shown) if self._shown is not None else None
         return rounds.so_far if rounds is not None else None
 
     def forget(self) -> None:
         """Begin anew: the scene is another, or modes were forgotten."""
-        self._known, self._subject = {}, None
-        self._stop()
+        self._known, self._shown, self.why_not = {}, None, ""
+        self._work_on(None)
 
     def update(self, traced: Traced | None, second: str, moving: bool, busy: bool) -> None:
         """Measure the picture that is shown, and compared with one by a `second` method, in each frame of the window;
         not while anything is `moving`, or the thread is `busy` with what is wanted more."""
-        self.moving = moving
-        if moving or traced is None or not traced.whole or traced.request.divisor > 1:
-            self._leave()
-            return
-        lazy = traced.frame.settings.accelerator == LAZY
-        self._subject = subject = None if lazy else subject_of(traced, second)
-        rounds = self._known.get(subject) if subject is not None else None
-        self.why_not = BUILDS if lazy else rounds.why_not if rounds is not None else ""
-        if subject is None or busy:
+        whole = traced if traced is not None and traced.whole and traced.request.divisor == 1 else None
+        if moving or whole is None:  # what was measured to the end stays known, without the renderers of the rest
+            self._known = {subject: rounds for subject, rounds in self._known.items() if rounds.ended}
+            self._shown, self.why_not = None, ""
+        else:
+            lazy = whole.frame.settings.accelerator == LAZY
+            self._shown = None if lazy else subject_of(whole, second)
+            rounds = self._known.get(self._shown) if self._shown is not None else None
+            self.why_not = BUILDS if lazy else rounds.why_not if rounds is not None else ""
+        if self._shown is None or busy:
             self._still_since = None
-            self._stop()
+            self._work_on(None)
             return
         now = self._clock()
         self._still_since = now if self._still_since is None else self._still_since
         if now - self._still_since >= STILL:
-            self._measure(subject)
+            self._work_on(self._shown)
 
-    def _measure(self, subject: Subject) -> None:
-        self._known = {
-            one: known for one, known in self._known.items() if replace(one, methods=()) == replace(subject, methods=())
-        }
-        rounds = self._known.setdefault(subject, Rounds(subject))
-        if rounds is not self._at_work and not rounds.ended:
+    def _work_on(self, subject: Subject | None) -> None:
+        """Measure this; leave the thread to others where there is none, or all is known of it."""
+        rounds = None
+        if subject is not None:
+            picture = replace(subject, methods=())
+            self._known = {one: known for one, known in self._known.items() if replace(one, methods=()) == picture}
+            self._known[subject] = known = self._known.get(subject) or Rounds(subject)
+            rounds = None if known.ended else known
+        if rounds is not self._at_work:
             self._at_work = rounds
-            self._in_spare_time(rounds.step)
-
-    def _leave(self) -> None:
-        """The picture is another: what was measured of the last stays known, without the renderers that did so."""
-        self._stop()
-        if self._subject is not None:
-            self._known = {
-                one: known if known.ended else Rounds(one, known.so_far) for one, known in self._known.items()
-            }
-        self._subject = self._still_since = None
-
-    def _stop(self) -> None:
-        """Leave the thread to others; what was measured of a picture is taken up again."""
-        if self._at_work is not None:
-            self._at_work = None
-            self._in_spare_time(None)
+            self._in_spare_time(rounds.step if rounds is not None else None)

@@ -8,7 +8,7 @@ from typing import Any
 from tracer.frame import Frame
 from tracer.method import Method
 from viewer.services.frame_scheduler import FrameScheduler
-from viewer.state.comparison import Compare, CompareMode, Side, Source
+from viewer.state.comparison import Compare, CompareMode, Side
 from viewer.state.draw_options import DrawOptions, Slice
 from viewer.state.methods import BY_MODES, NO_CULLING
 from viewer.state.notices import Notices
@@ -17,6 +17,8 @@ from viewer.state.views import View, can_draw
 from viewer.util.numbers import several, whole_percent
 from viewer.views import values_of
 from viewer.views.compare import Difference, difference_of
+
+NOTHING_KEPT = "Nothing is kept as A yet: choose Keep as A."
 
 
 @dataclass(frozen=True)
@@ -77,10 +79,11 @@ class Comparing:
         """What it is compared with, as far as it is there: in the view of B, or as a picture where its frame has
         nothing for that, or no longer, as a tree is gone with its world."""
         b, traced, found = self.b, self._scheduler.traced, self.kept
-        if self.state.source is Source.METHOD:
-            second = traced.second if traced is not None else None
-            found = replace(b, frame=second) if b is not None and second is not None else None
-        if b is None or found is None:
+        if b is None or traced is None:
+            return None
+        if self.state.second:
+            found = replace(b, frame=traced.second) if traced.second is not None else None
+        if found is None:
             return None
         view = b.view if can_draw(found.frame, b.view, b.light) else View.COLOR
         return replace(found, view=view, light=b.light, light_number=b.light_number)
@@ -107,8 +110,7 @@ class Comparing:
         if not state.on:
             return ""
         if a is None or b is None:
-            kept = state.source is Source.KEPT
-            return "Nothing is kept as A yet: choose Keep as A." if kept else f"Tracing by {state.second} as well ..."
+            return f"Tracing by {state.second} as well ..." if state.second else NOTHING_KEPT
         if a.view is not b.view:
             return f"A has nothing for the view {b.view.label}: its picture is shown. Keep A again in this view."
         sizes = [f"{side.frame.width} x {side.frame.height}" for side in (a, b)]
@@ -154,7 +156,7 @@ class Comparing:
             self._notices.say("there is no picture to keep yet", error=True)
             return
         self.kept = b
-        self.change(source=Source.KEPT)
+        self.trace_by("")
         part = b.frame.statistics.part
         coarse = f"; {whole_percent(part)} of its pixels are shaded" if part < 1.0 else ""
         self._notices.say(f"kept as A: {b.method}, {b.view_in_words}, frame {b.number}{coarse}")
@@ -162,7 +164,7 @@ class Comparing:
     def forget(self) -> None:
         """Clear A: forget what was kept."""
         self.kept = None
-        if self.state.source is Source.KEPT:
+        if not self.state.second:
             self.end()
 
     def start(self, mode: CompareMode) -> None:
@@ -170,8 +172,8 @@ class Comparing:
         self.change(on=True, mode=mode)
         if self._session.draw.view is View.WIPE:  # one line is enough
             self._session.set_draw(view=View.COLOR)
-        if self.state.source is Source.KEPT and self.kept is None:
-            self._notices.say(self.remark)
+        if not self.state.second and self.kept is None:
+            self._notices.say(NOTHING_KEPT)
 
     def toggle(self, mode: CompareMode) -> None:
         """Compare in this way, or no longer if that is done already."""
@@ -190,26 +192,25 @@ class Comparing:
         self.change(on=False)
         self.held = False
 
-    def use(self, source: Source) -> None:
-        """Take A from here."""
-        culls = Method.parse(self._session.settings.method).culls
-        self.change(source=source, second=self.state.second or (NO_CULLING if culls else BY_MODES))
+    @property
+    def other_method(self) -> str:
+        """The method that the chosen one is compared with unless another is said: `none`, or by the paper's modes."""
+        return NO_CULLING if Method.parse(self._session.settings.method).culls else BY_MODES
 
     def trace_by(self, method: str) -> None:
-        """Let this be the second method, and compare with it."""
-        self.change(source=Source.METHOD, second=method)
+        """Trace A by this method, live; "" for a picture that was kept."""
+        self.change(second=method)
 
     def toggle_methods(self) -> None:
         """Trace each frame by a second method as well, side by side, or no longer."""
         if self.second_method:
             self.end()
             return
-        if self.state.second == self._session.settings.method:
-            self.change(second="")
-        self.use(Source.METHOD)
+        second = self.state.second
+        self.trace_by(second if second and second != self._session.settings.method else self.other_method)
         self.start(CompareMode.SIDE)
 
     @property
     def second_method(self) -> str:
         """The method by which frames are traced as well, while that is to be seen; else ""."""
-        return self.state.second if self.state.on and self.state.source is Source.METHOD else ""
+        return self.state.second if self.state.on else ""

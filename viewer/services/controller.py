@@ -27,7 +27,6 @@ from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
 from viewer.services.named_states import Bookmarks, Presets
 from viewer.services.pictures import Pictures
-from viewer.services.preview import Preview
 from viewer.services.questions import Questions
 from viewer.services.render_request import Traced
 from viewer.services.render_thread import RenderThread
@@ -79,7 +78,6 @@ class Controller:
         self.table = SceneTable(session, selection, preferences, notices, captures, editing, wake)
         self.questions = questions = Questions(runs, captures, wake)
         self.loader = loader = SceneLoader(session, preferences, notices, questions.before_opening, wake)
-        self.preview = Preview(session, loader, motion, notices, wake)
         self.pictures = pictures = Pictures(
             session, preferences, scheduler, self.history, loader, runs, captures, notices
         )
@@ -114,7 +112,7 @@ class Controller:
 
     def take_scene(self) -> None:
         """Show the scene that has been read, if one has."""
-        session, arrival, flown = self.session, self.loader.take_finished(), self.preview.flown
+        session, arrival = self.session, self.loader.take_finished()
         if arrival is None:
             return
         place, playing, said = arrival.place, arrival.again and session.playing, arrival.text
@@ -128,8 +126,6 @@ class Controller:
             self.restore(place)
         elif session.scene is not None:
             said = f"{said}. {remark_on(session.scene.lights, session.settings)}".removesuffix(". ")
-        if flown is not None:  # while the scene was waiting for its kernels
-            session.change(camera=flown)
         session.playing, self.reloaded = playing and session.animated, arrival.again
         self.notices.say(said)
 
@@ -141,12 +137,12 @@ class Controller:
         if frame_failed:
             self.session.playing = False
             self.scheduler.give_up()
-        run = self.runs.take_progress()
-        if run.ended:
+        of_run, ended = self.runs.take_progress()
+        if ended:
             self.scheduler.trace_once_more()  # else the world might stay where the run has put it
-        if run.picture is not None:
-            self.scheduler.traced = run.picture
-            frame = run.picture.frame
+        if of_run is not None:
+            self.scheduler.traced = of_run
+            frame = of_run.frame
         else:
             newest = self.scheduler.take()
             self.history.take(self.renderer.take_learnt(), newest, self.drawn_seconds)
@@ -155,7 +151,6 @@ class Controller:
             frame = newest.frame
         self.reloaded = False
         self.motion.look_around(frame)
-        self.selection.refresh(frame)
 
     def move(self) -> None:
         """Bring time and camera to where they should be now."""
@@ -166,11 +161,6 @@ class Controller:
         """Have the scene edited as is wanted, once what was edited last has been seen."""
         seen = self.scheduler.shows_edits or not self.renderer.busy
         self.editing.apply(self.runs.current is not None, seen)
-
-    def inspect_pixel(self) -> None:
-        """Ask about the pixel that is selected or pointed at, before the next frame is asked for."""
-        traced = self.own_traced
-        self.inspector.update(traced.frame if traced is not None else None, not self.motion.is_animating)
 
     def frame_inputs(self, size: tuple[int, int]) -> FrameInputs:
         """Return what decides how the next frame is traced, in a window that has room for so many pixels."""

@@ -10,7 +10,7 @@ picture with the one before them.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from tracer.carry_modes import carry_modes
 from tracer.frame import Settings
@@ -34,19 +34,22 @@ def makes(edits: Edits, scene: Scene) -> Hashable:
     return replace(edits, moved_lights=(), hidden=edits.hidden - in_place)
 
 
+@dataclass
 class EditTask:
     """Makes the edits on the render thread; then `found` is set, or `problem`, unless it was cancelled.
 
     From its beginning on the renderer's scene may be another than the session's: no picture must be asked for until it
-    is `done`, and what it has `found` is taken up."""
+    is `done`, and what it has `found` is taken up.  `first` is the renderer of the scene as it was read, whose modes it
+    `forgets` if it is not in use."""
 
-    def __init__(self, shown: Edited, edits: Edits, first: Renderer, forgets: bool, settings: Settings) -> None:
-        """`first` is the renderer of the scene as it was read, whose modes it `forgets` if it is not in use."""
-        self.scene, self._shown, self._edits = shown.original, shown, edits
-        self._first, self._forgets, self._settings = first, forgets, settings
-        self.done = False
-        self.found: tuple[Edited, Renderer] | None = None
-        self.problem: Failure | None = None
+    shown: Edited
+    edits: Edits
+    first: Renderer
+    forgets: bool
+    settings: Settings
+    done: bool = False
+    found: tuple[Edited, Renderer] | None = None
+    problem: Failure | None = None
 
     def work(self, renderer: Renderer, cancelled: Callable[[], bool]) -> None:
         try:
@@ -62,15 +65,16 @@ class EditTask:
             if cancelled():
                 raise Cancelled("cancelled")
 
-        if self._forgets and self._first is not before:
-            self._first.reset_modes()
-        made, made_of = edited(self.scene, self._edits), makes(self._edits, self.scene)
-        if made_of in (NO_EDITS, makes(self._shown.edits, self.scene)):
-            renderer = self._first if made_of == NO_EDITS else before
+        if self.forgets and self.first is not before:
+            self.first.reset_modes()
+        scene = self.shown.original
+        made, made_of = edited(scene, self.edits), makes(self.edits, scene)
+        if made_of in (NO_EDITS, makes(self.shown.edits, scene)):
+            renderer = self.first if made_of == NO_EDITS else before
             renderer.scene = renderer.world.scene = made.scene
         else:
-            renderer = Renderer(made.scene, self._settings, progress)
-            carry_modes(before, self._shown, renderer, made)
+            renderer = Renderer(made.scene, self.settings, progress)
+            carry_modes(before, self.shown, renderer, made)
         return made, renderer
 
 
@@ -143,7 +147,7 @@ class Editing:
             if task.problem is not None:
                 self._notices.report(task.problem)
                 self._without_undo(self._give_up)
-            if task.found is not None and task.scene is session.original:
+            if task.found is not None and task.shown.original is session.original:
                 self._show(*task.found)
                 seen = False  # of this scene, nothing yet
             else:

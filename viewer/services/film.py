@@ -30,7 +30,7 @@ from viewer.services.pictures import Pictures
 from viewer.services.runs import FileRun, Runs
 from viewer.state import codec, navigation
 from viewer.state.navigation import Stop, Take
-from viewer.state.plans import FilmPlan, frames_within
+from viewer.state.plans import FilmPlan
 from viewer.state.preferences import NamedState, Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
@@ -58,15 +58,13 @@ def prepare(folder: Path, video: Path | None) -> None:
         check_writable(video)
     try:
         folder.mkdir(exist_ok=True)
-        taken = sorted((path for path in folder.iterdir() if re.fullmatch(r"\d{4,}\.png", path.name)),
-                       key=lambda path: int(path.stem))  # fmt: skip
+        taken = any(re.fullmatch(r"\d{4,}\.png", path.name) for path in folder.iterdir())
     except FileNotFoundError:
         raise OSError(f"{folder}: there is no folder {folder.parent}") from None
     except OSError as error:
         raise OSError(f"{folder}: no folder for the pictures: {error.strerror or error}") from None
     if taken:
-        which = taken[0].name if len(taken) == 1 else f"{taken[0].name} to {taken[-1].name}"
-        raise OSError(f"{folder}: there are numbered pictures in it already, {which}; give another folder")
+        raise OSError(f"{folder}: there are numbered pictures in it already; give another folder")
 
 
 def frame_count(frames: tuple[int, int], stops: int | None, seconds: float, fps: float) -> int:
@@ -169,17 +167,11 @@ class Films:
         self.film: FilmRun | None = None
 
     @property
-    def frames(self) -> tuple[int, int]:
-        """The first and the last frame of the path that are to be filmed, of those that there are."""
-        scene = self._session.scene
-        return frames_within(self.plan.first, self.plan.last, scene.frames if scene is not None else 1)
-
-    @property
     def count(self) -> int:
         """How many frames the film has; 0 where it cannot be made."""
         plan = self.plan
         stops = len(self._bookmarks.all) if plan.through_bookmarks else None
-        return frame_count(self.frames, stops, plan.seconds, plan.fps)
+        return frame_count(plan.frames(self._session.scene), stops, plan.seconds, plan.fps)
 
     def start(self) -> None:
         """Begin to film what is planned, with the view, the method and the settings that are chosen now."""
@@ -196,7 +188,7 @@ class Films:
             raise ValueError("there is nothing to film yet")
         stops = stops_of(self._bookmarks.all, scene) if plan.through_bookmarks else None
         camera = self._session.camera if plan.from_here else None
-        filmed = takes(scene, self.frames, stops, plan.seconds, plan.fps, camera)
+        filmed = takes(scene, plan.frames(scene), stops, plan.seconds, plan.fps, camera)
         settings: Settings = replace(
             state.settings, width=plan.size[0], height=plan.size[1], samples=plan.samples,
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly

@@ -15,7 +15,6 @@ from tracer.frame import Frame, Settings
 from tracer.method import Method
 from tracer.one_light import with_light
 from tracer.renderer import Renderer
-from tracer.scene.lights import number_of
 from tracer.scene.model import Camera, Scene
 from viewer.services import refinement
 from viewer.services.frame_budget import AT_ONCE, FrameBudget, Plan, divided
@@ -26,6 +25,7 @@ from viewer.services.runs import missing_in, shown_of
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.view_state import ViewState
 from viewer.state.views import View, can_draw, records_fates, records_lights
+from viewer.views import view_of
 
 
 @dataclass(frozen=True)
@@ -158,11 +158,17 @@ class FrameScheduler:
         if made is None and self.traced is not None and self.samples_shown >= wanted.samples:
             made = self.traced.request  # it holds what is wanted already
         if made is None or not made.covers(wanted):
-            coming = self._coming
-            if inputs.inspected and coming is not None and not wanted.supersedes(coming, self._is_shown(coming)):
+            if inputs.inspected and self._is_to_be_seen_before(wanted):
                 return  # else the next frame of a film would begin before this one is asked about
             self._asked = wanted
             self._thread.submit(wanted)
+
+    def _is_to_be_seen_before(self, wanted: RenderRequest) -> bool:
+        """Return whether what was asked for last is still to come, and is worth it though something else is wanted."""
+        coming = self._coming
+        if coming is None or coming.serial != self._serial:  # forgetting modes has cut it short
+            return False
+        return not wanted.supersedes(coming, self._is_shown(coming))
 
     def _should_refine(self) -> bool:
         """Whether, at rest, one more frame of the same view will know more about shadows."""
@@ -347,9 +353,8 @@ class FrameScheduler:
     def title(self) -> str:
         """The view, and the light where it shows one; before it what a run that is under way is at."""
         now, view = self.inputs, self.drawn_view
-        draw, run, title = now.state.draw, now.run, view.label
-        if view.of_light:
-            title += f", light {number_of(now.scene.lights, draw.light) if now.scene is not None else draw.light}"
+        draw, run = now.state.draw, now.run
+        title = view_of(view).title(draw, now.scene.lights if now.scene is not None else ())
         if run is not None:
             lacks = draw.view is not view and missing_in(run, draw.view)
             return f"{shown_of(run)}   {title}{f' (this run {lacks})' if lacks else ''}"
@@ -358,7 +363,7 @@ class FrameScheduler:
         settings = self.settings
         comes = settings.record_fates if draw.view.needs_fates else draw.view.records is not None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
-            return f"{draw.view.label}: none here, {view.label.lower()} shown"
+            return f"{draw.view.label}: not available here, {view.label.lower()} shown"
         return f"{draw.view.label}: {'verifying' if draw.view.needs_verify else 'counting'} ..."
 
 

@@ -27,7 +27,6 @@ from viewer.services.render_request import RenderRequest, Traced, Warmup
 from viewer.services.runs import Experiment, Runs
 from viewer.services.undo import Undo
 from viewer.state.notices import Notices
-from viewer.state.picking import Pick
 from viewer.state.pixels import Point, Zoom
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
@@ -248,12 +247,12 @@ class FrameHistory(Plots):
         self._lights[key] = lights
         self._worker.submit(origins.add, number, frame.modes, moved)
 
-    def origins_of(self, pick: Pick) -> Origins | None:
-        """Return which frames set what is known of the unit that was picked; None where that is not known."""
+    def origins_of(self, frame: Frame, unit: int) -> Origins | None:
+        """Return which frames set what a frame knows of a unit; None where that is not known."""
         origins = self._origins.get(self._shown) if self._shown is not None else None
-        if origins is None or self._shown is None or self._shown[2] != pick.in_cells:
+        if origins is None or self._shown is None or self._shown[2] != has_modes_of_cells(frame):
             return None
-        return self._worker.submit(origins.of, pick.unit).result()
+        return self._worker.submit(origins.of, unit).result()
 
     def repeats_of(self, frame: Frame) -> int | None:
         """Return how often this very frame was traced since modes were forgotten, before it; None where others were as

@@ -20,7 +20,7 @@ from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
 from viewer.state.notices import Notices
 from viewer.state.pixels import around
-from viewer.state.plans import HuntPlan, frames_within
+from viewer.state.plans import HuntPlan
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
 
@@ -97,12 +97,6 @@ class Hunts:
         self.chosen: int | None = None
 
     @property
-    def frames(self) -> tuple[int, int]:
-        """The first and the last frame of the path that are to be searched, of those that there are."""
-        scene = self._session.scene
-        return frames_within(self.plan.first, self.plan.last, scene.frames if scene is not None else 1)
-
-    @property
     def found(self) -> hunt.Results | None:
         """What the last hunt has found so far."""
         return self.hunt.results if self.hunt is not None else None
@@ -111,8 +105,8 @@ class Hunts:
         """Begin to search what is planned, with the settings that are chosen now."""
 
         def make(scene: Scene) -> Hunt:
-            plan, (first, last) = self.plan, self.frames
-            times = [take.time for take in navigation.along_path(scene, first, last)][:: plan.step]
+            plan = self.plan
+            times = [take.time for take in navigation.along_path(scene, *plan.frames(scene))][:: plan.step]
             settings = replace(
                 self._session.settings, method=plan.method, width=plan.size[0], height=plan.size[1], samples=1,
                 certificate_seconds=float("inf"), verify=True,

@@ -19,7 +19,8 @@ from tracer.scene.edits import Edited
 from tracer.told_rays import RayTree
 from tracer.why import why
 from viewer.services.queries import Ask, Newest
-from viewer.state.picking import Pick, pick, pick_part, pick_primitive, pixel_of, refreshed, same_place
+from viewer.services.render_request import Traced
+from viewer.state.picking import Pick, pick, pick_part, pick_primitive, pixel_of, same_place
 from viewer.state.pixels import Point, pixel_at
 from viewer.state.session import Session
 
@@ -27,26 +28,13 @@ Pixel = tuple[int, int]
 
 
 class Selection:
-    """`picked` is what was clicked, `hovered` where the pointer is; None where there is nothing.  `part` is the part of
-    the scene (`viewer.state.parts`) that is selected as a whole, None for the primitive alone.  `serial` is another
-    number after each selection."""
+    """`picked` is what was clicked, `hovered` where the pointer is; None where there is nothing."""
 
     def __init__(self, session: Session, newest: Callable[[], Frame | None]) -> None:
         """`newest` returns the frame that the picture shows."""
         self._session, self._newest = session, newest
-        self._picked: Pick | None = None
-        self.part: int | None = None
+        self.picked: Pick | None = None
         self.hovered: Point | None = None
-        self.serial = 0
-
-    @property
-    def picked(self) -> Pick | None:
-        return self._picked
-
-    @picked.setter
-    def picked(self, found: Pick | None) -> None:
-        self._picked, self.part = found, None
-        self.serial += 1
 
     @property
     def frame(self) -> Frame | None:
@@ -54,10 +42,10 @@ class Selection:
         return self._newest()
 
     @property
-    def pixel(self) -> tuple[int, int] | None:
+    def pixel(self) -> Pixel | None:
         """Where the picture shows what was clicked; None where it does not, or where nothing was."""
-        frame, kept = self.frame, self.picked
-        return pixel_of(kept, frame) if kept is not None and frame is not None else None
+        frame, picked = self.frame, self.picked
+        return pixel_of(picked, frame) if picked is not None and frame is not None else None
 
     def at(self, point: Point | None) -> Pick | None:
         """What lies under a point of the picture."""
@@ -74,35 +62,26 @@ class Selection:
         frame, now = self.frame, self._session.edited
         if frame is None or now is None or not 0 <= primitive < len(now.numbers):
             return False
-        return self._take(pick_primitive(frame, now.scene, int(now.numbers[primitive])), None)
+        return self._select(pick_primitive(frame, now.scene, int(now.numbers[primitive])))
 
     def select_part(self, part: int) -> bool:
         """Select a part of the scene, in the middle of what is seen of it; whether that could be done."""
         frame, now = self.frame, self._session.edited
-        return frame is not None and now is not None and self._take(pick_part(frame, now, part), part)
+        return frame is not None and now is not None and self._select(pick_part(frame, now, part))
 
-    def _take(self, found: Pick | None, part: int | None) -> bool:
-        if found is not None:
-            self.picked, self.part = found, part
+    def _select(self, found: Pick | None) -> bool:
+        self.picked = found or self.picked
         return found is not None
 
     def clear(self) -> None:
+        """Select nothing."""
         self.picked = None
 
     def update_for_edits(self, before: Edited | None, now: Edited) -> None:
-        """The same primitive has another number now; one that is hidden is selected no more."""
-        kept = self.picked
-        if kept is not None and before is not None:
-            number = int(now.numbers[before.primitives[kept.primitive]])
-            if number >= 0:  # nothing else was selected
-                self._picked = replace(kept, primitive=number, unit=number, in_cells=False, seen=None)
-            else:
-                self.picked = None
-
-    def refresh(self, frame: Frame) -> None:
-        """Take over from a newer frame what carries the modes."""
-        if self._picked is not None:
-            self._picked = refreshed(self._picked, frame)
+        """Give the selected primitive its number in an edited scene; one that is hidden there is selected no more."""
+        if self.picked is not None and before is not None:
+            number = int(now.numbers[before.primitives[self.picked.primitive]])
+            self.picked = replace(self.picked, primitive=number, seen=None) if number >= 0 else None
 
 
 # --- what the renderer says of it -----------------------------------------------------------------------
@@ -132,7 +111,7 @@ def with_origins(found: Why, origins: Origins, name: Callable[[int], str]) -> Wh
     reasons = []
     for one in found.reasons:
         met = origins.lights[one.light].met() if one.light < len(origins.lights) else ()
-        taught = tuple(TaughtBy(number, name(number), lit=lit, known=False) for lit, number in met)
+        taught = tuple(TaughtBy(number, name(number), lit) for lit, number in met)
         instead = None if one.instead is None else replace(one.instead, taught=taught)
         reasons.append(replace(one, taught=taught, instead=instead))
     return replace(found, coverage=coverage, reasons=tuple(reasons))
@@ -143,61 +122,53 @@ class Inspector:
 
     def __init__(self, selection: Selection, query: Ask) -> None:
         self._selection, self._query = selection, query
-        self._inspected = Newest()
+        self._newest = Newest()
         self._frame: Frame | None = None
-        self._subject: object = None
-        self._forget()
+        self._subject: Pick | str | None = None  # whose answers stay in other frames, until the next come
+        self._found: Inspection | None = None  # the newest with reasons
+        self._tree: RayTree | None = None  # the newest; a picture that is shaded in part so far has none
 
-    def _forget(self) -> None:
-        self._inspected.forget()
-        self._told: Inspection | None = None  # the newest with reasons
-        self._traced: RayTree | None = None  # the newest; a picture that is shaded in part so far has none
-
-    def update(self, frame: Frame | None, idle: bool) -> None:
+    def update(self, traced: Traced | None, idle: bool) -> None:
         """Take up what has been answered, and ask about what is looked at now.
 
-        `frame` is the newest, None where nothing may be asked about it; what the pointer is on is asked about when
-        `idle`."""
-        kept, self._frame = self._selection.picked, frame
+        `traced` is the newest picture, None where nothing may be asked about it; what the pointer is on is asked about
+        when `idle`."""
+        picked, frame = self._selection.picked, traced.frame if traced is not None else None
+        self._frame = frame
         at = None
         if frame is not None:
-            at = pixel_of(kept, frame) if kept is not None else self._pointed_at(frame, idle)
-        subject = None if at is None else "pointer" if kept is None else (kept.primitive, kept.x, kept.y, kept.seen)
+            at = pixel_of(picked, frame) if picked is not None else self._pointed_at(frame, idle)
+        subject = None if at is None else picked or "pointer"
         if subject is None or subject != self._subject:
-            self._forget()
+            self._newest.forget()
+            self._found = self._tree = None
         self._subject = subject
         if frame is None or at is None:
             return
-        self._inspected.take(self._query(inspect_pixel, frame, *at))
-        found: Inspection | None = self._inspected.answer
+        self._newest.take(self._query(inspect_pixel, frame, *at))
+        found: Inspection | None = self._newest.answer
         if found is not None and found.why is not None:
-            self._told, self._traced = found, found.why.tree or self._traced
-
-    @property
-    def answer(self) -> Why | None:
-        """The reasons of this moment and method, None while they are not known."""
-        told = self._told
-        return told.why if told is not None and self._is_of_now(told.frame) else None
+            self._found, self._tree = found, found.why.tree or self._tree
 
     @property
     def why(self) -> Why | None:
         """The newest reasons that are known; in motion those of the frame before, until the next come."""
-        told = self._told
-        return told.why if told is not None and self._is_of_now(told.frame, at_any_time=True) else None
+        found = self._found
+        return found.why if found is not None and self._is_of_now(found.frame, at_any_time=True) else None
 
     @property
     def tree(self) -> RayTree | None:
         """What became of the pixel's rays, None while that is not known."""
-        return self._traced if self._traced is not None and self._is_of_now(self._traced.frame) else None
+        return self._tree if self._tree is not None and self._is_of_now(self._tree.frame) else None
 
     @property
     def problem(self) -> str:
         """Why there is no answer, in one line."""
-        return self._inspected.problem
+        return self._newest.problem
 
     def names_pixels_of(self, frame: Frame) -> bool:
         """Whether pixels that `why` names are where this frame has them: it is of the same moment, place and size."""
-        return self._told is not None and same_place(self._told.frame, frame)
+        return self._found is not None and same_place(self._found.frame, frame)
 
     def _is_of_now(self, then: Frame, at_any_time: bool = False) -> bool:
         now = self._frame

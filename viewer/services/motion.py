@@ -102,7 +102,7 @@ class Motion:
 
     @property
     def world_up(self) -> navigation.Vector:
-        scene = self._session.seen
+        scene = self._session.scene
         return navigation.world_up(scene.camera) if scene is not None else np.array([0.0, 1.0, 0.0])
 
     @property
@@ -137,10 +137,6 @@ class Motion:
             return
         self.halt()
         self._session.change(camera=None if follow else self._session.camera)
-
-    def reset_camera(self) -> None:
-        """Go back to the scene's own camera, now."""
-        self.follow_path(True)
 
     # --- time -------------------------------------------------------------------------------------
 

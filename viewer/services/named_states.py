@@ -24,9 +24,19 @@ class NamedStates:
     kind = ""
     reserved: Collection[str] = ()
 
-    def __init__(self, session: Session, preferences: Preferences, notices: Notices, write: Callable[[], None]) -> None:
-        """`write` writes the preferences to their file."""
+    def __init__(
+        self,
+        session: Session,
+        preferences: Preferences,
+        notices: Notices,
+        write: Callable[[], None],
+        refuses: Callable[[], bool] = lambda: False,
+        begin_step: Callable[[str], None] = lambda name: None,
+    ) -> None:
+        """`write` writes the preferences to their file.  Nothing is applied while `refuses()`, which says so itself;
+        `begin_step` names the step of undo that follows."""
         self._session, self._preferences, self._notices, self._write = session, preferences, notices, write
+        self._refuses, self._begin_step = refuses, begin_step
 
     @property
     def all(self) -> list[NamedState]:
@@ -40,7 +50,7 @@ class NamedStates:
     def save(self, name: str) -> bool:
         """Save what is shown under a name, in the place of one that has it; returns whether that could be done."""
         name = " ".join(name.split())[:LONGEST_NAME]
-        if not self._may_be(name, "saved"):
+        if self._refused(name, "saved"):
             return False
         found = next((one for one in self.all if one.name == name), None)
         if found is None:
@@ -51,23 +61,21 @@ class NamedStates:
         self._notices.say(f"{self.kind} {'saved' if found is None else 'replaced'}: {name}")
         return True
 
-    def rename(self, index: int, name: str) -> bool:
-        """Give one another name; returns whether that could be done."""
-        name = " ".join(name.split())[:LONGEST_NAME]
-        if not self._may_be(name, "renamed", {one.name for one in self.all} - {self.all[index].name}):
-            return False
-        self.all[index].name = name
-        self._write()
-        return True
+    def rename(self, index: int, name: str) -> None:
+        """Give one another name, unless that cannot be."""
+        name, one = " ".join(name.split())[:LONGEST_NAME], self.all[index]
+        if not self._refused(name, "renamed", {other.name for other in self.all if other is not one}):
+            one.name = name
+            self._write()
 
-    def _may_be(self, name: str, done: str, taken: Collection[str] = ()) -> bool:
-        """Return whether a state may have a name; else say why not."""
+    def _refused(self, name: str, done: str, taken: Collection[str] = ()) -> bool:
+        """Return whether none may have this name, and say why."""
         problem = "" if name else "give it a name"
         problem = f"there is a {self.kind} {name} already" if name in taken else problem
         problem = f"{name} comes with the program; choose another name" if name in self.reserved else problem
         if problem:
             self._notices.say(f"{self.kind} not {done}: {problem}", error=True)
-        return not problem
+        return bool(problem)
 
     def move(self, index: int, to: int) -> None:
         """Bring one to another place in the list."""
@@ -188,20 +196,6 @@ class Presets(NamedStates):
     kind = "preset"
     reserved = frozenset(preset.name for preset in BUILT_IN)
 
-    def __init__(
-        self,
-        session: Session,
-        preferences: Preferences,
-        notices: Notices,
-        write: Callable[[], None],
-        locked: Callable[[], bool],
-        begin_step: Callable[[str], None] = lambda name: None,
-    ) -> None:
-        """Nothing is applied while `locked()`, which says so itself; `begin_step` names the step of undo that
-        follows."""
-        super().__init__(session, preferences, notices, write)
-        self._locked, self._begin_step = locked, begin_step
-
     @property
     def all(self) -> list[NamedState]:
         return self._preferences.presets
@@ -218,7 +212,7 @@ class Presets(NamedStates):
 
     def apply(self, name: str) -> None:
         """Apply a preset; a damaged one is one line and changes nothing."""
-        if self._locked():
+        if self._refuses():
             return
         now = self._session.state
         stored = self.states.get(name, {})

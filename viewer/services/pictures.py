@@ -126,7 +126,7 @@ class Pictures:
         try:
             words.encode()
         except UnicodeEncodeError:
-            self._notices.say("not copied: the name of the scene's file is no text", error=True)
+            self._notices.say("not copied: the name of the scene's file is not valid text", error=True)
             return None
         why, forgets = state.warmup.unknown, " (Backspace forgets them)" if state.warmup.unknown != BUILT else ""
         self._notices.say(f"copied, but the picture may differ: {why}{forgets}" if why else f"copied: {words}")

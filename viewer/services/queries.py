@@ -14,7 +14,6 @@ from concurrent.futures import Future
 from typing import Any, NamedTuple
 
 from tracer.frame import Frame
-from tracer.scene.model import Cancelled
 from viewer.util.messages import one_line
 
 Function = Callable[..., Any]
@@ -30,23 +29,6 @@ class Query(NamedTuple):
     frame: Frame
     arguments: tuple[Hashable, ...]
     future: Future[Any]
-
-    def answer(self, renderer: object, cancelled: Callable[[], bool]) -> Exception | None:
-        """Call the function and put its answer into the future; returns what it raised."""
-        result = problem = None
-        try:
-            result = self.function(renderer, self.frame, *self.arguments, cancelled)
-        except Cancelled:
-            self.future.cancel()
-        except Exception as raised:
-            problem = raised
-        if not self.future.set_running_or_notify_cancel():
-            return None
-        if problem is not None:
-            self.future.set_exception(problem)
-        else:
-            self.future.set_result(result)
-        return problem
 
 
 class Queries:

@@ -15,7 +15,7 @@ from viewer.services.runs import Runs
 
 _KEPT = "They are kept, and can still be saved from its panel."
 _SAVED = "Their figures, table and plot can be saved beside the pictures."
-_WRITTEN = "They are written already, and stay."
+_WRITTEN = "They are on disk already."
 _COLLECTED = ("bookmarks", "presets", "recent", "tour", "last")  # which resetting the settings leaves
 
 Do = Callable[[], None]

@@ -27,14 +27,11 @@ MOST_FRAMES = 40
 SECONDS = 0.4
 """That each of these may spend on certificates: the picture is there already, and a movement ends them at once."""
 FIRST_LAMP_SAMPLES = 4
-MOST_RADII = 16
-"""Radii of lamps whose samples are known at once."""
 
 
 class Refinement:
     """Decides, each time a whole picture has come, whether one more of the same view is worth tracing.  `proves` says
-    that they follow to make certificates, and not only to learn modes, and `ended_early` that none is to come though
-    more certificates could be made."""
+    that they follow to make certificates, and not only to learn modes."""
 
     def __init__(self) -> None:
         self.forget()
@@ -44,7 +41,7 @@ class Refinement:
         self._considered: tuple[RenderRequest, bool, bool] | None = None  # what was decided about last
         self._settled: RenderRequest | None = None  # the view that `_left` speaks of
         self._left = 0  # frames of it that may still follow
-        self.proves = self.ended_early = False
+        self.proves = False
 
     def wants_another(self, newest: Traced | None, view: View, keep_tracing: bool) -> bool:
         """Whether one more frame should follow the newest; true once for each."""
@@ -65,15 +62,8 @@ class Refinement:
         elif not _has_learnt(statistics, self.proves):
             self._left = 0
         another = keep_tracing or self._left > 0
-        self.ended_early = statistics.certificates > 0 and proves and not another
         self._left -= another
         return another
-
-    @property
-    def progress(self) -> tuple[int, int]:
-        """Which frame with certificates is under way, and how many there may be at most; 0, 0 while none is to follow
-        for these."""
-        return (MOST_FRAMES - self._left, MOST_FRAMES) if self.proves and self._left > 0 else (0, 0)
 
 
 def _has_learnt(statistics: FrameStatistics, proves: bool) -> bool:
@@ -120,8 +110,6 @@ class LampSamples:
         """Return the samples of the lamp that has the most; 1 where all lights are points, or there are none."""
         radius = settings.lamp_radius
         if radius not in self._by_scene:  # there may be thousands of lights, and it is asked for many times a frame
-            if len(self._by_scene) >= MOST_RADII:
-                self._by_scene.clear()
             lamps = (light for light in as_lamps(self._lights, radius, None) if light.kind != "point")
             self._by_scene[radius] = max((lamp.samples for lamp in lamps), default=0)
         by_scene = self._by_scene[radius]

@@ -18,8 +18,8 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Hashable
-from concurrent.futures import Future
-from contextlib import closing
+from concurrent.futures import Future, InvalidStateError
+from contextlib import closing, suppress
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -162,7 +162,7 @@ class RenderThread:
             try:
                 turn()
             except Exception as problem:  # a task that raises though it must not
-                self._complain(problem, "work in the background failed")
+                self._complain(problem, "background work failed")
                 self._wake()
 
     def _complain(self, problem: Exception, what: str) -> None:
@@ -250,9 +250,14 @@ class RenderThread:
 
         if moved:
             renderer.take_turn(query.frame.time)
-        problem = query.answer(renderer, cancelled)
-        if problem is not None:
-            self._complain(problem, "no answer")
+        with suppress(InvalidStateError):  # it was cancelled meanwhile
+            try:
+                query.future.set_result(query.function(renderer, query.frame, *query.arguments, cancelled))
+            except Cancelled:
+                query.future.cancel()
+            except Exception as problem:
+                query.future.set_exception(problem)
+                self._complain(problem, "no answer")
         self._wake()
 
     def _answer_meanwhile(self, renderer: Renderer, moment: float) -> None:

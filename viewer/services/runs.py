@@ -13,18 +13,18 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 from tracer.experiments import experiment, hunt, zoom
 from tracer.experiments.experiment import Experiment
+from tracer.experiments.filmstrip import Filmstrip
 from tracer.experiments.runner import STARTING, Run
 from tracer.experiments.zoom import Step, ZoomTest
+from tracer.frame import Frame
 from tracer.method import in_order
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.output import exports
-from viewer.output.filmstrip import Filmstrip
 from viewer.services.capture_service import CaptureService
 from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Task, Traced
@@ -36,6 +36,7 @@ from viewer.state.session import Session
 from viewer.state.views import Record, View
 from viewer.util.messages import failure
 from viewer.util.numbers import several
+from viewer.views.difference import ringed
 
 
 class FileRun(Run[Path]):
@@ -46,13 +47,17 @@ class FileRun(Run[Path]):
 
 
 class RecordedZoomTest(ZoomTest):
-    """A zoom test that keeps the picture of each step."""
+    """A zoom test that keeps the picture of each step, with rings around wrong pixels."""
 
     def __init__(
         self, scene: Scene, settings: Settings, start: zoom.Aim, factors: Sequence[float], steps: int, ratio: float
     ) -> None:
         self.filmstrip = Filmstrip()
-        super().__init__(scene, settings, start, factors, steps, ratio, self.filmstrip.record)
+
+        def record(factor: float, number: int, frame: Frame) -> None:
+            self.filmstrip.record(factor, number, ringed(frame))
+
+        super().__init__(scene, settings, start, factors, steps, ratio, record)
 
 
 # --- in words -----------------------------------------------------------------------------------------
@@ -90,13 +95,6 @@ def duration(seconds: float) -> str:
 
 
 # --- one at a time ------------------------------------------------------------------------------------
-
-
-class Progress(NamedTuple):
-    """What has become of the run since it was last asked: a frame that is to be the picture, and whether it ended."""
-
-    picture: Traced | None = None
-    ended: bool = False
 
 
 class Runs:
@@ -165,20 +163,20 @@ class Runs:
         if self.current is not None:
             self.current.stop()
 
-    def take_progress(self) -> Progress:
-        """Take what has become of the run since the last time, and report one that has ended."""
+    def take_progress(self) -> tuple[Traced | None, bool]:
+        """Take a frame that is to be the picture, and whether the run has ended since the last time, which is said."""
         run = self.current
         if run is None:
-            return Progress()
+            return None, False
         done = run.done  # before its last frame is taken: none comes after
         frame = run.take()
         if done:
             self.current = None
             self._report(run)
         if frame is None or run.stopping or not run.is_of(self._session.scene):
-            return Progress(ended=done)
+            return None, done
         request = RenderRequest(frame.time, frame.camera, frame.settings)
-        return Progress(Traced(request, frame, frame.statistics), done)
+        return Traced(request, frame, frame.statistics), done
 
     def _report(self, run: Run) -> None:
         where = f", in {run.output}" if run.output is not None else ""

@@ -24,7 +24,7 @@ def refusal(path: Path) -> str | None:
     if path.is_dir():
         return f"{path}: a folder; open a scene ({' '.join(SCENE_SUFFIXES)}) or a saved picture (.png)"
     if path.suffix.lower() not in SCENE_SUFFIXES + CAPTURE_SUFFIXES:
-        return f"{path.name}: not a scene ({' '.join(SCENE_SUFFIXES)}) nor a saved picture (.png)"
+        return f"{path.name}: neither a scene ({' '.join(SCENE_SUFFIXES)}) nor a saved picture (.png)"
     return None if path.exists() else f"{path}: no such file"
 
 

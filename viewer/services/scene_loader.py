@@ -34,23 +34,9 @@ Built = tuple[Renderer, dict[str, Any]]
 """The renderer that holds a scene's trees, and what `scene_info` says of the scene."""
 
 
-def build(
-    scene: Scene,
-    settings: Settings,
-    progress: Progress,
-    ready: Callable[[], bool] = lambda: True,
-    seen: Callable[[Scene], None] = lambda scene: None,
-) -> Built:
-    """Build the trees of a scene once the tracer is `ready`.  A scene whose kernels are yet to be compiled is `seen`
-    before that.
-
-    Raises SceneError or Cancelled; runs on a thread of its own."""
+def build(scene: Scene, settings: Settings, progress: Progress) -> Built:
+    """Build the trees of a scene.  Raises SceneError or Cancelled."""
     lights, accelerator = len(scene.lights), settings.accelerator
-    if not can_draw(lights, accelerator) and not compiled_before(lights, accelerator, certificates=False):
-        seen(scene)
-    while not ready():
-        progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
-        time.sleep(0.02)
     if not can_draw(lights, accelerator):  # many lights need wider words, and kernels for them
         warm_up(progress, lights, accelerator)
     renderer, info, model = Renderer(scene, settings, progress), scene_info(scene), model_bounds(scene)
@@ -64,14 +50,13 @@ class Arrival:
     """What is opened: the renderer of a scene, None where it is open already, and what `scene_info` says of it; the
     place in it to go to, if not where it begins; and one line that says so.  `again` says that it is the scene that was
     open, read again, and what of it had `changed` where this is why: the place stays.  `meshes` says how meshes are
-    read, `files` which were come to, and `waits` is a scene that has been read and waits for kernels."""
+    read, and `files` which were come to."""
 
     meshes: MeshOptions = IN_STUDIO
     place: ViewState | None = None
     again: bool = False
     changed: str = ""
     files: dict[Path, Stamp] = field(default_factory=dict)
-    waits: Scene | None = None
     renderer: Renderer | None = None
     info: dict[str, Any] = field(default_factory=dict)
     text: str = ""
@@ -109,27 +94,17 @@ class SceneLoader:
         return not (self.load_job is None and self._restored is None and self.warm_up_job is None)
 
     @property
-    def waiting(self) -> Arrival | None:
-        """What has been read and waits for kernels to be compiled."""
-        return self._coming if self._coming.waits is not None else None
-
-    @property
     def ready(self) -> bool:
         """Whether all kernels are; those that make certificates come last, and pictures without them look the same."""
         return self.warm_up_job is None
 
-    def start(
-        self,
-        settings: Mapping[str, Any] | None = None,
-        folders: Sequence[Path] = (),
-        meshes: MeshOptions = IN_STUDIO,
-    ) -> None:
+    def start(self, settings: Mapping[str, Any], folders: Sequence[Path] = (), meshes: MeshOptions = IN_STUDIO) -> None:
         """Compile or load the kernels in the background; a first scene is opened meanwhile.
 
         `settings` hold for what is opened first, also where a saved place in it has others.  All scenes may read files
         from `folders` besides their own. `meshes` says how meshes are read; which way is up holds for the first."""
         self.folders, self.meshes = tuple(folders), meshes
-        self._given = dict(settings or {})
+        self._given = dict(settings)
         self._session.set_settings(**self._given)
         self.compiles = not compiled_before()
         title = "Compiling the tracer (first start only)" if self.compiles else "Loading the tracer"
@@ -262,14 +237,12 @@ class SceneLoader:
         self._give_up()
         settings, kernels = self._session.settings, self.warm_up_job
 
-        def ready() -> bool:
-            return kernels is None or kernels.done or can_draw()
-
-        def seen(scene: Scene) -> None:
-            coming.waits = scene
-
         def work(progress: Progress) -> Built:
-            return build(read(progress), settings, progress, ready, seen)
+            scene = read(progress)
+            while not (kernels is None or kernels.done or can_draw()):
+                progress(f"{scene.path.name} is read; waiting for the tracer", 1.0)
+                time.sleep(0.02)
+            return build(scene, settings, progress)
 
         self.load_job, self._coming = Job(title, work, self._wake), coming
 
@@ -277,7 +250,7 @@ class SceneLoader:
         """Give up the load that is under way; the scene that is open stays."""
         if self.load_job is not None:
             self._give_up()
-            stays = ": the scene that was open stays" if self._session.scene is not None else ""
+            stays = "; the open scene stays" if self._session.scene is not None else ""
             self._notices.say(f"loading cancelled{stays}")
 
     def _give_up(self) -> None:
@@ -309,7 +282,7 @@ class SceneLoader:
         if load.result is None:
             if came.again:
                 self.watch.files = self.watch.files | came.files  # what was not come to may be mended too
-            self._report(load, after=" (the scene as it was stays)" if came.again else "")
+            self._report(load, after=" (the open scene stays as it is)" if came.again else "")
             return arrival
         came.renderer, came.info = load.result
         self.watch.files = came.files

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.editing import Editing
 from viewer.services.inspector import Selection
 from viewer.services.jobs import Job
+from viewer.services.queries import is_same_picture
 from viewer.services.render_request import Traced
 from viewer.state.notices import Notices
 from viewer.state.parts import parts_of
@@ -32,17 +34,16 @@ from viewer.state.session import Session
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """What tables are made of; with `light` None, shadow modes are those for all lights together."""
+    """What tables are made of; shadow modes are those for `light`."""
 
     now: Edited
     frame: Frame
-    light: int | None
+    light: int
 
-    def is_like(self, other: Source) -> bool:
-        """Whether the tables of another would be the same: further samples of a picture count nothing."""
-        names = ("primitive", "modes", "cells", "saved", "due_rays", "wrong")
-        same = all(getattr(self.frame, name) is getattr(other.frame, name) for name in names)
-        return same and self.now is other.now and self.light == other.light
+    @cached_property
+    def tables(self) -> dict[Level, Table]:
+        """Both tables, made by the first job that asks."""
+        return tables_of(self.now, self.frame, self.light)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +52,6 @@ class Listing:
     understood, `problem` says why, and the rows are those of before."""
 
     source: Source
-    tables: dict[Level, Table]
     table: Table
     rows: NDArray[np.int32]
     order: Order
@@ -59,8 +59,8 @@ class Listing:
 
 
 class SceneTable:
-    """`level` is what rows are, `orders` what is asked of each level; with `all_lights` shadow modes are those for all
-    lights together, else for the session's.  `held` says that the pointer is on it, where rows must not move."""
+    """`level` is what rows are, `orders` what is asked of each level; where the pointer is on the table (`pointed_at`),
+    rows must not move."""
 
     def __init__(
         self,
@@ -76,8 +76,8 @@ class SceneTable:
         self._preferences, self._notices, self._files, self._editing = preferences, notices, files, editing
         self.level = Level.OBJECTS
         self.orders = dict.fromkeys(Level, Order(column="pixels", descending=True))
-        self.all_lights = self.visible = self.held = self._watched = False
-        self._source: Source | None = None  # the newest
+        self.visible = self.pointed_at = self._watched = False
+        self._source: Source | None = None
         self._listings: dict[Level, Listing] = {}
         self._job: Job[Listing] | None = None
         self._asked: object = None  # what the newest job was started for; where it fails, it is not tried again
@@ -119,7 +119,9 @@ class SceneTable:
         selection = self.selection
         done = selection.select_part(row) if self.level is Level.OBJECTS else selection.select_primitive(row)
         if not done:
-            self._notices.say("it is hidden" if self.is_hidden(row) else "it is not in the scene at this time")
+            self._notices.say(
+                "it is hidden: its eye shows it again" if self.is_hidden(row) else "it has no place at this time"
+            )
 
     @property
     def selected(self) -> int:
@@ -184,34 +186,28 @@ class SceneTable:
                 self._listings[made.table.level] = made
         if not self.visible or now is None or self._job is not None:
             return
+        light, last = self._session.draw.light, self._source
         if traced is not None and traced.whole and traced.request.divisor == 1:
-            newest, source = (
-                Source(now, traced.frame, None if self.all_lights else self._session.draw.light),
-                self._source,
-            )
-            stays = self.held and source is not None and source.now is now and source.light == newest.light
-            if source is None or not (stays or newest.is_like(source)):
-                self._source = newest
+            same = last is not None and last.now is now and last.light == light
+            # Further samples of a picture count nothing.
+            if last is None or not same or not (self.pointed_at or is_same_picture(last.frame, traced.frame)):
+                self._source = Source(now, traced.frame, light)
         if self._source is not None:
             self._make(self._source)
 
     def _make(self, source: Source) -> None:
-        """Have a listing made, unless it is there or was tried."""
+        """Have a listing made, unless this is what was asked for last."""
         level, order, before = self.level, self.order, self.listing
         asked = source, level, order
-        if asked == self._asked or (before is not None and (before.source, before.order) == (source, order)):
+        if asked == self._asked:
             return
-        tables = next((one.tables for one in self._listings.values() if one.source is source), None)
 
         def work(_: Progress) -> Listing:
-            known = tables or tables_of(source.now, source.frame, source.light)
-            table, problem = known[level], ""
+            table = source.tables[level]
             try:
-                rows = listed(table, order)
+                return Listing(source, table, listed(table, order), order)
             except FilterError as error:
-                problem, rows = str(error), np.arange(table.rows, dtype=np.int32)
-                if before is not None and before.table.rows == table.rows:
-                    rows = before.rows
-            return Listing(source, known, table, rows, order, problem)
+                rows = before.rows if before is not None else np.arange(table.rows, dtype=np.int32)
+                return Listing(source, table, rows, order, str(error))
 
         self._asked, self._job = asked, Job("The table", work, self._wake)

@@ -1,88 +1,48 @@
 """Short steps through the program: each says what to do, and ends when the user has done it.
 
-A step is an entry of `STEPS`: a text, in which {Next light} is the key of that command; the conditions that must hold
-once each, one after another, for it to be done; and a script that does it for the user."""
+A step is an entry of `STEPS`: a text, in which {Next light} is the key of that command, and conditions that must hold
+once, one after another."""
 
 from __future__ import annotations
 
 import re
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
-from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.method import Method
 from viewer.services.controller import Controller
-from viewer.state import navigation
-from viewer.state.methods import BY_MODES, with_base
+from viewer.state.methods import BY_MODES
 from viewer.state.views import View
 
-SECONDS = 2.0  # that a picture stays when it is shown
-PATIENCE = 20.0  # seconds that a picture or an answer may take to come
 LAST_WORD = (
     "Next: BART's Kitchen (File > Open), methods compared along a path as in Table 1 (panel Experiment), and "
     "docs/viewer.md, which explains all panels."
 )
-_ZOOMED = 150.0  # pixels of what a shown zoom test goes to: few enough to become many, and many enough to be seen
-_PLACES = sorted(  # where a shadow is looked for, in parts of the picture's width and height: from its middle on
-    ((x / 14.0, y / 14.0) for x in range(1, 14) for y in range(1, 14)),
-    key=lambda at: (at[0] - 0.5) ** 2 + (at[1] - 0.5) ** 2,
-)
-
 Condition = Callable[[Controller], bool]
-Script = Iterator[float | Condition]
-"""Does a step; yields how many seconds to wait before it goes on, or what must have come by then."""
-OpenPanel = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Step:
-    """See the module.  `shown` is what is to be seen while the step is done for the user, where `text` does not say
-    so."""
+    """See the module."""
 
     title: str
     text: str | Callable[[Controller], str]
-    done: tuple[Condition, ...]
-    show: Callable[[Controller, OpenPanel], Script]
-    shown: str = ""
+    conditions: tuple[Condition, ...]
 
 
 class Tour:
-    """`at` is the number of the step that is next, or None while no tour is being taken; `done` are those done so far:
-    the others are watched for, as somebody may run ahead.  `over` says that the last one was done, until that is
-    dismissed."""
+    """`step` is the one that is next, None while no tour is being taken; `over` says that the last one was done, until
+    that is dismissed."""
 
-    def __init__(self, controller: Controller, open_panel: OpenPanel, key: Callable[[str], str]) -> None:
+    def __init__(self, controller: Controller, key: Callable[[str], str]) -> None:
         """`key` returns the key of a command as the user reads it, or else where its menu is."""
-        self._c, self._open_panel, self._key = controller, open_panel, key
-        self.at: int | None = None
+        self._c, self._key = controller, key
+        self.step: Step | None = None
         self.over = False
-        self._held = [0] * len(STEPS)  # of each step's conditions
-        self._script: Script | None = None
-        self._waits_for: Condition = lambda c: False
-        self._waits_until = 0.0
-
-    @property
-    def step(self) -> Step | None:
-        """The step that is next."""
-        return STEPS[self.at] if self.at is not None else None
-
-    @property
-    def done(self) -> set[int]:
-        """The numbers of the steps that are done."""
-        return {number for number, step in enumerate(STEPS) if self._held[number] == len(step.done)}
-
-    @property
-    def showing(self) -> bool:
-        """Whether the step is being done for the user."""
-        return self._script is not None
+        self._held = 0  # of the step's conditions
 
     def text(self, step: Step) -> str:
-        """Return what to do in a step, as things are, with the keys that do it now, or what is being done."""
-        if self.showing and step is self.step and step.shown:
-            return step.shown
+        """Return what to do in a step, as things are, with the keys that do it now."""
         text = step.text if isinstance(step.text, str) else step.text(self._c)
         return re.sub(r"\{(.+?)\}", lambda name: self._key(name[1]), text)
 
@@ -92,53 +52,29 @@ class Tour:
 
     def start(self) -> None:
         """Begin with the first step."""
-        self._held = [0] * len(STEPS)
-        self._c.selection.picked = None  # what was clicked before was not clicked for the tour
-        self.over = False
-        self._go_to(0)
+        self._c.selection.clear()  # what was clicked before was not clicked for the tour
+        self._go_to(STEPS[0])
 
     def end(self) -> None:
         """Take the tour away."""
-        self.at = self._script = None
-        self.over = False
+        self._go_to(None)
 
     def skip(self) -> None:
-        """Go on to the next step that is not done; after the last the tour is over."""
-        if self.at is not None:
-            self._go_to(self.at + 1)
-
-    def show(self) -> None:
-        """Do the step for the user."""
+        """Go on to the next step; after the last the tour ends."""
         if self.step is not None:
-            self._script, self._waits_until = self.step.show(self._c, self._open_panel), 0.0
+            self._go_to(next(iter(STEPS[STEPS.index(self.step) + 1 :]), None))
 
     def update(self) -> None:
-        """See whether steps are done, once per frame, and go on with what is being shown."""
-        if self.at is None or self._c.frame is None:
+        """See whether what is next of the step is done, once per frame."""
+        if self.step is None or self._c.frame is None:
             return
-        self._go_on_showing()
-        for number, step in enumerate(STEPS):
-            held = self._held[number]
-            self._held[number] += held < len(step.done) and step.done[held](self._c)
-        if self.at in self.done and self._script is None:
+        self._held += self.step.conditions[self._held](self._c)
+        if self._held == len(self.step.conditions):
             self.skip()
             self.over = self.step is None
 
-    def _go_on_showing(self) -> None:
-        now = time.monotonic()
-        if self._script is None or (now < self._waits_until and not self._waits_for(self._c)):
-            return
-        wait = next(self._script, None)
-        if wait is None:
-            self._script = None
-        elif callable(wait):
-            self._waits_for, self._waits_until = wait, now + PATIENCE
-        else:
-            self._waits_for, self._waits_until = lambda c: False, now + wait
-
-    def _go_to(self, first: int) -> None:
-        self._script = None
-        self.at = next((n for n in range(first, len(STEPS)) if n not in self.done), None)
+    def _go_to(self, step: Step | None) -> None:
+        self.step, self.over, self._held = step, False, 0
 
 
 # --- conditions ------------------------------------------------------------------------------------
@@ -171,107 +107,35 @@ def _shows(view: View) -> Condition:
 
 
 def _in_shadow(c: Controller) -> bool:
-    """Return whether the pixel that was clicked is in the shadow of some light."""
-    answer = c.inspector.answer if c.selection.picked is not None else None
-    return answer is not None and any(one.blocker >= 0 for one in answer.reasons)
+    """Return whether the pixel that was clicked is in the shadow of another primitive."""
+    picked, answer = c.selection.picked, c.inspector.why
+    if picked is None or answer is None:
+        return False
+    return any(not one.lit and one.blocker not in (-1, picked.primitive) for one in answer.reasons)
 
 
 def _tests(c: Controller) -> bool:
     return c.runs.current is not None and c.runs.current is c.runs.zoom_test
 
 
-# --- scripts ---------------------------------------------------------------------------------------
-
-
-def _fly(c: Controller, _: OpenPanel) -> Script:
-    c.motion.glide(navigation.fly(c.session.camera, 0.0, 0.0, 0.5 * c.motion.pace, c.motion.world_up))
-    yield SECONDS
-
-
-def _toggle_culling(c: Controller, open_panel: OpenPanel) -> Script:
-    before = c.session.settings.method
-    open_panel("Statistics")
-    if Method.parse(before).adaptive or not _saves(c):
-        c.settings.change(method=with_base(before, BY_MODES))
-        c.notices.say(f"the method is {c.session.settings.method} now, as {before} has culled nothing here")
-    yield _shows_culling
-    yield SECONDS
-    for seen in (_shows_all_traced, _shows_culling):
-        c.settings.toggle_culling()
-        yield seen
-        yield SECONDS
-
-
-def _show_modes(c: Controller, open_panel: OpenPanel) -> Script:
-    open_panel("View")
-    for view in (View.OCCLUSION, View.SHADOW, View.COLOR):
-        c.session.set_draw(view=view)
-        yield SECONDS
-
-
-def _click_a_shadow(c: Controller, open_panel: OpenPanel) -> Script:
-    """Click the first of the places that is in another primitive's shadow, and choose that light."""
-    open_panel("Inspector")
-    c.session.set_draw(view=View.COLOR)
-    for at in _PLACES:
-        c.selection.select(at)
-        picked = c.selection.picked
-        if picked is None or picked.dynamic:
-            continue
-        yield lambda c: c.inspector.answer is not None
-        answer = c.inspector.answer
-        for one in answer.reasons if answer is not None else ():
-            if not one.lit and one.blocker not in (-1, picked.primitive):
-                c.settings.set_light(one.light)
-                yield SECONDS
-                return
-
-
-def _run_a_zoom_test(c: Controller, open_panel: OpenPanel) -> Script:
-    """Go towards a small primitive that is fully rendered, if the picture has one: what is not has no count to grow
-    from, and what is large cannot become so many times as large."""
-    open_panel("Zoom test")
-    yield lambda c: not c.scheduler.awaits
-    small = _small_primitive(c)
-    if small is not None:
-        c.selection.select_primitive(small)
-    if c.selection.picked is None or c.selection.picked.dynamic:
-        yield from _click_a_shadow(c, open_panel)
-    yield SECONDS
-    c.runs.start_zoom_test()
-    while c.runs.current is not None:
-        yield 0.1
-
-
-def _small_primitive(c: Controller) -> int | None:
-    """Return the number of a static primitive, in the scene as it was read, that is fully rendered in about `_ZOOMED`
-    pixels; None where there is none."""
-    now, frame = c.session.edited, c.frame
-    if now is None or frame is None or not frame.settings.keeps_modes or Method.parse(frame.settings.method).uses_cells:
-        return None
-    whole = (occlusion_mode(frame.modes) == OcclusionMode.FULLY_RENDERED) & (frame.pixel_count > 0)
-    numbers = np.nonzero(whole)[0]
-    numbers = numbers[np.argsort(np.abs(np.log(frame.pixel_count[numbers] / _ZOOMED)), kind="stable")]
-    return next((int(now.primitives[n]) for n in numbers if now.scene.object_of(int(n)) == 0), None)
-
-
 # --- the steps -------------------------------------------------------------------------------------
+
+_THE_SAME = (
+    "The picture looks the same, but without culling every shadow ray is traced: see the bar above the picture, "
+    "hatched while culling is off, and the row Traced in the Statistics panel."
+)
 
 
 def _how_to_toggle(c: Controller) -> str:
     method = Method.parse(c.session.settings.method)
-    seen = (
-        "The picture looks the same, but without culling every shadow ray is traced: see the bar above the picture, "
-        "hatched while culling is off, and the row Traced in the Statistics panel."
-    )
     if method.adaptive:
         return (
             f"Choose {BY_MODES}, the published method, at the top of the Culling panel, and then press "
-            f"{{Shadow culling}} twice. {seen} (The method {method.base} culls only where that is quicker.)"
+            f"{{Shadow culling}} twice. {_THE_SAME} (The method {method.base} culls only where that is quicker.)"
         )
     if method.culls and c.frame is not None and not _saves(c) and not c.active:
         return f"The method {method.base} has culled nothing here yet. Press {{Trace again}} to trace once more."
-    return f"Press {{Shadow culling}} {'twice' if method.culls else 'once more to cull again'}. {seen}"
+    return f"Press {{Shadow culling}} {'twice' if method.culls else 'once more to cull again'}. {_THE_SAME}"
 
 
 STEPS = (
@@ -279,32 +143,26 @@ STEPS = (
         "Fly",
         "Hold {Fly forward}, {Fly left}, {Fly back} or {Fly right} to move, and drag the picture with the mouse to "
         "look around. {Reset camera} takes you back.",
-        (_flies,), _fly,
+        (_flies,),
     ),
-    Step(
-        "Turn culling off and on", _how_to_toggle, (_shows_all_traced, _shows_culling), _toggle_culling,
-        "Culling is on, then off, so that every shadow ray is traced, and on again, as it stays. The picture looks the "
-        "same: see the bar above it, hatched while culling is off, and the row Traced in the Statistics panel.",
-    ),
+    Step("Turn culling off and on", _how_to_toggle, (_shows_all_traced, _shows_culling)),
     Step(
         "See the modes",
         f"Press {{{View.OCCLUSION.label}}}: green surfaces were fully rendered, orange ones are partly hidden. Then "
         f"press {{{View.SHADOW.label}}}: what is in the shadow of one light, lit by it, or both. {{Next light}} "
         f"chooses the next light, {{{View.COLOR.label}}} shows the picture again.",
-        (_shows(View.OCCLUSION), _shows(View.SHADOW)), _show_modes,
+        (_shows(View.OCCLUSION), _shows(View.SHADOW)),
     ),
     Step(
         "Click a shadow",
         "Click a dark spot in the picture. The Inspector says in a sentence why its shadow ray is culled or traced, "
         "and lines show the shadow rays.",
-        (_in_shadow,), _click_a_shadow,
+        (_in_shadow,),
     ),
     Step(
         "Run a zoom test",
         "Open the panel Zoom test and press Start. The camera moves towards the surface that you clicked, and the plot "
         "shows whether culling misses a shadow that can only be seen from close up.",
-        (_tests, lambda c: not _tests(c)), _run_a_zoom_test,
-        "The camera moves towards a small primitive, once with each zoom factor. When its pixels, the blue line, have "
-        "reached the green limit, so many times their highest number, it is examined anew (§2.6). Red: wrong pixels.",
+        (_tests, lambda c: not _tests(c)),
     ),
-)  # fmt: skip
+)

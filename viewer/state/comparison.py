@@ -31,13 +31,6 @@ class CompareMode(StrEnum):
     )  # fmt: skip
 
 
-class Source(StrEnum):
-    """Where A comes from."""
-
-    KEPT = "kept"
-    METHOD = "method"
-
-
 @dataclass(frozen=True)
 class Side:
     """One of the two pictures: a frame in a view, of the scene of this name, at the frame number of its animation;
@@ -80,23 +73,17 @@ class Side:
 
 @dataclass(frozen=True)
 class Compare:
-    """Whether and how two pictures are compared; `second` is the method that traces A, where it is not kept."""
+    """Whether and how two pictures are compared; `second` is the method that traces A live, "" where A was kept."""
 
     on: bool = False
     mode: CompareMode = CompareMode.WIPE
-    source: Source = Source.KEPT
     second: str = ""
 
     def changes(self, after: Compare) -> dict[str, str]:
         """Return what has changed since, in a few words for each."""
-        words = {
-            "on": f"comparison: {after.mode.label.lower()}" if after.on else "comparison off",
-            "source": "A by another method" if after.source is Source.METHOD else "A as it was kept",
-            "second": f"second method {after.second}",
-        }
-        changed = {name for name in words if getattr(self, name) != getattr(after, name)}
-        if self.mode is not after.mode:
-            changed.add("on")
-        if not self.second:
-            changed.discard("second")  # it was chosen with the source
-        return {name: said for name, said in words.items() if name in changed}
+        found = {}
+        if (self.on, self.mode) != (after.on, after.mode):
+            found["on"] = f"comparison: {after.mode.label.lower()}" if after.on else "comparison off"
+        if self.second != after.second:
+            found["second"] = f"A by {after.second}" if after.second else "A as it was kept"
+        return found

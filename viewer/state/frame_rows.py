@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
 from tracer.statistics import RayCounts
 from viewer.state import terms
-from viewer.state.savings import InTurn
+from viewer.state.savings import InTurn, seconds_of
 from viewer.util.numbers import count, percent, whole_percent
 
 RAYS, WORK, TIME = "Shadow rays", "Work", "Time"
@@ -59,7 +60,7 @@ class Row:
 def rows(frame: Frame) -> list[Row]:
     """Return what there is to say of a frame."""
     s = frame.statistics
-    return [row for row in _rows(frame, lambda phase: s.phases.get(phase) if phase else s.seconds) if row.is_shown]
+    return [row for row in _rows(frame, partial(seconds_of, s)) if row.is_shown]
 
 
 def beside(a: Frame, b: Frame, timed: InTurn | None = None) -> list[tuple[Row, Row]]:
@@ -73,18 +74,10 @@ def beside(a: Frame, b: Frame, timed: InTurn | None = None) -> list[tuple[Row, R
     else:
         tip = f"medians of {timed.count} whole frames by each method, in turn, while nothing else was to be done"
         speed = timed.speed(methods[1], methods[0])
-        if speed is not None:
-            tip += f"; B is {speed.median:.2f} ± {speed.margin:.2f} times as fast as A"
-    pairs = zip(*(_rows(one, _medians(timed, one.settings.method), tip) for one in (a, b)), strict=True)
+        tip += f"; B is {speed.median:.2f} ± {speed.margin:.2f} times as fast as A"
+    seconds = [partial(timed.seconds, method) if timed is not None else lambda phase: None for method in methods]
+    pairs = zip(_rows(a, seconds[0], tip), _rows(b, seconds[1], tip), strict=True)
     return [(one, other) for one, other in pairs if one.is_shown or other.is_shown]
-
-
-def _medians(timed: InTurn | None, method: str) -> Seconds:
-    def median(phase: str) -> float | None:
-        found = None if timed is None else timed.seconds(method, phase)
-        return None if found is None else found.median
-
-    return median
 
 
 def change(a: Row, b: Row) -> tuple[str, str]:

@@ -18,9 +18,6 @@ INFO_LASTS = timedelta(seconds=6.0)
 MOST_ENTRIES = 500
 RECENT_ENTRIES = 20
 """Entries back that the same internal error is looked for."""
-QUIET_AFTER = timedelta(seconds=0.5)
-"""How long an internal error has not come until it is news again: longer than a frame, shorter than a hand.  What fails
-in every frame would else come back at once when it is dismissed."""
 
 
 class Level(Enum):
@@ -35,8 +32,7 @@ class Level(Enum):
 class Entry:
     """One line, how often it was said, and when last; `details` may be many lines, such as a traceback.
 
-    `unread` says that it is an error or a fault that nobody has seen in the log, `shown` that it is a fault that nobody
-    has dismissed."""
+    `unread` says that it is an error or a fault that nobody has seen in the log."""
 
     level: Level
     text: str
@@ -44,7 +40,6 @@ class Entry:
     count: int = 0
     at: datetime = datetime.min
     unread: bool = False
-    shown: bool = False
 
     @property
     def error(self) -> bool:
@@ -81,8 +76,9 @@ class Notices:
             self.fault(failed)
 
     def fault(self, failed: Failure) -> Entry:
-        """Report an internal error, and show it unless it was just dismissed; returns its entry in the log."""
-        return self._add(Level.FAULT, failed.text, failed.details)
+        """Report an internal error, also in the status bar; returns its entry in the log."""
+        self.message = entry = self._add(Level.FAULT, failed.text, failed.details)
+        return entry
 
     def _add(self, level: Level, text: str, details: str) -> Entry:
         """Add an entry to the log, or count it where it was said before: anything just now, a fault a while ago too."""
@@ -93,7 +89,6 @@ class Notices:
             if entry is None:
                 entry = Entry(level, text, details)
                 self._entries.append(entry)
-            entry.shown |= fault and entry.at < now - QUIET_AFTER
             entry.count, entry.at, entry.unread = entry.count + 1, now, entry.error
         self._wake()
         return entry
@@ -122,17 +117,9 @@ class Notices:
             entry.unread = False
 
     @property
-    def faults(self) -> list[Entry]:
-        """The internal errors that nobody has dismissed yet."""
-        return [entry for entry in self.entries() if entry.shown]
-
-    @property
     def newest_fault(self) -> Entry | None:
-        return next(reversed(self.faults), None)
-
-    def dismiss_faults(self) -> None:
-        for entry in self.faults:
-            entry.shown = False
+        """The newest internal error since the log was read."""
+        return next((entry for entry in reversed(self.unread) if entry.level is Level.FAULT), None)
 
     def clear(self) -> None:
         """Empty the log."""

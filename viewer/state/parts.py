@@ -5,7 +5,6 @@ All is kept as arrays over primitives, as a scene may have millions of these.
 
 from __future__ import annotations
 
-import weakref
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.model import CONE, Scene
-from tracer.scene.things import things
+from tracer.scene.things import once_per_scene, things
 
 KINDS = ("triangle", "sphere", "cone")
 
@@ -53,19 +52,9 @@ class Parts:
         return np.flatnonzero(self.part_of == part)
 
 
-_known: dict[int, tuple[weakref.ref[Scene], Parts]] = {}  # by the identity of scenes that are in use
-
-
+@once_per_scene
 def parts_of(scene: Scene) -> Parts:
-    """Return the parts of a scene as it was read, found once."""
-    key = id(scene)
-    known = _known.get(key)
-    if known is None or known[0]() is not scene:
-        known = _known[key] = weakref.ref(scene, lambda _: _known.pop(key, None)), _found(scene)
-    return known[1]
-
-
-def _found(scene: Scene) -> Parts:
+    """Return the parts of a scene as it was read."""
     total = scene.primitive_count
     part_of, kind = np.zeros(total, np.int32), np.zeros(total, np.int8)
     material, texture = np.zeros(total, np.int32), np.full(total, -1, np.int32)

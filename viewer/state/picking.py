@@ -13,7 +13,7 @@ from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
 from tracer.scene.deformation import deformed
 from tracer.scene.edits import Edited
-from tracer.scene.model import CONE, Camera, Scene
+from tracer.scene.model import CONE, Camera, Quadrics, Scene
 from tracer.why_in_words import kind_of
 from viewer.state.navigation import Vector, ray
 from viewer.state.parts import parts_of
@@ -26,25 +26,26 @@ NEARBY = 2
 _BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
 _EDGES = [(a, b) for a in range(8) for b in range(a) if np.abs(_BOX[a] - _BOX[b]).sum() == 2.0]
 
+Seen = tuple[float, Camera, int, int]
+
 
 @dataclass(frozen=True)
 class Pick:
-    """What is selected: a primitive, and the point of it that a pixel of a frame shows.
+    """What is selected: a primitive, and the point of it that a pixel of a frame shows; with a `part`, that whole part
+    of the scene (`viewer.state.parts`).
 
-    `primitive` is -1 where the ray left the scene; then only x and y mean anything.  `unit` carries its modes and
-    counts, -1 where that is not known; `in_cells` says whether units are virtual cells, else they are primitives.
-    `seen` is the frame's time, camera, width and height, None where x and y are no pixel of a frame."""
+    `primitive` is -1 where the ray left the scene; then only x and y mean anything.  `seen` is the frame's time,
+    camera, width and height, None where x and y are no pixel of a frame."""
 
     x: int
     y: int
     primitive: int
-    unit: int = -1
-    in_cells: bool = False
+    part: int | None = None
     kind: str = ""
     object_name: str = ""
     dynamic: bool = False
     point: tuple[float, float, float] | None = None
-    seen: tuple[float, Camera, int, int] | None = None
+    seen: Seen | None = None
 
 
 def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
@@ -54,8 +55,7 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
     if not 0 <= primitive < scene.primitive_count:
         return Pick(x, y, -1)
     point = point_at(frame, u, v)
-    found = _named(scene, primitive, x, y, None if point is None else point.tolist())
-    return replace(found, unit=int(frame.unit[y, x]), in_cells=has_modes_of_cells(frame), seen=_seen(frame))
+    return _named(scene, primitive, x, y, point, _seen(frame))
 
 
 def pick_primitive(frame: Frame, scene: Scene, primitive: int) -> Pick | None:
@@ -67,10 +67,7 @@ def pick_primitive(frame: Frame, scene: Scene, primitive: int) -> Pick | None:
     if shown.any():
         return _middle_pick(frame, scene, shown)
     points = primitive_points(scene, primitive, frame.time)
-    if not len(points):
-        return None
-    found, in_cells = _named(scene, primitive, -1, -1, points.mean(axis=0).tolist()), has_modes_of_cells(frame)
-    return replace(found, unit=primitive if not in_cells and primitive < len(frame.modes) else -1, in_cells=in_cells)
+    return _named(scene, primitive, -1, -1, points.mean(axis=0), None) if len(points) else None
 
 
 def pick_part(frame: Frame, now: Edited, part: int) -> Pick | None:
@@ -80,25 +77,15 @@ def pick_part(frame: Frame, now: Edited, part: int) -> Pick | None:
         return None
     in_part = np.zeros(len(now.primitives) + 1, np.bool_)  # -1, a miss, finds the last of them
     in_part[found] = True
-    shown = in_part[frame.primitive]
-    return _middle_pick(frame, now.scene, shown) if shown.any() else pick_primitive(frame, now.scene, int(found[0]))
+    shown, scene = in_part[frame.primitive], now.scene
+    pick = _middle_pick(frame, scene, shown) if shown.any() else pick_primitive(frame, scene, int(found[0]))
+    return None if pick is None else replace(pick, part=part)
 
 
-def refreshed(old: Pick, frame: Frame) -> Pick:
-    """The same with what carries its modes in a newer frame: the primitive or, where that is cells, what the pixel
-    shows."""
-    in_cells, unit = has_modes_of_cells(frame), old.unit
-    if not in_cells:
-        unit = old.primitive
-    elif not old.in_cells or unit < 0:
-        unit = int(frame.unit[old.y, old.x]) if old.seen == _seen(frame) else -1
-    return replace(old, unit=unit, in_cells=in_cells) if (unit, in_cells) != (old.unit, old.in_cells) else old
-
-
-def _named(scene: Scene, primitive: int, x: int, y: int, point: list[float] | None) -> Pick:
+def _named(scene: Scene, primitive: int, x: int, y: int, point: Vector | None, seen: Seen | None) -> Pick:
     return Pick(
         x, y, primitive, kind=kind_of(scene, primitive), object_name=scene.name_of(primitive),
-        dynamic=scene.object_of(primitive) > 0, point=None if point is None else (point[0], point[1], point[2]),
+        dynamic=scene.object_of(primitive) > 0, point=None if point is None else tuple(point.tolist()), seen=seen,
     )  # fmt: skip
 
 
@@ -109,7 +96,7 @@ def _middle_pick(frame: Frame, scene: Scene, shown: NDArray[np.bool_]) -> Pick:
     return pick(frame, scene, (columns[nearest] + 0.5) / frame.width, (rows[nearest] + 0.5) / frame.height)
 
 
-def _seen(frame: Frame) -> tuple[float, Camera, int, int]:
+def _seen(frame: Frame) -> Seen:
     return frame.time, frame.camera, frame.width, frame.height
 
 
@@ -138,12 +125,20 @@ def pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
     rows, columns = np.nonzero(shown)
     if not len(rows):
         return None
-    apart = np.hypot(columns + left + 0.5 - at[0] * frame.width, rows + top + 0.5 - at[1] * frame.height)
-    nearest = int(np.argmin(apart))
-    return int(columns[nearest]) + left, int(rows[nearest]) + top
+    columns, rows = columns + left, rows + top
+    nearest = np.argmin(np.hypot(columns + 0.5 - at[0] * frame.width, rows + 0.5 - at[1] * frame.height))
+    return int(columns[nearest]), int(rows[nearest])
 
 
 # --- what a frame knows of a pixel --------------------------------------------------------------------
+
+
+def unit_of(frame: Frame, primitive: int, at: tuple[int, int] | None) -> int:
+    """What carries the modes and pixel counts of a primitive: itself or, where cells do, the one that its pixel shows;
+    -1 where that is not seen."""
+    if not has_modes_of_cells(frame):
+        return primitive
+    return -1 if at is None else int(frame.unit[at[1], at[0]])
 
 
 def shadow_mode_of(frame: Frame, unit: int, light: int) -> ShadowMode | None:
@@ -191,22 +186,15 @@ def typical_depth(frame: Frame) -> float:
 
 
 def primitive_points(scene: Scene, primitive: int, time: float) -> NDArray[np.float64]:
-    """World space corners of a primitive: (3, 3) of a triangle, (8, 3) of a box around a sphere or a cone; (0, 3) where
-    it is beyond all numbers."""
-    corners = _corners(scene, scene.object_of(primitive), np.array([primitive]), time)[0]
-    return corners if np.isfinite(corners).all() else np.empty((0, 3))
+    """World space corners of a primitive, (3, 3) of a triangle, (8, 3) of a box around a sphere or a cone; none of a
+    corner that is beyond all numbers."""
+    return _corners(scene, np.array([primitive]), time)
 
 
-def part_points(now: Edited, part: int, time: float) -> NDArray[np.float64]:
-    """(k, 3) corners of all primitives of a part that are somewhere."""
-    scene, found = now.scene, _primitives_of(now, part)
-    if not len(found):
-        return np.empty((0, 3))
-    index = scene.object_of(int(found[0]))
-    quadrics = found >= scene.triangle_count
-    corners = [_corners(scene, index, found[which], time).reshape(-1, 3) for which in (~quadrics, quadrics)]
-    points = np.concatenate(corners)
-    return points[np.isfinite(points).all(axis=1)]
+def points_of(now: Edited, picked: Pick, time: float) -> NDArray[np.float64]:
+    """(k, 3) corners of what is selected: of the primitive, or of all of a part's that are somewhere."""
+    part = picked.part
+    return _corners(now.scene, np.array([picked.primitive]) if part is None else _primitives_of(now, part), time)
 
 
 def outline_of(points: NDArray) -> list[NDArray[np.float64]]:
@@ -226,29 +214,29 @@ def _primitives_of(now: Edited, part: int) -> NDArray:
     return found[found >= 0]
 
 
-def _corners(scene: Scene, index: int, primitives: NDArray, time: float) -> NDArray[np.float64]:
-    """(k, corners, 3) of triangles, or of quadrics, of one object."""
-    held = scene.objects[index]
+def _corners(scene: Scene, primitives: NDArray, time: float) -> NDArray[np.float64]:
+    """(k, 3) corners of primitives of one object."""
     if not len(primitives):
-        return np.empty((0, 3, 3))
-    if primitives[0] < scene.triangle_count:
-        which = primitives - int(scene.triangle_offsets[index])
-        if held.deformation is None:
-            local = held.triangles.corners[which].astype(np.float64)
-        else:
-            d = held.deformation
-            keyed = replace(d, times=d.times[which], corners=d.corners[which], normals=d.normals[which])
-            local = deformed(keyed, time)[0].astype(np.float64)
+        return np.empty((0, 3))
+    index = scene.object_of(int(primitives[0]))
+    owner, are_quadrics = scene.objects[index], primitives >= scene.triangle_count
+    triangles = primitives[~are_quadrics] - int(scene.triangle_offsets[index])
+    quadrics = primitives[are_quadrics] - int(scene.quadric_offsets[index])
+    if owner.deformation is None:
+        corners = owner.triangles.corners[triangles].astype(np.float64)
     else:
-        local = _boxes(scene, index, primitives - int(scene.quadric_offsets[index]))
-    matrix = scene.animation.matrix(held.chain, time)
+        d = owner.deformation
+        keyed = replace(d, times=d.times[triangles], corners=d.corners[triangles], normals=d.normals[triangles])
+        corners = deformed(keyed, time)[0].astype(np.float64)
+    local = np.concatenate([corners.reshape(-1, 3), _boxes(owner.quadrics, quadrics).reshape(-1, 3)])
+    matrix = scene.animation.matrix(owner.chain, time)
     with np.errstate(all="ignore"):
-        return np.asarray(local @ matrix[:3, :3].T + matrix[:3, 3], np.float64)
+        points = np.asarray(local @ matrix[:3, :3].T + matrix[:3, 3], np.float64)
+    return points[np.isfinite(points).all(axis=1)]
 
 
-def _boxes(scene: Scene, index: int, which: NDArray) -> NDArray[np.float64]:
+def _boxes(quadrics: Quadrics, which: NDArray) -> NDArray[np.float64]:
     """(k, 8, 3) corners of boxes around quadrics, in the space of their object."""
-    quadrics = scene.objects[index].quadrics
     boxes = np.repeat(_BOX[None], len(which), axis=0)
     cones = quadrics.kind[which] == CONE
     boxes[cones, :, :2] *= np.abs(quadrics.radii[which][cones]).max(axis=1)[:, None, None]

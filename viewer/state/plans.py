@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tracer.geometry.accelerators import KD_TREE
+from tracer.scene.model import Scene
 from tracer.setting import setting
 
 MOST_FACTORS = 6  # that are compared in one zoom test
@@ -50,21 +51,26 @@ class ZoomPlan:
     )  # fmt: skip
 
 
-def frames_within(first: int, last: int | None, count: int) -> tuple[int, int]:
-    """The first and the last frame of a plan, its end where `last` is None, of a path of `count` frames."""
-    end = count - 1
-    first = min(max(first, 0), end)
-    return first, end if last is None else min(max(last, first), end)
+@dataclass
+class PathPlan:
+    """The frames `first` to `last` of the path, to its end where that is None."""
+
+    first: int = 0
+    last: int | None = None
+
+    def frames(self, scene: Scene | None) -> tuple[int, int]:
+        """Return the first and the last of them, of those that there are."""
+        end = scene.frames - 1 if scene is not None else 0
+        first = min(max(self.first, 0), end)
+        return first, end if self.last is None else min(max(self.last, first), end)
 
 
 @dataclass
-class FilmPlan:
-    """The frames `first` to `last` of the path, to its end where that is None, with the scene's camera or `from_here`,
-    or a flight `through_bookmarks`; 0 seconds for every frame once."""
+class FilmPlan(PathPlan):
+    """Frames of the path, with the scene's camera or `from_here`, or a flight `through_bookmarks`; 0 seconds for every
+    frame once."""
 
     through_bookmarks: bool = False
-    first: int = 0
-    last: int | None = None
     from_here: bool = False
     seconds: float = setting(
         0.0, "Seconds", "Length of the film; 0 for every frame once, or 2 seconds from bookmark to bookmark.",
@@ -79,13 +85,10 @@ class FilmPlan:
 
 
 @dataclass
-class HuntPlan:
-    """The frames `first` to `last` of the path, to its end where that is None, by a method whose wrong pixels are
-    searched; the worst `keep` are kept."""
+class HuntPlan(PathPlan):
+    """Frames of the path, by a method whose wrong pixels are searched; the worst `keep` are kept."""
 
     method: str = "paper"
-    first: int = 0
-    last: int | None = None
     step: int = setting(1, "Step", "Search only every nth of these frames.", low=1, high=MOST_FRAMES)
     around: int = setting(
         40, "Extra views", "Extra random views near the worst findings.", low=0, high=MOST_FRAMES

@@ -29,6 +29,10 @@ PATIENCE = 2.0  # seconds that one window waits for another to save
 RECENT_SCENES = 10
 RECENT_COMMANDS = 30
 THEMES = ("dark", "light")
+NAVIGATION = {
+    "fly": "drag to look around, W A S D Q E to move",
+    "orbit": "drag to turn around the point that was clicked",
+}
 SCALES = (0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
 """Sizes of the interface that are offered."""
 DEFAULT_TEMPLATE = "{scene}-{view}-{frame:04d}-{date}-{time}.png"
@@ -47,36 +51,44 @@ class Preferences:
     """Everything that outlives the window.
 
     `state` is what the window starts with (`codec.remembered`), `method` the one to cull by while culling is on.
-    `speed` is relative to the scene's own pace.  `savings` says that what culling saves is shown above the picture,
-    `tour` that the tour has not been shown yet.  `keys` are those that the user has chosen, by the names of commands,
-    and `used` is what the command palette ran last, newest first.  `bookmarks` are by the path of their scene."""
+    `speed` is relative to the scene's own pace.  `tour` says that the tour has not been shown yet.  `keys` are those
+    that the user has chosen, by the names of commands, and `used` is what the command palette ran last, newest first.
+    `bookmarks` are by the path of their scene."""
 
     format: int = FORMAT
     state: dict[str, Any] = field(default_factory=dict)
     method: str = setting(DEFAULT_METHOD, "Method", "What culls while culling is on.", check=Method.parse)
-    navigation: str = "fly"
+    navigation: str = setting("fly", "Mode", "How the pointer moves the camera.", choices=NAVIGATION, panel="Camera")
     speed: float = setting(1.0, "Speed", "How fast the camera flies: 1 crosses the scene in about eight seconds.",
                            low=0.001, high=1000.0, slider=(0.05, 20.0), log=True, unit=" x",
                            panel="Camera")  # fmt: skip
-    loop: bool = True
+    loop: bool = setting(True, "Loop", "Begin again where the animation ends.")
     playback_rate: float = setting(1.0, "Rate", "How fast time passes: 1 is the scene's own time.", low=0.01,
                                    high=100.0, slider=(0.1, 10.0), log=True, unit=" x", panel="Camera")  # fmt: skip
-    savings: bool = True
+    savings: bool = setting(
+        True, "What culling saves",
+        "Say it in a sentence above the picture, with a bar of the shadow rays by what became of them.",
+    )  # fmt: skip
     legend_in_pictures: bool = setting(
         False, "Legend in saved pictures", "Draw the legend of the view into them.", panel="Saving"
     )
     savings_in_pictures: bool = setting(
         False, "Savings in saved pictures", "Say above them what culling saves.", panel="Saving"
     )
-    pixel_values: bool = True
-    screenshot_folder: str = ""
-    screenshot_template: str = DEFAULT_TEMPLATE
-    tev: str = "127.0.0.1:14158"
+    pixel_values: bool = setting(
+        True, "Values in pixels", "Write each pixel's value into it, and draw a grid, where pixels are large enough."
+    )
+    screenshot_folder: str = setting("", "Folder", "Where pictures and results are saved.",
+                                     unset="shadowcull, in your folder of pictures", panel="Saving")  # fmt: skip
+    screenshot_template: str = setting(DEFAULT_TEMPLATE, "Name", "The template of the file's name.", panel="Saving")
+    tev: str = setting("127.0.0.1:14158", "tev", "Where tev or HDRView listens, for Send to tev.", panel="Saving")
     tour: bool = True
     theme: str = setting("dark", "Theme", "The colours of the interface.", choices=THEMES)
     ui_scale: float = setting(1.0, "Size of the interface", "How large its letters are.", low=0.75, high=2.0,
                               percent=True, panel="Window")  # fmt: skip
-    watch_scene: bool = True
+    watch_scene: bool = setting(
+        True, "Reload when files change", "Read the scene, and what it includes, again: textures, materials, meshes."
+    )
     keys: dict[str, list[str]] = field(default_factory=dict)
     used: list[str] = field(default_factory=list)
     presets: list[NamedState] = field(default_factory=list)

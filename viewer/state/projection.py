@@ -36,11 +36,11 @@ def seen_from(camera: Camera, points: ArrayLike) -> NDArray[np.float64]:
 
 def place(frame: Frame, point: ArrayLike) -> tuple[float, float] | None:
     """Where a point is on the picture, or beside it; None for one behind the camera."""
-    x, y, z = seen_from(frame.camera, point)
-    if z <= 0.0:
+    seen = seen_from(frame.camera, point)
+    if seen[2] <= 0.0:
         return None
-    across, half = _halves(frame)
-    return 0.5 + 0.5 * x / (z * across), 0.5 - 0.5 * y / (z * half)
+    u, v = _on_picture(frame, seen)
+    return float(u), float(v)
 
 
 def at_depth(frame: Frame, at: tuple[float, float], depth: float) -> tuple[float, float, float]:
@@ -61,6 +61,12 @@ def _halves(frame: Frame) -> tuple[float, float]:
     """Half of the picture's width and height at distance 1."""
     half = math.tan(math.radians(frame.camera.angle) / 2.0)
     return half * frame.width / frame.height, half
+
+
+def _on_picture(frame: Frame, seen: NDArray) -> NDArray[np.float64]:
+    """(..., 2), where points (..., 3) that the camera sees are on the picture."""
+    across, half = _halves(frame)
+    return 0.5 + 0.5 * seen[..., :2] / (seen[..., 2:] * (across, -half))
 
 
 def _clipped(frame: Frame, a: NDArray, b: NDArray) -> tuple[NDArray, NDArray] | None:
@@ -87,7 +93,7 @@ def _segment(frame: Frame, a: NDArray, b: NDArray) -> list[Stroke]:
         return []
     ends = np.stack(inside)
     across, half = _halves(frame)
-    places = np.stack([0.5 + 0.5 * ends[:, 0] / (ends[:, 2] * across), 0.5 - 0.5 * ends[:, 1] / (ends[:, 2] * half)], 1)
+    places = _on_picture(frame, ends)
     length = math.hypot((places[1, 0] - places[0, 0]) * frame.width / frame.height, places[1, 1] - places[0, 1])
     pieces = min(max(1, math.ceil(512.0 * length / DASH)), MOST_DASHES)
     steps = np.linspace(0.0, 1.0, pieces + 1)[:, None]

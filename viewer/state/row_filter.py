@@ -1,15 +1,10 @@
-"""Which rows of a table are to be seen, by what is typed above it, and in which order.
-
-All that is typed must hold.  A word finds rows that have it in a name, a number alone the primitive of that number.
-`pixels>100`, `share<=50` and `number:10-20` compare; `object:wall`, `mode:full_shadow` and `is:dynamic` look into one
-column; `object="left wall"` is the whole name.  A `-` in front finds the others.
-"""
+"""Which rows of a table are to be seen, by what is typed above it (`HELP`), and in which order."""
 
 from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -24,7 +19,7 @@ HELP = """All of what you type must hold:
   1234    the primitive with this number
   pixels>100   share<=50   number:10-20    by number
   object:wall   material:glass   kind:sphere    by word
-  mode:full_shadow   occlusion:init   shadow:non    by mode
+  occlusion:init   shadow:full_shadow    by mode
   is:seen   is:unseen   is:dynamic   is:wrong   is:hidden
   object="left wall"    the whole name
   -is:seen    all others"""
@@ -66,11 +61,7 @@ def listed(table: Table, order: Order) -> NDArray[np.int32]:
     if values is None:
         return rows
     keys = values.keys[rows]
-    if order.descending:
-        keys = -keys.astype(np.int64) if keys.dtype.kind in "iu" else -keys  # NaN stays last
-        if values.words is not None:
-            keys[values.numbers[rows] < 0] = len(values.words)
-    return rows[np.argsort(keys, kind="stable")]
+    return rows[np.argsort(-keys if order.descending else keys, kind="stable")]
 
 
 def matching(table: Table, text: str) -> NDArray[np.bool_]:
@@ -93,14 +84,16 @@ def _holds(table: Table, token: str) -> NDArray[np.bool_]:
         if wanted.lower() not in _STATES:
             raise FilterError(f"is:{wanted} is not known: there are {', '.join(_STATES)}")
         return _holds(table, _STATES[wanted.lower()])
-    if name == "mode" and table.level is Level.PRIMITIVES:
-        return _has_mode(table, [mode for mode in _MODES if table.columns.get(mode) is not None] or _MODES, wanted)
     values = _column(table, name)
     if values.words is None:
         return _compares(values, sign, wanted)
     if sign not in (":", "="):
         raise FilterError(f"{name} is a word: write {name}:{wanted}")
-    return _has_mode(table, [name], wanted) if name in _MODES else _has_word(values, wanted, whole=sign == "=")
+    if name in _MODES:
+        wanted = re.sub(r"[_-]", " ", wanted)
+        if not any(wanted.casefold() in word for word in values.words):
+            raise FilterError(f"no mode is called {wanted}: there are {', '.join(sorted(values.words))}")
+    return _has_word(values, wanted, whole=sign == "=")
 
 
 def _column(table: Table, name: str) -> Values:
@@ -128,15 +121,6 @@ def _has_word(values: Values, wanted: str, whole: bool = False) -> NDArray[np.bo
     wanted, words = wanted.casefold(), [word.replace('"', "").casefold() for word in values.words or ()]
     holds = [wanted == word if whole else wanted in word for word in words]
     return np.array([*holds, False], np.bool_)[values.numbers]  # -1 finds the last of them
-
-
-def _has_mode(table: Table, names: Sequence[str], wanted: str) -> NDArray[np.bool_]:
-    """Rows with a mode like this in one of these columns."""
-    wanted, columns = re.sub(r"[_-]", " ", wanted), [_column(table, name) for name in names]
-    known = {word for values in columns for word in values.words or ()}
-    if not any(wanted.casefold() in word for word in known):
-        raise FilterError(f"no mode is called {wanted}: there are {', '.join(sorted(known))}")
-    return np.logical_or.reduce([_has_word(values, wanted) for values in columns])
 
 
 def _compares(values: Values, sign: str, wanted: str) -> NDArray[np.bool_]:

@@ -9,7 +9,7 @@ than either, and the median of many ratios less still.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -24,7 +24,7 @@ from viewer.state.methods import BY_MODES, NO_CULLING
 from viewer.state.palette import FATE_MEANING, FATE_NAMES, FATE_WOULD
 from viewer.util.numbers import count, percent, whole_percent
 
-LONGEST = ": 29.6 % of shadow rays saved, 15 % fewer steps, not verified, 1.08 × as fast as none (± 0.02)"
+LONGEST = ": 29.6 % of shadow rays saved, not verified, 15 % fewer steps, 1.08 × as fast as none (± 0.02)"
 """As long as the sentence usually is, after the method's name: what room there should be for it."""
 WOULD_OPACITY = 0.4
 """Of a colour, where it stands for what would be."""
@@ -33,7 +33,6 @@ TWO_ERRORS = 2.0 * 1.2533 / 1.349
 have quartiles 1.349 standard deviations apart, and medians with 1.2533 times the error of the mean."""
 LEAST = 8
 """Rounds from which on a median tells something."""
-_WHOLE = 0.005  # of some work, or of all shadow rays: less is no difference
 
 
 # --- frames in turn ----------------------------------------------------------------------------------
@@ -68,13 +67,12 @@ class Spread:
 
 @dataclass(frozen=True)
 class InTurn:
-    """Frames of one picture: `rounds` holds the statistics of one by each of the `methods`, in their order.  `settled`
-    says that no more are to come, `prepares` that frames are still traced before the first that count."""
+    """Frames of one picture: `rounds` holds the statistics of one by each of the `methods`, in their order, and
+    `settled` says that no more are to come."""
 
     methods: tuple[str, ...]
     rounds: tuple[tuple[FrameStatistics, ...], ...] = ()
     settled: bool = False
-    prepares: bool = True
 
     @property
     def count(self) -> int:
@@ -90,16 +88,21 @@ class InTurn:
         at = self.methods.index(method)
         return [one[at] for one in self.rounds]
 
-    def seconds(self, method: str, phase: str = "") -> Spread | None:
-        """Return what a frame by a method takes, or one of its phases; None where it has none."""
-        found = [one.phases.get(phase) if phase else one.seconds for one in self.frames(method)]
+    def seconds(self, method: str, phase: str = "") -> float | None:
+        """Return the median of what frames by a method take, or one of their phases; None where none has it."""
+        found = [seconds_of(one, phase) for one in self.frames(method)]
         known = [seconds for seconds in found if seconds is not None]
-        return Spread.of(known) if known else None
+        return float(np.median(known)) if known else None
 
-    def speed(self, method: str, other: str) -> Spread | None:
-        """Return how many times as fast as another a method is; None before the first round."""
+    def speed(self, method: str, other: str) -> Spread:
+        """Return how many times as fast as another a method is, after one round at least."""
         pairs = zip(self.frames(method), self.frames(other), strict=True)
-        return Spread.of(its.seconds / mine.seconds for mine, its in pairs) if self.rounds else None
+        return Spread.of(its.seconds / mine.seconds for mine, its in pairs)
+
+
+def seconds_of(statistics: FrameStatistics, phase: str = "") -> float | None:
+    """Return what a frame took, or one of its phases; None where it has none of that name."""
+    return statistics.phases.get(phase) if phase else statistics.seconds
 
 
 # --- the bar -----------------------------------------------------------------------------------------
@@ -133,28 +136,21 @@ class Part:
         return f"{self.name}: {count(self.rays)} of {count(self.due)} shadow rays due ({self.share})\n{way}{meaning}"
 
 
-@dataclass(frozen=True)
-class Bar:
-    """The shadow rays that are due by what became of them, or, where nothing is culled, `would` become of them by the
-    paper's method."""
-
-    parts: tuple[Part, ...]
-    would: bool = False
-
-    def places(self, left: float, right: float) -> Iterator[tuple[Part, int, int]]:
-        """Yield each part with where it begins and ends, in whole pixels, between two edges."""
-        done = 0
-        for part in self.parts:
-            start, end = (round(left + (right - left) * rays / part.due) for rays in (done, done + part.rays))
-            done += part.rays
-            yield part, start, end
+def places(bar: tuple[Part, ...], left: float, right: float) -> Iterator[tuple[Part, int, int]]:
+    """Yield each part with where it begins and ends, in whole pixels, between two edges."""
+    done = 0
+    for part in bar:
+        start, end = (round(left + (right - left) * rays / part.due) for rays in (done, done + part.rays))
+        done += part.rays
+        yield part, start, end
 
 
-def bar_of(frame: Frame) -> Bar:
-    """Return the bar of a frame; without parts where no shadow ray is due, or no single light is asked."""
+def bar_of(frame: Frame) -> tuple[Part, ...]:
+    """Return the shadow rays that are due by what became of them or, where nothing is culled, `would` become of them by
+    the paper's method; nothing where none is due, or no single light is asked."""
     shadow, said = frame.statistics.shadow, frame.statistics.by_modes_in_all
     if not shadow.due or frame.statistics.cuts is not None:
-        return Bar(())
+        return ()
     would = not Method.parse(frame.settings.method).culls
     if would:
         rays = {Fate.CULLED: said.full_shadow, Fate.DYNAMIC_ONLY: said.non_shadow}
@@ -167,7 +163,7 @@ def bar_of(frame: Frame) -> Bar:
             Fate.CACHED: shadow.cache_hits,
             Fate.TRACED: shadow.traced,
         }
-    return Bar(tuple(Part(fate, number, shadow.due, would) for fate, number in rays.items() if number > 0), would)
+    return tuple(Part(fate, number, shadow.due, would) for fate, number in rays.items() if number > 0)
 
 
 # --- the sentence ------------------------------------------------------------------------------------
@@ -183,25 +179,22 @@ class Tone(Enum):
 
 @dataclass(frozen=True)
 class Clause:
-    """A part of the sentence, and more about it; `compares` says that it compares the method with none, and `command`
-    is what it tells to do, whose key the window adds."""
+    """A part of the sentence, and more about it; `command` is what it tells to do, whose key the window adds."""
 
     text: str
     tip: str = ""
     tone: Tone = Tone.PLAIN
-    compares: bool = False
     command: str = ""
 
 
 @dataclass(frozen=True)
 class Standing:
-    """What is known beside the frame's counters: what was `measured` in turn, whether pictures keep coming as something
-    is `moving`, how far proving is where it goes on (`proves`), and `why_not` where nothing can be measured.  `run` is
-    the name of the run whose frames are shown."""
+    """What is known beside the frame's counters: what was `measured` in turn, that certificates are still made for the
+    picture (`proves`), and `why_not` where nothing can be measured.  `run` is the name of the run whose frames are
+    shown."""
 
     measured: InTurn | None = None
-    moving: bool = False
-    proves: str = ""
+    proves: bool = False
     why_not: str = ""
     run: str = ""
 
@@ -209,15 +202,16 @@ class Standing:
 _HOW = (
     "The same picture is traced by none and by the chosen method in turn, again and again, while nothing else is to do."
 )
-_IN_MOTION = (
-    "It is measured at rest: stop, and this picture is traced by both in turn. The panel Experiment and the command "
-    "bench measure a whole path, frame by frame."
-)
+_WAITS = f"{_HOW} The panel Experiment and the command bench measure a whole path, frame by frame."
 
 
 def sentence(frame: Frame, standing: Standing) -> tuple[Clause, ...]:
     """Return what the method of a frame saves of it, and whether that pays; clauses to be joined by commas."""
-    return tuple(_clauses(frame, standing))
+    first, *others = counters(frame)
+    if standing.run:
+        name = standing.run[0].upper() + standing.run[1:]
+        first = replace(first, text=f"{name}, {first.text}")
+    return first, *others, *comparison(frame, standing)
 
 
 def in_words(clauses: Iterable[Clause]) -> str:
@@ -225,97 +219,58 @@ def in_words(clauses: Iterable[Clause]) -> str:
     return ", ".join(clause.text for clause in clauses)
 
 
-def comparison_in_words(frame: Frame, standing: Standing) -> str:
-    """Return what of the sentence no counter of the frame can tell: how its method compares with none; empty where that
-    is not known."""
-    return in_words(one for one in _clauses(frame, standing) if one.compares and one.tone is not Tone.QUIET)
-
-
-def counters_in_words(frame: Frame) -> str:
+def counters(frame: Frame) -> list[Clause]:
     """Return what of the sentence the frame's counters tell."""
-    return in_words(one for one in _clauses(frame, Standing()) if not one.compares)
-
-
-def _clauses(frame: Frame, standing: Standing) -> Iterator[Clause]:
     s, method = frame.statistics, Method.parse(frame.settings.method)
-    yield _saved(frame, standing)
-    if frame.settings.method == NO_CULLING or not s.shadow.due:
-        return
     culls = s.shadow.due > s.shadow.traced or s.cuts is not None
-    measured = standing.measured
-    if measured is None or frame.settings.method not in measured.methods or standing.moving:
-        measured = None  # it is of another picture
-    elif culls:
-        yield from _steps(measured, frame)
-    if method.culls and culls:
-        yield _wrong(frame, method)
-    if standing.run:
-        return  # whose panel compares the methods, on a whole path
-    if standing.moving:
-        yield _unknown("speed not measurable while moving", _IN_MOTION)
-    elif standing.proves:
-        made, meaning = terms.made(frame.settings.method)
+    return [_saved(frame), *([_wrong(frame, method)] if s.shadow.due and method.culls and culls else [])]
+
+
+def comparison(frame: Frame, standing: Standing) -> list[Clause]:
+    """Return the rest of it: how the frame's method compares with none, or why that is not known."""
+    name, measured = frame.settings.method, standing.measured
+    if name == NO_CULLING or not frame.statistics.shadow.due or standing.run:  # a run's panel compares the methods
+        return []
+    if standing.proves:
+        made, meaning = terms.made(name)
+        number = count(frame.statistics.certificates)
         tip = f"{made} in the picture before: {meaning}. They save rays later; their time is none of the rays'."
-        yield _unknown(standing.proves, tip)
-    elif standing.why_not:
-        yield _unknown("speed not measured", standing.why_not)
-    elif measured is None:
-        yield _unknown("speed is measured once the picture rests", _HOW)
-    elif measured.tells:
-        yield from _speed(measured, frame, method)
-    else:
-        done = "preparing" if measured.prepares else f"{measured.count} rounds"
-        yield _unknown("measuring speed ...", f"{_HOW} So far: {done}.")
+        return [_unknown(f"proving: {number} made in the last", tip)]
+    if standing.why_not:
+        return [_unknown("speed not measured", standing.why_not)]
+    if measured is None or name not in measured.methods:
+        return [_unknown("speed is measured once the picture rests", _WAITS)]
+    if not measured.tells:
+        return [_unknown("measuring speed ...", f"{_HOW} So far: {measured.count} rounds.")]
+    return [*_steps(measured, frame), _speed(measured, frame)]
 
 
 def _unknown(text: str, tip: str) -> Clause:
-    """How the method compares with none, where that is not known."""
-    return Clause(text, tip, Tone.QUIET, compares=True)
+    return Clause(text, tip, Tone.QUIET)
 
 
-def _saved(frame: Frame, standing: Standing) -> Clause:
+def _saved(frame: Frame) -> Clause:
     s, name = frame.statistics, frame.settings.method
     shadow, said = s.shadow, s.by_modes_in_all
-    culls = Method.parse(name).culls
-    if standing.run:
-        name = f"{standing.run[0].upper()}{standing.run[1:]}, {name}"
     part = f" (of the {whole_percent(s.part)} shaded)" if s.part < 1.0 else ""
     if s.cuts is not None:
         text = f"{name}: {s.cuts.mean:.0f} clusters for {count(s.cuts.lights)} lights{part}"
         return Clause(text, "of the lights that each block of points is shaded by, on average")
     if not shadow.due:
         return Clause(f"{name}: no shadow ray is due here", terms.MEANINGS[terms.DUE])
-    if not culls:
+    if not Method.parse(name).culls:
         would = f"; the paper's modes would save {percent(said.saved, shadow.due)}" if said.due else ""
         tip = f"what the modes that are kept for the views would save now, by the method {BY_MODES}"
         return Clause(f"{name}: every shadow ray is traced{would}{part}", tip)
+    if shadow.due == shadow.traced and s.decision:
+        return Clause(f"{name}: culls nothing here", s.decision)
     if shadow.due == shadow.traced:
-        if s.decision:
-            return Clause(f"{name}: culls nothing here", s.decision)
-        return Clause(
-            f"{name}: nothing saved yet", "every shadow ray was traced; what that teaches may save some later"
-        )
-    tip = f"{count(shadow.saved)} of {count(shadow.due)} shadow rays due: culled, or asked dynamic objects only"
+        tip = "every shadow ray was traced; the modes that this has set may save some later"
+        return Clause(f"{name}: nothing saved yet", tip)
+    tip = (
+        f"{count(shadow.saved)} of {count(shadow.due)} shadow rays due: culled, or tested against dynamic objects only"
+    )
     return Clause(f"{name}: {percent(shadow.saved, shadow.due)} of shadow rays saved{part}", tip)
-
-
-def _steps(measured: InTurn, frame: Frame) -> Iterator[Clause]:
-    """Of frames in turn, once they save as much as the one that is shown, or all are there."""
-    if not measured.rounds:
-        return
-    mine, its = (measured.frames(method)[-1] for method in (frame.settings.method, NO_CULLING))
-    shadow, shown = mine.shadow, frame.statistics.shadow
-    apart = abs(shadow.saved / max(shadow.due, 1) - shown.saved / max(shown.due, 1))
-    if (apart > _WHOLE and not measured.settled) or not its.traversal_steps:
-        return
-    more = mine.traversal_steps / its.traversal_steps - 1.0
-    tree = "; of whole packets of rays where these are coherent" if frame.settings.accelerator == BVH8 else ""
-    tip = "nodes of the tree that rays of all kinds enter: "
-    tip += f"{count(mine.traversal_steps)}, with none {count(its.traversal_steps)}{tree}"
-    if apart > _WHOLE:
-        tip += f"; in frames in turn, which save {percent(shadow.saved, shadow.due)} of shadow rays"
-    text = f"{100.0 * abs(more):.0f} % {'more' if more > 0.0 else 'fewer'} steps"
-    yield Clause("as many steps" if abs(more) < _WHOLE else text, tip, compares=True)
 
 
 def _wrong(frame: Frame, method: Method) -> Clause:
@@ -328,26 +283,38 @@ def _wrong(frame: Frame, method: Method) -> Clause:
     if method.exact:
         tip = "its pictures are those of none, bit for bit; Verify traces every culled ray as well, to check"
         return Clause("exact", tip)
-    return Clause(
-        "not verified", "trace every culled ray as well, to count wrong answers", Tone.QUIET, command="Verify"
-    )
+    tip = "trace every culled ray as well, to count wrong answers"
+    return Clause("not verified", tip, Tone.QUIET, command="Verify")
 
 
-def _speed(measured: InTurn, frame: Frame, method: Method) -> Iterator[Clause]:
-    name, shadow = frame.settings.method, frame.statistics.shadow
-    speed, mine, its = measured.speed(name, NO_CULLING), measured.seconds(name), measured.seconds(NO_CULLING)
-    if speed is None or mine is None or its is None:
+def _steps(measured: InTurn, frame: Frame) -> Iterator[Clause]:
+    mine, its = (measured.frames(method)[-1] for method in (frame.settings.method, NO_CULLING))
+    if not its.traversal_steps:
         return
+    more = round(100.0 * (mine.traversal_steps / its.traversal_steps - 1.0))
+    packets = "; of whole packets of rays where these are coherent" if frame.settings.accelerator == BVH8 else ""
+    tip = (
+        f"nodes of the tree that rays of all kinds enter: {count(mine.traversal_steps)}, with none "
+        f"{count(its.traversal_steps)}{packets}; in frames in turn, which save "
+        f"{percent(mine.shadow.saved, mine.shadow.due)} of shadow rays"
+    )
+    yield Clause(f"{abs(more)} % {'more' if more > 0 else 'fewer'} steps" if more else "as many steps", tip)
+
+
+def _speed(measured: InTurn, frame: Frame) -> Clause:
+    name, shadow, makes = frame.settings.method, frame.statistics.shadow, Method.parse(frame.settings.method).makes
+    speed = measured.speed(name, NO_CULLING)
+    mine, its = (1e3 * (measured.seconds(method) or 0.0) for method in (name, NO_CULLING))
     within = "within noise" if speed.is_one else f"± {max(speed.margin, 0.01):.2f}"
-    if method.makes and shadow.due > shadow.traced:
-        within += ", proofs not counted" if "certificates made" in method.makes else ", preparing not counted"
+    if makes and shadow.due > shadow.traced:
+        within += ", proofs not counted" if "certificates made" in makes else ", preparing not counted"
     tree = "" if frame.settings.accelerator == BVH8 else f" in the {frame.settings.accelerator}"
     times = "as fast" if speed.is_one else f"{speed.median:.2f} × as fast"
     tip = (
-        f"median frame {1e3 * mine.median:.1f} ms, with none {1e3 * its.median:.1f} ms: whole frames of one sample a "
-        "pixel, without verifying or recording. The status bar has the time of the picture that is shown.\n"
+        f"median frame {mine:.1f} ms, with none {its:.1f} ms: whole frames of one sample a pixel, without verifying or "
+        "recording. The status bar has the time of the picture that is shown.\n"
         f"none over {name}: median {speed.median:.3f} ± {speed.margin:.3f}, quartiles {speed.low:.3f} and "
         f"{speed.high:.3f}\n"
         f"{measured.count} whole frames by each, in turn{'' if measured.settled else '; it goes on'}. {_HOW}"
     )
-    yield Clause(f"{times} as none{tree} ({within})", tip, compares=True)
+    return Clause(f"{times} as none{tree} ({within})", tip)

@@ -6,7 +6,6 @@ may be millions.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
@@ -43,7 +42,6 @@ class Column:
     numeric: bool = True
 
 
-_LIGHT = "for the chosen light, or for all of them together"
 _AT_PIXELS = "at the pixels that show it, of all bounces"
 _DUE = Column("due", "Due", f"shadow rays that are due {_AT_PIXELS}")
 _SAVED = Column("saved", "Untraced", f"shadow rays {_AT_PIXELS} that were not traced through the whole scene")
@@ -56,7 +54,7 @@ COLUMNS: dict[Level, tuple[Column, ...]] = {
         Column("object", "Object", "the object, or the part of the static geometry, that it belongs to", False),
         _PIXELS,
         Column("occlusion", "Occlusion", "its occlusion mode; of cells, that of all visible cells", False),
-        Column("shadow", "Shadow", f"its shadow mode {_LIGHT}; of cells, that of all visible cells", False),
+        Column("shadow", "Shadow", "its shadow mode for the chosen light; of cells, that of all visible cells", False),
         _DUE, _SAVED, _SHARE, _WRONG,
         Column("kind", "Kind", "triangle, sphere or cone", False),
         Column("material", "Material", "its material", False),
@@ -68,8 +66,8 @@ COLUMNS: dict[Level, tuple[Column, ...]] = {
         Column("seen", "Seen", "number of its primitives that are visible"),
         _PIXELS,
         Column("rendered", "Rendered", "number of its primitives that are fully rendered, so that rays can be culled"),
-        Column("full_shadow", "In shadow", f"number of its primitives with full shadow {_LIGHT}"),
-        Column("non_shadow", "Lit", f"number of its primitives with non-shadow {_LIGHT}"),
+        Column("full_shadow", "In shadow", "number of its primitives with full shadow for the chosen light"),
+        Column("non_shadow", "Lit", "number of its primitives with non-shadow for the chosen light"),
         _DUE, _SAVED, _SHARE, _WRONG,
         Column("motion", "Motion", "whether it is static or dynamic", False),
     ),
@@ -93,13 +91,13 @@ class Values:
         return count(value)
 
     @cached_property
-    def keys(self) -> NDArray:
-        """What the column is sorted by: words by the alphabet, what is not known last."""
+    def keys(self) -> NDArray[np.float64]:
+        """What the column is sorted by: words by the alphabet; NaN, which comes last, where nothing is known."""
         if self.words is None:
-            return self.numbers
+            return self.numbers.astype(np.float64)
         folded = [word.casefold() for word in self.words]
-        ranks = np.full(len(folded) + 1, len(folded), np.int32)  # -1 finds the last of them
-        ranks[sorted(range(len(folded)), key=folded.__getitem__)] = np.arange(len(folded), dtype=np.int32)
+        ranks = np.full(len(folded) + 1, np.nan)  # -1 finds the last of them
+        ranks[sorted(range(len(folded)), key=folded.__getitem__)] = np.arange(len(folded))
         return ranks[self.numbers]
 
 
@@ -122,13 +120,13 @@ _OCCLUSION, _SHADOW = (  # in words, by their numbers
 )
 
 
-def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table]:
-    """Both tables as a frame of the edited scene knows them, with shadow modes for a light, or None for all.
+def tables_of(now: Edited, frame: Frame, light: int) -> dict[Level, Table]:
+    """Both tables as a frame of the edited scene knows them, with shadow modes for a light.
 
     Their rows are the parts and primitives of the scene as it was read, in its order."""
     scene, edits, parts, total = now.original, now.edits, parts_of(now.original), now.original.primitive_count
     counts = _counts(now, frame)
-    occlusion, shadow = (_as_read(now, codes) for codes in modes_of(frame, len(now.primitives), light))
+    occlusion, shadow = _modes_of(now, frame, light)
     resting = dict(edits.static)
     moving = np.array(
         [name in edits.moving or (moves and name not in resting) for name, moves in zip(parts.names, parts.moving)],
@@ -141,12 +139,9 @@ def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table
     def states(motion: NDArray, hidden: NDArray) -> dict[str, Values | None]:
         return {"motion": Values(motion, ("static", "dynamic")), "hidden": Values(hidden, ("shown", "hidden"))}
 
-    def in_parts(which: NDArray | None) -> Values | None:
-        """How many of these primitives each part has."""
-        return None if which is None else Values(np.bincount(parts.part_of[which], minlength=len(hidden)))
-
     def having(codes: NDArray | None, mode: int) -> Values | None:
-        return None if codes is None else in_parts(codes == mode)
+        """How many primitives of each part have a mode."""
+        return None if codes is None else Values(np.bincount(parts.part_of[codes == mode], minlength=len(hidden)))
 
     primitives = {
         "number": Values(np.arange(total, dtype=np.int32)),
@@ -162,7 +157,7 @@ def tables_of(now: Edited, frame: Frame, light: int | None) -> dict[Level, Table
     objects = {
         "object": Values(np.arange(len(hidden), dtype=np.int32), parts.names),
         "primitives": Values(parts.sizes),
-        "seen": in_parts(counts["pixels"] > 0),
+        "seen": having(counts["pixels"] > 0, True),
         "rendered": having(occlusion, OcclusionMode.FULLY_RENDERED),
         "full_shadow": having(shadow, ShadowMode.FULL_SHADOW),
         "non_shadow": having(shadow, ShadowMode.NON_SHADOW),
@@ -188,56 +183,38 @@ def _counts(now: Edited, frame: Frame) -> dict[str, NDArray]:
 
 def _counted(counts: dict[str, NDArray]) -> dict[str, Values | None]:
     """The columns of pixels and rays; None for what the frame does not count."""
-    due, saved, share = counts.get("due"), counts.get("saved"), None
-    if due is not None and saved is not None:
-        share = np.full(len(due), np.nan, np.float32)
-        np.divide(100.0 * saved, due, out=share, where=due > 0, casting="unsafe")
-    found = {"due": due, "saved": saved, "share": share, "wrong": counts.get("wrong"), "pixels": counts["pixels"]}
-    return {name: None if numbers is None else Values(numbers) for name, numbers in found.items()}
-
-
-def _as_read(now: Edited, codes: NDArray | None) -> NDArray | None:
-    """Modes by the primitives of the scene as it was read; hidden ones have none."""
-    if codes is None or now.scene is now.original:
-        return codes
-    found = np.full(now.original.primitive_count, UNKNOWN, np.int8)
-    found[now.primitives] = codes
+    found: dict[str, Values | None] = dict.fromkeys(("due", "saved", "share", "wrong"))
+    found.update((name, Values(numbers)) for name, numbers in counts.items())
+    if "due" in counts and "saved" in counts:
+        due, share = counts["due"], np.full(len(counts["due"]), np.nan, np.float32)
+        np.divide(100.0 * counts["saved"], due, out=share, where=due > 0, casting="unsafe")
+        found["share"] = Values(share)
     return found
 
 
-def modes_of(frame: Frame, total: int, light: int | None) -> tuple[NDArray | None, NDArray | None]:
-    """(total,) int8 each: occlusion modes and shadow modes of primitives, for a light or None for all, `SEVERAL` where
-    they differ and `UNKNOWN` where there are none.  None for what the frame has not."""
-    if not frame.settings.keeps_modes:
+def _modes_of(now: Edited, frame: Frame, light: int) -> tuple[NDArray | None, NDArray | None]:
+    """(primitives,) int8 each: occlusion modes, and shadow modes for a light, of the scene as it was read; `SEVERAL`
+    where visible cells differ, `UNKNOWN` where there are none.  None for what the frame has not."""
+    in_cells, total = has_modes_of_cells(frame), len(now.primitives)
+    if not frame.settings.keeps_modes or (len(frame.modes) < total and not in_cells):
         return None, None
-    asked = range(frame.lights) if light is None else (light,)
-    lights = [one for one in asked if one < frame.lights and modes.has_shadow_mode(frame.modes, one)]
-    occlusion = [modes.occlusion_mode(frame.modes)]
-    shadow = [modes.shadow_mode(frame.modes, one) for one in lights]
-    if has_modes_of_cells(frame):
-        return _of_cells(frame, total, occlusion), _of_cells(frame, total, shadow) if lights else None
-    if len(frame.modes) < total:
-        return None, None
-    found = occlusion[0][:total].astype(np.int8)
-    if not lights:
-        return found, None
-    together = shadow[0][:total].astype(np.int8)
-    for plane in shadow[1:]:
-        together[together != plane[:total]] = SEVERAL
-    return found, together
+
+    def as_read(codes: NDArray) -> NDArray[np.int8]:
+        found = np.full(now.original.primitive_count, UNKNOWN, np.int8)
+        found[now.primitives] = _of_cells(frame, total, codes) if in_cells else codes[:total]
+        return found
+
+    known = light < frame.lights and modes.has_shadow_mode(frame.modes, light)
+    shadow = as_read(modes.shadow_mode(frame.modes, light)) if known else None
+    return as_read(modes.occlusion_mode(frame.modes)), shadow
 
 
-def _of_cells(frame: Frame, total: int, planes: Sequence[NDArray]) -> NDArray[np.int8]:
+def _of_cells(frame: Frame, total: int, codes: NDArray) -> NDArray[np.int8]:
     """The mode of all cells of a primitive that the frame shows."""
     units, shown = frame.unit.reshape(-1), frame.primitive.reshape(-1)
     hit = (units >= 0) & (shown >= 0)
-    units, shown = units[hit], shown[hit]
     has = np.zeros((4, total), np.bool_)
-    for plane in planes:
-        of_pixels = plane[units]
-        for mode in range(4):
-            has[mode, shown[of_pixels == mode]] = True
-    found = np.argmax(has, axis=0).astype(np.int8)
-    different = has.sum(axis=0)
+    has[codes[units[hit]], shown[hit]] = True
+    found, different = np.argmax(has, axis=0).astype(np.int8), has.sum(axis=0)
     found[different == 0], found[different > 1] = UNKNOWN, SEVERAL
     return found

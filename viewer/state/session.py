@@ -21,12 +21,11 @@ class Session:
     """The state that is shown, or will be as soon as it is traced, and what belongs to no state.
 
     `scene` is the scene as it is edited: `state.edits` are what is wanted of edits, `edited` what there is of them, and
-    `light_to_come` is the light that is chosen once they are there.  `previewed` is what the GPU draws before there is
-    a `scene`; `counting` asks for frames that count the rays at each pixel, whatever the view."""
+    `light_to_come` is the light that is chosen once they are there.  `counting` asks for frames that count
+    the rays at each pixel, whatever the view."""
 
     scene: Scene | None = None
     state: ViewState = field(default_factory=ViewState)
-    previewed: Scene | None = None
     edited: Edited | None = None
     light_to_come: int | None = None
     playing: bool = False
@@ -90,11 +89,6 @@ class Session:
     # --- the scene and its camera ----------------------------------------------------------------
 
     @property
-    def seen(self) -> Scene | None:
-        """The scene that the camera moves in."""
-        return self.scene or self.previewed
-
-    @property
     def on_path(self) -> bool:
         """Whether the camera goes along the scene's own path."""
         return self.state.camera is None
@@ -104,7 +98,7 @@ class Session:
         """Where the picture is taken from."""
         if self.state.camera is not None:
             return self.state.camera
-        scene = self.seen
+        scene = self.scene
         if scene is None:
             return Camera((0, 0, 5), (0, 0, -1))
         kept = self._on_path

@@ -17,7 +17,7 @@ from viewer.state import terms
 from viewer.util.numbers import count, percent, several
 
 ALL_TRACED = "Every shadow ray was traced, so that no answer can be wrong"
-NOT_YET = "How wrong clusters are is known once the picture is whole"
+NOT_YET = "The error of clusters is known once the picture is whole"
 _Found = TypeVar("_Found")
 
 

@@ -7,13 +7,9 @@ import traceback
 from dataclasses import dataclass
 
 from tracer.scene.model import SceneError
+from tracer.text import printable
 
 ERROR = "error: "
-
-
-def printable(text: object) -> str:
-    """A text in which nothing commands a terminal: control characters, and what no writing has, are escaped."""
-    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(text))
 
 
 def in_one_line(text: object) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from tracer.text import MOST_PERCENT, saved
+
 
 def count(number: float) -> str:
     """A number that may be large, in groups: 12,345,678."""
@@ -21,19 +23,6 @@ def whole_percent(part: float) -> str:
     return f"{100.0 * part:.0f} %"
 
 
-MOST_PERCENT = 10.0
-"""Parts of a whole past which something is so many times as many, as nobody reads -119360 %."""
-
-
-def saved(part: float, spread: float | None = None) -> str:
-    """Which part of some work is saved, and how much that varies: 41.2%, 41.2% ± 1.2; where more than ten times as
-    much is done instead, how many times: 1,194 × as many."""
-    if part < -MOST_PERCENT:
-        varies = "" if spread is None else f" ± {_times(spread)}"
-        return f"{_times(1.0 - part)}{varies} × as many"
-    return f"{part:.1%}" + ("" if spread is None else f" ± {100.0 * spread:.1f}")
-
-
 def saved_in_words(part: float) -> str:
     """The same where no heading says that it is about saving: 41.2% saved."""
     return saved(part) if part < -MOST_PERCENT else f"{saved(part)} saved"
@@ -44,15 +33,11 @@ def changed(part: float) -> str:
     return saved(-part) if part > MOST_PERCENT else f"{part:+.1%}".replace("-", "−")
 
 
-def _times(number: float) -> str:
-    return f"{number:,.1f}" if number < 100.0 else f"{number:,.0f}"
-
-
 def several(number: int, name: str, names: str = "") -> str:
     """So many of something: 1 node, 2 nodes."""
     return f"{count(number)} {name if number == 1 else names or name + 's'}"
 
 
 def memory(size: int) -> str:
-    """So many bytes, as people say it: 850 kB, 12.3 MB."""
+    """Return so many bytes as people say it: 850 kB, 12.3 MB."""
     return f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.3g} kB"

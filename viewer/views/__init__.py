@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from typing import cast
 
+from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.views import View, can_draw
-from viewer.views.base import FrameView, Highlight, Lights, Pixels, Values, Words
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words
 from viewer.views.legend import Legend, lights_in_words
 
-AS_SAVED = Highlight()
 USUAL = DrawOptions()
 
 
@@ -22,13 +22,13 @@ def view_of(view: View) -> FrameView:
     return cast(FrameView, view.declared)
 
 
-def colorize(frame: Frame, draw: DrawOptions = USUAL, highlight: Highlight = AS_SAVED) -> Pixels:
-    """Draw a frame, (h, w, 3) uint8, row 0 at the top.
+def colorize(frame: Frame, draw: DrawOptions = USUAL, fate: Fate | None = None) -> Pixels:
+    """Draw a frame, (h, w, 3) uint8, row 0 at the top; a `fate` stands out in the view of fates.
 
     Raises ValueError where there is no such light, or where the frame has not recorded what the view shows."""
     if draw.view.of_light and not 0 <= draw.light < frame.lights:
         raise ValueError(f"no light {draw.light}: {lights_in_words(frame.lights)}")
-    return _drawable(frame, draw).highlighted(frame, draw, highlight)
+    return _drawable(frame, draw).highlighted(frame, draw, fate)
 
 
 def legend_of(frame: Frame, draw: DrawOptions, lights: Lights = ()) -> Legend | None:

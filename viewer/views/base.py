@@ -24,13 +24,6 @@ Lights = tuple[Light, ...]
 T = TypeVar("T")
 
 
-class Highlight(NamedTuple):
-    """What the window alone asks of a view: the fate that stands out, and whether the wipe has its line."""
-
-    fate: Fate | None = None
-    line: bool = True
-
-
 @dataclass(frozen=True)
 class Values:
     """What a view shows of each pixel: `numbers` (h, w, k) float32 with a name for each of the k; where they are
@@ -55,8 +48,8 @@ class FrameView(Declaration):
         """Draw a frame, (h, w, 3) uint8."""
         raise NotImplementedError
 
-    def highlighted(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
-        """Draw the same with what the window highlights."""
+    def highlighted(self, frame: Frame, draw: DrawOptions, fate: Fate | None) -> Pixels:
+        """Draw the same; where a fate is given, and the view is of fates, this one stands out."""
         return self.colorize(frame, draw)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
@@ -94,12 +87,6 @@ def once(frame: Frame, what: Hashable, find: Callable[[], T]) -> T:
     return found
 
 
-def forget(frame: Frame) -> None:
-    """Forget what was found of a frame."""
-    with _lock:
-        _found.pop(frame, None)
-
-
 def single(numbers: NDArray, name: str, known: NDArray[np.bool_], classes: bool = False) -> Values:
     """Return values of one number a pixel (h, w)."""
     return Values(np.asarray(numbers, np.float32)[..., None], (name,), known, classes)
@@ -108,6 +95,17 @@ def single(numbers: NDArray, name: str, known: NDArray[np.bool_], classes: bool 
 def hits(frame: Frame) -> NDArray[np.bool_]:
     """Find the pixels that show something."""
     return frame.primitive >= 0
+
+
+_SAMPLED = 20_000  # pixels, about, that percentiles are of
+
+
+def percentiles(frame: Frame, numbers: NDArray, *of: float) -> list[float]:
+    """Return percentiles of what is shown of a number (h, w), from pixels evenly spread; none where nothing is hit."""
+    step = max(1, numbers.size // _SAMPLED)
+    sample = numbers.reshape(-1)[::step][frame.primitive.reshape(-1)[::step] >= 0]
+    found: list[float] = np.percentile(sample, of).tolist() if len(sample) else []
+    return found
 
 
 def is_shaded(frame: Frame, x: int, y: int) -> bool:

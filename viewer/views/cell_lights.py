@@ -1,4 +1,4 @@
-"""How many lights the cell of each pixel must look at, with local illumination environments."""
+"""How many lights may reach the cell of each pixel, with local illumination environments."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ class CellLights(CountView):
     label = "Lights per cell"
     key = "Shift+K"
     help = (
-        "How many lights the cell of each pixel must look at, with the methods lie and lie-exact: all but those that "
-        "it knows to be hidden. Lines are the borders of cells."
+        "How many lights may reach the cell of each pixel, with the methods lie and lie-exact: all but those that are "
+        "known to be hidden from it. Lines are the borders of cells."
     )
     shows = CELL_LIGHTS
-    what = "lights that the cell asks"
-    heading = "Lights that the cell must look at"
+    what = "lights of the cell"
+    heading = "Lights that may reach the cell"
     each = "those not known to be hidden from all of the cell: they light all of it, or something may block them"
     has_cells = True
 

@@ -16,15 +16,13 @@ class Cost(Work):
         "Rays traced through the whole scene for each pixel, of all kinds, at all bounces: how many, or which share of "
         "those that are traced without culling."
     )
+    shows = "cost"
     name = "rays traced"
     title_of_shares = "Share of the rays without culling that is traced"
     in_all = (
         "of the first sample of each pixel, through the whole scene: shadow rays that asked dynamic objects or a few "
         "candidates alone are not among them; the share is of the rays traced without culling"
     )
-
-    def rays(self, frame: Frame) -> NDArray[np.int32] | None:
-        return frame.cost
 
     def whole(self, frame: Frame) -> NDArray[np.int32]:
         return recorded(frame.saved) + recorded(frame.cost)

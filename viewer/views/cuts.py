@@ -40,8 +40,8 @@ class Cuts(CountView):
         bounds = frame.layers[CUT_BOUND][self.seen(frame)]
         bound = float(np.median(bounds)) if len(bounds) else 0.0
         return (
-            fact("each may be wrong by", f"{percent(frame.settings.lightcuts_error, 1.0)} of the light", _EACH),
-            fact("all of them together", f"{percent(bound, 1.0)} at most", _BOUND),
+            fact("error of a cluster", f"{percent(frame.settings.lightcuts_error, 1.0)} of the light at most", _EACH),
+            fact("error of a pixel", f"{percent(bound, 1.0)} at most", _BOUND),
         )
 
     def notes(self, frame: Frame) -> tuple[Note, ...]:

@@ -6,13 +6,12 @@ import numpy as np
 
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, once, single
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, once, percentiles, single
 from viewer.views.legend import Legend, Scale
 from viewer.views.paint import by_number, in_range
 
 FAR = np.float32(1e30)
 """Stands for the depth of what hits nothing, so that numbers can be subtracted."""
-_SAMPLES = 20_000  # pixels, about, that the range is found from
 
 
 class Depth(FrameView):
@@ -44,12 +43,8 @@ class Depth(FrameView):
 
 
 def _range(frame: Frame) -> tuple[float, float]:
-    sample = frame.depth.reshape(-1)[:: max(1, frame.depth.size // _SAMPLES)]
-    sample = sample[np.isfinite(sample)]
-    if len(sample) == 0:
-        return 0.0, 1.0
-    low, high = np.percentile(sample, (1.0, 99.0))
-    return float(low), float(max(high, low * (1.0 + 1e-6) + 1e-12))
+    low, high = percentiles(frame, frame.depth, 1.0, 99.0) or (0.0, 1.0)
+    return low, max(high, low * (1.0 + 1e-6) + 1e-12)
 
 
 VIEW = Depth()

@@ -26,7 +26,7 @@ RING_DIMMING = 0.65
 _ERRORS = (
     "by what part of its light a pixel differs from the picture by all lights; darker ones than 1/64 as if that bright"
 )
-_LOOK_OTHERWISE = "than with every answer right; one deep in reflections may change nothing that a screen shows"
+_VISIBLE = "those whose 8-bit colour is wrong: an answer deep in reflections may change nothing that a screen shows"
 _LARGEST = "between a channel of a wrong pixel's colour and the right one, also where both are too bright for a screen"
 
 
@@ -35,10 +35,8 @@ class Difference(FrameView):
     key = "8"
     help = "Pixels with a wrong shadow answer; where all answers are right, the picture is shown, dimmed."
     records = Record.VERIFY
+    shows = "wrong"
     shows_picture = everywhere = True
-
-    def can_draw(self, frame: Frame, light: int = 0) -> bool:
-        return frame.wrong is not None
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         marks = wrong_marks(frame, draw.magnified)
@@ -66,7 +64,7 @@ def legend_of_wrong(frame: Frame, label: str, name: str, colored: bool) -> Legen
     entries = (Entry(verified.named(name, found), color, (pixels,), terms.MEANINGS[terms.WRONG_PIXELS]),)
     largest, seen = verified.largest_difference(frame)
     of_pixels = (
-        fact("of them look otherwise", count(seen), _LOOK_OTHERWISE),
+        fact("visible on a screen", count(seen), _VISIBLE),
         fact("largest difference", f"{255.0 * largest:.3g} of 255", _LARGEST),
     )
     cuts = statistics.cuts

@@ -13,9 +13,9 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import FATE_COLORS, FATE_MEANING, FATE_NAMES, fate_palette
 from viewer.state.views import Record
 from viewer.util.numbers import percent
-from viewer.views.base import Highlight, Lights, Pixels
-from viewer.views.kinds import Class, ClassView
-from viewer.views.legend import Entry, Legend, Note
+from viewer.views.base import Lights, Pixels
+from viewer.views.kinds import Class, ClassView, filled_in
+from viewer.views.legend import Entry, Legend
 from viewer.views.paint import by_class
 
 _PAPER = {Fate.PARTLY_OCCLUDED, Fate.PARTIAL_SHADOW, Fate.NOT_SEEN_WHOLE, Fate.DYNAMIC}
@@ -39,8 +39,8 @@ class Fates(ClassView):
     def find(self, frame: Frame, light: int) -> NDArray[np.uint8]:
         return frame.fate(light)
 
-    def highlighted(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
-        return by_class(frame, draw, self.found(frame, draw), np.asarray(fate_palette(highlight.fate), np.float32))
+    def highlighted(self, frame: Frame, draw: DrawOptions, fate: Fate | None) -> Pixels:
+        return by_class(frame, draw, self.found(frame, draw), np.asarray(fate_palette(fate), np.float32))
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
         """Say how many rays had each fate, and which part of those due that is."""
@@ -58,11 +58,6 @@ class Fates(ClassView):
         )
         title = self.title(draw, lights).replace(",", ", first hits,", 1)
         return Legend(title, ("pixels", "of due"), entries, facts=facts, notes=filled_in(frame))
-
-
-def filled_in(frame: Frame) -> tuple[Note, ...]:
-    """Return what is said of a picture of which only a part has been shaded."""
-    return () if frame.shaded is None else (Note("Pixels that are not shaded yet go by the nearest that is."),)
 
 
 VIEW = Fates()

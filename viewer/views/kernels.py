@@ -35,61 +35,25 @@ def _line_row(cells, y, line, plain, factor):
 
 
 @kernel
-def paint_classes(
-    index, classes, palette, striped, stripe, color, shading, primitive, background, cells, line, outline, pixels
-):
+def paint_table(index, table, stripe, color, shading, primitive, background, cells, line, outline, pixels):
     one, zero, most = np.float32(1), np.float32(0), np.float32(255)
     h, w = primitive.shape
     shade, border, edge = np.ones(w, np.float32), np.ones(w, np.float32), np.ones(w, np.float32)
-    row = np.empty((w, 3), np.float32)
+    striped = len(table) // 2
     for y in range(h):
-        _shade_row(color, y, shading, shade)
-        if line < one:
-            _line_row(cells, y, line, one, border)
-        if outline < one:
-            _line_row(primitive, y, outline, one, edge)
-        for x in range(w):
-            if primitive[y, x] < 0:
-                row[x, 0], row[x, 1], row[x, 2] = background[0], background[1], background[2]
-                shade[x] = border[x] = one
-            else:
-                k = classes[index[y, x]]
-                row[x, 0], row[x, 1], row[x, 2] = palette[k, 0], palette[k, 1], palette[k, 2]
-        if stripe > 1:
-            for x in range(w):
-                if primitive[y, x] >= 0 and (x + y) // stripe % 2 == 1:
-                    k = classes[index[y, x]]
-                    row[x, 0], row[x, 1], row[x, 2] = striped[k, 0], striped[k, 1], striped[k, 2]
-        for x in range(w):
-            for c in range(3):
-                shown = min(max(row[x, c] * shade[x], zero), one) * border[x] * edge[x]
-                pixels[y, x, c] = np.uint8(np.rint(shown * most))
-
-
-@kernel
-def paint_numbers(place, colors, unknown, color, shading, primitive, background, cells, line, outline, pixels):
-    one, zero = np.float64(1), np.float64(0)
-    h, w = primitive.shape
-    shade, border, edge = np.ones(w, np.float32), np.ones(w), np.ones(w)
-    for y in range(h):
-        if shading > np.float32(0):
+        if shading > zero:
             _shade_row(color, y, shading, shade)
         if line < one:
             _line_row(cells, y, line, one, border)
         if outline < one:
             _line_row(primitive, y, outline, one, edge)
         for x in range(w):
-            t = place[y, x]
-            missed, known = primitive[y, x] < 0, t == t
-            i = min(int(t), 255) if known else 0
-            j = min(i + 1, 255)
+            missed, k = primitive[y, x] < 0, index[y, x]
+            if stripe > 0 and (x + y) // stripe % 2 == 1:
+                k += striped
             for c in range(3):
-                if missed:
-                    shown = np.float64(background[c])
-                else:
-                    flat = (colors[j, c] - colors[i, c]) * (t - i) + colors[i, c] if known else np.float64(unknown[c])
-                    shown = min(max(flat * np.float64(shade[x]), zero), one) * border[x]
-                pixels[y, x, c] = np.uint8(np.rint(shown * edge[x] * 255.0))
+                shown = background[c] if missed else min(max(table[k, c] * shade[x], zero), one) * border[x]
+                pixels[y, x, c] = np.uint8(np.rint(shown * edge[x] * most))
 
 
 @kernel

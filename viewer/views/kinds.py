@@ -43,12 +43,12 @@ class ClassView(FrameView):
     """What is classified."""
     classes: ClassVar[tuple[Class, ...]] = ()
     """In the order of the legend."""
-    stripe: ClassVar[int] = 1
-    """Pixels across which a stripe goes, where a class has stripes."""
+    stripe: ClassVar[int] = 0
+    """Pixels across which a stripe goes, where classes have stripes."""
 
     def __init__(self) -> None:
-        self.palette = np.asarray([one.color for one in self.classes], np.float32)
-        self.striped = np.asarray([one.stripes or one.color for one in self.classes], np.float32)
+        stripes = [one.stripes or one.color for one in self.classes] if self.stripe else []
+        self.palette = np.asarray([*(one.color for one in self.classes), *stripes], np.float32)
 
     def find(self, frame: Frame, light: int) -> NDArray[np.uint8]:
         """Return the class of each pixel (h, w), as its place among `classes`; any for a miss."""
@@ -63,8 +63,7 @@ class ClassView(FrameView):
         return None
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
-        found = self.found(frame, draw)
-        return by_class(frame, draw, found, self.palette, self.striped, self.stripe, self.cells(frame))
+        return by_class(frame, draw, self.found(frame, draw), self.palette, self.stripe, self.cells(frame))
 
     def counted(self, frame: Frame, draw: DrawOptions) -> list[int]:
         """Count the pixels of each class that hit something."""
@@ -115,6 +114,11 @@ class ModeView(ClassView):
         return Legend(title, ("pixels", named), (*entries, *at_rest(frame)), facts=facts)
 
 
+def filled_in(frame: Frame) -> tuple[Note, ...]:
+    """Return what is said of a picture of which only a part has been shaded."""
+    return () if frame.shaded is None else (Note("Pixels that are not shaded yet show the nearest one that is."),)
+
+
 def mode_name(mode: OcclusionMode | ShadowMode) -> str:
     """Return the name of a mode as legends have it."""
     return mode.name.replace("_", " ").lower()
@@ -137,7 +141,7 @@ def shadow_modes(frame: Frame, light: int) -> NDArray[np.uint8]:
 
 def not_culled(title: str) -> Legend:
     """Return the legend of a light that culling does not cover."""
-    why = "This light is not culled, as there are too many: all its rays are traced."
+    why = "There are too many lights for this one to be culled: all its shadow rays are traced."
     return Legend(title, notes=(Note(why, NoteKind.WARNING),))
 
 

@@ -1,7 +1,7 @@
 """What a legend consists of: the colours of a view, what each stands for, and how much of the frame has it.
 
 The window draws it into the picture, or beside it, and a saved picture may carry it; `lay_out` says where its
-parts lie: rectangles of colour and lines of text, in the unit in which `measure` gives the width of a text.
+parts lie: boxes of colour and lines of text, in the unit in which `measure` gives the width of a text.
 """
 
 from __future__ import annotations
@@ -9,9 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
-
-import numpy as np
-from numpy.typing import NDArray
 
 from viewer.state.palette import Color, color_map, signed_map
 
@@ -109,22 +106,14 @@ class Words:
 
 
 @dataclass(frozen=True)
-class Swatch:
-    """A rectangle of a colour, maybe with `stripes` of another, or of the colour map of a `scale`."""
+class Box:
+    """A rectangle of one colour."""
 
     x: float
     y: float
     width: float
     height: float
-    color: Color | None
-    stripes: Color | None = None
-    scale: Scale | None = None
-
-    def colors(self, steps: int) -> NDArray[np.float32]:
-        """Return so many colours (steps, 3) of the scale's map, from left to right."""
-        assert self.scale is not None
-        colors = (signed_map if self.scale.signed else color_map)(steps)
-        return colors[::-1] if self.scale.reverse else colors
+    color: Color
 
 
 @dataclass(frozen=True)
@@ -134,20 +123,24 @@ class Layout:
     width: float
     height: float
     words: tuple[Words, ...]
-    swatches: tuple[Swatch, ...]
+    boxes: tuple[Box, ...]
     tips: tuple[tuple[float, float, str], ...]
+
+
+STEPS = 64
+"""Boxes that a bar of the colour map consists of."""
 
 
 def fitting(legend: Legend, measure: Measure, line: float, width: float, height: float) -> Layout | None:
     """The layout of as much of a legend as there is room for: notes go first, then facts, then the last column.
 
     None where even the colours and their names are too large."""
-    shorter, plain = replace(legend, notes=()), replace(legend, notes=(), facts=())
-    narrow, bare = (
+    plain = replace(legend, notes=(), facts=())
+    narrower = (
         replace(plain, columns=plain.columns[:n], entries=tuple(replace(e, values=e.values[:n]) for e in plain.entries))
         for n in (1, 0)
     )
-    for one in (legend, shorter, plain, narrow, bare):
+    for one in (legend, replace(legend, notes=()), plain, *narrower):
         layout = lay_out(one, measure, line)
         if layout.width <= width and layout.height <= height:
             return layout
@@ -169,7 +162,7 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
         _scale_width(legend, measure, line),
         NOTE_WIDTH * line if legend.notes else 0.0,
     )
-    words, swatches, tips = [Words(pad, pad, legend.title)], [], []
+    words, boxes, tips = [Words(pad, pad, legend.title)], [], []
     y = pad + step
 
     def values(texts: tuple[str, ...], color: Color) -> Iterator[Words]:
@@ -181,7 +174,10 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
 
     if legend.scale is not None:
         scale = legend.scale
-        swatches.append(Swatch(pad, y + 0.1 * line, inner, 0.7 * line, None, scale=scale))
+        colors = (signed_map if scale.signed else color_map)(STEPS).tolist()
+        for k, (red, green, blue) in enumerate(reversed(colors) if scale.reverse else colors):
+            left = inner * k / STEPS  # each as far as the bar's end: there are no seams where the next one begins
+            boxes.append(Box(pad + left, y + 0.1 * line, inner - left, 0.7 * line, (red, green, blue)))
         y += line
         words.append(Words(pad, y, scale.low))
         words.append(Words(pad + (inner - measure(scale.middle)) / 2.0, y, scale.middle, QUIET))
@@ -193,7 +189,9 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
     for row in rows:
         if row.color is not None:
             side = 0.76 * line
-            swatches.append(Swatch(pad, y + 0.12 * line, side, side, row.color, row.stripes))
+            boxes.append(Box(pad, y + 0.12 * line, side, side, row.color))
+            if row.stripes is not None:
+                boxes += [Box(pad + k * side, y + 0.12 * line, side / 4.0, side, row.stripes) for k in (0.25, 0.75)]
             words.append(Words(pad + indent, y, row.name))
         else:
             words.append(Words(pad, y, row.name, QUIET))
@@ -206,7 +204,7 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
             words.append(Words(pad, y, text, NOTES[note.kind]))
             y += step
     height = y - (step - line) + pad
-    return Layout(inner + 2.0 * pad, height, tuple(words), tuple(swatches), tuple(tips))
+    return Layout(inner + 2.0 * pad, height, tuple(words), tuple(boxes), tuple(tips))
 
 
 def _scale_width(legend: Legend, measure: Measure, line: float) -> float:
@@ -218,12 +216,15 @@ def _scale_width(legend: Legend, measure: Measure, line: float) -> float:
 
 
 def wrapped(text: str, measure: Measure, width: float) -> list[str]:
-    """A text in lines that are no wider than that, as far as its words allow."""
+    """A text in lines that are no wider than that; a word that is too long by itself is broken where it must be."""
     lines = [""]
     for word in text.split():
-        longer = f"{lines[-1]} {word}".strip()
-        if lines[-1] and measure(longer) > width:
-            lines.append(word)
-        else:
+        if measure(longer := f"{lines[-1]} {word}".strip()) <= width:
             lines[-1] = longer
-    return lines
+            continue
+        lines.append("")
+        for letter in word:
+            if lines[-1] and measure(lines[-1] + letter) > width:
+                lines.append("")
+            lines[-1] += letter
+    return list(filter(None, lines))

@@ -17,8 +17,7 @@ from viewer.state.palette import OCCLUSION_COLORS, hex_color
 from viewer.state.views import Record
 from viewer.util.numbers import percent
 from viewer.views.base import Lights, Pixels
-from viewer.views.fate import filled_in
-from viewer.views.kinds import Class, ClassView
+from viewer.views.kinds import Class, ClassView, filled_in
 from viewer.views.legend import Legend, Note, fact
 from viewer.views.paint import LUMINANCE, by_color, shaded
 

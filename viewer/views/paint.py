@@ -1,8 +1,8 @@
 """What views share in turning the buffers of a frame, and slices through space, into pixels.
 
-Three kernels go over a picture once each, on one core and without the GIL: flat colours by class, a number on the
-colour map, or any colours.  All end the same way: with some of the picture's light and shade, the background where
-nothing is hit, and lines between cells and between primitives.
+Two kernels go over a picture once each, on one core and without the GIL: one draws the colours of a table, by class or
+by a number on the colour map, and the other any colours.  Both end the same way: with some of the picture's light and
+shade, the background where nothing is hit, and lines between cells and between primitives.
 """
 
 from __future__ import annotations
@@ -30,29 +30,31 @@ FEWEST = 6.0
 """Pixels that parts of space must be wide for their borders to be drawn."""
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
-_BACKGROUND, _GREY = np.asarray(BACKGROUND, np.float32), np.asarray(GREY, np.float32)
-_MAP = color_map().astype(np.float64)
+_BACKGROUND = np.asarray(BACKGROUND, np.float32)
+_MAP = color_map(1024)  # so fine that no step of a channel is left out
+_MAP_AND_GREY = np.concatenate([_MAP, np.asarray([GREY], np.float32)])
 _ONE = np.float32(1.0)
 
 
 def by_class(
     frame: Frame,
     draw: DrawOptions,
-    classes: NDArray[np.uint8],
+    classes: NDArray,
     palette: NDArray[np.float32],
-    striped: NDArray[np.float32] | None = None,
-    stripe: int = 1,
+    stripe: int = 0,
     cells: NDArray[np.int32] | None = None,
+    line: float = CELL_LINE,
+    shading: float | None = None,
 ) -> Pixels:
-    """Draw the colour of the class (h, w) of each pixel, shaded.
+    """Draw the colour of the class (h, w) of each pixel, shaded; between `cells` there is a `line`.
 
-    In every second stripe, so many pixels across, `striped` takes the place of the palette.  Between `cells` there are
-    lines."""
-    pixels, index, all_of_them = _empty(frame), classes.astype(np.int32), np.arange(len(palette), dtype=np.uint8)
-    kernels.paint_classes(
-        index, all_of_them, palette, palette if striped is None else striped, stripe, frame.color,
-        np.float32(draw.shading), frame.primitive, _BACKGROUND, frame.primitive if cells is None else cells,
-        _ONE if cells is None else np.float32(CELL_LINE), np.float32(outline(draw)), pixels,
+    Stripes of so many pixels take their colours from the first and the second half of the palette in turn."""
+    pixels = _empty(frame)
+    kernels.paint_table(
+        classes.astype(np.int32), palette, stripe, frame.color,
+        np.float32(draw.shading if shading is None else shading), frame.primitive, _BACKGROUND,
+        frame.primitive if cells is None else cells, _ONE if cells is None else np.float32(line),
+        np.float32(outline(draw)), pixels,
     )  # fmt: skip
     return pixels
 
@@ -66,15 +68,10 @@ def by_number(
     shading: float = 0.0,
 ) -> Pixels:
     """Draw numbers (h, w), 0 to 1, on the colour map, and grey where they are not `known`."""
-    pixels = _empty(frame)
-    place = on_map(place).astype(np.float64)
+    index = on_map(place)
     if known is not None:
-        place[~known] = np.nan
-    kernels.paint_numbers(
-        place, _MAP, _GREY, frame.color, np.float32(shading), frame.primitive, _BACKGROUND,
-        frame.primitive if cells is None else cells, 1.0 if cells is None else FAINT_LINE, outline(draw), pixels,
-    )  # fmt: skip
-    return pixels
+        index[~known] = len(_MAP)
+    return by_class(frame, draw, index, _MAP_AND_GREY, 0, cells, FAINT_LINE, shading)
 
 
 def by_color(
@@ -100,15 +97,14 @@ def in_range(numbers: NDArray, span: tuple[float, float]) -> NDArray:
     return (numbers - span[0]) / (span[1] - span[0])
 
 
-def on_map(t: NDArray) -> NDArray:
-    """Return places between the 256 entries of the colour map, as a linear filter reads it."""
-    return np.clip(np.clip(t, 0.0, 1.0) * 256 - 0.5, 0.0, 255.0)
+def on_map(t: NDArray) -> NDArray[np.int32]:
+    """Return which colours of the map stand for numbers, of which it has those from 0 to 1."""
+    return np.rint(np.clip(t, 0.0, 1.0) * (len(_MAP) - 1)).astype(np.int32)
 
 
-def mapped(t: NDArray) -> NDArray[np.float64]:
+def mapped(t: NDArray) -> NDArray[np.float32]:
     """Return the colours (..., 3) of numbers from 0 to 1 on the colour map."""
-    place = on_map(t)
-    return np.stack([np.interp(place, np.arange(len(_MAP)), _MAP[:, c]) for c in range(3)], axis=-1)
+    return _MAP[on_map(t)]
 
 
 def shaded(frame: Frame, flat: NDArray, shading: float, where: NDArray[np.bool_]) -> NDArray:
@@ -165,10 +161,9 @@ def wide_enough(width: NDArray[np.float32] | float, per_pixel: NDArray[np.float3
 def make_ready() -> None:
     """Compile the kernels, or load what has been compiled."""
     one, color, pixels = np.zeros((1, 1), np.int32), np.zeros((1, 1, 3), np.float32), np.empty((1, 1, 3), np.uint8)
-    end = one, _BACKGROUND
-    kernels.paint_classes(one, np.zeros(1, np.uint8), color[0], color[0], 1, color, _ONE, *end, one, _ONE, _ONE, pixels)
-    kernels.paint_numbers(np.zeros((1, 1)), _MAP, _GREY, color, _ONE, *end, one, 1.0, 1.0, pixels)
-    kernels.paint_colors(color, True, color, _ONE, *end, _ONE, pixels)
+    end = color, _ONE, one, _BACKGROUND
+    kernels.paint_table(one, color[0], 0, *end, one, _ONE, _ONE, pixels)
+    kernels.paint_colors(color, True, *end, _ONE, pixels)
 
 
 def _empty(frame: Frame) -> Pixels:

@@ -12,7 +12,7 @@ from viewer.state.draw_options import DrawOptions
 from viewer.util.numbers import count
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
 from viewer.views.legend import Legend, fact
-from viewer.views.paint import by_color
+from viewer.views.paint import by_class
 
 
 class Primitive(FrameView):
@@ -23,7 +23,7 @@ class Primitive(FrameView):
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         colors = _colors(1 << int(frame.primitive.max(initial=0)).bit_length())
-        return by_color(frame, draw, colors[np.maximum(frame.primitive, 0)], draw.shading)
+        return by_class(frame, draw, frame.primitive, colors)
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
         seen = int(np.count_nonzero(np.bincount(frame.primitive[hits(frame)])))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,12 +12,21 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, is_shaded, once, shaded_pixels, single
-from viewer.views.legend import Entry, Legend, Note, Scale, fact
+from viewer.views.base import (
+    FrameView,
+    Lights,
+    Pixels,
+    Values,
+    Words,
+    is_shaded,
+    once,
+    percentiles,
+    shaded_pixels,
+    single,
+)
+from viewer.views.kinds import filled_in
+from viewer.views.legend import Entry, Legend, Scale, fact
 from viewer.views.paint import by_number, in_range
-
-_SAMPLES = 20_000  # pixels, about, that the range is found from
-_NEAREST = "Other pixels show what the nearest of these has."
 
 
 class Work(FrameView):
@@ -28,34 +39,23 @@ class Work(FrameView):
     in_all = ""
     of = ""
     """Of what the total is a share, in the legend."""
+    unknown_shares: ClassVar[tuple[Entry, ...]] = ()
+    """The entry of pixels whose rays are a share of none."""
 
-    def rays(self, frame: Frame) -> NDArray[np.int32] | None:
-        """Return the rays at each pixel (h, w); None where the frame did not record them."""
-        raise NotImplementedError
+    def rays(self, frame: Frame) -> NDArray[np.int32]:
+        """Return the rays at each pixel (h, w).  Raises ValueError for a frame that did not record them."""
+        return recorded(getattr(frame, self.shows))
 
     def whole(self, frame: Frame) -> NDArray[np.int32]:
         """Return what they are a share of.  Raises ValueError for a frame without that record."""
         raise NotImplementedError
 
-    def recorded(self, frame: Frame) -> NDArray[np.int32]:
-        """Return the rays at each pixel.  Raises ValueError for a frame that did not record them."""
-        return recorded(self.rays(frame))
-
-    def can_draw(self, frame: Frame, light: int = 0) -> bool:
-        return self.rays(frame) is not None
-
     def span(self, frame: Frame) -> tuple[float, float]:
         """Return 0 and the 99th percentile of pixels that hit something, 1 at least."""
-        return once(frame, self.name, lambda: (0.0, self._top(frame)))
-
-    def _top(self, frame: Frame) -> float:
-        work = self.recorded(frame)
-        step = max(1, work.size // _SAMPLES)
-        sample = work.reshape(-1)[::step][frame.primitive.reshape(-1)[::step] >= 0]
-        return max(1.0, float(np.percentile(sample, 99.0))) if len(sample) else 1.0
+        return once(frame, self.name, lambda: (0.0, max([1.0, *percentiles(frame, self.rays(frame), 99.0)])))
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
-        work = self.recorded(frame)
+        work = self.rays(frame)
         if not draw.shares:
             return by_number(frame, draw, in_range(work, draw.span or self.span(frame)))
         whole = self.whole(frame)
@@ -63,7 +63,7 @@ class Work(FrameView):
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
         """Sum up over the pixels that are shaded: the others show what the nearest of these has."""
-        work, whole, part = self.recorded(frame), self.whole(frame), frame.statistics.part
+        work, whole, part = self.rays(frame), self.whole(frame), frame.statistics.part
         if frame.shaded is not None:
             work, whole = work[frame.shaded], whole[frame.shaded]
         total, per_pixel = int(work.sum(dtype=np.int64)), work.sum(dtype=np.int64) / max(work.size, 1)
@@ -72,25 +72,20 @@ class Work(FrameView):
             fact(name, f"{count(total)} ({percent(total, int(whole.sum(dtype=np.int64)))}{self.of})", self.in_all),
             fact("per pixel", f"{per_pixel:.2f}, at most {count(int(work.max(initial=0)))}"),
         )
-        notes = (Note(_NEAREST),) if part < 1.0 else ()
         if draw.shares:
-            entries, scale = self.unknown_shares(), Scale("0 %", "100 %", "50 %")
-            return Legend(self.title_of_shares, (), entries, scale, facts, notes=notes)
+            entries, scale = self.unknown_shares, Scale("0 %", "100 %", "50 %")
+            return Legend(self.title_of_shares, (), entries, scale, facts, notes=filled_in(frame))
         low, high = draw.span or self.span(frame)
         scale = Scale(f"{low:.4g}", f"{high:.4g} and more", f"{(low + high) / 2.0:.3g}")
-        return Legend(self.label, (), (), scale, facts, notes=notes)
-
-    def unknown_shares(self) -> tuple[Entry, ...]:
-        """Return the entry of pixels whose rays are a share of none."""
-        return ()
+        return Legend(self.label, (), (), scale, facts, notes=filled_in(frame))
 
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
-        return single(self.recorded(frame), self.name, shaded_pixels(frame))
+        return single(self.rays(frame), self.name, shaded_pixels(frame))
 
     def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
         if not is_shaded(frame, x, y):
             return ("?",)
-        work = int(self.recorded(frame)[y, x])
+        work = int(self.rays(frame)[y, x])
         whole = int(self.whole(frame)[y, x]) if draw.shares else 0
         return (f"{100.0 * work / whole:.0f} %",) if whole else (f"{work}",)
 
@@ -113,15 +108,11 @@ class Saved(Work):
     title_of_shares = "Share of the shadow rays due that is untraced"
     in_all = "of the first sample of each pixel; the share is of the shadow rays due"
     of = " of those due"
-
-    def rays(self, frame: Frame) -> NDArray[np.int32] | None:
-        return frame.saved
+    unknown_shares = (Entry("no shadow ray is due", GREY),)
+    shows = "saved"
 
     def whole(self, frame: Frame) -> NDArray[np.int32]:
         return recorded(frame.due_rays)
-
-    def unknown_shares(self) -> tuple[Entry, ...]:
-        return (Entry("no shadow ray is due", GREY),)
 
 
 VIEW = Saved()

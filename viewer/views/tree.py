@@ -12,23 +12,32 @@ from numpy.typing import NDArray
 from tracer.frame import EVERYWHERE, Frame, Region
 from tracer.geometry.tree_parts import NOWHERE, PartsAt, TreeParts, nothing_at
 from viewer.state.draw_options import AXES, DrawOptions, Slice
-from viewer.state.palette import BACKGROUND, hex_color
+from viewer.state.palette import hex_color
 from viewer.state.views import TREE
 from viewer.util.numbers import count, percent, several
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Scale, fact
-from viewer.views.paint import FAINT_LINE, Met, checkered, in_range, mapped, met, on_line, outline, shaded, wide_enough
+from viewer.views.paint import (
+    FAINT_LINE,
+    Met,
+    by_color,
+    checkered,
+    in_bytes,
+    in_range,
+    mapped,
+    met,
+    on_line,
+    shaded,
+    wide_enough,
+)  # fmt: skip
 
 LAYERS = 100
 """Steps from one side of what most primitives are in to the other."""
-SAMPLES = 128
-"""Points along each side of a slice, of which parts are counted."""
 STRIPE = 4
 """Pixels across which a stripe of what waits goes."""
 WAITS_COLORS = hex_color("4A4E57"), hex_color("6B707B")
 """Stripes of what of a tree is not built."""
-_OF_SLICE = f"its area, by {SAMPLES} x {SAMPLES} points; what lies outside of all boxes counts for neither"
 
 
 class Tree(FrameView):
@@ -49,7 +58,7 @@ class Tree(FrameView):
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
         found, plane = tree_seen(frame, draw.slice)
-        pixels, there = _behind(frame, draw), found.numbers != NOWHERE
+        pixels, there = by_color(frame, draw, dimmed(frame, draw.tone, draw.beneath)), found.numbers != NOWHERE
         colors = mapped(in_range(found.levels[there].astype(float), draw.span or self.span(frame)))
         waits, stripes = found.built[there] == 0, checkered(there.shape, STRIPE)[there]
         colors[waits] = np.asarray(WAITS_COLORS, np.float32)[stripes[waits]]
@@ -58,16 +67,13 @@ class Tree(FrameView):
         hidden = there & plane.behind
         colors[hidden[there]] = shaded(frame, colors[hidden[there]], draw.shading, hidden)
         colors[_in_company(on_line(found.owners))[there]] = 1.0
-        pixels[there] = np.round(np.clip(colors, 0.0, 1.0) * 255.0).astype(np.uint8)
+        pixels[there] = in_bytes(colors)
         return pixels
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:
         parts, built, cut = tree_of(frame), frame.statistics.built, draw.slice
-        share = share_built(parts, cut)
         low, high = draw.span or self.span(frame)
         facts = [fact(f"slice at {AXES[cut.axis]}", f"{plane_of(parts, cut):.4g}")]
-        if share is not None:
-            facts.append(fact("built of the slice", percent(share, 1.0), _OF_SLICE))
         if built is not None:
             in_nodes = f"{percent(built.primitives, built.of)} of {count(built.of)}"
             facts.append(fact("nodes built", count(built.nodes)))
@@ -119,29 +125,6 @@ def tree_seen(frame: Frame, cut: Slice, where: Region = EVERYWHERE) -> tuple[Par
     shape = plane.behind.shape
     found = parts.at(plane.points.reshape(-1, 3), cut.axis) or nothing_at(plane.behind.size)
     return PartsAt._make(column.reshape(shape) for column in found), plane
-
-
-def share_built(parts: TreeParts, cut: Slice) -> float | None:
-    """Return which share of what a slice has of the tree is built, by SAMPLES x SAMPLES points; None where it has
-    none."""
-    steps = (np.arange(SAMPLES, dtype=np.float32) + np.float32(0.5)) / np.float32(SAMPLES)
-    points = np.empty((SAMPLES, SAMPLES, 3), np.float32)
-    low, high = parts.extent[:3], parts.extent[3:]
-    one, other = (k for k in range(3) if k != cut.axis)
-    points[..., cut.axis] = plane_of(parts, cut)
-    points[..., one] = low[one] + steps[:, None] * (high[one] - low[one])
-    points[..., other] = low[other] + steps * (high[other] - low[other])
-    found = parts.at(points.reshape(-1, 3), cut.axis)
-    there = found.numbers != NOWHERE if found is not None else np.zeros(0, np.bool_)
-    return float(found.built[there].mean()) if found is not None and there.any() else None
-
-
-def _behind(frame: Frame, draw: DrawOptions) -> Pixels:
-    """Draw the dimmed picture.  It is rounded as float64, as the slice is: dimmed white lies between two bytes."""
-    picture, background = dimmed(frame, draw.tone, draw.beneath), np.asarray(BACKGROUND, np.float32)
-    colors = np.where(hits(frame)[..., None], picture, background)
-    colors[on_line(frame.primitive)] *= np.float32(outline(draw))
-    return np.round(colors.astype(np.float64) * 255.0).astype(np.uint8)
 
 
 def _in_company(line: NDArray[np.bool_]) -> NDArray[np.bool_]:

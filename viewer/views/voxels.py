@@ -57,8 +57,8 @@ class Voxels(FrameView):
         states, cut, light = voxels_of(frame), draw.slice, draw.light
         grid, number, title = states.grid, cut.layer(states.shape[cut.axis]), self.title(draw, lights)
         if not states.known[light]:
-            why = "Nothing is known of this light: it is a lamp, or past those that there is room for; its rays are "
-            return Legend(title, notes=(Note(f"{why}traced.", NoteKind.WARNING),))
+            why = "Voxels know nothing of this light: it is a lamp, or there are too many. All its rays are traced."
+            return Legend(title, notes=(Note(why, NoteKind.WARNING),))
         layer = np.take(np.arange(grid.voxels).reshape(states.shape), number, axis=cut.axis)
         in_slice = np.bincount(states.states(light, layer).reshape(-1), minlength=3).tolist()
         in_all = states.counts(light)

@@ -9,7 +9,7 @@ from viewer.state import verified
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import WIPE_LINE, WRONG
 from viewer.views import color
-from viewer.views.base import Highlight, Lights, Pixels, Values, Words
+from viewer.views.base import Lights, Pixels, Values, Words
 from viewer.views.color import displayed
 from viewer.views.difference import Difference, Mark, legend_of_wrong, wrong_marks
 from viewer.views.legend import Legend
@@ -25,16 +25,12 @@ class Wipe(Difference):
     shows_clipped = True
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
-        return self.highlighted(frame, draw, Highlight())
-
-    def highlighted(self, frame: Frame, draw: DrawOptions, highlight: Highlight) -> Pixels:
         column, right = wipe_column(frame.width, draw.wipe), verified.known(frame.reference)
         both = displayed(np.concatenate([frame.color[:, :column], right[:, column:]], axis=1), draw)
         pixels = by_color(frame, draw, both, everywhere=True)
         if draw.mark_wrong:  # the pixels inside a ring stay as they are
             pixels[wrong_marks(frame, draw.magnified) == Mark.RING] = in_bytes(WRONG)
-        if highlight.line:
-            pixels[:, column : column + 1] = in_bytes(WIPE_LINE)
+        pixels[:, column : column + 1] = in_bytes(WIPE_LINE)
         return pixels
 
     def legend(self, frame: Frame, draw: DrawOptions, lights: Lights) -> Legend | None:

@@ -2,8 +2,10 @@
 
 Hello ImGui owns the window, its GL context, the docking and the screen's density.  It calls a frame in three parts:
 
-    before_widgets   input -> state -> scheduler -> newest frame -> picture, with all GL work
-    widgets          panels (drawn by Hello ImGui from `layout.PANELS`), keys, and what lies over the panels
+    before_widgets   newest frame -> state -> queries about the frame -> scheduler (`advance`), then the picture, with
+                     all GL work
+    widgets          panels (drawn by Hello ImGui from `layout.PANELS`), keys, and what lies over the panels; what the
+                     user does there is in the state, and seen in the next frame of the window
     after_widgets    pictures of the window
 """
 
@@ -61,14 +63,13 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Saving files", c.captures.report_saved)
     step("Quitting once all is saved", c.questions.leave_when_saved)
     step("Taking the newest frame", c.take_frame)
-    step("Previewing the scene", lambda: c.preview.update(traced=c.frame is not None))
     # The state: time, camera, edits, and the steps of undo.
     step("Moving", c.move)
     step("Noting what can be undone", c.undo.note_changes)
     step("Editing the scene", c.apply_edits)
     step("Comparing", c.comparing.update)
     # The scheduler: queries about the newest frame are answered before the next.
-    step("Inspecting the pixel", c.inspect_pixel)
+    step("Inspecting the pixel", lambda: c.inspector.update(c.own_traced, not c.motion.is_animating))
     step("Listing the scene", lambda: c.table.update(c.own_traced))
     step("Compiling the method", c.loader.compile_method)
     step("Asking for the next frame", lambda: c.scheduler.request(c.frame_inputs(size)))
@@ -103,10 +104,8 @@ class App:
         self.ui = Ui(self.controller)
         self.ui.guard = Guard(self.controller.notices, lambda name, fault: status.instead_of_part(self.ui, name, fault))
         self.ui.take_commands(commands.build(self.ui))
-        self.ui.desktop.paste, self.ui.desktop.copy = imgui.get_clipboard_text, imgui.set_clipboard_text
-        self.ui.desktop.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
-        self.scene_path, self.given_settings, self.folders = scene_path, settings or {}, folders
-        self.meshes, self.scene, self.on_frame = meshes, scene, on_frame
+        self.ui.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
+        self._on_frame = on_frame
         self._told: Frame | None = None  # what the script has seen
         self.layout_file = layout.ready_file(config_folder())
         self.params = self._params()
@@ -121,6 +120,16 @@ class App:
             self.ui.tour.start()
         if problem:
             self.controller.notices.say(problem, error=True)
+        loader = self.controller.loader
+
+        def open_first() -> None:
+            loader.start(settings or {}, folders, meshes)
+            if scene is not None:
+                loader.take(scene)
+            else:
+                loader.open(scene_path or default_scene())
+
+        self._open_first = open_first
 
     def run(self, runner: Runner = immapp.run) -> int:
         """Open the window and stay until it is closed; returns the exit code.  Raises OSError, in one line, where the
@@ -136,8 +145,6 @@ class App:
         finally:
             threading.excepthook = hook
             self.controller.close()
-            if self.ui.full_screen.place is not None:
-                layout.put_window(self.layout_file, self.ui.full_screen.place)
         return 0
 
     def _thread_failed(self, of: threading.ExceptHookArgs) -> None:
@@ -149,7 +156,7 @@ class App:
     # --- one frame -------------------------------------------------------------------------------
 
     def before_widgets(self) -> None:
-        """Bring the state forward by the input of the last frame, ask for frames, and draw the newest."""
+        """Take the newest frame, bring the state forward, ask for the next frame, and draw the picture."""
         self._frame_began = time.perf_counter()
         ui, step = self.ui, self.ui.guard.step
         step("Setting the theme", self._set_theme)
@@ -158,14 +165,13 @@ class App:
         advance(self.controller, self._room_for_picture(), step)
         step("The script's function", self._call_script)
         step("Drawing the picture", lambda: graphics.draw(ui))
-        step("Drawing the preview", lambda: graphics.draw_preview(ui))
         step("Drawing recorded pictures", lambda: graphics.draw_recorded(ui))
         step("Saving the picture", self._capture_picture)
         self._set_frame_rate()
 
     def widgets(self) -> None:
         """Draw what is no docked panel, and read the keys."""
-        ui, step, overlay = self.ui, self.ui.guard.step, self.ui.guard.overlay
+        ui, step = self.ui, self.ui.guard.step
         style.fill_windows(True)
         step("The layout", self.layout.update)
         step("Reading the keys", lambda: menus.handle_keys(ui))
@@ -173,7 +179,6 @@ class App:
         step("Comparing", lambda: sides.read_key(ui))
         dialogs.show(ui)
         step("The tour", ui.tour.update)
-        overlay("The notice", lambda: status.show_fault(ui), self.controller.notices.dismiss_faults)
 
     def after_widgets(self) -> None:
         """Finish a frame that is drawn but not yet shown."""
@@ -207,10 +212,10 @@ class App:
     def _call_script(self) -> None:
         """Hand a whole picture to the script that opened the window, once; it closes the window by returning False."""
         traced = self.controller.traced
-        if self.on_frame is None or traced is None or not traced.whole or traced.frame is self._told:
+        if self._on_frame is None or traced is None or not traced.whole or traced.frame is self._told:
             return
         self._told = traced.frame
-        if self.on_frame(traced.frame) is False:
+        if self._on_frame(traced.frame) is False:
             self._exit()
 
     def _capture_picture(self) -> None:
@@ -269,7 +274,8 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(self.ui, {"Panels": self.layout.menu}, {"Edit/Presets": lambda: named_states.presets_menu(self.ui)})
+        menus.show(self.ui, [*self.ui.commands, *named_states.preset_commands(self.ui)])
+        self.layout.show_menu()
 
     def _ready(self) -> None:
         """The window and its GL context exist."""
@@ -285,17 +291,12 @@ class App:
         glfw.set_window_close_callback(window, self._close_wanted)
         glfw.set_window_iconify_callback(window, self._iconify)  # to ask in each frame would take a millisecond
         glfw.set_drop_callback(window, self._dropped)  # type: ignore[arg-type]  # it gets a list
-        opener = self.controller.loader
-        opener.start(self.given_settings, self.folders, self.meshes)
-        if self.scene is not None:
-            opener.take(self.scene)
-        else:
-            opener.open(self.scene_path or default_scene())
+        self._open_first()
 
     def _close_wanted(self, window: Any) -> None:
         """The window's close button, or the desktop: the same as the command."""
         glfw.set_window_should_close(window, False)
-        self.ui.guard.step("Quitting", self.ui.desktop.exit)
+        self.ui.guard.step("Quitting", self.ui.exit)
 
     def _iconify(self, _window: Any, iconified: int) -> None:
         self.iconified = bool(iconified)

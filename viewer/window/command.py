@@ -7,11 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from enum import Enum
 
 from viewer.services.controller import Controller
 
 MENUS = ("File", "Edit", "View", "Picture", "Compare", "Camera", "Time", "Culling", "Run", "Help")
+
+
+class Kind(Enum):
+    """What the palette finds."""
+
+    COMMAND = "command"
+    SETTING = "setting"
+    PRESET = "preset"
+    BOOKMARK = "bookmark"
+    SCENE = "scene"
 
 
 @dataclass(frozen=True)
@@ -33,44 +43,48 @@ class Command:
     """An action.  `menu` may name a menu within another, as "Camera/Bookmarks".  `key` is the one that it has unless
     the user gives it others, written as it is shown, e.g. "Ctrl+O"; `other_keys` do the same on other keyboards, and
     are not shown; `also` holds words by which the palette finds it, too; `checked` makes it a tick in its menu, where
-    `tip` says more about it; `title` is what it is called now, where that changes, and "" where it is not to be
-    seen."""
+    `tip` says more about it; `title` is what it is called now, where that is not its name, and "" where it is not to
+    be seen.
+
+    In the palette there are more, which have no key, and of which `menu` says where else they are.  One with `value` is
+    a setting that is typed: `value` is what it is now, and `take` tries another, returning what is wrong with it."""
 
     name: str
     menu: str
-    run: Callable[[], None]
+    run: Callable[[], object]
     key: str = ""
     checked: Callable[[], bool] | None = None
-    enabled: Callable[[], bool] = ALWAYS
+    enabled: Condition = ALWAYS
     separated: bool = False
     repeats: bool = False
     tip: str = ""
     also: str = ""
     other_keys: tuple[str, ...] = ()
-    title: Callable[[], str] | None = None
+    title: str | Callable[[], str] | None = None
+    kind: Kind = Kind.COMMAND
+    value: str | None = None
+    take: Callable[[str], str] | None = None
 
     @property
     def label(self) -> str:
         """What it is called now; "" while it is not to be seen."""
-        return self.name if self.title is None else self.title()
+        title = self.name if self.title is None else self.title
+        return title if isinstance(title, str) else title()
+
+    @property
+    def is_checked(self) -> bool:
+        """Whether it has a tick now."""
+        return self.checked is not None and self.checked()
 
     @property
     def why_not(self) -> str:
-        """Why it cannot be run now, as far as that is known; "" where it can."""
-        return "" if self.enabled() else getattr(self.enabled, "reason", "")
+        """Why it cannot be run now; "" where it can."""
+        return "" if self.enabled() else self.enabled.reason
 
     @property
     def keys(self) -> tuple[str, ...]:
         """All that it has."""
         return (self.key, *self.other_keys) if self.key else ()
-
-
-def switch(name: str, menu: str, holder: Any, attribute: str, key: str = "", **more: Any) -> Command:
-    """Return a command that turns an attribute of an object on and off."""
-    return Command(
-        name, menu, lambda: setattr(holder, attribute, not getattr(holder, attribute)), key,
-        checked=lambda: bool(getattr(holder, attribute)), **more,
-    )  # fmt: skip
 
 
 def scene_open(c: Controller) -> Condition:

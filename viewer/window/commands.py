@@ -1,61 +1,100 @@
-"""Every action, once: the menus, the list of keys, the palette and the handling of keys are all made from this list."""
+"""Every action, once: the menus, the list of keys, the palette and the handling of keys are all made from this list.
+
+Bookmarks, time and the camera's own commands are in `panels.camera`, edits of the scene in `panels.what_if`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+
+from imgui_bundle import imgui
 
 from tracer.method import Kind, Method, additions, bases
 from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
+from viewer.services.questions import Question
 from viewer.state.comparison import CompareMode
 from viewer.state.draw_options import NEUTRAL, brighter
 from viewer.state.methods import toggled, with_base
-from viewer.state.pixels import MOST, STEP
+from viewer.state.pixels import FIT, MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
-from viewer.views import view_of
-from viewer.window.command import Command, Condition, scene_open, switch
-from viewer.window.panels import what_if
+from viewer.window.command import Command, Condition, scene_open
+from viewer.window.panels import rays, what_if
 from viewer.window.panels.camera import camera_commands, time_commands
 from viewer.window.panels.find import FindState
-from viewer.window.panels.pixels import fit, pointed_at, zoom_by
-from viewer.window.panels.saving import copy_command
+from viewer.window.panels.pixels import zoom_by
+from viewer.window.panels.view import step_slice
 from viewer.window.setting_rows import setting_command
 from viewer.window.ui import CaptureKind, Dialog, Ui
 
 _STOPS = 0.5  # of exposure by a key
+_ABOUT = """A ray tracer that remembers its shadows.
+
+Shadow results are kept on each primitive and reused in later frames, so that most shadow rays need not be traced: \
+Nah, Lee, Park and Han, A Shadow Culling Algorithm for Interactive Ray Tracing."""
 
 
 def build(ui: Ui) -> list[Command]:
     """Return all commands, in the order of the menus."""
-    menus = (_file, _edit, _view, _picture, _compare, camera_commands, time_commands, _culling, _run, _help)
+    menus = (_file, _edit, _view, _interface, _picture, _compare, camera_commands, time_commands, _culling, _run, _help)
     return [command for menu in menus for command in menu(ui)]
 
 
 def _file(ui: Ui) -> list[Command]:
-    c, p = ui.controller, ui.controller.preferences
+    c, loader = ui.controller, ui.controller.loader
     there = Condition(lambda: c.frame is not None, "there is no picture yet")
 
-    def want(kind: CaptureKind) -> Callable[[], None]:
-        return lambda: setattr(ui, "capture_wanted", kind)
+    def want(kind: CaptureKind) -> None:
+        ui.capture_wanted = kind
 
+    def copy_command() -> None:
+        if (words := c.pictures.command()) is not None:
+            imgui.set_clipboard_text(words)
+
+    def up() -> str | None:
+        return up_in_studio(c.session.scene) if c.session.scene is not None else None
+
+    def is_mesh() -> bool:
+        return c.session.scene is not None and c.session.scene.path.suffix.lower() in MESH_EXTENSIONS
+
+    def in_studio() -> bool:
+        return (c.session.state.meshes if is_mesh() else loader.meshes).studio
+
+    def toggle_studio() -> None:
+        if is_mesh():
+            loader.read_as(replace(c.session.state.meshes, studio=not in_studio()))
+        else:
+            loader.meshes = replace(loader.meshes, studio=not in_studio())
+
+    def turn() -> None:
+        if (now := up()) is not None:
+            loader.read_as(replace(c.session.state.meshes, up=TURNS[(TURNS.index(now) + 1) % len(TURNS)]))
+
+    stands = Condition(lambda: loader.load_job is None and up() is not None,
+                       "no model is in a studio, or one is being loaded")  # fmt: skip
     return [
         Command("Open...", "File", lambda: ui.open(Dialog.OPEN_FILE), "Ctrl+O"),
-        Command("Reload", "File", c.loader.reload, "F5", enabled=scene_open(c)),
-        switch("Reload when files change", "File", p, "watch_scene",
-               tip="the scene, and what it includes: textures, materials, meshes"),
-        *_models(ui),
-        Command("Save picture", "File", want(CaptureKind.PICTURE), "F12", separated=True),
-        Command("Save picture with panels", "File", want(CaptureKind.WINDOW), "Shift+F12"),
-        Command("Save picture as...", "File", lambda: ui.open(Dialog.SAVE_AS), "Ctrl+S", enabled=there),
-        Command("Copy picture", "File", want(CaptureKind.CLIPBOARD), "Ctrl+C", enabled=there, separated=True),
-        Command("Copy as command", "File", lambda: copy_command(ui), "Ctrl+Alt+C", enabled=there,
+        Command("Reload", "File", loader.reload, "F5", enabled=scene_open(c)),
+        setting_command(ui, "watch_scene", "File"),
+        Command("Studio", "File", toggle_studio, checked=in_studio, separated=True,
+                tip="a floor, three lamps and an upright view for a mesh that brings neither camera nor lights"),
+        Command("Turn the model", "File", turn, "Ctrl+U", enabled=stands,
+                tip="another axis points up: y, z, x, -y, -z, -x in turn"),
+        Command("Save picture", "File", partial(want, CaptureKind.PICTURE), "F12", separated=True,
+                tip="the picture alone"),
+        Command("Save picture with panels", "File", partial(want, CaptureKind.WINDOW), "Shift+F12",
+                tip="the whole window"),
+        Command(f"{Dialog.SAVE_AS.value}...", "File", lambda: ui.open(Dialog.SAVE_AS), "Ctrl+S", enabled=there,
+                tip="larger, with a caption, or as EXR"),
+        Command("Copy picture", "File", partial(want, CaptureKind.CLIPBOARD), "Ctrl+C", enabled=there, separated=True),
+        Command("Copy as command", "File", copy_command, "Ctrl+Alt+C", enabled=there,
                 tip="the command that makes this picture, to the clipboard"),
         Command("Send to tev", "File", lambda: c.pictures.to_tev(c.frame), enabled=there,
                 tip="the frame and its buffers, to tev or HDRView; the panel Saving says where it listens"),
         Command("Reset settings...", "File", lambda: c.questions.before_resetting(c.settings.reset), separated=True),
-        Command("Quit", "File", lambda: ui.desktop.exit(), "Ctrl+Q", separated=True),
+        Command("Quit", "File", lambda: ui.exit(), "Ctrl+Q", separated=True),
     ]  # fmt: skip
 
 
@@ -66,66 +105,31 @@ def _edit(ui: Ui) -> list[Command]:
                 enabled=Condition(lambda: bool(undo.undoes), "there is nothing to undo")),
         Command("Redo", "Edit", undo.redo, "Ctrl+Shift+Z", repeats=True, title=lambda: f"Redo {undo.redoes}".rstrip(),
                 enabled=Condition(lambda: bool(undo.redoes), "there is nothing to redo"), other_keys=("Ctrl+Y",)),
-        Command("Command palette", "Edit", lambda: ui.open(Dialog.PALETTE), "Ctrl+Shift+P", separated=True,
+        Command(Dialog.PALETTE.value, "Edit", lambda: ui.open(Dialog.PALETTE), "Ctrl+Shift+P", separated=True,
                 tip="finds commands, settings, scenes, bookmarks and presets as you type"),
-        Command("Presets...", "Edit/Presets", lambda: ui.toggle(Dialog.PRESETS),
+        Command(f"{Dialog.PRESETS.value}...", "Edit/Presets", lambda: ui.toggle(Dialog.PRESETS),
                 checked=lambda: Dialog.PRESETS in ui.dialogs,
                 tip="save the settings under a name; rename and delete presets"),
         *what_if.commands(ui),
     ]  # fmt: skip
 
 
-def _models(ui: Ui) -> list[Command]:
-    """Of models that come alone, without camera and lights: their studio, and which way is up."""
-    session, loader = ui.controller.session, ui.controller.loader
-
-    def shown_up() -> str | None:
-        return up_in_studio(session.scene) if session.scene is not None else None
-
-    def is_mesh() -> bool:
-        return session.scene is not None and session.scene.path.suffix.lower() in MESH_EXTENSIONS
-
-    def in_studio() -> bool:
-        return (session.state.meshes if is_mesh() else loader.meshes).studio
-
-    def toggle() -> None:
-        if is_mesh():
-            loader.read_as(replace(session.state.meshes, studio=not in_studio()))
-        else:
-            loader.meshes = replace(loader.meshes, studio=not in_studio())
-
-    def turn() -> None:
-        up = shown_up()
-        if up is not None:
-            loader.read_as(replace(session.state.meshes, up=TURNS[(TURNS.index(up) + 1) % len(TURNS)]))
-
-    stands = Condition(
-        lambda: loader.load_job is None and shown_up() is not None, "no model is in a studio, or one is being loaded"
-    )
-    return [
-        Command("Studio", "File", toggle, checked=in_studio, separated=True,
-                tip="a floor, three lamps and an upright view for a mesh that brings neither camera nor lights"),
-        Command("Turn the model", "File", turn, "Ctrl+U", enabled=stands,
-                tip="another axis points up: y, z, x, -y, -z, -x in turn"),
-    ]  # fmt: skip
-
-
 def _view(ui: Ui) -> list[Command]:
-    c, p = ui.controller, ui.controller.preferences
-    views = list(View)
+    c, views = ui.controller, list(View)
     lit = Condition(
         lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "the scene has no other light"
     )
+    sliced = Condition(lambda: c.scheduler.drawn_view.has_slice, "choose the view Voxels or Tree built")
 
     def show(view: View) -> Command:
         return Command(view.label, "View", lambda: c.session.set_draw(view=view), view.key, also=view.declared.also,
                        checked=lambda: c.session.draw.view is view)  # fmt: skip
 
-    def another(step: int) -> Callable[[], None]:
-        return lambda: c.session.set_draw(view=views[(views.index(c.session.draw.view) + step) % len(views)])
+    def another(step: int) -> None:
+        c.session.set_draw(view=views[(views.index(c.session.draw.view) + step) % len(views)])
 
-    def light(step: int) -> Callable[[], None]:
-        return lambda: c.settings.set_light(c.session.draw.light + step)
+    def light(step: int) -> None:
+        c.settings.set_light(c.session.draw.light + step)
 
     def find() -> None:
         ui.show_panel("Find")
@@ -133,101 +137,82 @@ def _view(ui: Ui) -> list[Command]:
 
     return [
         *[show(view) for view in views],
-        Command("Next view", "View", another(1)),
-        Command("Previous view", "View", another(-1)),
-        Command("Next light", "View", light(1), "L", enabled=lit, separated=True),
-        Command("Previous light", "View", light(-1), "Shift+L", enabled=lit),
-        *_slice(ui),
-        switch("What culling saves", "View", p, "savings", "Shift+B", separated=True,
-               tip="one sentence above the picture, and a bar of the shadow rays by what became of them"),
+        Command("Next view", "View", partial(another, 1)),
+        Command("Previous view", "View", partial(another, -1)),
+        Command("Next light", "View", partial(light, 1), "L", enabled=lit, separated=True),
+        Command("Previous light", "View", partial(light, -1), "Shift+L", enabled=lit),
+        Command("Next layer of the slice", "View", partial(step_slice, ui, 1), "Shift+RightBracket", enabled=sliced,
+                separated=True, repeats=True),
+        Command("Previous layer of the slice", "View", partial(step_slice, ui, -1), "Shift+LeftBracket",
+                enabled=sliced, repeats=True),
+        setting_command(ui, "savings", "View", "Shift+B", separated=True),
         setting_command(ui, "draw.legend", "View", "N"),
         setting_command(ui, "draw.outlines", "View", "B"),
         setting_command(ui, "draw.mark_wrong", "View", "M"),
         setting_command(ui, "draw.shares", "View", "U"),
-        Command("Rays of the clicked pixel", "View", ui.show_rays, "X", separated=True),
+        Command("Rays of the clicked pixel", "View", partial(rays.show_rays, ui), "X", separated=True),
         Command("Find objects and primitives", "View", find, "Ctrl+F",
                 tip="a table of all, with modes, pixels, rays saved and wrong answers"),
         setting_command(ui, "draw.rays", "View", "I"),
         setting_command(ui, "draw.smooth", "View"),
-        *_interface(ui),
-        switch("Hide panels", "View", ui, "panels_hidden", "Tab", separated=True),
-        switch("Full screen", "View", ui.full_screen, "wanted", "F11"),
-        Command("Default layout", "View", lambda: ui.desktop.reset_layout()),
-    ]  # fmt: skip
-
-
-def _slice(ui: Ui) -> list[Command]:
-    """What methods keep of space: the slice through it."""
-    c, s = ui.controller, ui.controller.session
-    sliced = Condition(lambda: c.scheduler.drawn_view.has_slice, "choose the view Voxels or Tree built")
-
-    def step(layers: int) -> Callable[[], None]:
-        def go() -> None:
-            cut = s.draw.slice
-            many = view_of(s.draw.view).layers(c.frame, cut.axis) if c.frame is not None else 0
-            if many:
-                s.set_draw(slice=cut.in_layer(cut.layer(many) + layers, many))
-
-        return go
-
-    return [
-        Command("Next layer of the slice", "View", step(1), "Shift+RightBracket", enabled=sliced, separated=True,
-                repeats=True),
-        Command("Previous layer of the slice", "View", step(-1), "Shift+LeftBracket", enabled=sliced, repeats=True),
     ]  # fmt: skip
 
 
 def _interface(ui: Ui) -> list[Command]:
-    """The theme, and the size of the interface."""
+    """The second half of the menu View: the theme, and what else is the window's own."""
     p = ui.controller.preferences
 
-    def sized(steps: int) -> Callable[[], None]:
-        def change() -> None:
-            nearest = min(range(len(SCALES)), key=lambda i: abs(SCALES[i] - p.ui_scale))
-            p.ui_scale = SCALES[min(max(nearest + steps, 0), len(SCALES) - 1)] if steps else 1.0
-            ui.controller.notices.say(f"interface at {100.0 * p.ui_scale:.0f} %")
-
-        return change
+    def size(steps: int) -> None:
+        nearest = min(range(len(SCALES)), key=lambda i: abs(SCALES[i] - p.ui_scale))
+        p.ui_scale = SCALES[min(max(nearest + steps, 0), len(SCALES) - 1)] if steps else 1.0
+        ui.controller.notices.say(f"interface at {100.0 * p.ui_scale:.0f} %")
 
     def other_theme() -> None:
         p.theme = "dark" if p.theme == "light" else "light"
+
+    def hide_panels() -> None:
+        ui.panels_hidden = not ui.panels_hidden
+
+    def fill_screen() -> None:
+        ui.full_screen.wanted = not ui.full_screen.wanted
 
     largest = Condition(lambda: p.ui_scale < SCALES[-1], "the interface is at its largest")
     smallest = Condition(lambda: p.ui_scale > SCALES[0], "the interface is at its smallest")
     return [
         Command("Light theme", "View", other_theme, checked=lambda: p.theme == "light", separated=True),
-        Command("Larger interface", "View", sized(1), "Ctrl+Equal", enabled=largest,
+        Command("Larger interface", "View", partial(size, 1), "Ctrl+Equal", enabled=largest,
                 other_keys=("Ctrl+Shift+Equal", "Ctrl+KeypadAdd")),
-        Command("Smaller interface", "View", sized(-1), "Ctrl+Minus", enabled=smallest,
+        Command("Smaller interface", "View", partial(size, -1), "Ctrl+Minus", enabled=smallest,
                 other_keys=("Ctrl+KeypadSubtract",)),
-        Command("Interface at 100 %", "View", sized(0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
+        Command("Interface at 100 %", "View", partial(size, 0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
+        Command("Hide panels", "View", hide_panels, "Tab", checked=lambda: ui.panels_hidden, separated=True),
+        Command("Full screen", "View", fill_screen, "F11", checked=lambda: ui.full_screen.wanted),
+        Command("Default layout", "View", lambda: ui.reset_layout()),
     ]  # fmt: skip
 
 
 def _picture(ui: Ui) -> list[Command]:
     """Zoom and values of pixels, exposure and what is clipped."""
-    session, p = ui.controller.session, ui.controller.preferences
+    session = ui.controller.session
 
-    def expose(stops: float) -> Callable[[], None]:
-        def change() -> None:
-            session.set_draw(tone=brighter(session.draw.tone, stops))
-            ui.controller.notices.say(f"exposure {session.draw.tone.exposure:+.3g} EV")
-
-        return change
+    def expose(stops: float) -> None:
+        session.set_draw(tone=brighter(session.draw.tone, stops))
+        ui.controller.notices.say(f"exposure {session.draw.tone.exposure:+.3g} EV")
 
     larger = Condition(lambda: session.draw.zoom.scale < MOST, f"{MOST:.0f} times is the largest zoom")
     enlarged = Condition(lambda: not session.draw.zoom.fits, "the whole picture is shown")
     toned = Condition(lambda: not session.draw.tone.neutral, "colours are shown as traced")
     return [
-        Command("Zoom in", "Picture", lambda: zoom_by(ui, STEP, pointed_at(ui)), "Equal", repeats=True,
+        Command("Zoom in", "Picture", partial(zoom_by, ui, STEP), "Equal", repeats=True,
                 enabled=larger, other_keys=("Shift+Equal", "KeypadAdd")),
-        Command("Zoom out", "Picture", lambda: zoom_by(ui, 1.0 / STEP, pointed_at(ui)), "Minus", repeats=True,
+        Command("Zoom out", "Picture", partial(zoom_by, ui, 1.0 / STEP), "Minus", repeats=True,
                 enabled=enlarged, other_keys=("KeypadSubtract",)),
-        Command("Fit picture", "Picture", lambda: fit(ui), "Shift+F", enabled=enlarged),
-        switch("Values in pixels", "Picture", p, "pixel_values", separated=True),
-        Command("Brighter", "Picture", expose(_STOPS), "RightBracket", repeats=True, separated=True),
-        Command("Darker", "Picture", expose(-_STOPS), "LeftBracket", repeats=True),
-        Command("Colours as traced", "Picture", lambda: session.set_draw(tone=NEUTRAL), enabled=toned),
+        Command("Fit picture", "Picture", lambda: session.set_draw(zoom=FIT), "Shift+F", enabled=enlarged),
+        setting_command(ui, "pixel_values", "Picture", separated=True),
+        Command("Brighter", "Picture", partial(expose, _STOPS), "RightBracket", repeats=True, separated=True),
+        Command("Darker", "Picture", partial(expose, -_STOPS), "LeftBracket", repeats=True),
+        Command("Colours as traced", "Picture", lambda: session.set_draw(tone=NEUTRAL), enabled=toned,
+                tip="reset exposure, white and tone curve"),
         setting_command(ui, "draw.clipping", "Picture", "Shift+M"),
     ]  # fmt: skip
 
@@ -265,77 +250,74 @@ def _culling(ui: Ui) -> list[Command]:
     def method() -> Method:
         return Method.parse(c.session.settings.method)
 
-    def base(kind: Kind) -> Command:
-        def choose() -> None:
-            c.settings.change(method=with_base(c.session.settings.method, kind.name))
+    def change(combine: Callable[[str, str], str], name: str) -> None:
+        c.settings.change(method=combine(c.session.settings.method, name))
 
-        return Command(
-            f"Method {kind.name}", "Culling", choose, checked=lambda: method().kind is kind, tip=kind.summary
-        )
+    def base(kind: Kind) -> Command:
+        return Command(f"Method {kind.name}", "Culling", partial(change, with_base, kind.name), tip=kind.summary,
+                       checked=lambda: method().kind is kind)  # fmt: skip
 
     def addition(kind: Kind) -> Command:
-        def toggle() -> None:
-            c.settings.change(method=toggled(c.session.settings.method, kind.name))
-
-        fits = Condition(lambda: method().kind is not kind, "it is the method itself")
-        return Command(f"Method +{kind.name}", "Culling", toggle, enabled=fits, tip=kind.summary,
-                       checked=lambda: method().has(kind.name))  # fmt: skip
+        fits = Condition(lambda: method().kind is not kind, "it is the chosen method")
+        return Command(f"Method +{kind.name}", "Culling", partial(change, toggled, kind.name), tip=kind.summary,
+                       checked=lambda: method().has(kind.name), enabled=fits)  # fmt: skip
 
     return [
-        *[base(kind) for kind in bases()],
-        *[addition(kind) for kind in additions()],
+        *map(base, bases()),
+        *map(addition, additions()),
         Command("Shadow culling", "Culling", c.settings.toggle_culling, "C", checked=lambda: method().culls,
                 separated=True),
         setting_command(ui, "settings.symmetric", "Culling", "Y"),
         setting_command(ui, "settings.verify", "Culling", "V"),
-        Command("Reset modes", "Culling", c.reset_modes, "Backspace", separated=True),
-        Command("Trace again", "Culling", c.scheduler.trace_again, "T"),
+        Command("Reset modes", "Culling", c.reset_modes, "Backspace", separated=True,
+                tip="forget all modes and certificates"),
+        Command("Trace again", "Culling", c.scheduler.trace_again, "T",
+                tip="trace the same frame once more, with what is known after the last one"),
         setting_command(ui, "pace.keep_tracing", "Culling", "K"),
     ]  # fmt: skip
 
 
 def _run(ui: Ui) -> list[Command]:
-    c, runner = ui.controller, ui.controller.runs
+    c, runs = ui.controller, ui.controller.runs
 
-    def start(panel: str, begin: Callable[[], None] = lambda: None) -> Callable[[], None]:
-        def run() -> None:
-            ui.show_panel(panel)
-            begin()
-
-        return run
+    def start(panel: str, begin: Callable[[], None] = lambda: None) -> None:
+        ui.show_panel(panel)
+        begin()
 
     def stop() -> None:
         if c.loader.load_job is not None:
             c.loader.cancel()
-        elif runner.current is not None:
-            runner.stop()
+        elif runs.current is not None:
+            runs.stop()
         else:
-            c.selection.picked = None
+            c.selection.clear()
 
     idle = Condition(
-        lambda: c.session.scene is not None and runner.current is None, "no scene is open, or a run is in progress"
+        lambda: c.session.scene is not None and runs.current is None, "no scene is open, or a run is in progress"
     )
     busy = Condition(
-        lambda: c.loader.load_job is not None or runner.current is not None or c.selection.picked is not None,
+        lambda: c.loader.load_job is not None or runs.current is not None or c.selection.picked is not None,
         "nothing is running, and nothing is selected",
     )
     return [
-        Command("Experiment", "Run", start("Experiment", runner.start_experiment), enabled=idle),
-        Command("Zoom test", "Run", start("Zoom test", runner.start_zoom_test), enabled=idle),
-        Command("Hunt", "Run", start("Hunt", c.hunts.start), enabled=idle,
+        Command("Experiment", "Run", partial(start, "Experiment", runs.start_experiment), enabled=idle),
+        Command("Zoom test", "Run", partial(start, "Zoom test", runs.start_zoom_test), enabled=idle),
+        Command("Hunt", "Run", partial(start, "Hunt", c.hunts.start), enabled=idle,
                 tip="search the path for the worst wrong pixels of a method"),
-        Command("Film", "Run", start("Film"), enabled=idle,
+        Command("Film", "Run", partial(start, "Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),
         Command("Stop, or clear the selection", "Run", stop, "Escape", enabled=busy, separated=True),
     ]  # fmt: skip
 
 
 def _help(ui: Ui) -> list[Command]:
-    def dialog(which: Dialog, key: str = "", also: str = "") -> Command:
-        return Command(which.value, "Help", lambda: ui.toggle(which), key, lambda: which in ui.dialogs, also=also)
+    def about() -> None:
+        text = f"{_ABOUT}\n\nDrawn by {ui.graphics.renderer_name}"
+        ui.controller.questions.question = Question("About Shadowcull", text, (("Close", lambda: None),))
 
     return [
         Command("Tour", "Help", ui.tour.toggle, checked=lambda: ui.tour.step is not None),
-        dialog(Dialog.KEYS, "F1", "keys shortcuts"),
-        dialog(Dialog.ABOUT),
-    ]
+        Command(Dialog.KEYS.value, "Help", lambda: ui.toggle(Dialog.KEYS), "F1", also="keys shortcuts",
+                checked=lambda: Dialog.KEYS in ui.dialogs),
+        Command("About Shadowcull", "Help", about),
+    ]  # fmt: skip

@@ -6,8 +6,6 @@ longer referred to here is freed on the GPU by `graphics.draw`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol
@@ -16,11 +14,12 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.pixels import Zoom
 from viewer.util.resources import shader_source
-from viewer.views import AS_SAVED, Highlight, Pixels, colorize
+from viewer.views import Pixels, colorize
 from viewer.views.compare import Difference, signed_picture
 
 
@@ -31,12 +30,12 @@ class DisplayError(RuntimeError):
 @dataclass(frozen=True)
 class InWindow:
     """What the window adds to how a frame is drawn: a bright border around the `selected` primitive, or around all of
-    the selected part of the scene; whether pixels are blended where they are enlarged; and what is highlighted."""
+    the selected part of the scene; whether pixels are blended where they are enlarged; and the fate that stands out."""
 
     selected: int = -1
     selected_part: int = -1
     smooth: bool = True
-    highlight: Highlight = AS_SAVED
+    fate: Fate | None = None
 
 
 PLAIN = InWindow()
@@ -44,19 +43,6 @@ THUMBNAIL = 128
 """Pixels of height of small recorded pictures."""
 BROUGHT_IN_A_FRAME = 6
 """Recorded pictures brought to the GPU in one of the window's frames, at most."""
-
-
-@contextmanager
-def drawing_into(target: Any, tests: int = moderngl.NOTHING) -> Iterator[None]:
-    """Let a framebuffer be drawn into, with these of OpenGL's tests, and then the window again, without any."""
-    window = target.ctx.detect_framebuffer()
-    try:
-        target.use()
-        target.ctx.enable_only(tests)
-        yield
-    finally:
-        window.use()
-        target.ctx.enable_only(moderngl.NOTHING)
 
 
 class PictureTexture:
@@ -77,7 +63,7 @@ class PictureTexture:
         """Bring a picture (h, w, 3) to the GPU.  Raises DisplayError for what is too much for it."""
         size, most = (pixels.shape[1], pixels.shape[0]), self.context.info["GL_MAX_TEXTURE_SIZE"]
         if max(size) > most:
-            raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, which takes {most} pixels a side")
+            raise DisplayError(f"{size[0]} x {size[1]} is too large for this GPU, whose limit is {most} pixels a side")
         _ = self.context.error  # of somebody before us
         if self.picture is None or self.picture.size != size:
             self.picture = self.context.texture(size, 3, alignment=1)
@@ -129,7 +115,7 @@ class Display(PictureTexture):
         if wanted in (self._drawn, self._failed):  # frames are equal only where they are the same
             return
         self._failed = wanted
-        pixels = colorize(frame, draw, window.highlight)
+        pixels = colorize(frame, draw, window.fate)
         if window.selected >= 0:
             pixels[_selected_border(frame, window, self.part_of)] = 255
         self.write(pixels, window.smooth and draw.view.shows_clipped)
@@ -234,8 +220,13 @@ class Magnifier:
         program = self._triangle.program
         program["part"], program["size"] = (left, top, right - left, bottom - top), size
         source.use(0)
-        with drawing_into(self._targets[name]):
+        window = self._context.detect_framebuffer()
+        try:
+            self._targets[name].use()
+            self._context.enable_only(moderngl.NOTHING)
             self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        finally:
+            window.use()
         self._shown[name] = wanted
 
     def texture_of(self, name: str, source: int, zoom: Zoom, size: tuple[int, int]) -> int | None:

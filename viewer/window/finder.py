@@ -2,48 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from enum import Enum
 
 from rapidfuzz import fuzz
+
+from viewer.window.command import Command, Kind
 
 RECENT_BONUS = 15.0
 """For what was run last; less for what was run before."""
 _OTHER_KINDS = 4.0  # which a command goes before, where both fit alike
 _MISTYPED, _ALIKE = -1000.0, 75.0  # to which is added how alike the words are, of 100, and that is at least so much
-
-
-class Kind(Enum):
-    """What an item is."""
-
-    COMMAND = "command"
-    SETTING = "setting"
-    PRESET = "preset"
-    BOOKMARK = "bookmark"
-    SCENE = "scene"
-
-
-@dataclass(frozen=True)
-class Item:
-    """Something that can be found.  `path` says where else it is, such as its menu; `key` is as the user reads it;
-    `why_not` says why it cannot be run now, "" where it can; `also` holds words that find it as well.  An item with
-    `value` is a setting that is typed: `value` is what it is now, and `take` tries another, returning what is wrong
-    with it or ""."""
-
-    name: str
-    label: str
-    kind: Kind
-    run: Callable[[], None]
-    path: str = ""
-    key: str = ""
-    checked: bool | None = None
-    enabled: bool = True
-    why_not: str = ""
-    also: str = ""
-    value: str | None = None
-    take: Callable[[str], str] | None = None
-    hint: str = ""
 
 
 def match(typed: str, label: str, also: str = "") -> float | None:
@@ -72,14 +41,14 @@ def match(typed: str, label: str, also: str = "") -> float | None:
     return score
 
 
-def find(typed: str, items: Sequence[Item], used: Sequence[str]) -> list[Item]:
+def find(typed: str, items: Sequence[Command], used: Sequence[str]) -> list[Command]:
     """What fits, best first, or else what is nearly called so; without a word all, what was used last first."""
     rank = {name: place for place, name in enumerate(used)}
     if not typed.strip():
         return sorted(items, key=lambda item: rank.get(item.name, len(rank)))
     scored = []
     for number, item in enumerate(items):
-        score = match(typed, item.label, f"{item.path} {item.kind.value} {item.also}")
+        score = match(typed, item.label, f"{item.name} {item.menu} {item.kind.value} {item.also}")
         if score is not None:
             score -= _OTHER_KINDS if item.kind is not Kind.COMMAND else 0.0
             score += RECENT_BONUS / (1.0 + rank[item.name]) if item.name in rank else 0.0
@@ -94,10 +63,10 @@ class Finder:
     `moved`, `setting` the setting whose value is being typed, `problem` what is wrong with that; a `fresh` line takes
     the keyboard."""
 
-    found: list[Item] = field(default_factory=list)
+    found: list[Command] = field(default_factory=list)
     typed: str = ""
     marked: int = 0
-    setting: Item | None = None
+    setting: Command | None = None
     problem: str = ""
     moved: bool = True
     fresh: bool = True
@@ -107,7 +76,7 @@ class Finder:
         self.typed, self.marked, self.setting, self.problem = "", 0, None, ""
         self.moved = self.fresh = True
 
-    def update(self, items: Sequence[Item], used: Sequence[str]) -> None:
+    def update(self, items: Sequence[Command], used: Sequence[str]) -> None:
         """Find what is typed among all items, as they are now."""
         if self.setting is None:
             self.found = find(self.typed, items, used)
@@ -126,22 +95,21 @@ class Finder:
             self.moved = True
 
     @property
-    def aimed(self) -> Item | None:
+    def aimed(self) -> Command | None:
         """What Enter would run."""
         return self.found[self.marked] if self.setting is None and self.marked < len(self.found) else None
 
-    def enter(self, item: Item | None) -> Callable[[], None] | None:
-        """Take an item, or the value that was typed for one; returns what is to be run now that it closes, None while
-        it stays open."""
+    def enter(self, item: Command | None) -> bool:
+        """Take an item, or the value that was typed for one; returns whether it closes now, and the item is to be
+        run."""
         if self.setting is not None:
             self.problem = self.setting.take(self.typed) if self.setting.take is not None else ""
-            return None if self.problem else lambda: None
+            return not self.problem
         if item is None:
-            return None
-        if not item.enabled:
+            return False
+        if not item.enabled():
             self.problem = f"{item.label}: {item.why_not or 'cannot be done now'}"
-            return None
+            return False
         if item.value is not None:
             self.setting, self.typed, self.problem, self.fresh = item, item.value, "", True
-            return None
-        return item.run
+        return item.value is None

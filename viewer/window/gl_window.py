@@ -12,9 +12,7 @@ from imgui_bundle import glfw_utils
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
-NO_OPENGL = (
-    "no window can be opened, as this display gives no OpenGL 3.3; without one, use: shadowcull render SCENE -o out.png"
-)
+NO_OPENGL = "cannot open a window: this display has no OpenGL 3.3; without one, use: shadowcull render SCENE -o out.png"
 _SIGNALS = ("SIGTERM", "SIGHUP", "SIGINT")
 Rect = tuple[int, int, int, int]
 """Left, top, width, height."""

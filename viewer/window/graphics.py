@@ -10,12 +10,10 @@ from viewer.services.controller import Controller
 from viewer.services.runs import missing_in
 from viewer.state.methods import missing
 from viewer.state.parts import parts_of
-from viewer.state.savings import comparison_in_words
+from viewer.state.savings import Tone, comparison, in_words
 from viewer.state.views import View
-from viewer.views.base import Highlight
 from viewer.window.display import Compared, Display, InWindow, Magnifier, TextureCache
 from viewer.window.panels import legend, savings, sides
-from viewer.window.preview import PreviewDisplay
 from viewer.window.ui import CaptureKind, Ui
 
 
@@ -34,12 +32,12 @@ def draw(ui: Ui) -> None:
     if display is None:
         return
     display.context.gc()
-    picked, part, now = c.selection.picked, c.selection.part, c.session.edited
-    if part is not None and now is not None:
+    picked, now = c.selection.picked, c.session.edited
+    if picked is not None and picked.part is not None and now is not None:
         display.part_of = ui.cached("parts", now, 0, lambda: parts_of(now.original).part_of[now.primitives])
     options, window = sides.draw_options(ui), in_window(ui)
     if picked is not None:
-        window = replace(window, selected=picked.primitive, selected_part=-1 if part is None else part)
+        window = replace(window, selected=picked.primitive, selected_part=-1 if picked.part is None else picked.part)
     display.draw(c.frame, options, window)
     sides.draw(ui, options, window.smooth)
     sides.magnify(ui, options, window.smooth)
@@ -51,29 +49,11 @@ def draw_recorded(ui: Ui) -> None:
         ui.graphics.textures.update()
 
 
-def draw_preview(ui: Ui) -> None:
-    """Draw what is seen while kernels compile, from where the camera is; what failed to be drawn is not tried again."""
-    c, gl = ui.controller, ui.graphics
-    geometry = c.preview.geometry
-    if gl.display is None or geometry is None:
-        gl.preview = None
-        return
-    try:
-        if gl.preview is None or gl.preview.geometry is not geometry:
-            gl.preview = PreviewDisplay(gl.display.context, geometry)
-        if min(ui.picture.area) > 0:
-            gl.preview.draw(c.session.camera, ui.picture.area)
-    except Exception:
-        c.preview.geometry = gl.preview = None
-        raise
-
-
 def in_window(ui: Ui) -> InWindow:
     """Return what the window adds to the picture, but for what is selected."""
     c = ui.controller
     smooth, view = c.session.draw.smooth and c.session.draw.zoom.fits, c.scheduler.drawn_view
-    line = view is not View.WIPE or not c.scheduler.becoming_finer  # of few pixels it would be thick
-    return InWindow(smooth=smooth, highlight=Highlight(ui.fate_shown if view is View.FATE else None, line))
+    return InWindow(smooth=smooth, fate=ui.fate_shown if view is View.FATE else None)
 
 
 def capture(ui: Ui) -> None:
@@ -101,8 +81,8 @@ def capture(ui: Ui) -> None:
         described = legend.of_picture(ui) if c.preferences.legend_in_pictures else None
         state = c.pictures.state_of(c.frame, options.view) if c.frame is not None and not compared else None
         if state is not None and c.frame is not None and state.draw.savings is not None:
-            said = comparison_in_words(c.frame, savings.standing(c))
-            state = state.with_draw(savings=said)
+            known = (one for one in comparison(c.frame, savings.standing(c)) if one.tone is not Tone.QUIET)
+            state = state.with_draw(savings=in_words(known))
         take = c.captures.copy if wanted is CaptureKind.CLIPBOARD else c.captures.capture
         take(c.frame, pixels, described, state)
 

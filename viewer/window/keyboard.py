@@ -31,6 +31,9 @@ _MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Alt": imgui.Key.mod_alt, "Super": img
 _OF_LETTERS = ("Ctrl", "Alt", "Super")  # with which a key means a letter, and no place
 _CHORD = sum(int(_MODIFIERS[name]) for name in _OF_LETTERS)
 _ALL_MODIFIERS = int(imgui.Key.mod_mask_)
+_NO_KEYS = re.compile(r"none|(gamepad|mouse|reserved|named|mod|(left|right)_(ctrl|shift|alt|super))(_|$)")
+KEYS = {name.title().replace("_", ""): key for name, key in imgui.Key.__members__.items() if not _NO_KEYS.match(name)}
+"""ImGui's keys by their names, "LeftArrow" or "Keypad7", but for modifiers."""
 _SIGNS = {
     "GraveAccent": "`", "Minus": "-", "Equal": "=", "LeftBracket": "[", "RightBracket": "]", "Backslash": "\\",
     "Comma": ",", "Semicolon": ";", "Apostrophe": "'", "Period": ".", "Slash": "/",
@@ -40,38 +43,22 @@ PLACES = {
     **{name: ord(sign) for name, sign in _SIGNS.items()},
 }
 """GLFW's number of each place where something is printed."""
-_EDITING = (
-    "Space", "Tab", "Enter", "Backspace", "Delete", "Insert", "Home", "End", "PageUp", "PageDown", "LeftArrow",
-    "RightArrow", "UpArrow", "DownArrow", "Oem102",
-)  # fmt: skip
-_OTHERS = (
-    *(f"F{n}" for n in range(1, 25)), *(f"Keypad{n}" for n in range(10)), "KeypadAdd", "KeypadSubtract",
-    "KeypadMultiply", "KeypadDivide", "KeypadDecimal", "KeypadEnter", *_EDITING,
-)  # fmt: skip
-_SHOWN = _SIGNS | {
-    "RightArrow": "Right", "LeftArrow": "Left", "UpArrow": "Up", "DownArrow": "Down", "Equal": "+",
-    "PageUp": "Page up", "PageDown": "Page down", "KeypadAdd": "Keypad +", "KeypadSubtract": "Keypad -",
-    "KeypadMultiply": "Keypad *", "KeypadDivide": "Keypad /", "KeypadDecimal": "Keypad .", "Oem102": "<",
-}  # fmt: skip
+_SHOWN = _SIGNS | {"Equal": "+", "Oem102": "<"}
 _EVERY = 1.0  # seconds after which a keyboard may have got another layout
-
-
-def chord(key: str) -> int:
-    """Return ImGui's number of a key, e.g. "Shift+F12"; raises ValueError for an unknown one."""
-    *modifiers, name = key.split("+")
-    spelled = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
-    found = getattr(imgui.Key, f"_{name}" if name.isdigit() else spelled, None)
-    if found is None or not set(modifiers) <= set(_MODIFIERS):
-        raise ValueError(f"no key is called {key!r}")
-    return sum(int(_MODIFIERS[modifier]) for modifier in set(modifiers)) | int(found)
 
 
 def is_key(key: str) -> bool:
     """Return whether a key of this name exists."""
-    try:
-        return bool(chord(key))
-    except (ValueError, TypeError):
-        return False
+    *modifiers, name = key.split("+")
+    return name in KEYS and set(modifiers) <= set(_MODIFIERS)
+
+
+def chord(key: str) -> int:
+    """Return ImGui's number of a key, e.g. "Shift+F12"; raises ValueError for an unknown one."""
+    if not is_key(key):
+        raise ValueError(f"no key is called {key!r}")
+    *modifiers, name = key.split("+")
+    return sum(int(_MODIFIERS[modifier]) for modifier in set(modifiers)) | int(KEYS[name])
 
 
 def tidy(key: str) -> str:
@@ -88,9 +75,8 @@ def is_place(key: str) -> bool:
 def works_while_typing(key: str) -> bool:
     """Return whether a key means its command also while a field of text has the keyboard, which uses others itself."""
     *modifiers, name = key.split("+")
-    if name in _EDITING or name in "ACVXYZ":
-        return False
-    return "Ctrl" in modifiers or "Super" in modifiers or re.fullmatch(r"F\d+", name) is not None
+    chorded = ("Ctrl" in modifiers or "Super" in modifiers) and name in PLACES and name not in "ACVXYZ"
+    return chorded or re.fullmatch(r"F\d+", name) is not None
 
 
 class Keymap:
@@ -189,7 +175,8 @@ class Keyboard:
         """Return a key as the user reads it on the keyboard."""
         *modifiers, name = key.split("+")
         letter = self._letters.get(name, "") if is_place(key) and not name.isdigit() else ""
-        return "+".join([*modifiers, letter.upper() or _SHOWN.get(name) or re.sub(r"^Keypad", "Keypad ", name)])
+        words = re.sub(r"(?<=[a-z])(?=[A-Z0-9])", " ", name.removesuffix("Arrow"))  # "Keypad 7"
+        return "+".join([*modifiers, letter.upper() or _SHOWN.get(name) or words])
 
     def is_down(self, keys: Iterable[str]) -> bool:
         """Return whether one of these keys is held, whatever modifiers are held with it."""
@@ -199,7 +186,7 @@ class Keyboard:
         """Return the key that has just been pressed, with its modifiers, as commands have it."""
         held = int(imgui.get_io().key_mods)
         prefix = "".join(f"{name}+" for name, number in _MODIFIERS.items() if held & int(number))
-        return next((prefix + name for name in (*PLACES, *_OTHERS) if self.is_pressed(prefix + name, held)), None)
+        return next((prefix + name for name in KEYS if self.is_pressed(prefix + name, held)), None)
 
     def update_modifiers(self, keymap: Keymap) -> int:
         """Take up which modifiers are held, once a frame; returns those that were held until now, or else are now.

@@ -5,8 +5,6 @@ they were."""
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Callable, Collection, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -14,8 +12,6 @@ from typing import Any, NamedTuple
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
-from viewer.util.files import write_text
-from viewer.window.gl_window import Rect
 from viewer.window.panels import (
     camera,
     compare,
@@ -105,7 +101,7 @@ class Layout:
             hello_imgui.DockingSplit(of, space, side, share) for space, of, side, share in SPACES
         ]
         self._docking.dockable_windows = [self._window(panel) for panel in PANELS.values()]
-        ui.show_panel, ui.panel_labels, ui.desktop.reset_layout = self.show, SIDES, self.reset
+        ui.show_panel, ui.panel_labels, ui.reset_layout = self.show, SIDES, self.reset
 
     # --- what the commands ask for ---------------------------------------------------------------
 
@@ -122,11 +118,13 @@ class Layout:
             window.is_visible = window.label in labels
         self._docking.layout_reset = True
 
-    def menu(self) -> None:
-        """Show what is in the menu of panels: a tick for each that is open."""
-        for label in SIDES:
-            window = self._docking.dockable_window_of_name(label)
-            _, window.is_visible = imgui.menu_item(label, "", window.is_visible, True)
+    def show_menu(self) -> None:
+        """Show the menu of panels: a tick for each that is open."""
+        if imgui.begin_menu("Panels"):
+            for label in SIDES:
+                window = self._docking.dockable_window_of_name(label)
+                _, window.is_visible = imgui.menu_item(label, "", window.is_visible, True)
+            imgui.end_menu()
 
     # --- one frame -------------------------------------------------------------------------------
 
@@ -213,34 +211,9 @@ def _in_main_window(label: str) -> bool:
 
 # --- its file --------------------------------------------------------------------------------------
 
-LAYOUT_FILE = "layout.ini"
-END = ";;;<<<SplitIds>>>;;;"
-"""What Hello ImGui writes last of the layout, with JSON in the line after it; words of ours may follow."""
-
 
 def ready_file(folder: Path) -> Path:
-    """Return the file that Hello ImGui reads the layout from, and writes it to; one that is not whole is removed."""
-    path = folder / LAYOUT_FILE
+    """Return the file that Hello ImGui reads the layout from, and writes it to, in a folder that is there."""
     with suppress(OSError):  # then the layout is not remembered; saving the settings says why
         folder.mkdir(parents=True, exist_ok=True)
-        if path.exists() and not is_whole(path.read_text(encoding="utf-8", errors="replace")):
-            path.unlink()
-    return path
-
-
-def put_window(path: Path, place: Rect) -> None:
-    """Let the window begin there next time, where Hello ImGui has written the place of one that was full."""
-    with suppress(OSError):
-        text = path.read_text(encoding="utf-8", errors="replace")
-        for name, (x, y) in (("Position", place[:2]), ("Size", place[2:])):
-            text = re.sub(rf"^Window{name}=.*$", f"Window{name}={x},{y}", text, count=1, flags=re.MULTILINE)
-        write_text(path, text)
-
-
-def is_whole(text: str) -> bool:
-    """Return whether a layout was written to its end: on a full disk ImGui writes as much as there is room for."""
-    found = re.search(rf"^{END}\s*^(.*)$", text, re.MULTILINE)
-    try:
-        return found is not None and isinstance(json.loads(found[1]), dict)
-    except ValueError:
-        return False
+    return folder / "layout.ini"

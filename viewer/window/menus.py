@@ -2,23 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Sequence
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from viewer.window.command import MENUS, Command
 from viewer.window.keyboard import works_while_typing
 from viewer.window.ui import Ui
-from viewer.window.widgets import tooltip
+from viewer.window.widgets import em, tooltip, wide_button
 
 ANY_POPUP = int(imgui.PopupFlags_.any_popup_id) | int(imgui.PopupFlags_.any_popup_level)
-Contents = Mapping[str, Callable[[], None]]
 
 
 def run(ui: Ui, command: Command) -> None:
     """Run a command; what goes wrong in it ends nothing else."""
     ui.guard.step(f"The command {command.name}", command.run)
+
+
+def button(ui: Ui, name: str, icon: str, words: str = "", columns: int = 1, width: float = 0.0) -> None:
+    """Show a button that runs a command, where it can be run, and is explained by it and its key: a wide one, or one of
+    the icon alone, of a `width` in ems."""
+    command = next(one for one in ui.commands if one.name == name)
+    tip = f"{command.tip or name}{ui.key(name)}"
+    imgui.begin_disabled(not command.enabled())
+    if width:
+        clicked = imgui.button(f"{icon}##{name}", ImVec2(em(width), 0.0))
+        tooltip(tip)
+    else:
+        clicked = wide_button(f"{icon}  {words or name}", tip, columns)
+    imgui.end_disabled()
+    if clicked:
+        run(ui, command)
 
 
 # --- keys ------------------------------------------------------------------------------------------
@@ -48,8 +62,6 @@ def close_newest(ui: Ui) -> bool:
         _close_list()
     elif ui.dialogs:
         ui.dialogs.pop()
-    elif ui.controller.notices.newest_fault is not None:
-        ui.controller.notices.dismiss_faults()
     else:
         return False
     return True
@@ -66,21 +78,19 @@ def _close_list() -> None:
 # --- menus -----------------------------------------------------------------------------------------
 
 
-def show(ui: Ui, others: Contents, more: Contents) -> None:
-    """Show all menus of the menu bar, and `others` after them.  Some menus, by their paths, have `more` after their
-    commands."""
-    contents: dict[str, Callable[[], None]] = {name: partial(_menu, ui, name, more) for name in MENUS}
-    for name, show_content in (contents | dict(others)).items():
+def show(ui: Ui, commands: Sequence[Command]) -> None:
+    """Show all menus of the menu bar, made of these commands."""
+    for name in MENUS:
         if imgui.begin_menu(name):
-            show_content()
+            _menu(ui, name, commands)
             imgui.end_menu()
 
 
-def _menu(ui: Ui, path: str, more: Contents) -> None:
+def _menu(ui: Ui, path: str, commands: Sequence[Command]) -> None:
     """Show the commands of a menu, and the menus within it where the first of their commands stands."""
     inner: list[str] = []
     first = True
-    for command in ui.commands:
+    for command in commands:
         here = command.menu == path and bool(command.label)
         begins = command.menu.startswith(f"{path}/") and command.menu not in inner
         if (here or begins) and command.separated and not first:
@@ -91,15 +101,13 @@ def _menu(ui: Ui, path: str, more: Contents) -> None:
         elif begins:
             inner.append(command.menu)
             if imgui.begin_menu(command.menu.removeprefix(f"{path}/")):
-                _menu(ui, command.menu, more)
-                more.get(command.menu, lambda: None)()
+                _menu(ui, command.menu, commands)
                 imgui.end_menu()
 
 
 def _menu_item(ui: Ui, command: Command) -> None:
     label = command.label if command.label == command.name else f"{command.label}###{command.name}"
-    checked = command.checked() if command.checked is not None else False
-    clicked, _ = imgui.menu_item(label, ui.key_label(command.name), checked, command.enabled())
+    clicked, _ = imgui.menu_item(label, ui.key_label(command.name), command.is_checked, command.enabled())
     if command.tip:
         tooltip(command.tip)
     if clicked:

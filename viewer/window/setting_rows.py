@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -13,8 +12,7 @@ from tracer.setting import Setting, settings_of
 from tracer.settings import Settings
 from viewer.state.preferences import Preferences
 from viewer.state.view_state import ViewState
-from viewer.window.command import Command
-from viewer.window.finder import Item, Kind
+from viewer.window.command import Command, Condition, Kind
 from viewer.window.ui import Ui
 from viewer.window.widgets import checkbox, row, same_line_for, size_field, tooltip
 
@@ -134,37 +132,37 @@ def setting_command(ui: Ui, path: str, menu: str, key: str = "", **more: Any) ->
     return Command(one.label, menu, flip, key, checked=lambda: bool(value_of(ui, one)), tip=one.help, **more)
 
 
-def entries(ui: Ui) -> Iterator[Item]:
+def entries(ui: Ui) -> Iterator[Command]:
     """Return the settings that have a value, and switches that no menu has, for the palette."""
-    c = ui.controller
     commands = {command.name for command in ui.commands}
     for one in ALL.values():
         if one.panel and one.label not in commands:
-            yield from _entries(ui, one, value_of(ui, one), partial(c.settings.set, one))
+            yield from _entries(ui, one, value_of(ui, one))
 
 
-def _entries(ui: Ui, one: Setting, now: Any, change: Callable[[Any], None]) -> Iterator[Item]:
+def _entries(ui: Ui, one: Setting, now: Any) -> Iterator[Command]:
     """Return the entries of one setting: for each of its choices, to switch it, or to type its value."""
-    refused = "a run is under way" if ui.controller.runs.current is not None and one.within == ("settings",) else ""
+    c = ui.controller
+    free = Condition(lambda: c.runs.current is None or one.within != ("settings",), "a run is under way")
 
     def take(typed: str) -> str:
         try:
-            change(one.parse(typed, shown=True))
+            c.settings.set(one, one.parse(typed, shown=True))
         except ValueError as error:
             return f"{one.label}: {error}"
         return ""
 
-    item = Item(
-        f"setting {one.label}", one.label, Kind.SETTING, lambda: None, one.panel, hint=one.help,
-        enabled=not refused, why_not=refused,
-    )  # fmt: skip
+    def entry(run: Callable[[], None], tip: str, choice: str = "", **more: Any) -> Command:
+        name, title = f"setting {one.label} {choice}".rstrip(), f"{one.label}: {choice}" if choice else one.label
+        return Command(name, one.panel, run, title=title, kind=Kind.SETTING, enabled=free, tip=tip, **more)
+
     if one.choices:
         for choice, meaning in one.choices.items():
-            text = one.text(choice)
-            yield replace(item, name=f"{item.name} {text}", label=f"{one.label}: {text}", hint=meaning or one.help,
-                          run=partial(change, choice), checked=choice == now)  # fmt: skip
+            choose = partial(c.settings.set, one, choice)
+            yield entry(choose, meaning or one.help, one.text(choice), checked=partial(bool, choice == now))
     elif one.kind is bool:
-        yield replace(item, run=partial(change, not now), checked=bool(now), also="on off switch")
+        flip = partial(c.settings.set, one, not now)
+        yield entry(flip, one.help, checked=partial(bool, now), also="on off switch")
     else:
-        hint = f"{one.expected_shown}. {one.help}".strip()
-        yield replace(item, value=one.text(now), take=take, also="set value", hint=hint)
+        tip = f"{one.expected_shown}. {one.help}".strip()
+        yield entry(lambda: None, tip, value=one.text(now), take=take, also="set value")

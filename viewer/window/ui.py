@@ -8,23 +8,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
-from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from tracer.culling.fate import Fate
 from tracer.scene.lights import named_light
-from viewer.output.capture import FIELDS
-from viewer.output.ray_rows import Filter, Key, Row
 from viewer.services.controller import Controller
 from viewer.services.tour import Tour
-from viewer.state.preferences import default_screenshot_folder
 from viewer.state.views import View
 from viewer.window.command import Command
 from viewer.window.display import Compared, Display, Magnifier, TextureCache
 from viewer.window.gl_window import FullScreen
 from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard, Keymap, is_key
-from viewer.window.preview import PreviewDisplay
 
 
 class CaptureKind(Enum):
@@ -43,13 +38,13 @@ class Dialog(Enum):
     PRESETS = "Presets"
     KEYS = "Keyboard and mouse"
     PALETTE = "Command palette"
-    ABOUT = "About Shadowcull"
 
 
 @dataclass
 class Picture:
     """The picture in the window: the size in framebuffer pixels that it may fill (`area`), the one that it fills, the
-    newest frame's, what the camera orbits around and of which scene that is, and what the pointer did last."""
+    newest frame's, what the camera orbits around and of which scene that is, and what the pointer did last: the button
+    that was pressed, whether with Ctrl, where, and whether it was dragged."""
 
     area: tuple[int, int] = (0, 0)
     size: tuple[int, int] = (0, 0)
@@ -57,18 +52,9 @@ class Picture:
     pivot: tuple[float, float, float] | None = None
     pivot_scene: object = None
     pressed: int = 0
+    with_ctrl: bool = False
     pressed_at: tuple[float, float] = (0.0, 0.0)
     dragged: bool = False
-
-
-@dataclass
-class Desktop:
-    """What commands ask of the window itself, and of the clipboard."""
-
-    exit: Callable[[], None] = lambda: None
-    reset_layout: Callable[[], None] = lambda: None
-    paste: Callable[[], str] = lambda: ""
-    copy: Callable[[str], None] = lambda text: None
 
 
 @dataclass
@@ -81,26 +67,7 @@ class Graphics:
     textures: TextureCache | None = None
     compared: Compared | None = None
     magnifier: Magnifier | None = None
-    preview: PreviewDisplay | None = None
     capture_view: View | None = None
-
-
-@dataclass
-class RaysState:
-    """The tree of a pixel's rays: which shadow rays are `shown`, the keys of the rows that are folded otherwise than at
-    first and of the `selected` one, the row that the pointer is on, for how many frames it is to `unfold`, and the
-    window's frame in which it was `drawn` last."""
-
-    shown: Filter = field(default_factory=Filter)
-    toggled: frozenset[Key] = frozenset()
-    selected: Key | None = None
-    pointed: Row | None = None
-    unfold: int = 0
-    drawn: int = -2
-
-    def is_open(self, row: Row) -> bool:
-        """Whether what is below a row is seen: at first, what is below rays on their way."""
-        return (len(row.places) == 0) != (row.key in self.toggled)
 
 
 State = TypeVar("State")
@@ -119,7 +86,8 @@ class Ui:
     dialogs: list[Dialog] = field(default_factory=list)
     keyboard: Keyboard = field(default_factory=Keyboard)
     fate_shown: Fate | None = None
-    desktop: Desktop = field(default_factory=Desktop)
+    exit: Callable[[], None] = lambda: None
+    reset_layout: Callable[[], None] = lambda: None
     graphics: Graphics = field(default_factory=Graphics)
     show_panel: Callable[[str], Any] = lambda label: None
     panel_labels: tuple[str, ...] = ()
@@ -132,7 +100,7 @@ class Ui:
 
     def __post_init__(self) -> None:
         self.keymap = Keymap(self.controller.preferences, {})
-        self.tour = Tour(self.controller, lambda label: self.show_panel(label), self.key_or_menu)
+        self.tour = Tour(self.controller, self.key_or_menu)
 
     def state(self, kind: type[State]) -> State:
         """The state of a panel, an object of this class for as long as the program runs."""
@@ -168,11 +136,6 @@ class Ui:
         scene = self.controller.session.scene
         return named_light(scene.lights if scene is not None else (), light)
 
-    def show_rays(self) -> None:
-        """Show the rays of the clicked pixel."""
-        self.state(RaysState).unfold = 3  # until what is to be scrolled is laid out
-        self.show_panel("Inspector")
-
     def take_commands(self, commands: list[Command]) -> None:
         """Make these the commands, with the keys that the user has chosen for them."""
         self.commands = commands
@@ -195,11 +158,3 @@ class Ui:
         command is in the menus."""
         menus = (f"{c.menu} > {c.name}".replace("/", " > ") for c in self.commands if c.name == name)
         return self.key_label(name) or next(menus, name)
-
-    @property
-    def default_folder(self) -> Path:
-        return default_screenshot_folder()
-
-    @property
-    def template_help(self) -> str:
-        return "Fields:\n" + "\n".join(f"{{{name}}}  {meaning}" for name, meaning in FIELDS.items())

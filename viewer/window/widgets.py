@@ -25,11 +25,23 @@ def em(size: float) -> float:
     return hello_imgui.em_size(size)
 
 
-def centred(width: float, pivot: float = 0.5) -> None:
-    """Put the next window, so wide, at the middle; `pivot` is the part of its height that lies above that."""
-    viewport = imgui.get_main_viewport()
-    imgui.set_next_window_pos(viewport.get_work_center(), int(imgui.Cond_.appearing), ImVec2(0.5, pivot))
-    imgui.set_next_window_size(ImVec2(min(width, 0.95 * viewport.work_size.x), 0.0))
+def centred(width: float, height: float = 0.0) -> None:
+    """Put the next window at the middle, so large at first; without a height it is as high as its content."""
+    viewport, appearing = imgui.get_main_viewport(), int(imgui.Cond_.appearing)
+    size = ImVec2(min(width, 0.95 * viewport.work_size.x), min(height, 0.92 * viewport.work_size.y))
+    imgui.set_next_window_pos(viewport.get_work_center(), appearing, ImVec2(0.5, 0.5))
+    imgui.set_next_window_size(size, appearing if height else int(imgui.Cond_.always))
+
+
+def begin_modal(title: str, width: float) -> tuple[bool, bool]:
+    """Begin a dialog that has the keyboard to itself, so many ems wide; returns whether it is shown, and then has to be
+    ended by `imgui.end_popup`, and whether the user wants it closed."""
+    if not imgui.is_popup_open(title):
+        imgui.open_popup(title)
+    centred(em(width))
+    flags = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_saved_settings
+    shown, stays = imgui.begin_popup_modal(title, True, int(flags))
+    return shown, not stays or imgui.is_key_pressed(imgui.Key.escape)
 
 
 @contextmanager
@@ -221,14 +233,6 @@ def packed(color: tuple[float, float, float], alpha: float = 1.0) -> int:
 def heading(text: str) -> None:
     imgui.dummy(ImVec2(0.0, em(0.15)))
     imgui.separator_text(text)
-
-
-def short(number: float) -> str:
-    """A large number in few characters: 1.23 M."""
-    for limit, unit in ((1e9, " G"), (1e6, " M"), (1e4, " k")):
-        if abs(number) >= limit:
-            return f"{number / (limit if limit != 1e4 else 1e3):.4g}{unit}"
-    return f"{number:.0f}"
 
 
 def in_window_style(text: str) -> str:

@@ -39,6 +39,8 @@ def test_the_tree_names_what_became_of_each_ray(capfd: pytest.CaptureFixture[str
     _, traced, _ = explained(capfd, *seen, "--only", "traced", "--light", 1)
     assert "shadow rays shown: traced of light 1" in traced and "light 0" not in traced
     assert all("traced" in line for line in traced.splitlines()[top:] if "light 1:" in line)
+    code, out, _ = explained(capfd, room, "--pixel", "0,0")
+    assert code == 0 and "primary ray: leaves the scene" in out and "light" not in out.split("leaves")[1]
 
 
 def test_the_reasons_come_first(capfd: pytest.CaptureFixture[str], room: Path) -> None:
@@ -106,11 +108,6 @@ def test_json_adds_up(capfd: pytest.CaptureFixture[str], room: Path) -> None:
     )
     summed = [sum(ray["light"][channel] for ray in told["rays"]) for channel in range(3)]
     assert summed == pytest.approx(told["color"], rel=1e-6)
-
-
-def test_background_has_a_ray_and_no_more(capfd: pytest.CaptureFixture[str], room: Path) -> None:
-    code, out, _ = explained(capfd, room, "--pixel", "0,0")
-    assert code == 0 and "primary ray: leaves the scene" in out and "light" not in out.split("leaves")[1]
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -79,7 +78,7 @@ def test_why_there_is_no_legend_is_said_once(capfd: pytest.CaptureFixture[str]) 
 
 def test_what_is_done_is_kept(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     av = pytest.importorskip("av")
-    count: Callable = Work.count
+    count = Work.count
 
     def interrupted(work: Work, label: str, done: int, total: int) -> None:
         count(work, label, done, total)
@@ -96,8 +95,7 @@ def test_what_is_done_is_kept(capfd: pytest.CaptureFixture[str], monkeypatch: py
 
 def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     Path("taken").mkdir()
-    for name in ("0110.png", "0002.png", "10000.png", "notes.png"):
-        Path("taken", name).write_bytes(b"")
+    Path("taken", "0110.png").write_bytes(b"")
     Path("file").write_text("")
     assert run(capfd, "render", "room.aff", "-o", "one.png", *SIZE)[0] == 0
     cases = [
@@ -107,20 +105,12 @@ def test_mistakes_are_one_line(capfd: pytest.CaptureFixture[str], monkeypatch: p
         (("-o", "d", "--through", "one.png"), "needs two bookmarks, or saved pictures, at least; there are 1"),
         (("-o", "d", "--bookmarks"), "at least; there are 0"),
         (("-o", "d", "--bookmarks", "--frames", "0-3"), "not allowed with"),
-        (("-o", "taken"), "numbered pictures in it already, 0002.png to 10000.png; give another folder"),
+        (("-o", "taken"), "numbered pictures in it already; give another folder"),
         (("-o", "file"), "no folder for the pictures"),
         (("-o", "gone/d"), "gone/d: there is no folder gone"),
-        (
-            ("-o", "d", "--caption", "{sceen}"),
-            "the caption '{sceen}' is wrong: there is no field {sceen}, but scene, view",
-        ),
+        (("-o", "d", "--caption", "{sceen}"), "the caption '{sceen}' is wrong: there is no field {sceen}, but scene"),
         (("-o", "d", "--view", "shadow:7"), "the scene's lights are 0 to 1"),
-        (("-o", "d", "--view", "certificate:0", "--method", "paper"), "give --method certified"),
-        (
-            ("-o", "d", "--view", "voxels", "--method", "paper"),
-            "nothing for it; give --method voxels",
-        ),
-        (("-o", "d", "--view", "cuts", "--method", "none"), "give --method lightcuts"),
+        (("-o", "d", "--view", "voxels", "--method", "paper"), "nothing for it; give --method voxels"),
         (("-o", "d", "--view", "tree"), "bvh8 builds all of its tree before rays come"),
     ]
     for options, said in cases:

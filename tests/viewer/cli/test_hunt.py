@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.commands import complaint, run
-from tests.viewer.fakes import write_marbles
+from tests.marbles import write_marbles
 from viewer.cli.console import Work
 
 SEARCH = ("--frames", "0-24", "--step", 6, "--size", "96x96", "--depth", 2, "--threads", 1)

@@ -12,11 +12,10 @@ from rich.console import Console
 from rich.table import Table
 
 from tracer.experiments.experiment import FIGURES, Results
-from tracer.experiments.lamp_experiment import LampResults
 from tracer.experiments.sweep_summary import Line
 from tracer.method import line_up
 from viewer.cli import console, sweep
-from viewer.cli.bench import bench_table, lamp_table
+from viewer.cli.bench import bench_table
 
 LARGE = 123_456_789.0
 STUDY = SimpleNamespace(title="Two rooms")
@@ -25,7 +24,7 @@ STUDY = SimpleNamespace(title="Two rooms")
 def results(methods: Sequence[str]) -> Results:
     """Of two frames; all but the reference do 4.832 times its work, and one does a thousand times."""
     found = Results("room.aff", (512, 512), frames=[0, 1], path_times=(0.0, 1.0), planned=2)
-    found.settings = {"lamp_radius": 0.25, "lamp_samples": 64}
+    found.settings = {"verify": True}
     for name in methods:
         work = {"none": 1.0, "voxels": 1194.0}.get(name, 4.832)
         found.methods[name] = {figure: [LARGE * work] * 2 for figure in FIGURES}
@@ -57,12 +56,11 @@ def printed(tables: Sequence[Table], width: int | None) -> str:
 @pytest.mark.parametrize(
     ("made", "never_cut"),
     [
-        (lambda width: [bench_table(results(line_up(6)), True, width)], ("certified+lightbuffer", "-383.2%")),
-        (lambda width: [lamp_table(LampResults([results([*line_up(6)])]), width)], ("certified", "59,653.9 ms")),
+        (lambda width: [bench_table(results(line_up(6)), width)], ("certified+lightbuffer", "-383.2%")),
         (lambda width: sweep.tables(STUDY, lines(), width),
          ("default", "kitchen", "lightcuts_error 0.01", "certified+lightbuffer", "41.2% ± 1.2", "12,345.6")),
     ],
-    ids=["bench", "lamps", "sweep"],
+    ids=["bench", "sweep"],
 )  # fmt: skip
 def test_nothing_is_cut_off_and_what_is_left_out_is_named(width: int | None, made, never_cut: tuple[str, ...]):
     text = printed(made(width), width)
@@ -76,18 +74,10 @@ def test_nothing_is_cut_off_and_what_is_left_out_is_named(width: int | None, mad
     assert (told.count(",") if headings < every else 0) == every - headings, "as many as the commas of a, b, too"
 
 
-def test_few_methods_have_columns_where_these_fit():
-    few = results(["none", "paper", "cells", "certified", "auto"])
-    wide, narrow = (printed([bench_table(few, True, width)], width) for width in (None, 80))
-    assert "traversal steps saved, average" in wide and "traversal steps saved, average" not in narrow
-    two = printed([bench_table(results(["none", "paper"]), True, 80)], 80)
-    assert "traversal steps saved, average" in two and "--csv" not in two
-
-
 def test_where_nothing_helps_a_line_is_longer_than_the_terminal(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
     monkeypatch.setattr(console, "Console", partial(Console, force_terminal=True, width=30, color_system=None))
-    console.print_table(bench_table(results(line_up(6)), True, 30))
+    console.print_table(bench_table(results(line_up(6)), 30))
     out = capsys.readouterr().out
     assert "-383.2%" in out and "certified+lightbuffer" in out and "…" not in out

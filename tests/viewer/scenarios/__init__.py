@@ -1,4 +1,7 @@
+# ruff: noqa: F401 - each function that is imported here is a scenario
 """What a user does in the window, and what must come of it.  Each function is run by `tests.viewer.window`."""
+
+import inspect
 
 from tests.viewer.scenarios.at_home import at_home
 from tests.viewer.scenarios.closeup import closeup
@@ -20,24 +23,14 @@ from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, playing, resizing
 from tests.viewer.scenarios.navigating import navigating
 from tests.viewer.scenarios.panels import closing_panels, hiding, looks, panels
-from tests.viewer.scenarios.previewing import previewing
 from tests.viewer.scenarios.rays import rays
 from tests.viewer.scenarios.runs import asking, experimenting, zooming
 from tests.viewer.scenarios.savings import savings
+from tests.viewer.scenarios.starting import starting
 from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
 from tests.viewer.scenarios.trees import trees
 from tests.viewer.scenarios.what_if import what_if
 from tests.viewer.scenarios.why import why
 
-SCENARIOS = {
-    scenario.__name__: scenario
-    for scenario in (
-        views, difference, wiping, comparing, closeup, legends, lamps, trees, culling, fates, savings, certifying,
-        explaining, rays, flying, playing, resizing, capturing, dropping, reopening, cancelling, browsing,
-        experimenting, figure1, zooming, asking, finding, filmstrip, filming, hunting, taking, failing,
-        panels, closing_panels, looks, hiding, touring, fitting, at_home, navigating, what_if, why,
-        previewing,
-        closing_while_tracing, closing_while_loading, closing_while_experimenting,
-    )
-}  # fmt: skip
+SCENARIOS = {name: scenario for name, scenario in list(globals().items()) if inspect.isfunction(scenario)}

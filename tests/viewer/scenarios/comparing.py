@@ -104,7 +104,7 @@ def _inspects_from_a(d: Driver) -> None:
     picked = d.c.selection.picked
     assert picked is not None
     assert abs(picked.x - 0.75 * d.c.frame.width) <= 3 and abs(picked.y - 0.6 * d.c.frame.height) <= 3
-    d.c.selection.picked = None
+    d.c.selection.clear()
     d.frames(2)
 
 

@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 from imgui_bundle import imgui
 
-from tests.viewer.drawn import classes_in
+from tests.viewer.drawn import units_in
 from tests.viewer.driver import Driver
 from tracer.method import additions, bases
 from tracer.renderer import Renderer
 from viewer.state.views import View
 from viewer.views.tree import LAYERS
 from viewer.views.voxels import voxels_seen
-from viewer.window.panels import slicing
 from viewer.window.panels.light_buffer import CubeState, Unfolded
 from viewer.window.panels.links import Pointed
+from viewer.window.panels.view import words_in_space
 
 KEY = imgui.Key
 
@@ -27,14 +27,12 @@ def culling(d: Driver) -> None:
     d.change(method="paper")
     first = d.c.frame.statistics.shadow
     assert first.due > 0 and first.culled == 0
-    _press(d, "T")
-    second = d.c.frame.statistics.shadow
-    assert second.saved > 0 and second.due == first.due
-    _press(d, "C")
-    assert d.c.frame.settings.method == "none" and d.c.frame.statistics.shadow.culled == 0
-    _press(d, "C")
-    _press(d, "Backspace")
-    assert d.c.frame.settings.method == "paper" and d.c.frame.statistics.shadow.culled == 0
+    for key, method, culls in (("T", "paper", True), ("C", "none", False), ("C", "paper", None),
+                               ("Backspace", "paper", False)):  # fmt: skip
+        _press(d, key)
+        shadow = d.c.frame.statistics.shadow
+        assert d.c.frame.settings.method == method and shadow.due == first.due
+        assert culls is None or (shadow.saved > 0 if culls else shadow.culled == 0)
     d.click("//Culling/Symmetric occlusion test")
     d.settle()
     assert d.c.frame.settings.symmetric
@@ -53,7 +51,7 @@ def certifying(d: Driver) -> None:
             d.press(view.key)
             assert d.c.scheduler.drawn_view is view and d.c.history.frames == traced
             d.expect_picture()
-        assert "fully rendered" in [row.name for row in classes_in(d.c.frame, View.OCCLUSION) if row.pixels]
+        assert units_in(d.c.frame, View.OCCLUSION)["fully rendered"]
         _use(d, View.DIFFERENCE, "paper")
     _press(d, View.CERTIFICATE.key)
     assert d.c.frame.certificates is None and d.c.scheduler.drawn_view is View.COLOR
@@ -134,7 +132,7 @@ def _slice(d: Driver) -> None:
     seen = np.argwhere(voxels_seen(d.c.frame, cut)[0] >= 0)
     if len(seen):
         y, x = seen[len(seen) // 2].tolist()
-        assert f", {sides[2] // 2}" in slicing.lines_at(d.ui, x, y)[0]
+        assert f", {sides[2] // 2}" in words_in_space(d.ui, x, y)[0]
 
 
 def _tree(d: Driver) -> None:
@@ -160,36 +158,40 @@ def _light_buffer(d: Driver) -> None:
     d.change(method="lightbuffer")
     d.wait(lambda: isinstance(state.answer, Unfolded), "the cube", 20.0)
     lists = state.answer
-    d.click("//Light buffer/distance at which full shadow begins")
-    d.wait(lambda: (state.answer.cross != lists.cross).any(), "where full shadow begins", 20.0)
+    d.click("//Light buffer/Distance at which full shadow begins")
+    d.wait(lambda: (state.answer.picture != lists.picture).any(), "where full shadow begins", 20.0)
 
 
 def explaining(d: Driver) -> None:
     """What the pointer is on, or was clicked, is explained beside the window's own frames; a key hides the lines."""
     d.settle()
     inspector, traced = d.c.inspector, d.c.history.frames
-    assert inspector.answer is None
-    shadow, lit = (_places(d, lit) for lit in (False, True))
+    assert inspector.why is None
+    shadow, lit = (places(d, lit) for lit in (False, True))
+
+    def answered(blocked: bool) -> None:
+        d.wait(lambda: inspector.why is not None and _is_blocked(d) == blocked, "an answer about a pixel", 20.0)
+
     d.point(*shadow)
-    d.wait(lambda: inspector.answer is not None, "an answer about the pointer's pixel", 20.0)
-    blocked = [one for one in inspector.answer.reasons if one.blocker >= 0]
-    assert blocked and not any(one.lit for one in blocked)
+    answered(blocked=True)
+    assert not any(one.lit for one in inspector.why.reasons if one.blocker >= 0)
     hovering = _lines_drawn(d)
     d.press("I")
     assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
     d.press("I")
     d.point(*lit)
-    d.wait(lambda: all(one.blocker < 0 for one in inspector.answer.reasons), "an answer about another pixel", 20.0)
+    answered(blocked=False)
     d.pick(*shadow)
     assert d.c.selection.picked is not None
     d.point(*lit)
-    d.wait(lambda: inspector.answer is not None, "an answer about what was clicked", 20.0)
-    assert any(one.blocker >= 0 for one in inspector.answer.reasons), "it goes on following the pointer"
+    answered(blocked=True)
+    d.frames(5)
+    assert _is_blocked(d), "it goes on following the pointer"
     assert d.c.history.frames == traced, "asking has traced a frame"
     point = inspector.tree.rays[0].end
     d.hold(KEY.d, 0.3)
     d.settle()
-    assert inspector.answer is not None and math.dist(inspector.tree.rays[0].end, point) < 0.2
+    assert inspector.why is not None and math.dist(inspector.tree.rays[0].end, point) < 0.2
     d.hover(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
     assert d.ui.state(Pointed).light == 0
     d.point(*shadow)
@@ -203,7 +205,12 @@ def explaining(d: Driver) -> None:
     d.pick(*shadow)
     assert d.c.selection.picked is not None
     d.pick(0.5, 0.02)
-    assert d.c.selection.picked is None and inspector.answer is None, "a click on nothing clears"
+    assert d.c.selection.picked is None and inspector.why is None, "a click on nothing clears"
+
+
+def _is_blocked(d: Driver) -> bool:
+    """Whether something blocks a light at the pixel that is explained."""
+    return any(one.blocker >= 0 for one in d.c.inspector.why.reasons)
 
 
 def _lines_drawn(d: Driver) -> int:
@@ -211,7 +218,7 @@ def _lines_drawn(d: Driver) -> int:
     return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()
 
 
-def _places(d: Driver, lit: bool) -> tuple[float, float]:
+def places(d: Driver, lit: bool) -> tuple[float, float]:
     """A pixel of the square, on the picture, that a light which is due reaches, or does not, and so its neighbours."""
     renderer = Renderer(d.c.session.scene, replace(d.c.frame.settings, method="none", record_lights=True))
     frame = renderer.render(d.c.frame.time, d.c.frame.camera)

@@ -12,6 +12,7 @@ SOME = 6  # pictures in motion that are looked at
 
 def fates(d: Driver) -> None:
     """The keys of the views of fates; another light asks for no frame; no other view flashes up in motion."""
+    d.settle()
     d.fix_resolution(240, 135)
     d.c.settings.change(method="paper", samples=1)
     d.open(embedded_scenes()["default"])
@@ -29,7 +30,7 @@ def fates(d: Driver) -> None:
 
     d.press("Space")
     d.wait(lambda: d.c.frame.shaded is not None, "a picture of which a part is shaded")
-    for view in (View.FATE, View.MOVING_SHADOW, View.OCCLUSION):
+    for view in (View.FATE, View.OCCLUSION, View.MOVING_SHADOW):
         d.press(view.key)
         d.wait(lambda view=view: d.c.scheduler.drawn_view is view, f"the view {view.label}")
         for _ in range(SOME):
@@ -37,6 +38,5 @@ def fates(d: Driver) -> None:
             d.wait(lambda frame=frame: d.c.frame is not frame, "another picture")
             assert d.c.scheduler.drawn_view is view, "no other view flashes up"
     d.press("Space")
-    d.press(View.MOVING_SHADOW.key)
     d.settle()
     d.expect_picture()

@@ -29,10 +29,9 @@ def capturing(d: Driver) -> None:
     d.press(KEY.c)
     d.settle()
     d.c.preferences.screenshot_template = "{scene}-{view}-{frame:04d}.png"
-    d.press(KEY.f12)
-    d.wait(lambda: not d.c.captures.busy, "the picture to be written")
-    d.press("Shift+F12")
-    d.wait(lambda: not d.c.captures.busy, "the window's picture to be written")
+    for key in (KEY.f12, "Shift+F12"):  # the picture, and the window
+        d.press(key)
+        d.settle()
     files = sorted(p.name for p in pictures.iterdir())
     assert files == ["tiny-occlusion-0000-2.png", "tiny-occlusion-0000.png"]
     with Image.open(pictures / files[1]) as alone, Image.open(pictures / files[0]) as window:
@@ -52,8 +51,7 @@ def capturing(d: Driver) -> None:
     (d.folder / "file").write_text("")
     d.c.preferences.screenshot_folder, d.c.preferences.screenshot_template = str(d.folder / "file"), "a.png"
     d.press(KEY.f12)
-    d.wait(lambda: not d.c.captures.busy, "the failure to write")
-    d.frames(2)
+    d.settle()
     assert d.c.notices.message.error and "cannot write" in d.said
     d.settle()
 
@@ -62,17 +60,13 @@ def dropping(d: Driver) -> None:
     """Scenes open; whatever is none is one line, and the open scene stays."""
     d.settle()
     scene = d.c.session.scene
-    bad = d.folder / "bad.aff"
-    bad.write_text("l 1 2\nf 1 1\np 3\n0 0 zero\n")
-    text = d.folder / "notes.txt"
-    text.write_text("hello")
-    fake = d.folder / "fake.png"
-    fake.write_bytes(b"no picture")
+    bad, text, fake = (d.folder / name for name in ("bad.aff", "notes.txt", "fake.png"))
+    for path, content in ((bad, "l 1 2\nf 1 1\np 3\n0 0 zero\n"), (text, "hello"), (fake, "no picture")):
+        path.write_text(content)
     for path in (bad, text, fake, d.folder / "gone.aff", d.folder):
         d.c.notices.message = None
         d.drop(path)
-        d.wait(lambda: not d.c.loader.busy, "the load to fail")
-        d.frames(2)
+        d.settle()
         assert d.c.notices.message is not None and d.c.notices.message.error, f"{path} was not refused"
         assert path.name in d.said and "\n" not in d.said
         assert d.c.session.scene is scene
@@ -80,20 +74,15 @@ def dropping(d: Driver) -> None:
     many = d.folder / "many.aff"
     many.write_text(Path(scene.path).read_text() + lights)
     d.drop(many, text)
-    d.wait(lambda: d.c.session.scene is not scene, "the other scene")
     d.settle()
     assert len(d.c.session.scene.lights) == 42
-    d.c.session.set_draw(view=View.SHADOW)
-    d.c.settings.set_light(35)
-    d.frames(3)
     dark = d.folder / "dark.nff"
     dark.write_text(
         "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 0.1\nresolution 8 8\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n"
     )
     d.c.session.set_draw(view=View.SHADOW)
-    d.drop(dark)
-    d.wait(lambda: d.c.session.scene.path.name == "dark.nff", "the scene without lights")
-    d.settle()
+    d.c.settings.set_light(35)
+    d.open(dark)
     assert missing(View.SHADOW, d.c.frame).text == "The scene has no lights."
     d.press(KEY._3)
     assert d.c.frame.primitive.max() >= 0
@@ -110,14 +99,12 @@ def reopening(d: Driver) -> None:
         d.press(key)
         d.settle()
         d.press(KEY.f12)
-        d.wait(lambda: not d.c.captures.busy, "the picture to be written")
+        d.settle()
     d.press(KEY._1)
     take = d.c.renderer.take
     for view in (View.SAVED, View.COST, View.DIFFERENCE, View.WIPE):
-        d.drop(embedded_scenes()["figure4"])
-        d.wait(lambda: d.c.session.scene.path.name == "figure4.aff", "the other scene")
-        d.press(KEY._1)
-        d.settle()
+        d.open(embedded_scenes()["figure4"])
+        d.see(View.COLOR)
         d.c.renderer.take = lambda: None  # the first frame of the scene is long in coming
         d.drop(d.folder / "pictures" / f"{view}.png")
         d.wait(lambda: d.c.session.scene.path == first, "the picture's scene")
@@ -162,14 +149,15 @@ def browsing(d: Driver) -> None:
     d.frames(2)
     d.type("bo")
     d.press(KEY.tab)
-    assert state.typed == "box/" and state.names() == ["inner/", "plot.png", "wheel.aff", "whole.aff"]
-    d.type("WHO")
-    assert state.names() == ["whole.aff"]
+    names = ("inner/", "plot.png", "wheel.aff", "whole.aff")
+    assert state.typed == "box/" and state.found == [f"box/{name}" for name in names]
+    d.type("who")
+    assert state.found == ["box/whole.aff"]
     d.press(KEY.tab)
     d.press(KEY.enter)
     assert not d.ui.dialogs and state.folder == box
-    d.wait(lambda: d.c.session.scene.path.name == "whole.aff", "the scene that was typed")
     d.settle()
+    assert d.c.session.scene.path.name == "whole.aff"
 
     # What cannot be opened is refused where it was asked for.
     d.press("Ctrl+O")
@@ -188,5 +176,5 @@ def browsing(d: Driver) -> None:
     d.type("deep.aff")
     d.click(f"//{OPEN}/Open")
     assert not d.ui.dialogs
-    d.wait(lambda: d.c.session.scene.path.name == "deep.aff", "the scene in the folder")
     d.settle()
+    assert d.c.session.scene.path.name == "deep.aff"

@@ -21,7 +21,7 @@ def filmstrip(d: Driver) -> None:
     d.settle()
     runs, plan = d.c.runs, d.c.runs.zoom_plan
     plan.factors, plan.steps, plan.size, plan.ratio = "4, 64", 40, (128, 128), 0.94
-    d.c.selection.picked = None
+    d.c.selection.clear()
     d.c.selection.select((0.5, 0.5))
     d.show_panel("Zoom test")
     d.click(f"//Zoom test/**/{icons.ICON_FA_PLAY}  Start")

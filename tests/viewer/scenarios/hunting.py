@@ -6,8 +6,8 @@ import numpy as np
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tests.marbles import LAST, STEP, write_marbles
 from tests.viewer.driver import Driver
-from tests.viewer.fakes import LAST, STEP, write_marbles
 from viewer.state.picking import wrong_at
 from viewer.window.panels.inspector import wrong_beyond
 from viewer.window.panels.plots import PlotsState
@@ -72,7 +72,7 @@ def _from_the_inspector(d: Driver) -> None:
     d.frames(3)
     picked = c.selection.picked
     assert picked is not None
-    taught = c.history.origins_of(picked)
+    taught = c.history.origins_of(c.frame, picked.primitive)
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
     moment = c.history.records.get(lesson.lit)
     d.scroll_down("Inspector")

@@ -37,13 +37,9 @@ def flying(d: Driver) -> None:
     d.drag((panel.pos.x + 60.0, panel.pos.y + panel.size.y - 20.0), (50.0, -30.0))
     assert d.c.session.camera == before, "a drag on a panel moved the camera"
 
-    d.context.key_down(KEY.mod_ctrl)
-    d.context.key_down(KEY.w)
-    d.frames(2)
-    d.context.key_up(KEY.mod_ctrl)
-    d.frames(6)
-    d.context.key_up(KEY.w)
-    d.frames(2)
+    for change, key in (("down", KEY.mod_ctrl), ("down", KEY.w), ("up", KEY.mod_ctrl), ("up", KEY.w)):
+        getattr(d.context, f"key_{change}")(key)
+        d.frames(3)
     assert d.c.session.camera == before, "a key of a chord, let go late, moved the camera"
 
     d.show_panel("Camera")
@@ -51,12 +47,9 @@ def flying(d: Driver) -> None:
     d.type("wasd")
     assert d.ui.state(NameFields).new["bookmark"] == "wasd"
     assert d.c.session.camera == before, "typing moved the camera"
-    d.context.key_press(KEY.enter)
-    d.frames(2)
+    d.press(KEY.enter)
     assert d.c.bookmarks.all[0].name == "wasd"
-    d.context.mouse_move_to_pos(d.picture_centre())
-    d.context.mouse_click(0)
-    d.frames(2)
+    d.pick(0.5, 0.5)
     assert d.c.selection.picked is not None and d.c.session.camera == before, "a click only inspects"
 
     d.press(KEY.r)

@@ -6,11 +6,9 @@ import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
-from viewer.output.ray_rows import Shown
+from viewer.output.ray_rows import RaySubset
 from viewer.window.panels import rays as panel
-from viewer.window.ui import RaysState
-
-KEY = imgui.Key
+from viewer.window.panels.rays import RaysState
 
 
 def rays(d: Driver) -> None:
@@ -20,28 +18,21 @@ def rays(d: Driver) -> None:
     assert not panel.are_listed(d.ui), "they are folded at first"
     c.settings.change(method="paper")
     d.settle()
-    for _ in range(2):
-        c.scheduler.trace_again()
-        d.settle()
-    d.press(KEY.x)
-    d.frames(4)
+    d.press("X")
+    d.frames(2)
     assert c.inspector.tree is None, "nothing is clicked"
     traced = c.history.frames
-    left, top, right, bottom = d.picture_edges()
-    x, y = _shaded(d)
-    d.context.mouse_move_to_pos((left + x * (right - left), top + y * (bottom - top)))
-    d.context.mouse_click(0)
+    d.pick(*_inside(d))
     d.wait(lambda: c.inspector.tree is not None, "the rays of the clicked pixel", 20.0)
-    assert c.history.frames == traced, "asking has traced a frame"
     tree = c.inspector.tree
+    assert c.history.frames == traced, "asking has traced a frame"
     assert (tree.x, tree.y) == c.selection.pixel and tree.due > 0
     d.frames(3)
-    drawn = _lines_drawn(d)
+    drawn, everything = lines_drawn(), len(panel.rows(d.ui))
 
     # Filters hide rows and lines.
-    everything = len(panel.rows(d.ui))
     d.click("//Inspector/wrong")
-    assert state.shown.shown is Shown.WRONG and len(panel.rows(d.ui)) < everything and _lines_drawn(d) < drawn
+    assert state.shown.shown is RaySubset.WRONG and len(panel.rows(d.ui)) < everything and lines_drawn() < drawn
     d.click("//Inspector/all")
     assert len(panel.rows(d.ui)) == everything
 
@@ -53,19 +44,17 @@ def rays(d: Driver) -> None:
     assert state.selected == row.key
 
     # The path ray folds; the tree goes with the selection.
-    top_row = panel.rows(d.ui)[0][1]
-    state.toggled ^= {top_row.key}
-    d.frames(2)
-    assert len(panel.rows(d.ui)) == 1
-    state.toggled ^= {top_row.key}
-    d.press(KEY.escape)
-    d.frames(3)
-    assert c.inspector.tree is None
-    assert not panel.are_listed(d.ui)
+    top = panel.rows(d.ui)[0][1].key
+    for count in (1, everything):
+        state.toggled ^= {top}
+        d.frames(2)
+        assert len(panel.rows(d.ui)) == count
+    d.press("Escape")
+    assert c.inspector.tree is None and not panel.are_listed(d.ui)
 
 
-def _shaded(d: Driver) -> tuple[float, float]:
-    """A pixel of which some shadow ray is traced and its neighbours show the same."""
+def _inside(d: Driver) -> tuple[float, float]:
+    """A pixel whose neighbours show the same."""
     primitive = d.c.frame.primitive
     here = primitive >= 0
     for shift in (-3, 3):
@@ -74,6 +63,6 @@ def _shaded(d: Driver) -> tuple[float, float]:
     return (x + 0.5) / d.c.frame.width, (y + 0.5) / d.c.frame.height
 
 
-def _lines_drawn(d: Driver) -> int:
+def lines_drawn() -> int:
     """How much is drawn over the picture, in corners of triangles."""
     return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()

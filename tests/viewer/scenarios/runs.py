@@ -148,14 +148,14 @@ def asking(d: Driver) -> None:
     # Escape closes what lies over the panels, one by one, and stops the run only when nothing does.
     under_way()
     d.press(KEY.f1)
-    d.choose("Help/About Shadowcull")
-    assert d.ui.dialogs == [Dialog.KEYS, Dialog.ABOUT]
+    d.choose("Edit/Presets/Presets...")
+    assert d.ui.dialogs == [Dialog.KEYS, Dialog.PRESETS]
     popups = lambda: len(imgui.get_current_context().open_popup_stack)  # noqa: E731
     for there in ("//##MainMenuBar/##MenuBar/File", f"//Scene/{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Recent"):
         d.click(there)
         assert popups() == 1
         d.press(KEY.escape)
-        assert popups() == 0 and d.ui.dialogs == [Dialog.KEYS, Dialog.ABOUT]
+        assert popups() == 0 and d.ui.dialogs == [Dialog.KEYS, Dialog.PRESETS]
     d.press(KEY.escape)
     assert d.ui.dialogs == [Dialog.KEYS]
     d.press(KEY.escape)

@@ -9,6 +9,8 @@ import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
+from tests.viewer.scenarios.fitting import check_fit
+from tests.viewer.scenarios.rays import lines_drawn
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.reasons import Reason, Rule, Why
@@ -16,7 +18,6 @@ from tracer.why_in_words import Words, plain
 from viewer.state import navigation
 from viewer.window.panels import rays
 
-KEY = imgui.Key
 FULLY, PARTLY = OcclusionMode.FULLY_RENDERED, OcclusionMode.PARTIALLY_OCCLUDED
 ROOM = Path(__file__).resolve().parents[3] / "assets" / "scenes" / "default.aff"
 
@@ -27,15 +28,14 @@ def why(d: Driver) -> None:
     d.settle()
     d.c.settings.change(method="paper")
     d.fix_resolution(400, 250)
-    d.drop(ROOM)
-    d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path == ROOM, "the room")
-    d.settle()
+    d.open(ROOM)
     for _ in range(3):
         d.c.scheduler.trace_again()
         d.settle()
     _culled(d)
     _occluded(d)
     _taught(d)
+    _in_a_small_window(d)
     _in_motion(d)
 
 
@@ -46,12 +46,11 @@ def _culled(d: Driver) -> None:
     d.frames(3)
     d.click(f"//Inspector/$${one.light}/{d.ui.light_name(one.light)}##light")
     assert d.c.session.draw.light == one.light
-    assert _said(d, one) == "Culled: fully rendered, and every shadow ray so far was blocked (§2.4)."
+    said = plain(Words(d.c.session.scene, d.c.inspector.why).reason(one))
+    assert said == "Culled: fully rendered, and every shadow ray so far was blocked (§2.4)."
     assert one.fate is Fate.CULLED and not one.lit
-    blocker = f"//Inspector/answer/{_named(d, one.blocker)}##0"
-    assert d.has(blocker), "what is in the way is a link"
-    d.click(blocker)
-    assert d.c.selection.picked.primitive == one.blocker
+    d.click(f"//Inspector/answer/{_named(d, one.blocker)}##0")
+    assert d.c.selection.picked.primitive == one.blocker, "what is in the way is a link"
 
 
 def _occluded(d: Driver) -> None:
@@ -60,21 +59,21 @@ def _occluded(d: Driver) -> None:
     one = _click(d, inside, _by_something)
     d.c.settings.set_light(one.light)
     d.frames(3)
-    text, hider = _said(d, one), _named(d, one.occluded.primitive)
+    words, hider = Words(d.c.session.scene, d.c.inspector.why), _named(d, one.occluded.primitive)
+    text = plain(words.reason(one))
     assert f"partially occluded by {hider} at " in text and text.endswith("so its shadow mode is not trusted (§2.4).")
-    by, drawn = d.c.inspector.why.coverage.occluded, _drawn(d)
+    by, drawn = d.c.inspector.why.coverage.occluded, lines_drawn()
+    link = next(part for part in words.reason(one) if not isinstance(part, str) and part.pixel is not None)
     d.hover(f"//Inspector/reason/{hider}##0")
-    assert _drawn(d) > drawn, "a name that the pointer is on is outlined"
-    d.press(KEY.i)
-    assert _drawn(d) < drawn, "no outline of what hides it, and no squares"
-    d.press(KEY.i)
+    assert lines_drawn() > drawn, "a name that the pointer is on is outlined"
+    d.press("I")
+    assert lines_drawn() < drawn, "no outline of what hides it, and no squares"
+    d.press("I")
     d.click(f"//Inspector/reason/{hider}##0")
     assert d.c.selection.picked.primitive == one.occluded.primitive
-    one = _click(d, inside, _by_something)
-    link = next(part for part in _words(d).reason(one) if not isinstance(part, str) and part.pixel is not None)
-    assert link.pixel == by.pixel
+    _click(d, inside, _by_something)
     d.click(f"//Inspector/reason/{link.text}##1")
-    assert (d.c.selection.picked.x, d.c.selection.picked.y) == by.pixel
+    assert (d.c.selection.picked.x, d.c.selection.picked.y) == link.pixel == by.pixel
 
 
 def _taught(d: Driver) -> None:
@@ -82,10 +81,9 @@ def _taught(d: Driver) -> None:
     one = _click(d, _of(d, FULLY, ShadowMode.PARTIAL_SHADOW), lambda one: one.rule is Rule.PARTIAL_SHADOW)
     d.c.settings.set_light(one.light)
     d.frames(3)
-    taught = d.c.history.origins_of(d.c.selection.picked)
-    number = max(taught.lights[one.light])
+    number = max(d.c.history.origins_of(d.c.frame, d.c.selection.picked.primitive).lights[one.light])
     assert d.has(f"//Inspector/reason/picture {number}##0")
-    d.press(KEY.x)
+    d.press("X")
     d.wait(lambda: rays.rows(d.ui), "the rays", 20.0)
     d.frames(3)
     left = d.c.session.camera
@@ -96,6 +94,16 @@ def _taught(d: Driver) -> None:
     d.settle()
     assert d.c.session.camera == left, "it goes back to that picture, and what is selected stays so"
     assert d.c.selection.pixel is not None
+
+
+def _in_a_small_window(d: Driver) -> None:
+    """Long names and sentences fit into a narrow panel."""
+    size = imgui.get_io().display_size
+    d.resize(900, 600)
+    _click(d, _of(d, PARTLY), lambda one: True)
+    check_fit(d, "The Inspector in a small window")
+    d.resize(int(size.x), int(size.y))
+    d.settle()
 
 
 def _in_motion(d: Driver) -> None:
@@ -137,7 +145,10 @@ def _click(d: Driver, here: np.ndarray, wanted: Callable[[Reason], bool]) -> Rea
     rows, columns = np.nonzero(here)
     near = np.argsort(np.hypot(rows - frame.height / 2, columns - frame.width / 2))
     for i in near[:: max(1, len(near) // 20)].tolist():
-        _click_at(d, int(columns[i]), int(rows[i]))
+        d.c.selection.clear()
+        d.pick((columns[i] + 0.5) / frame.width, (rows[i] + 0.5) / frame.height)
+        d.wait(lambda: d.c.inspector.why is not None, "the reasons", 20.0)
+        d.frames(3)
         found = next((one for one in d.c.inspector.why.reasons if wanted(one)), None)
         if found is not None:
             return found
@@ -157,35 +168,5 @@ def _at_border(d: Driver) -> np.ndarray:
     return np.isin(seen, np.concatenate([seen[0], seen[-1], seen[:, 0], seen[:, -1]]))
 
 
-def _known(d: Driver) -> Why:
-    """What is found of the pixel that has just been selected."""
-    d.frames(2)
-    d.wait(lambda: d.c.inspector.why is not None, "the reasons", 20.0)
-    return d.c.inspector.why
-
-
-def _click_at(d: Driver, x: int, y: int) -> None:
-    left, top, right, bottom = d.picture_edges()
-    u, v = (x + 0.5) / d.c.frame.width, (y + 0.5) / d.c.frame.height
-    d.c.selection.clear()
-    d.frames(2)
-    d.context.mouse_move_to_pos((left + u * (right - left), top + v * (bottom - top)))
-    d.context.mouse_click(0)
-    _known(d)
-    d.frames(3)
-
-
-def _words(d: Driver) -> Words:
-    return Words(d.c.session.scene, d.c.inspector.why)
-
-
-def _said(d: Driver, one: Reason) -> str:
-    return plain(_words(d).reason(one))
-
-
 def _named(d: Driver, primitive: int) -> str:
-    return _words(d).primitive(primitive).text
-
-
-def _drawn(d: Driver) -> int:
-    return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()
+    return Words(d.c.session.scene, d.c.inspector.why).primitive(primitive).text

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.commands import ROOM
 from tests.tracing.same import assert_same
-from tests.viewer.fakes import FLYER_SCENE, PATIENCE, FakeRenderer, make_frame, until
+from tests.viewer.fakes import PATIENCE, FakeRenderer, make_frame, until
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from tracer.scene.model import Camera, Cancelled
+from tracer.scene.model import Camera, Cancelled, Scene
 from viewer.services.beside import FIRST, MOST, STILL, Baseline, Pair, Rounds, Subject, subject_of
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.render_thread import RenderThread
@@ -23,22 +25,25 @@ CAMERA = Camera((0.0, 1.0, 4.0), (0.0, -0.25, -1.0))
 SIZE = Settings(width=16, height=8)
 
 
+def never() -> bool:
+    return False
+
+
 class Timed:
     """A renderer whose frames take, in turn, the seconds that were given for the method; `made` are certificates.
 
     Those beside it note in the same `order` who traced, and in `taught` whose modes they were given."""
 
     settings = SIZE
-    failing: Exception | None = None
 
-    def __init__(self, seconds: dict[str, list[float]], made: dict[str, list[int]] | None = None) -> None:
-        self.seconds, self.made = seconds, made or {}
+    def __init__(self, seconds: dict[str, list[float]], made: tuple[int, ...] = (), failing: Exception | None = None):
+        self.seconds, self.made, self.failing = seconds, made, failing
         self.order: list[str] = []
         self.taught: list[object] = []
 
     def beside(self) -> Timed:
-        other = Timed(self.seconds, self.made)
-        other.order, other.taught, other.failing = self.order, self.taught, self.failing
+        other = Timed(self.seconds, self.made, self.failing)
+        other.order, other.taught = self.order, self.taught
         return other
 
     def take_modes(self, other: object) -> None:
@@ -48,26 +53,21 @@ class Timed:
         if self.failing is not None:
             raise self.failing
         method = self.settings.method
-        number = self.order.count(method)
+        number, times = self.order.count(method), self.seconds[method]
         self.order.append(method)
         frame = make_frame(self.settings, time, camera)
-        times, made = self.seconds[method], self.made.get(method, [])
         frame.statistics.seconds = times[number % len(times)]
-        frame.statistics.certificates = made[number] if number < len(made) else 0
+        frame.statistics.certificates = self.made[number] if method == "certified" and number < len(self.made) else 0
         return frame
 
 
-def rounds_of(*methods: str) -> Rounds:
-    return Rounds(Subject(1.0, CAMERA, replace(SIZE, method="none"), methods))
+def rounds_of(method: str) -> Rounds:
+    return Rounds(Subject(1.0, CAMERA, replace(SIZE, method="none"), ("none", method)))
 
 
 def step(rounds: Rounds, renderer: Timed, most: int = 10_000) -> int:
     """Go so many steps at most; returns how many there were."""
     return next((n for n in range(1, most + 1) if not rounds.step(renderer, never)), most)
-
-
-def never() -> bool:
-    return False
 
 
 def test_medians_quartiles_and_the_margin():
@@ -83,29 +83,23 @@ def test_medians_quartiles_and_the_margin():
 
 def test_methods_take_turns_after_frames_that_do_not_count_and_stop_once_it_is_known():
     renderer = Timed({"none": [9.0] * FIRST + [0.2] * 60, "paper": [9.0] * FIRST + [0.1] * 60})
-    rounds = rounds_of("none", "paper")
-    assert step(rounds, renderer) == 2 * (FIRST + LEAST)
-    assert renderer.order[: 2 * FIRST] == ["none"] * FIRST + ["paper"] * FIRST
-    counted = renderer.order[2 * FIRST :]
-    assert counted == ["none", "paper", "paper", "none"] * (LEAST // 2), "who is first changes"
+    rounds = rounds_of("paper")
+    assert step(rounds, renderer) == 2 * (FIRST + LEAST) and not rounds.step(renderer, never)
+    counted = ["none", "paper", "paper", "none"] * (LEAST // 2)  # who is first changes
+    assert renderer.order == ["none"] * FIRST + ["paper"] * FIRST + counted
     assert rounds.so_far.settled and rounds.so_far.speed("paper", "none").median == pytest.approx(2.0)
     assert renderer.taught == [renderer] * 2, "each begins with the modes that the window has"
-    assert not rounds.step(renderer, never) and len(renderer.order) == 2 * (FIRST + LEAST)
-
-
-def test_where_the_numbers_go_up_and_down_it_ends_after_so_many_rounds():
-    rounds = rounds_of("none", "paper")
+    rounds = rounds_of("paper")
     step(rounds, Timed({"none": [0.1, 0.3, 0.2], "paper": [0.25, 0.1, 0.15, 0.3]}))
-    assert rounds.so_far.count == MOST and rounds.so_far.settled
+    assert rounds.so_far.settled and rounds.so_far.count == MOST, "numbers that go up and down"
 
 
 def test_nothing_counts_before_the_method_has_made_what_it_makes():
-    renderer = Timed({"none": [0.1], "certified": [0.1]}, {"certified": [90, 50, 20, 3]})
-    rounds = rounds_of("none", "certified")
-    step(rounds, renderer, FIRST + 5)
-    assert rounds.so_far.prepares
-    step(rounds, renderer, 2)
-    assert not rounds.so_far.prepares and rounds.so_far.count == 1
+    rounds, renderer = rounds_of("certified"), Timed({"none": [0.1], "certified": [0.1]}, made=(90, 50, 20, 3))
+    step(rounds, renderer, FIRST + 5 + 1)
+    assert rounds.so_far.count == 0
+    step(rounds, renderer, 1)
+    assert rounds.so_far.count == 1
 
 
 def traced(method: str = "paper", at: float = 1.0, **more) -> Traced:
@@ -116,13 +110,12 @@ def traced(method: str = "paper", at: float = 1.0, **more) -> Traced:
 
 def test_none_keeps_no_modes_and_nobody_records_or_verifies():
     found = subject_of(traced(verify=True, record_work=True, record_lights=True))
-    assert found is not None and found.methods == ("none", "paper")
     s = found.settings
     assert not any((s.verify, s.record_work, s.record_lights, s.modes)) and s.samples == 1
     assert not s.keeps_modes and replace(s, method="paper").keeps_modes
+    assert found.methods == subject_of(traced("paper"), "none").methods == ("none", "paper")
     assert subject_of(traced("none")) is None
     assert subject_of(traced("none"), "certified").methods == ("none", "certified")
-    assert subject_of(traced("paper"), "none").methods == ("none", "paper")
 
 
 class Spare:
@@ -144,24 +137,25 @@ class Spare:
         return self.see(newest)
 
 
-def test_it_begins_at_rest_stops_at_once_and_goes_on_where_it_stopped():
+def test_it_begins_at_rest_stops_at_once_and_keeps_what_is_known_of_a_picture():
     spare, paper = Spare(), traced("paper")
-    baseline = spare.baseline
+    baseline, renderer = spare.baseline, Timed({name: [0.1] for name in ("none", "paper", "certified")})
     assert spare.see(paper) is None and baseline.measured is None
     first = spare.rest(paper)
     assert first.subject.methods == ("none", "paper") and baseline.measured is first.so_far
     assert spare.see(paper, busy=True) is None and baseline.measured is first.so_far, "what is known stays"
     assert spare.rest(paper) is first
-    step(first, Timed({"none": [0.1], "paper": [0.2]}), 2 * FIRST + 2)
-    assert spare.see(paper, moving=True) is None and baseline.measured is None and baseline.moving
+    step(first, renderer, 2 * FIRST + 2)
+    assert spare.see(paper, moving=True) is None and baseline.measured is None
     again = spare.rest(paper)
     assert again is not first, "renderers, with all they have learnt, are not kept while pictures change"
-    assert baseline.measured is again.so_far and again.so_far.count == 1, "what they have measured is"
+    step(again, renderer)
     second = spare.rest(traced("certified"))
-    assert second is not again and second.subject.methods == ("none", "certified")
-    assert spare.see(paper) is again, "of the same picture, what is known of another method is known still"
+    assert second.subject.methods == ("none", "certified")
+    spare.see(paper, moving=True)
+    assert spare.rest(paper) is None and baseline.measured is again.so_far, "what was measured to the end is known"
     spare.rest(traced("paper", at=2.0))
-    assert spare.rest(paper) not in (again, second), "of another picture it is not"
+    assert spare.rest(paper) not in (None, again, second), "after another picture it is not"
     baseline.forget()
     assert spare.works[-1] is None and baseline.measured is None
 
@@ -172,9 +166,8 @@ def test_no_tree_is_built_for_a_figure():
 
 
 def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
-    spare = Spare()
-    begun, renderer = spare.rest(traced()), Timed({"none": [0.1], "paper": [0.1]})
-    renderer.failing = MemoryError()
+    spare, renderer = Spare(), Timed({}, failing=MemoryError())
+    begun = spare.rest(traced())
     with pytest.raises(MemoryError):
         begun.step(renderer, never)
     assert not begun.step(renderer, never)
@@ -228,9 +221,13 @@ def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back()
     assert thread.close(PATIENCE), "the thread hangs"
 
 
+def flyer(folder: Path) -> Scene:
+    (folder / "scene.aff").write_text(ROOM)
+    return load_scene(folder / "scene.aff")
+
+
 def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
-    (tmp_path / "scene.aff").write_text(FLYER_SCENE)
-    scene = load_scene(tmp_path / "scene.aff")
+    scene = flyer(tmp_path)
     settings = Settings(width=48, height=32, threads=1, method="paper+rest")
     window, alone = Renderer(scene, settings), Renderer(scene, settings)
     for at in (0.0, 1.0, 1.0):
@@ -239,11 +236,11 @@ def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
     alone.render(1.0)
     rounds = Rounds(Subject(1.0, scene.camera_at(1.0), replace(settings, method="none"), ("none", "paper+rest")))
     for _ in range(2 * FIRST + 2):
-        rounds.step(window, lambda: False)
+        rounds.step(window, never)
         window.take_turn(1.0)
-    found = rounds.so_far.rounds[0]
-    assert found[1].shadow.saved == known.statistics.shadow.saved > 0
-    assert found[0].shadow.rays > found[1].shadow.rays and found[0].occlusion_tests == 0
+    ((none, paper),) = rounds.so_far.rounds
+    assert paper.shadow.saved == known.statistics.shadow.saved > 0
+    assert none.shadow.rays > paper.shadow.rays and none.occlusion_tests == 0
     window.settings = replace(settings, width=24, height=16)
     window.render(1.0)
     window.settings = settings
@@ -259,8 +256,7 @@ def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
 @pytest.mark.parametrize("keeps_modes", [True, False])
 def test_neither_knows_what_the_other_has_found_out(tmp_path, keeps_modes):
     """While an object moves, and when it rests, which counts as static for one of the methods alone."""
-    (tmp_path / "scene.aff").write_text(FLYER_SCENE)
-    scene = load_scene(tmp_path / "scene.aff")
+    scene = flyer(tmp_path)
     settings = Settings(width=48, height=32, threads=1, modes=keeps_modes, record_work=True)
     methods = "paper", "certified"
     alone = [Renderer(scene, replace(settings, method=method)) for method in methods]

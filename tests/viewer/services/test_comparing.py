@@ -6,6 +6,7 @@ import gc
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from tests.viewer.desk import ELSEWHERE, Desk
 from tests.viewer.drawn import values_in
@@ -23,31 +24,18 @@ def keep(desk: Desk, method: str = "none") -> None:
     desk.c.comparing.keep()
 
 
-def test_what_is_kept_stays_whatever_is_changed_since(desk: Desk) -> None:
+def test_a_difference_is_found_once_and_seen_brighter_with_more_exposure(desk: Desk) -> None:
     comparing = desk.c.comparing
-    assert comparing.seen is None and comparing.b is not None and comparing.a is None
     keep(desk)
-    kept, color = comparing.a.frame, comparing.a.frame.color.copy()
     desk.c.settings.change(method="paper")
     desk.c.motion.move(ELSEWHERE)
-    desk.rest()
     comparing.start(CompareMode.DIFFERENCE)
     desk.rest()
-    seen, b = comparing.seen, comparing.b
-    assert seen.a.frame is kept and np.array_equal(seen.a.frame.color, color)
-    assert (seen.a.method, seen.b.method) == ("none", "paper") and seen.b.frame is desk.c.frame
-    assert seen.names == ("A  none", "B  paper")
-    found = seen.difference
-    assert comparing.difference(seen.a, seen.b) is found, "found out once"
-    assert np.array_equal(found.pixels != 0.0, (b.frame.color != color).any(axis=-1)) and found.stats.pixels
+    seen = comparing.seen
+    assert seen.names == ("A  none", "B  paper") and seen.a.frame is comparing.kept.frame
+    assert comparing.difference(seen.a, seen.b) is seen.difference and seen.difference.stats.pixels
     desk.c.session.set_draw(tone=Tone(exposure=2.0))
-    assert comparing.limit(found) == found.stats.limit / 4.0, "brighter, smaller differences are seen"
-    comparing.held = True
-    comparing.update()
-    assert comparing.seen.shows_a and comparing.seen.difference is None, "A alone while the key is held"
-    comparing.forget()
-    comparing.update()
-    assert comparing.seen is None and comparing.a is None
+    assert comparing.limit(seen.difference) == seen.difference.stats.limit / 4.0
 
 
 def test_a_is_seen_in_the_view_of_b_where_it_has_what_that_needs(desk: Desk) -> None:
@@ -70,10 +58,9 @@ def test_maps_of_both_have_one_range(desk: Desk) -> None:
     desk.c.motion.move(ELSEWHERE)
     desk.rest()
     comparing.start(CompareMode.SIDE)
-    a, b = comparing.a, comparing.b
-    both = comparing.span(View.DEPTH)
-    hit = [side.frame.depth[np.isfinite(side.frame.depth)] for side in (a, b)]
-    assert alone is None and both[0] <= min(np.median(d) for d in hit) and both[1] >= max(np.median(d) for d in hit)
+    low, high = comparing.span(View.DEPTH)
+    middle = [np.median(side.frame.depth[np.isfinite(side.frame.depth)]) for side in (comparing.a, comparing.b)]
+    assert alone is None and low <= min(middle) and max(middle) <= high
     session.change(draw=session.draw.with_span((1.0, 2.0), View.DEPTH))
     assert comparing.span(View.DEPTH) == (1.0, 2.0), "a range that was chosen is kept"
     assert comparing.span(View.COLOR) is None
@@ -109,24 +96,25 @@ def test_a_difference_is_that_of_the_chosen_slice(desk: Desk) -> None:
     assert not np.array_equal(expected.numbers, values_in(b.frame, View.TREE, slice=Slice(1, 0.25)).numbers)
 
 
-def side(settings: Settings, time: float = 0.0, view: View = View.COLOR, light: int = 0, scene: str = "study") -> Side:
-    return Side(make_frame(settings, time=time), view, light, scene, round(3 + 2 * time))
+def side(method: str, time: float = 0.0, view: View = View.COLOR, scene: str = "study", **settings: int) -> Side:
+    frame = make_frame(Settings(16, 8, method=method, **settings), time=time)
+    return Side(frame, view, 2, scene, round(3 + 2 * time))
 
 
-def test_each_is_called_by_its_method_and_what_sets_it_apart() -> None:
-    none, paper = Settings(16, 8, method="none"), Settings(16, 8, method="paper")
-    a, b = side(none), side(paper)
-    for one, other, name in (
-        (a, b, "none"),
-        (b, a, "paper"),
-        (a, side(none, 2.0), "none, frame 3"),
-        (side(none, 2.0), a, "none, frame 7"),
-        (side(paper, view=View.SHADOW, light=2), b, "paper, shadow mode, light 2"),
-        (b, side(paper, view=View.SHADOW, light=2), "paper, colour"),
-        (side(none, scene="hall"), b, "none, hall, frame 3"),
-        (side(Settings(16, 8, method="paper", depth=1)), b, "paper, depth 1"),
-    ):
-        assert one.named(other) == name
+@pytest.mark.parametrize(
+    ("one", "other", "name"),
+    [
+        (side("none"), side("paper"), "none"),
+        (side("none"), side("none", 2.0), "none, frame 3"),
+        (side("none", 2.0), side("paper"), "none, frame 7"),
+        (side("paper", view=View.SHADOW), side("paper"), "paper, shadow mode, light 2"),
+        (side("paper"), side("paper", view=View.SHADOW), "paper, colour"),
+        (side("none", scene="hall"), side("paper"), "none, hall, frame 3"),
+        (side("paper", depth=1), side("paper"), "paper, depth 1"),
+    ],
+)
+def test_each_is_called_by_its_method_and_what_sets_it_apart(one: Side, other: Side, name: str) -> None:
+    assert one.named(other) == name
 
 
 def test_sizes_and_samples_that_differ_are_told(desk: Desk) -> None:

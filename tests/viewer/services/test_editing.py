@@ -13,33 +13,15 @@ from PIL import Image
 
 from tests.commands import run
 from tests.viewer.desk import Desk
+from tests.viewer.fakes import TINY_SCENE
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edits
 from tracer.scene.things import things
 
-SCENE = """
-b 0.3 0.4 0.5
-v
-from 0 1.5 6
-at 0 0.5 0
-up 0 1 0
-angle 45
-hither 0.01
-resolution 64 48
-l 3 5 4  0.6 0.6 0.6
-l -4 4 3  0.4 0.4 0.4
-f 0.8 0.3 0.2  0.7 0.2 10 0 1
-x ball { s 0 0.8 0 0.8 }
+CARS = """x ball { s 0 0.8 0 0.8 }
 x car { s 1.6 0.4 0.5 0.4 }
-k car { transl 4 0 0 0 0 0 0 0  1 0 0 0 0 0 0  2 1 0 0 0 0 0  3 1 0 0 0 0 0 }
-f 0.6 0.6 0.6  0.8 0 1 0 1
-p 4
--4 0 -4
--4 0 4
-4 0 4
-4 0 -4
-a 1 2 20
-"""
+k car { transl 4 0 0 0 0 0 0 0  1 0 0 0 0 0 0  2 1 0 0 0 0 0  3 1 0 0 0 0 0 }"""
+SCENE = TINY_SCENE.replace("s 0 0.8 0 0.8", CARS)
 
 
 @pytest.fixture
@@ -100,19 +82,6 @@ def test_edits_of_all_kinds_are_shown_and_undone(desk: Desk):
     assert c.undo.undoes == "method certified", "edits make no steps but their own"
 
 
-def test_hidden_objects_that_move_and_moved_lights_keep_the_renderer(desk: Desk):
-    c, renderer = desk.c, desk.c.renderer._renderer
-    edit(desk, "with_thing", "car", False)
-    edit(desk, "with_light_at", 1, (2.0, 5.0, 2.0))
-    assert c.renderer._renderer is renderer and np.array_equal(c.frame.color, fresh(desk))
-    edit(desk, "with_thing", "ball", False)
-    assert c.renderer._renderer is not renderer and np.array_equal(c.frame.color, fresh(desk))
-    c.editing.clear()
-    until_edited(desk)
-    assert c.renderer._renderer is renderer, "with all that it knows"
-    assert np.array_equal(c.frame.color, fresh(desk))
-
-
 def test_the_modes_of_all_edited_scenes_are_forgotten(desk: Desk, monkeypatch: pytest.MonkeyPatch):
     c, original, resets = desk.c, desk.c.renderer._renderer, []
     monkeypatch.setattr(original, "reset_modes", lambda: resets.append(c.session.edits))
@@ -125,20 +94,6 @@ def test_the_modes_of_all_edited_scenes_are_forgotten(desk: Desk, monkeypatch: p
     assert c.renderer._renderer is original and len(resets) == 1
     edit(desk, "with_thing", "ball", False)
     assert c.renderer._renderer is not hidden and len(resets) == 1
-
-
-def test_the_picture_before_the_edits_is_kept_to_be_compared_with(desk: Desk):
-    c = desk.c
-    before = c.frame
-    assert c.editing.before is None
-    edit(desk, "with_light", 1, False)
-    edit(desk, "with_thing", "ball", False)
-    assert c.editing.before.frame is before
-    c.editing.clear()
-    until_edited(desk)
-    again = c.frame
-    edit(desk, "with_light", 0, False)
-    assert c.editing.before.frame is again
 
 
 def test_no_picture_of_an_edited_scene_comes_before_the_session_has_it(desk: Desk):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Iterator
 from dataclasses import replace
 from threading import Event, Thread
 from types import SimpleNamespace
@@ -11,22 +9,19 @@ from typing import Any
 
 import pytest
 
-from tests.viewer.fakes import FakeRenderer, make_frame, make_scene
+from tests.viewer.fakes import make_frame, make_scene
 from tracer.culling.mode_changes import ModeChanges
 from tracer.frame import Settings
 from tracer.scene.lights import Light
 from tracer.scene.model import Camera, Scene
 from tracer.statistics import FrameStatistics
-from viewer.services.controller import Controller
 from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
 from viewer.services.jobs import Wake
 from viewer.services.refinement import MOST_FRAMES, MOST_LEARNING, Refinement
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 from viewer.state.views import MOST_RECORDED, View
-from viewer.window.app import advance
 
 SIZE = (16, 8)
 
@@ -63,13 +58,21 @@ class Window:
         session = self.session
         self.scheduler.request(FrameInputs(session.state, session.scene, session.camera, SIZE, **inputs))
 
-    def rest(self, frames: int = 12, **inputs: Any) -> list[tuple[int | None, int]]:
-        """Samples of lamps, and of pixels, that are asked for in so many frames of the window."""
+    def asked_for(self, frames: int = 12, **inputs: Any) -> list[RenderRequest]:
+        """What is asked for in so many frames of the window."""
         before = len(self.renders.asked)
         for _ in range(frames):
             self.scheduler.take()
             self.request(**inputs)
-        return [(one.settings.lamp_samples, one.samples) for one in self.renders.asked[before:]]
+        return self.renders.asked[before:]
+
+    def rest(self, frames: int = 12, **inputs: Any) -> list[tuple[int | None, int]]:
+        """Samples of lamps, and of pixels, that are asked for meanwhile."""
+        return [(one.settings.lamp_samples, one.samples) for one in self.asked_for(frames, **inputs)]
+
+    def see(self, view: View) -> list[RenderRequest]:
+        self.session.set_draw(view=view)
+        return self.asked_for()
 
     def move(self) -> None:
         camera = self.session.camera
@@ -105,6 +108,10 @@ def test_the_next_frame_of_a_film_waits_until_this_one_can_be_asked_about():
     window.session.set_settings(method="paper")
     window.request(**film)
     assert [one.time for one in window.renders.asked] == [0.0, 1.0, 3.0], "but what is worthless does not delay it"
+    window.session.change(time=4.0)
+    window.scheduler.forget_modes()
+    window.request(**film)
+    assert window.renders.asked[-1].time == 4.0, "nor what has been cut short"
 
 
 @pytest.mark.parametrize(("ready", "method", "traced"), [
@@ -157,8 +164,8 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
     window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
     for view, title in (
         (View.PENUMBRA, "Penumbra: counting ..."),
-        (View.LIGHTS, "Lights due: none here, colour shown"),
-        (View.FATE, "Fate of shadow rays: none here, colour shown"),
+        (View.LIGHTS, "Lights due: not available here, colour shown"),
+        (View.FATE, "Fate of shadow rays: not available here, colour shown"),
     ):
         window.session.set_draw(view=view)
         window.rest()
@@ -187,70 +194,44 @@ def test_between_steps_it_is_known_that_more_is_to_come():
 # --- what views need ---------------------------------------------------------------------------------
 
 
-class Desk:
-    """A controller at work on a renderer that traces nothing."""
-
-    def __init__(self, controller: Controller) -> None:
-        self.c, self.renderer = controller, FakeRenderer()
-        controller.show(self.renderer, {})
-        assert self.rest() == [False, False]  # one that teaches the modes, and one that shows what they save
-
-    def rest(self) -> list[bool]:
-        """Tick until all has been traced; for each frame asked for meanwhile, whether it was to be verified."""
-        before, quiet, end = len(self.renderer.asked), 0, time.monotonic() + 20.0
-        while quiet < 10:
-            assert time.monotonic() < end, "it does not come to rest"
-            advance(self.c, SIZE)
-            quiet = 0 if self.c.active else quiet + 1
-            time.sleep(0.002)
-        return [settings.verify for _, settings in self.renderer.asked[before:]]
-
-    def see(self, view: View) -> list[bool]:
-        self.c.session.set_draw(view=view)
-        return self.rest()
-
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    controller = Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}}))
-    yield Desk(controller)
-    assert controller.close()
-
-
 COUNTED, VERIFIED = (View.COLOR, View.COST, View.SAVED, View.CERTIFICATE), (View.WIPE, View.DIFFERENCE, View.DEPTH)
 
 
 @pytest.mark.parametrize(("view", "verifies"), [
     (View.SAVED, False), (View.COST, False), (View.DIFFERENCE, True), (View.WIPE, True),
 ])  # fmt: skip
-def test_what_a_view_needs_is_traced_once_and_for_such_views_alone(desk: Desk, view: View, verifies: bool):
-    c = desk.c
-    c.session.set_draw(view=view)
-    advance(c, SIZE)
-    assert c.scheduler.drawn_view is View.COLOR and c.scheduler.outdated, "it is not there yet"
-    assert ("verifying" if verifies else "counting") in c.scheduler.title
-    desk.rest()
-    assert c.frame.settings.record_work is not verifies and (c.frame.wrong is not None) is verifies
-    assert c.scheduler.drawn_view is view and not c.scheduler.outdated
+def test_what_a_view_needs_is_traced_once_and_for_such_views_alone(view: View, verifies: bool):
+    window = Window(method="paper", samples=1)
+    session, scheduler = window.session, window.scheduler
+    window.rest()
+    session.set_draw(view=view)
+    window.request()
+    assert scheduler.drawn_view is View.COLOR and scheduler.outdated, "it is not there yet"
+    assert ("verifying" if verifies else "counting") in scheduler.title
+    window.rest()
+    assert scheduler.frame.settings.record_work is not verifies and (scheduler.frame.wrong is not None) is verifies
+    assert scheduler.drawn_view is view and not scheduler.outdated
     for other in VERIFIED if verifies else COUNTED:
-        assert desk.see(other) == [] and not c.scheduler.outdated
+        assert window.see(other) == [] and not scheduler.outdated
     for shown, wanted in ((view, True), (View.COLOR, False)):
-        desk.see(shown)
-        c.motion.step(1)
-        assert set(desk.rest()) == {verifies and wanted}
-        assert c.frame.settings.record_work is (wanted and not verifies)
-    assert not c.session.settings.verify and not c.session.settings.record_work
+        window.see(shown)
+        session.change(time=session.time + 1.0)
+        asked = window.asked_for()
+        assert {one.settings.verify for one in asked} == {verifies and wanted}
+        assert {one.settings.record_work for one in asked} == {wanted and not verifies}
+    assert not session.settings.verify and not session.settings.record_work
 
 
-def test_the_users_own_setting_counts_in_every_view(desk: Desk):
-    desk.c.settings.change(verify=True)
-    assert desk.rest() == [True]
-    desk.c.session.set_draw(view=View.DIFFERENCE)
-    desk.c.settings.change(verify=False)
-    assert desk.rest() == [], "verified it is already"
-    assert desk.see(View.COLOR) == [], "that is more than is asked for"
-    desk.c.scheduler.trace_again()
-    assert desk.rest() == [False]
+def test_the_users_own_setting_counts_in_every_view():
+    window = Window(method="paper", samples=1)
+    window.rest()
+    window.session.set_settings(verify=True)
+    assert [one.settings.verify for one in window.asked_for()] == [True]
+    window.session.set_settings(verify=False)
+    assert window.see(View.DIFFERENCE) == [], "verified it is already"
+    assert window.see(View.COLOR) == [], "that is more than is asked for"
+    window.scheduler.trace_again()
+    assert [one.settings.verify for one in window.asked_for()] == [False]
 
 
 # --- further frames that know more -------------------------------------------------------------------

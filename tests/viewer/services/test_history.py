@@ -121,7 +121,7 @@ def test_a_mode_names_the_frames_that_taught_it(desk: Desk) -> None:
     c.selection.select((0.5, 0.75))
     picked = c.selection.picked
     assert picked is not None and picked.primitive >= 0
-    taught = c.history.origins_of(picked)
+    taught = c.history.origins_of(c.frame, picked.primitive)
     assert taught is not None
     world = tracer.World(c.session.scene)
     again = tracer.Renderer(c.session.scene, replace(words[learnt[0]].settings, verify=False), world=world)
@@ -129,7 +129,7 @@ def test_a_mode_names_the_frames_that_taught_it(desk: Desk) -> None:
     for n in learnt:
         moment = words[n]
         again.settings = moment.settings
-        word = again.render(moment.state.time, moment.camera).modes[picked.unit]
+        word = again.render(moment.state.time, moment.camera).modes[picked.primitive]
         for light in range(2):
             for lit, bit in ((False, modes.FULL_SHADOW), (True, modes.NON_SHADOW)):
                 if int(modes.shadow_mode(word, light)) & bit:

@@ -1,19 +1,15 @@
-"""Camera and time, moved by hand, glided and played, and how fast in the preview before the first picture."""
+"""Camera and time, moved by hand, glided and played."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import replace
-from types import SimpleNamespace
 
 import pytest
 
 from tests.viewer.fakes import make_frame, make_scene
 from tracer.scene.model import Camera
-from viewer.services import preview
 from viewer.services.motion import IDLE_AFTER, Motion
-from viewer.services.preview import Preview
-from viewer.services.scene_loader import Arrival
 from viewer.state.navigation import SHORTEST_FLIGHT
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
@@ -103,13 +99,3 @@ def test_the_pace_is_that_of_the_first_frame_until_another_scene(moving: Moving)
     assert motion.pace == pytest.approx(0.5)
     motion.enter(((-80.0, -80.0, -80.0), (80.0, 80.0, 80.0)))
     assert motion.pace == wide
-
-
-def test_spheres_and_cones_count_where_a_scene_is_too_large_for_a_preview(monkeypatch: pytest.MonkeyPatch):
-    scene, notices = make_scene(), Notices()
-    for most, there in ((preview.triangles_of(scene), True), (scene.triangle_count, False)):
-        monkeypatch.setattr(preview, "MOST_TRIANGLES", most)
-        session, loader = Session(), SimpleNamespace(waiting=Arrival(waits=scene))
-        motion = Motion(session, Preferences(), notices, lambda: False)
-        Preview(session, loader, motion, notices, lambda: None).update(traced=False)
-        assert (session.previewed is not None) == there

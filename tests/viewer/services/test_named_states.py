@@ -42,8 +42,10 @@ def test_names_are_unique_and_they_and_their_order_can_be_changed(parts: Parts, 
     assert [one.name for one in states.all] == ["one", "two words", "three"]
     assert [one.state["settings"]["depth"] for one in states.all] == [1, 10, 10]
     for taken in ("three", " "):
-        assert not states.rename(0, taken) and parts.notices.message.error
-    assert states.rename(0, "four") and states.rename(1, "two words")
+        states.rename(0, taken)
+        assert states.all[0].name == "one" and parts.notices.message.error
+    states.rename(0, "four")
+    states.rename(1, "two words")
     states.move(2, 0)
     states.delete(1)
     assert [one.name for one in load_preferences()[0].presets or states.all] == ["three", "two words"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +12,9 @@ import pytest
 from PIL import Image
 
 from tests.commands import ROOM, run
+from tests.marbles import write_marbles
 from tests.viewer.desk import ELSEWHERE, Desk
-from tests.viewer.fakes import TINY_SCENE, write_marbles
+from tests.viewer.fakes import TINY_SCENE
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
@@ -129,10 +130,8 @@ def test_a_command_is_printed_for_a_saved_picture(
     with Image.open("first.png") as first, Image.open("second.png") as second:
         assert first.height > 60, "there is a caption"
         assert np.array_equal(np.asarray(first), np.asarray(second))
-        assert (
-            first.text["shadowcull"].partition('"statistics"')[0]
-            == second.text["shadowcull"].partition('"statistics"')[0]
-        )
+        state, again = (image.text["shadowcull"].partition('"statistics"')[0] for image in (first, second))
+        assert state == again
 
 
 def test_a_tree_that_rays_have_had_built_cannot_be_brought_back(odd: Desk) -> None:
@@ -174,10 +173,19 @@ def saved(desk: Desk, view: View, name: str) -> Path:
     return job.result
 
 
-def check(capfd: pytest.CaptureFixture[str], path: Path) -> tuple[int, str]:
-    code, out, errors = run(capfd, "check", path)
-    assert errors == ""
-    return code, out.strip()
+Check = Callable[[Path], tuple[int, str]]
+
+
+@pytest.fixture
+def check(capfd: pytest.CaptureFixture[str]) -> Check:
+    """The exit code and the line of `check`."""
+
+    def checked(path: Path) -> tuple[int, str]:
+        code, out, errors = run(capfd, "check", path)
+        assert errors == "" and len(out.splitlines()) == 1
+        return code, out.strip()
+
+    return checked
 
 
 def changed(path: Path, name: str, **warmup: object) -> Path:
@@ -189,36 +197,27 @@ def changed(path: Path, name: str, **warmup: object) -> Path:
     return path.with_name(name)
 
 
-@pytest.mark.parametrize("view", [View.COLOR, View.DIFFERENCE, View.SAVED])
-def test_a_picture_after_others_is_made_again_to_the_bit(
-    desk: Desk, view: View, capfd: pytest.CaptureFixture[str]
-) -> None:
-    path = saved(desk, view, f"{view.value}.png")
-    code, said = check(capfd, path)
+@pytest.mark.parametrize(
+    ("view", "in_motion"), [(View.COLOR, False), (View.DIFFERENCE, False), (View.SAVED, False), (View.SAVED, True)]
+)
+def test_a_picture_after_others_is_made_again_to_the_bit(desk: Desk, check: Check, view: View, in_motion: bool) -> None:
+    """Also after some in motion, of which some pixels have taught."""
+    if in_motion:
+        desk.c.session.set_pace(progressive=True, target_fps=5000.0)
+        desk.c.settings.change(method="paper")
+        desk.c.session.playing = True
+        desk.came.clear()
+        desk.until(lambda: len(desk.came) > 20 and any(frame.statistics.part < 1.0 for frame in desk.came))
+        desk.c.session.playing = False
+        desk.rest()
+    code, said = check(saved(desk, view, f"{view.value}.png"))
     assert code == 0 and "true: 64 × 48, bit for bit" in said, said
 
 
-def test_a_picture_after_others_in_motion_of_which_some_pixels_taught_is_made_again_to_the_bit(
-    desk: Desk, capfd: pytest.CaptureFixture[str]
-) -> None:
-    c = desk.c
-    c.session.set_pace(progressive=True, target_fps=5000.0)
-    c.settings.change(method="paper")
-    c.session.playing = True
-    desk.came.clear()
-    desk.until(lambda: len(desk.came) > 20 and any(frame.statistics.part < 1.0 for frame in desk.came))
-    c.session.playing = False
-    desk.rest()
-    code, said = check(capfd, saved(desk, View.SAVED, "after-motion.png"))
-    assert code == 0 and "bit for bit" in said, said
-
-
-def test_without_its_modes_a_picture_is_held_against_that_with_every_ray_traced(
-    desk: Desk, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_without_its_modes_a_picture_is_held_against_that_with_every_ray_traced(desk: Desk, check: Check) -> None:
     path = saved(desk, View.COLOR, "color.png")
     frame = desk.c.frame
-    code, said = check(capfd, changed(path, "older.png", modes=""))
+    code, said = check(changed(path, "older.png", modes=""))
     with Image.open(path) as image:
         kept = np.asarray(image.convert("RGB"))
     renderer = stills.Renderer(desk.c.session.scene, replace(frame.settings, method="none", verify=False))
@@ -229,9 +228,7 @@ def test_without_its_modes_a_picture_is_held_against_that_with_every_ray_traced(
         assert code == 0 and "true: 64 × 48, bit for bit" in said, said
 
 
-def test_modes_that_are_damaged_or_of_another_scene_are_said_to_be(
-    desk: Desk, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_modes_that_are_damaged_or_of_another_scene_are_said_to_be(desk: Desk, check: Check) -> None:
     path = saved(desk, View.SAVED, "saved.png")
     for name, modes, why in (
         ("letters", "no base64!", "damaged"),
@@ -239,14 +236,14 @@ def test_modes_that_are_damaged_or_of_another_scene_are_said_to_be(
         ("short", capture.read_carried(path).state["warmup"]["modes"][:-8], "damaged"),
         ("empty", "eJwDAAAAAAE=", "not those of"),
     ):
-        code, said = check(capfd, changed(path, f"{name}.png", modes=modes))
-        assert code == 1 and why in said and len(said.splitlines()) == 1, (name, said)
+        code, said = check(changed(path, f"{name}.png", modes=modes))
+        assert code == 1 and why in said, (name, said)
 
 
-def test_views_of_modes_say_how_to_save_what_can_be_made_again(desk: Desk, capfd: pytest.CaptureFixture[str]) -> None:
+def test_views_of_modes_say_how_to_save_what_can_be_made_again(desk: Desk, check: Check) -> None:
     path = saved(desk, View.OCCLUSION, "modes.png")
     assert not capture.read_carried(path).state["warmup"]["modes"], "such a picture shows what comes of more than these"
-    code, said = check(capfd, path)
+    code, said = check(path)
     assert code == 1 and "cannot be made again" in said and "Backspace" in said
 
 

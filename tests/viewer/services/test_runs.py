@@ -13,15 +13,11 @@ import numpy as np
 import pytest
 
 from tests.viewer.desk import ELSEWHERE, SIZE, Desk, is_the_same_picture
-from tests.viewer.fakes import FakeRenderer
 from tracer.experiments import experiment
 from tracer.experiments.experiment import Experiment
-from viewer.services.controller import Controller
 from viewer.services.runs import duration, shown_of
-from viewer.state.preferences import Preferences
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
-from viewer.window.app import advance
 
 
 def same_figures(one: experiment.Results, other: experiment.Results) -> bool:
@@ -153,12 +149,9 @@ def test_a_plan_that_is_no_good_is_one_line(desk: Desk) -> None:
     assert runs.experiment is None and runs.current is None
 
 
-@pytest.mark.parametrize(
-    ("seconds", "said"),
-    [(0.2, "0 s"), (59.4, "59 s"), (59.6, "1:00 min"), (125, "2:05 min"), (3599.6, "1:00 h"), (4200, "1:10 h")],
-)
-def test_durations_as_people_say_them(seconds: float, said: str) -> None:
-    assert duration(seconds) == said
+def test_durations_as_people_say_them() -> None:
+    said = {0.2: "0 s", 59.4: "59 s", 59.6: "1:00 min", 125: "2:05 min", 3599.6: "1:00 h", 4200: "1:10 h"}
+    assert {seconds: duration(seconds) for seconds in said} == said
 
 
 def test_restoring_a_place_ends_a_run(desk: Desk) -> None:
@@ -168,22 +161,18 @@ def test_restoring_a_place_ends_a_run(desk: Desk) -> None:
     assert desk.c.frame.camera == ELSEWHERE and run.done
 
 
-def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_fails_is_one_line_and_the_thread_lives_on(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*arguments: object, **options: object) -> None:
         raise AttributeError("no world")
 
     monkeypatch.setattr(experiment, "run", fail)
-    controller = Controller(Preferences(state={"pace": {"progressive": False}, "settings": {"samples": 1}}))
-    controller.show(FakeRenderer(), {})
-    controller.runs.experiment_plan.frames = 2
-    controller.runs.start_experiment()
-    end = time.monotonic() + 20.0
-    while controller.runs.current is not None or controller.frame is None:
-        assert time.monotonic() < end
-        advance(controller, SIZE)
-    assert controller.notices.newest_fault.text == "the experiment failed: AttributeError: no world"
-    assert "no world" in controller.notices.newest_fault.details
-    assert controller.close()
+    desk.runs.start_experiment()
+    desk.run_to_its_end()
+    fault = desk.c.notices.newest_fault
+    assert fault.text == "the experiment failed: AttributeError: no world" and "no world" in fault.details
+    desk.c.motion.move(ELSEWHERE)
+    desk.rest()
+    assert desk.c.frame.camera == ELSEWHERE
 
 
 def test_stopped_before_its_first_frame_a_run_leaves_nothing(desk: Desk) -> None:

@@ -100,20 +100,19 @@ def test_a_cancelled_load_is_gone_at_once_though_it_cannot_stop(door: Door, tiny
     """As within a library that reads a mesh; and the scene that has waited in vain is let go."""
     deaf, read, opened = threading.Event(), [], door_opened(door, tiny_scene_file)
 
-    def waits(scene, settings, progress, ready, seen):
+    def waits(scene, settings, progress):
         read.append(weakref.ref(scene))
-        seen(scene)
         deaf.wait(60.0)
         raise SceneError("no more")
 
     monkeypatch.setattr("viewer.services.scene_loader.build", waits)
     door.session.open(opened)
     door.loader.open(tiny_scene_file)
-    until(lambda: door.loader.waiting)
+    until(lambda: read)
     job = door.loader.load_job
     door.loader.cancel()
-    assert not door.loader.busy and door.loader.waiting is None
-    assert door.said == "loading cancelled: the scene that was open stays"
+    assert not door.loader.busy
+    assert door.said == "loading cancelled; the open scene stays"
     monkeypatch.undo()
     assert door_opened(door, tiny_scene_file).path == tiny_scene_file, "another is opened meanwhile"
     deaf.set()

@@ -16,14 +16,12 @@ from viewer.services import scene_table
 from viewer.services.scene_table import Listing, SceneTable
 from viewer.state.scene_rows import COLUMNS, Level, Values, tables_of
 
-# --- in a controller ------------------------------------------------------------------------------------
-
 
 @pytest.fixture
 def table(desk: Desk) -> SceneTable:
-    """The table of the tiny scene, looked at."""
-    table = desk.c.table
-    tick = desk.tick
+    """The table of the tiny scene's primitives, looked at."""
+    table, tick = desk.c.table, desk.tick
+    table.level = Level.PRIMITIVES
 
     def watching() -> None:
         table.watch()
@@ -51,48 +49,44 @@ def known(desk: Desk) -> Listing:
 
 
 def test_pixels_and_rays_are_those_of_the_picture(desk: Desk, table: SceneTable) -> None:
-    listing, frame = known(desk), desk.c.frame
-    assert frame.settings.record_work, "rays are counted while the table is looked at, in any view"
-    columns = listing.table.columns
-    assert columns["pixels"].numbers.sum() == (frame.primitive >= 0).sum()
-    for name, buffer in (("saved", frame.saved), ("due", frame.due_rays)):
-        assert columns[name].numbers.sum() == buffer[frame.primitive >= 0].sum(), name
-    table.level = Level.PRIMITIVES
-    assert known(desk).table.rows == desk.c.session.scene.primitive_count
-    pixels = [int(listing.table.columns["pixels"].numbers[row]) for row in listing.rows]
-    assert pixels == sorted(pixels, reverse=True)
+    for level in Level:
+        table.level = level
+        listing, frame = known(desk), desk.c.frame
+        columns = {name: values.numbers for name, values in listing.table.columns.items() if values is not None}
+        assert columns["pixels"].sum() == (frame.primitive >= 0).sum()
+        for name, buffer in (("saved", frame.saved), ("due", frame.due_rays)):
+            assert columns[name].sum() == buffer[frame.primitive >= 0].sum(), (level, name)
+        assert (np.diff(columns["pixels"][listing.rows]) <= 0).all(), "those of most pixels come first"
+    assert desk.c.frame.settings.record_work, "rays are counted while the table is looked at, in any view"
 
 
 def test_rows_stay_as_they_are_under_the_pointer(desk: Desk, table: SceneTable) -> None:
-    table.level = Level.PRIMITIVES
     before = known(desk)
-    table.held = True
+    table.pointed_at = True
     desk.c.motion.move(ELSEWHERE)
     desk.until(lambda: desk.c.frame.camera == ELSEWHERE)
     assert known(desk) is before, "the pointer is on it"
     table.sort("number", True)
     assert known(desk).rows.tolist() == sorted(before.rows.tolist(), reverse=True), "a click counts at once"
-    table.sort("pixels", True)
-    table.held = False
+    table.pointed_at = False
     desk.until(lambda: table.listing.source.frame.camera == ELSEWHERE)
-    pixels = known(desk).table.columns["pixels"].numbers[known(desk).rows]
-    assert (np.diff(pixels) <= 0).all()
 
 
-def test_a_filter_that_is_not_understood_leaves_the_rows(desk: Desk, table: SceneTable) -> None:
-    table.level = Level.PRIMITIVES
+def test_filters_that_are_not_understood_leave_the_rows(desk: Desk, table: SceneTable) -> None:
     table.filter("pixels>2")
     before = known(desk).rows.tolist()
     table.filter("pixels>2x")
     after = known(desk)
     assert after.rows.tolist() == before and "2x is no number" in after.problem
+    for text, rows in (("9" * 5000, 0), ("-" + "9" * 5000, after.table.rows), ("number:" + "9" * 5000, 0)):
+        table.filter(text)
+        assert len(known(desk).rows) == rows and not table.listing.problem, "a number of any length"
 
 
 def test_no_frame_of_another_scene_reaches_the_table(desk: Desk, table: SceneTable, tmp_path: Path) -> None:
     other = tmp_path / "other.aff"
     other.write_text(TINY_SCENE + "p 3\n0 0 0\n1 0 0\n0 1 0\n")
-    table.level, before = Level.PRIMITIVES, desk.c.session.scene.primitive_count
-    known(desk)
+    before = desk.c.session.scene.primitive_count
     table.filter("kind:triangle")  # a job is under way
     desk.tick()
     tick, seen = desk.tick, []
@@ -125,24 +119,13 @@ def test_what_cannot_be_made_is_told_and_not_tried_again(
     assert known(desk).order.text == "pixels>0" and not table.listing.problem
 
 
-def test_a_number_of_any_length_finds_no_row(desk: Desk, table: SceneTable, monkeypatch: pytest.MonkeyPatch) -> None:
-    table.level = Level.PRIMITIVES
-    known(desk)
-    told: list[str] = []
-    monkeypatch.setattr(desk.c.notices, "report", lambda failure, *_: told.append(failure.text))
-    for text in ("9" * 5000, "-" + "9" * 5000, "number:" + "9" * 5000):
-        table.filter(text)
-        listing = known(desk)
-        assert len(listing.rows) == (listing.table.rows if text[0] == "-" else 0) and not told
-
-
 def test_things_are_hidden_and_shown_again(desk: Desk, table: SceneTable) -> None:
-    table.level = Level.PRIMITIVES
     total = known(desk).table.rows
     sphere = desk.c.session.scene.triangle_count
     table.select(0)
     table.hide(sphere)
-    assert table.is_hidden(sphere)
+    table.save()
+    assert "not up to date" in desk.said and not desk.c.captures.busy and table.is_hidden(sphere)
     desk.until(lambda: not desk.c.editing.under_way)
     listing = known(desk)
     assert listing.table.rows == total and desk.c.session.scene.primitive_count == total - 1
@@ -155,36 +138,28 @@ def test_things_are_hidden_and_shown_again(desk: Desk, table: SceneTable) -> Non
     assert known(desk).table.cell("pixels", sphere) != "0" and not table.is_hidden(sphere)
 
 
+def read(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def test_rows_are_saved_as_they_are_seen(desk: Desk, table: SceneTable, tmp_path: Path) -> None:
-    table.level = Level.PRIMITIVES
     table.filter("kind:triangle")
     listing = known(desk)
     table.save()
     desk.until(lambda: not desk.c.captures.busy)
     assert "saved" in desk.said
     (path,) = (tmp_path / "pictures").glob("*.csv")
-    with path.open(newline="") as file:
-        read = list(csv.DictReader(file))
-    assert [int(row["Number"]) for row in read] == listing.rows.tolist() and len(read) > 0
-    assert [int(row["Pixels"]) for row in read] == listing.table.columns["pixels"].numbers[listing.rows].tolist()
-
-
-def test_a_table_that_is_not_up_to_date_is_not_saved(desk: Desk, table: SceneTable) -> None:
-    table.level = Level.PRIMITIVES
-    known(desk)
-    table.hide(desk.c.session.scene.triangle_count)
-    table.save()
-    assert "not up to date" in desk.said and not desk.c.captures.busy
+    rows = read(path)
+    assert [int(row["Number"]) for row in rows] == listing.rows.tolist() and len(rows) > 0
+    assert [int(row["Pixels"]) for row in rows] == listing.table.columns["pixels"].numbers[listing.rows].tolist()
 
 
 def test_names_and_what_is_not_known_are_written_so_that_they_are_read_again(tmp_path: Path) -> None:
-    now = edited(make_scene(), Edits())
-    table = tables_of(now, make_frame(), None)[Level.PRIMITIVES]
+    table = tables_of(edited(make_scene(), Edits()), make_frame(), 0)[Level.PRIMITIVES]
     table.columns["object"] = Values(table.columns["object"].numbers, ('a, "quoted"\nname', "train"))
-    path = tmp_path / "rows.csv"
-    write_rows(table, np.arange(7, dtype=np.int32)[::-1], path)
-    with path.open(newline="") as file:
-        read = list(csv.DictReader(file))
-    assert [row["Number"] for row in read] == list("6543210") and read[0]["Object"] == 'a, "quoted"\nname'
-    assert {row["Texture"] for row in read} == {""} and "Saved" not in read[0]
-    assert set(read[0]) <= {column.title for column in COLUMNS[Level.PRIMITIVES]}
+    write_rows(table, np.arange(7, dtype=np.int32)[::-1], tmp_path / "rows.csv")
+    rows = read(tmp_path / "rows.csv")
+    assert [row["Number"] for row in rows] == list("6543210") and rows[0]["Object"] == 'a, "quoted"\nname'
+    assert {row["Texture"] for row in rows} == {""} and "Saved" not in rows[0]
+    assert set(rows[0]) <= {column.title for column in COLUMNS[Level.PRIMITIVES]}

@@ -13,7 +13,7 @@ from tracer.scene.model import Camera
 from viewer.services.motion import IDLE_AFTER, Motion
 from viewer.services.undo import Undo
 from viewer.state import codec
-from viewer.state.comparison import CompareMode, Source
+from viewer.state.comparison import CompareMode
 from viewer.state.draw_options import Tone
 from viewer.state.navigation import LONGEST_FLIGHT, SHORTEST_FLIGHT
 from viewer.state.notices import Notices
@@ -75,7 +75,7 @@ CHANGES = {
     "exposure +0.5 EV": lambda session: session.set_draw(tone=Tone(0.5)),
     "zoom to 2 x": lambda session: session.set_draw(zoom=Zoom(2.0)),
     "comparison: side by side": lambda session: compare(session, on=True, mode=CompareMode.SIDE),
-    "A by another method": lambda session: compare(session, source=Source.METHOD),
+    "A by certified": lambda session: compare(session, second="certified"),
 }
 
 

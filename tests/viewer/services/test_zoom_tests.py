@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.marbles import write_marbles
 from tests.viewer.desk import ELSEWHERE, Desk, is_the_same_picture
-from tests.viewer.fakes import write_marbles
 from tracer.experiments import zoom
 from viewer.util.resources import embedded_scenes
 

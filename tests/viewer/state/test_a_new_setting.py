@@ -32,7 +32,7 @@ ui.controller.preferences = setting_rows.Preferences()
 assert "draw.sparkle" in [one.path for one in setting_rows.in_panel(ui, "View")], "the panel"
 (entry,) = [item for item in setting_rows.entries(ui) if item.label == "Sparkle"]
 entry.run()
-assert changed == [("draw.sparkle", True)] and entry.checked is False, "the palette"
+assert changed == [("draw.sparkle", True)] and not entry.is_checked, "the palette"
 assert "let light sparkle" in render.parser().format_help(), "the help of the command line"
 given = render.parser().parse_args(["a.aff", "-o", "a.png", "--sparkle"])
 assert given.sparkle is True and "sparkle" in [one.name for one in pictures.DRAWN], "its options"

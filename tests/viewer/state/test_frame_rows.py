@@ -52,7 +52,7 @@ def test_times_of_two_are_those_of_many_frames_in_turn_or_none():
     a, b = (frame_by(method, seconds=9.0, phases={"shading": 9.0}) for method in ("none", "paper"))
     assert {row.name: row.number for row in rows(a)}["Frame"] == 9000.0
     rounds = tuple((took(0.2 + 0.001 * i), took(0.1)) for i in range(LEAST))
-    timed = InTurn(("none", "paper"), rounds, prepares=False)
+    timed = InTurn(("none", "paper"), rounds)
     found = pairs(a, b, timed)
     assert [row.text(row.number) for row in found["Frame"]] == ["203.5 ms", "100.0 ms"]
     assert found["  shading"][1].text(found["  shading"][1].number) == "50.0 ms" and "2.0" in found["Frame"][0].tip

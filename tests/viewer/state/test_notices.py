@@ -32,11 +32,11 @@ def test_a_notice_goes_after_a_while_and_an_error_stays():
         assert (notices.current is not None) == error
 
 
-def test_an_internal_error_is_shown_until_it_is_dismissed():
+def test_an_internal_error_is_counted_and_stands_in_the_status_bar_until_the_next_line():
     notices = Notices()
     for text in ("one", "two", "one"):
         notices.fault(failure(RuntimeError(text), known=()))
-    assert [entry.count for entry in notices.faults] == [2, 1] and "two" in notices.newest_fault.as_text
-    notices.dismiss_faults()
-    notices.fault(failure(RuntimeError("one"), known=()))
-    assert notices.newest_fault is None, "what fails in every frame does not come back at once"
+    assert [entry.count for entry in notices.entries()] == [2, 1] and "two" in notices.newest_fault.as_text
+    assert "one" in notices.current.text and notices.current.error
+    notices.mark_read()
+    assert notices.newest_fault is None

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.drawn import classes_in
+from tests.viewer.drawn import units_in
 from tests.viewer.fakes import in_cells, make_frame, make_scene, with_certificates
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame, Settings
 from tracer.scene.model import Camera
-from viewer.state.picking import NEARBY, Pick, extent_at, pick, pixel_of, point_at, refreshed, shadow_mode_of, wrong_at
+from viewer.state.picking import NEARBY, Pick, extent_at, pick, pixel_of, point_at, shadow_mode_of, unit_of, wrong_at
 from viewer.state.pixels import pixel_at
 from viewer.state.views import View
 
@@ -63,7 +63,7 @@ def test_wide_words_reach_light_30():
     frame = make_frame()
     words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
     frame = replace(frame, modes=words)
-    rows = {r.name: r.units for r in classes_in(frame, View.SHADOW, 30)}
+    rows = units_in(frame, View.SHADOW, 30)
     assert rows["non shadow"] + rows["non shadow, untrusted"] == 5
     assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
     assert shadow_mode_of(frame, 0, 31) is None
@@ -71,37 +71,25 @@ def test_wide_words_reach_light_30():
 
 def test_a_pick_says_what_the_pixel_shows():
     frame, scene = make_frame(), make_scene()
-    at = ((2 * 3 + 0.5) / 16, 0.5)  # the fourth primitive
-    found = pick(frame, scene, *at)
-    assert (found.primitive, found.unit, found.kind, found.object_name) == (3, 3, "triangle", "static")
-    assert not found.dynamic and found.point is not None
+    found = pick(frame, scene, (2 * 3 + 0.5) / 16, 0.5)  # the fourth primitive
+    assert (found.primitive, found.kind, found.object_name, found.dynamic) == (3, "triangle", "static", False)
     assert math.dist(found.point, frame.camera.position) == pytest.approx(2.0)
     assert pick(frame, scene, (2 * 4 + 0.5) / 16, 0.5).object_name == "train"
     assert pick(frame, scene, (2 * 6 + 0.5) / 16, 0.5).kind == "sphere"
     assert pick(frame, scene, 0.99, 0.5).primitive == -1
+    assert point_at(frame, 0.99, 0.5) is None and extent_at(frame, 0.99, 0.5) is None
+    assert extent_at(frame, 0.1, 0.5) > 0.0 and pixel_at(frame, -1.0, 7.0) == (0, 7), "clamped to the picture"
 
 
-def test_a_kept_pick_goes_by_cells_where_those_carry_the_modes():
-    frame, cells = make_frame(), in_cells(make_frame())
-    at = ((2 * 3 + 1.5) / 16, 0.5)  # the fourth primitive's second column
-    found = pick(cells, make_scene(), *at)
-    assert (found.primitive, found.unit, found.in_cells) == (3, 7, True)
-    assert refreshed(found, frame) == pick(frame, make_scene(), *at)
-    assert refreshed(pick(frame, make_scene(), *at), cells) == found
-    elsewhere = in_cells(make_frame(time=1.0))
-    assert refreshed(pick(frame, make_scene(), *at), elsewhere).unit == -1, "which cell it is cannot be known"
-    certified = with_certificates(frame)
-    assert pick(certified, make_scene(), *at).unit == 3, "certificates are no modes"
+def test_the_modes_of_a_pixel_are_its_cells_where_those_carry_them():
+    frame, at = make_frame(), (7, 4)  # the fourth primitive's second column
+    assert unit_of(frame, 3, at) == unit_of(frame, 3, None) == 3
+    assert unit_of(with_certificates(frame), 3, at) == 3, "certificates are no modes"
+    assert unit_of(in_cells(frame), 3, at) == 7
+    assert unit_of(in_cells(frame), 3, None) == -1, "which cell it is cannot be known"
 
 
 def test_wrong_answers_are_known_of_shaded_pixels_of_verified_frames():
     verified = make_frame(Settings(width=16, height=8, verify=True))
     assert wrong_at(verified, 5, 6) == 2 and wrong_at(verified, 0, 6) == 0 and wrong_at(make_frame(), 5, 6) is None
     assert wrong_at(replace(verified, shaded=np.zeros((8, 16), bool)), 5, 6) is None
-
-
-def test_points_outside_the_picture_are_clamped_and_misses_have_none():
-    frame = make_frame()
-    assert pixel_at(frame, -1.0, 7.0) == (0, 7)
-    assert point_at(frame, 0.99, 0.5) is None and extent_at(frame, 0.99, 0.5) is None
-    assert extent_at(frame, 0.1, 0.5) > 0.0

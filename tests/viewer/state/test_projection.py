@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from itertools import pairwise
 
@@ -61,25 +60,16 @@ def test_a_line_from_behind_or_beside_is_cut_where_it_comes_in(start):
 
 def test_hidden_parts_are_dashed_and_begin_where_the_line_goes_behind():
     frame = frame_of(4.0)
-    line = [world(-1.0, 0.1, 2.0), world(1.0, 0.1, 6.0)]
+    line = np.array([world(-1.0, 0.1, 2.0), world(1.0, 0.1, 6.0)])
     found = strokes(frame, line)
     seen = [stroke for stroke in found if stroke.seen]
     hidden = [stroke for stroke in found if not stroke.seen]
     assert len(seen) == 1 and seen[0].start == pytest.approx(place(frame, line[0]))
     assert len(hidden) > 3
     assert all(b.start[0] - a.end[0] == pytest.approx(a.end[0] - a.start[0]) for a, b in pairwise(hidden))
-    turned = point_on(line, 4.0)
+    points = line[0] + np.linspace(0.0, 1.0, 1001)[:, None] * (line[1] - line[0])
+    turned = points[np.argmin(np.abs(np.linalg.norm(points - CAMERA.position, axis=1) - 4.0))]
     assert seen[0].end[0] == pytest.approx(place(frame, turned)[0], abs=0.03)
-
-
-def point_on(line: list[np.ndarray], distance: float) -> np.ndarray:
-    """Where a line that goes away from the camera is so far from it."""
-    near, far = 0.0, 1.0
-    for _ in range(60):
-        middle = 0.5 * (near + far)
-        here = line[0] + middle * (line[1] - line[0])
-        near, far = (middle, far) if math.dist(here, CAMERA.position) < distance else (near, middle)
-    return here
 
 
 def test_lines_on_what_is_seen_are_seen():

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from tests.viewer.fakes import in_cells, make_frame, make_scene, triangles
-from tracer.culling import modes
-from tracer.frame import Frame, Settings
+from tracer.frame import Settings
 from tracer.scene.edits import Edited, Edits, edited
 from tracer.scene.model import CONE, Quadrics, SceneObject, Texture, empty_quadrics
 from viewer.state.parts import KINDS, parts_of
@@ -79,33 +78,32 @@ def test_rows_count_what_each_pixel_says(now: Edited, tables: dict[Level, Table]
         by_part = [sum(counts[p] for p in parts.primitives_of(part).tolist()) for part in range(4)]
         assert tables[Level.OBJECTS].columns[name].numbers.tolist() == by_part, name
     assert sum(counted["wrong"].values()) == 3
-    shares = column(tables[Level.PRIMITIVES], "share")
-    assert set(shares) == {"50.0 %", NOTHING} and shares.count("50.0 %") == 2
+    assert sorted(column(tables[Level.PRIMITIVES], "share")) == [NOTHING] * 5 + ["50.0 %"] * 2
+    nothing = tables_of(now, replace(frame, primitive=np.full_like(frame.primitive, -1)), 0)[Level.PRIMITIVES]
+    assert set(column(nothing, "pixels")) == {"0"} and set(column(nothing, "share")) == {NOTHING}
 
 
-def test_modes_are_those_of_the_chosen_light_or_of_all(now: Edited, tables: dict[Level, Table]) -> None:
-    frame = make_frame(RECORDED)
-    assert column(tables[Level.PRIMITIVES], "occlusion")[:4] == ["init", "partially occluded"] + ["fully rendered"] * 2
-    assert column(tables[Level.PRIMITIVES], "shadow")[2:4] == ["full shadow", "non shadow"]
-    of_all = column(tables_of(now, frame, None)[Level.PRIMITIVES], "shadow")
-    for primitive, said in enumerate(of_all):
-        known = {int(modes.shadow_mode(frame.modes[primitive], light)) for light in range(3)}
-        assert (said == "several") == (len(known) > 1), primitive
-    assert column(tables[Level.OBJECTS], "full_shadow") == ["0", "1", "0", "0"]
-    assert column(tables[Level.OBJECTS], "rendered") == ["1", "1", "1", "0"]
+def test_modes_are_those_of_the_chosen_light(now: Edited, tables: dict[Level, Table]) -> None:
+    primitives, objects = tables[Level.PRIMITIVES], tables[Level.OBJECTS]
+    assert column(primitives, "occlusion")[:4] == ["init", "partially occluded"] + ["fully rendered"] * 2
+    assert column(primitives, "shadow")[2:4] == ["full shadow", "non shadow"]
+    other = column(tables_of(now, make_frame(RECORDED), 1)[Level.PRIMITIVES], "shadow")
+    assert other[2:4] == ["non shadow", "partial shadow"]
+    assert column(objects, "full_shadow") == ["0", "1", "0", "0"]
+    assert column(objects, "rendered") == ["1", "1", "1", "0"]
     none = tables_of(now, make_frame(replace(RECORDED, modes=False, method="none")), 0)[Level.PRIMITIVES]
     assert none.columns["occlusion"] is None and column(none, "occlusion") == [NOTHING] * 7
 
 
 def test_modes_of_cells_are_those_of_all_that_are_seen(now: Edited) -> None:
     frame = in_cells(make_frame(RECORDED))
-    found = column(tables_of(now, frame, 0)[Level.PRIMITIVES], "shadow")
-    assert found == ["several"] * 7  # each has cells of two kinds
     only_even = replace(frame, primitive=np.where(frame.cells % 2 == 0, frame.primitive, -1))
-    shadow = column(tables_of(now, only_even, 0)[Level.PRIMITIVES], "shadow")
-    assert shadow[2:4] == ["full shadow", "non shadow"]
     unseen = replace(frame, primitive=np.where(frame.primitive == 2, -1, frame.primitive))
-    assert column(tables_of(now, unseen, 0)[Level.PRIMITIVES], "shadow")[2] == NOTHING
+    all_cells, even, without = (
+        column(tables_of(now, one, 0)[Level.PRIMITIVES], "shadow") for one in (frame, only_even, unseen)
+    )
+    assert all_cells == ["several"] * 7, "each has cells of two kinds"
+    assert even[2:4] == ["full shadow", "non shadow"] and without[2] == NOTHING
 
 
 def test_rows_keep_their_numbers_where_things_are_hidden(now: Edited) -> None:
@@ -160,8 +158,8 @@ def test_rows_are_sorted_both_ways_and_what_is_not_known_comes_last() -> None:
         ("-number:3 number<5", [0, 1, 2, 4]),
         ("oak", [0, 2]),
         ("texture:oak number>0", [2]),
-        ("mode:full_shadow", [2]),
-        ("mode:fully", [2, 3, 6]),
+        ("shadow:full_shadow", [2]),
+        ("occlusion:fully", [2, 3, 6]),
         ("shadow:non", [3]),
         ("occlusion:dynamic", [4, 5]),
         ("is:dynamic", [4, 5]),
@@ -186,7 +184,7 @@ def test_filters_find_rows(tables: dict[Level, Table], text: str, rows: list[int
         ("pixels>many", "many is no number"),
         ("pixels>", "needs a value"),
         ("object>3", "object:3"),
-        ("mode:lit", "full shadow"),
+        ("shadow:lit", "full shadow"),
         ("shadow:fully", "no mode is called fully"),
         ("is:green", "is:green is not known"),
         ("is:wrong", "known while frames are verified"),
@@ -197,9 +195,3 @@ def test_what_is_not_understood_or_not_known_is_told_in_one_line(now: Edited, te
     with pytest.raises(FilterError, match=said.replace("?", r"\?")) as told:
         matching(tables_of(now, make_frame(), 0)[Level.PRIMITIVES], text)
     assert "\n" not in str(told.value)
-
-
-def test_a_frame_of_nothing_has_rows(now: Edited) -> None:
-    frame: Frame = make_frame(RECORDED)
-    table = tables_of(now, replace(frame, primitive=np.full_like(frame.primitive, -1)), 0)[Level.PRIMITIVES]
-    assert set(column(table, "pixels")) == {"0"} and set(column(table, "share")) == {NOTHING}

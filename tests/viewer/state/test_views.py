@@ -7,30 +7,16 @@ import itertools
 import numpy as np
 import pytest
 
-from tests.viewer.drawn import classes_in, luminance
-from tests.viewer.fakes import make_frame, with_certificates
+from tests.viewer.drawn import luminance
+from tests.viewer.fakes import make_frame
 from tracer.culling.fate import Fate
 from tracer.frame import Settings
 from viewer.services.history import Plots, counters
 from viewer.state import palette
 from viewer.state.draw_options import MOST_EXPOSURE, Curve, Tone, brighter, clipped, toned
-from viewer.state.views import View
 from viewer.views import penumbra
 from viewer.views.difference import Mark, wrong_marks
 from viewer.window.widgets import percent
-
-
-def test_the_certificate_legend_counts_the_cells_that_are_seen():
-    frame = with_certificates(make_frame())
-    rows = {r.name: r for r in classes_in(frame, View.CERTIFICATE, 1)}
-    dynamic = np.isin(frame.primitive, (4, 5))
-    for number, name in enumerate(("none", "full", "lit", "candidates")):
-        there = (frame.primitive >= 0) & ~dynamic & ((frame.certificates >> 4) & 3 == number)
-        assert rows[name].pixels == there.sum()
-        assert rows[name].units == len(np.unique(frame.cells[there & (frame.cells >= 0)]))
-    assert (rows["dynamic"].pixels, rows["dynamic"].units) == (dynamic.sum(), 0)
-    assert sum(r.units for r in rows.values()) == frame.cells.max() + 1
-    assert classes_in(make_frame(), View.CERTIFICATE, 1) == classes_in(frame, View.CERTIFICATE, 15) == []
 
 
 def dichromat(color: palette.Color) -> np.ndarray:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from viewer.util.numbers import changed, saved, saved_in_words
+from tracer.text import saved
+from viewer.util.numbers import changed, saved_in_words
 
 
 @pytest.mark.parametrize(

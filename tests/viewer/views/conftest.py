@@ -7,15 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.viewer.fakes import (
-    FLYER_SCENE,
-    with_cell_lights,
-    with_certificates,
-    with_cuts,
-    with_lamps,
-    with_tree,
-    with_voxels,
-)
+from tests.commands import ROOM
+from tests.viewer.fakes import with_everything
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
@@ -25,7 +18,7 @@ from tracer.scene.load import load_scene
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Frame:
     """The third frame of a small scene, with a sphere that hides a part of the floor and a triangle that moves."""
     path = tmp_path_factory.mktemp("pictures") / "scene.aff"
-    path.write_text(FLYER_SCENE)
+    path.write_text(ROOM)
     renderer = Renderer(load_scene(path), Settings(width=96, height=64, threads=1))
     return [renderer.render(time) for time in (1.0, 2.0, 3.0)][-1]
 
@@ -41,4 +34,4 @@ def frame(plain: Frame) -> Frame:
     reference = plain.color.copy()
     reference[wrong > 0] = 1.0 - reference[wrong > 0]
     verified = replace(plain, settings=replace(plain.settings, verify=True), wrong=wrong, reference=reference)
-    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(verified))))))
+    return with_everything(verified)

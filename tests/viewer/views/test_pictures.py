@@ -15,13 +15,12 @@ from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
 from viewer import views
-from viewer.state.draw_options import SHADING, Slice
-from viewer.state.palette import BACKGROUND, BENEATH, FATE_NAMES, GREY, WIPE_LINE, WRONG, color_map
+from viewer.state.draw_options import Slice
+from viewer.state.palette import BACKGROUND, BENEATH, FATE_NAMES, GREY, color_map
 from viewer.state.views import View
 from viewer.util.numbers import percent
 from viewer.views import colorize
 from viewer.views.paint import CELL_LINE, FAINT_LINE
-from viewer.views.tree import tree_seen
 from viewer.views.voxels import STATES, voxels_of, voxels_seen
 
 CLASSES = (View.OCCLUSION, View.SHADOW, View.CERTIFICATE, View.FATE, View.MOVING_SHADOW, View.PENUMBRA)
@@ -156,13 +155,6 @@ def test_work_is_mapped_up_to_nearly_the_most_and_shares_from_none_to_all(frame:
     assert (picture(frame, view, shares=True)[hit & (whole == 0)] == in_bytes(GREY)).all()
 
 
-def test_shadows_of_moving_objects_lie_over_the_paled_picture(frame: Frame) -> None:
-    drawn, known = picture(frame, View.MOVING_SHADOW, shading=0.0).astype(int), classes_of(frame, View.MOVING_SHADOW, 0)
-    rest = (frame.primitive >= 0) & ~np.any(list(known.values()), axis=0)
-    grey = picture(frame)[rest] @ np.array([0.2126, 0.7152, 0.0722])
-    assert rest.any() and np.abs(drawn[rest] - (127.5 + grey / 2.0)[:, None]).max() <= 1.5
-
-
 @pytest.mark.parametrize(("view", "layer"), [(View.CELL_LIGHTS, "cell lights"), (View.CUTS, "cut nodes")])
 def test_counts_are_mapped_from_0_to_the_most_and_grey_where_not_known(frame: Frame, view: View, layer: str) -> None:
     counts, drawn = frame.layers[layer], picture(frame, view).astype(int)
@@ -189,23 +181,6 @@ def test_a_slice_has_the_colours_of_its_voxels_over_the_dimmed_picture(frame: Fr
     assert np.abs(drawn[behind] - BENEATH * picture(frame)[behind].astype(float)).max() <= 1
 
 
-@pytest.mark.parametrize("cut", [Slice(0, 0.45), Slice(1, 0.5), Slice(2, 0.7)])
-def test_parts_of_a_tree_have_the_colours_of_their_levels_and_what_waits_has_stripes(frame: Frame, cut: Slice) -> None:
-    drawn, (found, plane) = picture(frame, View.TREE, slice=cut), tree_seen(frame, cut)
-    there = found.numbers >= 0
-    assert 0.005 < there.mean() < 0.98
-    for y, x in np.argwhere(there):
-        stripe = (0.29, 0.306, 0.341) if (x + y) // 4 % 2 == 0 else (0.42, 0.439, 0.482)
-        level = color_map()[round(int(found.levels[y, x]) / 8 * 255)]
-        color = np.asarray(level if found.built[y, x] else stripe, np.float32)
-        light = 0.25 + 0.95 * np.sqrt(np.clip(frame.color[y, x], 0.0, 1.0) @ (0.2126, 0.7152, 0.0722))
-        shade = 1.0 + SHADING * (light - 1.0) if plane.behind[y, x] else 1.0
-        expected = [255.0 * np.clip(shade * line * color, 0.0, 1.0) for line in (1.0, FAINT_LINE)] + [np.full(3, 255.0)]
-        assert min(np.abs(drawn[y, x] - one).max() for one in expected) <= 3.0, (x, y)
-    behind = ~there & (frame.primitive >= 0)
-    assert np.abs(drawn[behind] - BENEATH * picture(frame)[behind].astype(float)).max() <= 1
-
-
 def test_what_a_frame_has_not_is_not_drawn(plain: Frame) -> None:
     for view in View:
         if view.records or view in (View.CERTIFICATE, View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.TREE):
@@ -215,26 +190,6 @@ def test_what_a_frame_has_not_is_not_drawn(plain: Frame) -> None:
     for view in (View.SHADOW, View.CERTIFICATE, View.PENUMBRA):
         with pytest.raises(ValueError, match="no light 2: the scene's lights are 0 to 1"):
             picture(plain, view, 2)
-
-
-@pytest.mark.parametrize("beneath", [0.0, BENEATH, 0.6])
-def test_what_is_wrong_has_the_one_colour_over_the_dimmed_picture(frame: Frame, beneath: float) -> None:
-    drawn, wrong = picture(frame, View.DIFFERENCE, mark_wrong=False, beneath=beneath), frame.wrong > 0
-    assert (drawn[wrong] == in_bytes(WRONG)).all()
-    assert np.abs(drawn[~wrong] - beneath * picture(frame)[~wrong].astype(float)).max() <= 1
-
-
-@pytest.mark.parametrize(("wipe", "column"), [(0.0, 0), (0.3, 28), (1.0, 96)])
-def test_a_wipe_shows_both_pictures(frame: Frame, wipe: float, column: int) -> None:
-    pixels = picture(frame, View.WIPE, mark_wrong=False, wipe=wipe)
-    right = picture(replace(frame, color=frame.reference))
-    np.testing.assert_array_equal(pixels[:, :column], picture(frame)[:, :column])
-    np.testing.assert_array_equal(pixels[:, column + 1 :], right[:, column + 1 :])
-    assert (pixels[:, column : column + 1] == in_bytes(WIPE_LINE)).all()
-    marked = picture(frame, View.WIPE, wipe=wipe)
-    ring = (marked == in_bytes(WRONG)).all(axis=-1)
-    assert ring.any() and not (ring & (frame.wrong > 0)).any()
-    np.testing.assert_array_equal(marked[~ring], pixels[~ring])
 
 
 @pytest.mark.gui

@@ -16,7 +16,7 @@ from viewer.state.draw_options import MIDDLE, Slice
 from viewer.state.methods import missing
 from viewer.state.views import View, can_draw
 from viewer.views import tree, voxels
-from viewer.views.tree import share_built, tree_of, tree_seen
+from viewer.views.tree import tree_of, tree_seen
 from viewer.views.voxels import voxels_of, voxels_seen
 
 CUTS = [Slice(0, 0.0), Slice(0, 0.2), Slice(1, 0.3), Slice(1, 0.9), Slice(2, 0.5), Slice(2, 1.0)]
@@ -118,16 +118,10 @@ def test_each_pixel_sees_the_part_that_its_ray_meets_whatever_lies_before(seen: 
     assert np.array_equal(values_in(seen, View.TREE, slice=cut).known, found.numbers >= 0)
 
 
-def test_the_share_that_is_built_is_that_of_the_slice_whatever_is_seen_of_it(seen: Frame) -> None:
-    parts = tree_of(seen)
-    assert share_built(parts, Slice(1, 0.5)) == share_built(parts, Slice(2, 0.1)) == 0.5
-    assert (share_built(parts, Slice(0, 0.01)), share_built(parts, Slice(0, 0.1))) == (1.0, 0.0)
-
-
 def test_a_tree_that_is_gone_shows_nothing(seen: Frame) -> None:
     gone = CubesBuilt()
     gone.alive = False
     left = replace(seen, structures={"tree": gone})
-    assert (tree_seen(left, TREE_CUTS[0])[0].numbers < 0).all() and share_built(gone, TREE_CUTS[0]) is None
+    assert (tree_seen(left, TREE_CUTS[0])[0].numbers < 0).all()
     assert not can_draw(make_frame(), View.TREE) and can_draw(seen, View.TREE)
     assert not can_draw(left, View.TREE) and "freed with its world" in missing(View.TREE, left).text

@@ -1,4 +1,4 @@
-"""Every action once, each key once, and every key exists."""
+"""Every action once, each key once, and what the palette finds of them."""
 
 from __future__ import annotations
 
@@ -6,65 +6,106 @@ from collections import Counter
 
 import pytest
 
-from tracer.method import DEFAULT_METHOD
-from viewer.services.controller import Controller
-from viewer.state.preferences import SCALES, Preferences
+from viewer.state.preferences import SCALES
 from viewer.state.views import View
-from viewer.window import command, commands
+from viewer.window.command import MENUS, Command, Kind
+from viewer.window.finder import Finder, find, match
+from viewer.window.panels.command_palette import items
 from viewer.window.ui import Ui
 
 
 @pytest.fixture
-def ui():
-    ui = Ui(Controller(Preferences()))
-    ui.take_commands(commands.build(ui))
-    yield ui
-    ui.controller.close()
-
-
-@pytest.fixture
-def by_name(ui):
+def by_name(ui: Ui) -> dict[str, Command]:
     return {each.name: each for each in ui.commands}
 
 
-def test_names_are_unique_and_in_a_menu(ui):
-    assert [name for name, count in Counter(c.name for c in ui.commands).items() if count > 1] == []
-    assert {c.menu.split("/")[0] for c in ui.commands} == set(command.MENUS)
+def test_names_are_unique_and_in_a_menu(ui: Ui) -> None:
+    assert [name for name, count in Counter(item.name for item in items(ui)).items() if count > 1] == []
+    assert {c.menu.split("/")[0] for c in ui.commands} == set(MENUS)
 
 
-def test_every_command_says_without_a_scene_whether_it_can_be_run_and_why_not(ui, by_name):
-    for each in ui.commands:
-        assert each.checked is None or each.checked() in (True, False)
+def test_every_command_says_without_a_scene_whether_it_can_be_run_and_why_not(ui: Ui, by_name) -> None:
+    assert all(each.is_checked in (True, False) for each in ui.commands)
     silent = [c.name for c in ui.commands if not c.enabled() and not c.why_not]
     assert any(not c.enabled() for c in ui.commands) and silent == []
     ui.controller.preferences.ui_scale = SCALES[-1]
     assert by_name["Larger interface"].why_not == "the interface is at its largest"
 
 
-def test_no_panel_opens_by_itself_while_panels_are_hidden(ui):
-    shown = []
-    ui.show_panel, ui.panels_hidden = shown.append, True
-    ui.offer_panel("Pixels")
-    assert shown == []
-    ui.panels_hidden = False
-    ui.offer_panel("Pixels")
-    assert shown == ["Pixels"]
+def test_no_panel_opens_by_itself_while_panels_are_hidden(ui: Ui) -> None:
+    shown: list[str] = []
+    ui.show_panel = shown.append
+    for hidden, then in ((True, []), (False, ["Pixels"])):
+        ui.panels_hidden = hidden
+        ui.offer_panel("Pixels")
+        assert shown == then
 
 
-def test_views_are_chosen_and_ticked(ui, by_name):
+def test_views_are_chosen_and_ticked(ui: Ui, by_name) -> None:
     assert [by_name[view.label].key for view in View] == [view.key for view in View]
     by_name[View.SHADOW.label].run()
     assert ui.controller.session.draw.view is View.SHADOW
-    assert by_name[View.SHADOW.label].checked() and not by_name[View.COLOR.label].checked()
+    assert by_name[View.SHADOW.label].is_checked and not by_name[View.COLOR.label].is_checked
 
 
-@pytest.mark.parametrize("method", [DEFAULT_METHOD, "cells+cache"])
-def test_culling_is_switched_and_comes_back_as_it_was(ui, by_name, method: str):
-    ui.controller.settings.change(method=method)
-    for expected in ("none", method):
-        by_name["Shadow culling"].run()
-        assert ui.controller.session.settings.method == expected
+# --- the palette -----------------------------------------------------------------------------------
 
 
-def test_what_one_panel_needs_is_not_kept_for_all():
-    assert len(Ui.__slots__) <= 21, "keep it in the panel's own state: ui.state(YourState)"
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("undo", "Undo"), ("nl", "Next light"), ("occl", "Occlusion mode"), ("bounces", "setting Bounces"),
+        ("paper as", "preset As in the paper"), ("figure4", None), ("reload", "Reload"),
+        ("occulsion", "Occlusion mode"),
+        ("why traced", "Fate of shadow rays"), ("culled view", "Fate of shadow rays"),
+        ("dynamic darkened", "Moving shadows"),
+        ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"),
+    ],
+)  # fmt: skip
+def test_what_is_meant_is_found_first(ui: Ui, typed: str, meant: str | None) -> None:
+    first = find(typed, items(ui), [])[0]
+    assert first.name == meant if meant else first.kind is Kind.SCENE
+
+
+def test_what_was_used_last_comes_first(ui: Ui) -> None:
+    everything = items(ui)
+    assert [item.name for item in find("", everything, ["Zoom test", "Depth"])[:2]] == ["Zoom test", "Depth"]
+    assert find("next", everything, [])[0].name == "Next view"
+    assert find("next", everything, ["Next light"])[0].name == "Next light"
+
+
+def looked_for(ui: Ui, typed: str) -> Finder:
+    finder = Finder()
+    finder.begin()
+    finder.type(typed)
+    finder.update(items(ui), [])
+    return finder
+
+
+def test_a_setting_is_typed(ui: Ui) -> None:
+    finder, session = looked_for(ui, "bounces"), ui.controller.session
+    assert not finder.enter(finder.aimed) and finder.setting.label == "Bounces" and finder.typed == "10"
+    for wrong in ("many", "200", "-1", "", "1.5"):
+        finder.type(wrong)
+        assert not finder.enter(None) and "0 to 100" in finder.problem and session.settings.depth == 10
+    finder.type("3")
+    assert finder.enter(None) and session.settings.depth == 3
+
+
+def test_lines_are_stepped_through_around_the_end(ui: Ui) -> None:
+    finder = looked_for(ui, "light")
+    first = finder.aimed
+    finder.step(-1)
+    assert finder.aimed is finder.found[-1]
+    finder.step(1)
+    assert finder.aimed is first
+    nothing = looked_for(ui, "zzzz")
+    assert nothing.found == [] and nothing.aimed is None and not nothing.enter(None)
+
+
+def test_words_elsewhere_count_for_less_and_a_whole_word_for_most() -> None:
+    assert match("view", "Colour", "View") < match("view", "Next view")
+    assert match("light", "Light theme") > match("light", "Lighter")
+    assert match("default", "default") > match("default", "Default layout") + 19.0, "the name itself"
+    assert match("xyz", "Occlusion mode") is None and match("mode x", "Shadow mode") is None
+    assert match("oclusion", "Occlusion mode") is not None and match("zebra", "Occlusion mode") is None

@@ -1,10 +1,9 @@
-"""How a window ends, or does not begin: by signals, without OpenGL, with a layout that is not whole."""
+"""How a window ends, or does not begin: by signals, without OpenGL."""
 
 from __future__ import annotations
 
 import os
 import signal
-from pathlib import Path
 
 import pytest
 
@@ -13,7 +12,6 @@ from tests.platforms import posix_only
 pytest.importorskip("imgui_bundle")
 from viewer.window import app
 from viewer.window.gl_window import closing_by_signals
-from viewer.window.layout import END, put_window, ready_file
 
 
 @posix_only
@@ -39,21 +37,3 @@ def test_only_what_happens_before_a_window_is_lack_of_opengl(opened: bool, error
 
     with pytest.raises(error, match=said):
         window.run(fail)
-
-
-@pytest.mark.parametrize(
-    ("written", "stays"),
-    [("", False), ("[Layout]\n" * 9, False), (f"[Layout]\n{END}\n", False), (f'{END}\n{{"a":', False),
-     (f'[Layout]\nName=Default\n{END}\n{{"a":1}}\n', True)],
-)  # fmt: skip
-def test_only_a_layout_that_is_whole_is_read(tmp_path: Path, written: str, stays: bool) -> None:
-    path = ready_file(tmp_path / "new")
-    path.write_text(written)
-    assert ready_file(path.parent) == path and path.exists() is stays
-
-
-def test_a_window_that_was_full_begins_at_its_own_place(tmp_path: Path) -> None:
-    path = tmp_path / "layout.ini"
-    path.write_text("[AppWindow]\nWindowPosition=0,0\nWindowSize=1600,1000\n")
-    put_window(path, (5, -6, 700, 800))
-    assert path.read_text() == "[AppWindow]\nWindowPosition=5,-6\nWindowSize=700,800\n"

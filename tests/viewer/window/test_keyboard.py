@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import glfw
 import pytest
 from imgui_bundle import imgui
 
-from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
-from viewer.window import commands, widgets
 from viewer.window.keyboard import HELD, PLACES, Keyboard, Keymap, chord, is_place, tidy, works_while_typing
-from viewer.window.ui import Ui
 
 KEY = imgui.Key
 DEFAULTS = {"Focus": ("F",), "Reset camera": ("R",), "Step back": ("LeftArrow",), "Shadow culling": ("C",), "Loop": ()}
@@ -55,14 +50,6 @@ def test_another_layout_is_noticed():
     assert made.chord("W") == int(KEY.z)
 
 
-@pytest.fixture
-def ui():
-    ui = Ui(Controller(Preferences(keys={"Focus": ["Hyper+X", "Ctrl+J", "Nonsense", ""], "No command": ["X"]})))
-    ui.take_commands(commands.build(ui))
-    yield ui
-    ui.controller.close()
-
-
 def test_keys_that_a_file_cannot_mean_are_dropped(ui):
     assert ui.keymap.of("Focus") == ("Ctrl+J",)
 
@@ -79,16 +66,6 @@ def test_hints_name_the_key_that_is_chosen(ui):
     ui.keymap.choose("Next light", [])
     assert ui.key("Next light") == "" and ui.key_or_menu("Next light") == "View > Next light"
     assert ui.key_or_menu("Fly forward") == "W"
-
-
-def test_a_name_in_a_tooltip_is_never_taken_for_a_key(ui, monkeypatch: pytest.MonkeyPatch):
-    said: list[str] = []
-    functions = ("begin_tooltip", "push_text_wrap_pos", "pop_text_wrap_pos", "end_tooltip")
-    silent = SimpleNamespace(text_unformatted=said.append, **dict.fromkeys(functions, lambda *_: True))
-    monkeypatch.setattr(widgets, "imgui", silent)
-    monkeypatch.setattr(widgets, "em", lambda size: size)
-    widgets.tooltip_at("chair (C)")
-    assert said == ["chair (C)"]
 
 
 def test_keys_are_the_users_own_then_those_of_commands_and_conflicts_are_seen_from_both_sides():

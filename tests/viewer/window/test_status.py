@@ -1,4 +1,4 @@
-"""What the status bar and the statistics say in words."""
+"""What the status bar, the statistics and the panel Culling say in words."""
 
 from __future__ import annotations
 
@@ -9,8 +9,12 @@ import pytest
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.settings import Settings
 from viewer.state import terms
+from viewer.state.draw_options import DrawOptions
+from viewer.state.views import View
+from viewer.window.panels.culling import trust, wrong_answers
 from viewer.window.panels.inspector import unanswered
 from viewer.window.panels.status import doing, first_picture
+from viewer.window.widgets import ERROR
 
 
 def job(title: str, label: str = "", fraction: float = 0.5) -> SimpleNamespace:
@@ -39,52 +43,39 @@ FRAME.statistics.certificates = 1
 KERNELS = job("Compiling the tracer (first start only)", "compiling shading")
 
 
+def answers(c: SimpleNamespace) -> str:
+    return unanswered(SimpleNamespace(controller=c))
+
+
 def run(traced: int, label: str) -> SimpleNamespace:
     return SimpleNamespace(current=SimpleNamespace(name="experiment", label=label, traced=traced))
 
 
 @pytest.mark.parametrize(
-    ("state", "said"),
+    ("says", "state", "said"),
     [
-        ({"warm_up_job": KERNELS}, "Compiling the tracer (first start only): 50 %"),
-        ({"warm_up_job": KERNELS, "compiles": True, "frame": FRAME},
-         "compiling what makes certificates (first start only): 50 %"),
-        ({"warm_up_job": KERNELS, "frame": FRAME}, "loading what makes certificates: 50 %"),
-        ({"runs": run(0, "starting")}, "experiment is starting   (Escape stops it)"),
-        ({"runs": run(1, "frame 1 of 5, none")}, "experiment, traced: frame 1 of 5, none   (Escape stops it)"),
-        ({"certifies": True, "frame": FRAME}, "preparing (cells settled in the last picture: 1)"),
-        ({}, "idle"),
+        (doing, {"warm_up_job": KERNELS}, "Compiling the tracer (first start only): 50 %"),
+        (doing, {"warm_up_job": KERNELS, "compiles": True, "frame": FRAME},
+         "compiling the kernels of certificates (first start only): 50 %"),
+        (doing, {"warm_up_job": KERNELS, "frame": FRAME}, "loading the kernels of certificates: 50 %"),
+        (doing, {"runs": run(0, "starting")}, "experiment is starting   (Escape stops it)"),
+        (doing, {"runs": run(1, "frame 1 of 5, none")}, "experiment, traced: frame 1 of 5, none   (Escape stops it)"),
+        (doing, {"certifies": True, "frame": FRAME}, "making certificates (cells settled in the last picture: 1)"),
+        (doing, {}, "idle"),
+        (first_picture, {}, "No picture has been traced yet."),
+        (first_picture, {"renderer": BUSY}, "Tracing the first picture ..."),
+        (first_picture, {"session": NO_SCENE}, "No scene is open"),
+        (first_picture, {"load_job": job("Opening office.aff", "reading")},
+         "Opening office.aff: reading   (Escape cancels)"),
+        (answers, {}, "Tracing its shadow rays ..."),
+        (answers, {"adds_samples": True}, "Answered after this sample."),
+        (answers, {"refines_lamps": True}, "Answered after the samples of lamps."),
+        (answers, {"renderer": BUSY}, "Answered after this picture."),
+        (answers, {"motion": SimpleNamespace(is_animating=True)}, "Answered when nothing moves."),
     ],
 )  # fmt: skip
-def test_the_bar_says_one_thing_that_goes_on(state: dict[str, object], said: str) -> None:
-    assert doing(idle(**state)) == said
-
-
-@pytest.mark.parametrize(
-    ("state", "said"),
-    [
-        ({}, "No picture has been traced yet."),
-        ({"renderer": BUSY}, "Tracing the first picture ..."),
-        ({"session": NO_SCENE}, "No scene is open"),
-        ({"load_job": job("Opening office.aff", "reading")}, "Opening office.aff: reading   (Escape cancels)"),
-    ],
-)
-def test_without_a_picture_it_is_said_what_goes_on(state: dict[str, object], said: str) -> None:
-    assert first_picture(idle(**state)) == said
-
-
-@pytest.mark.parametrize(
-    ("state", "said"),
-    [
-        ({}, "Tracing its shadow rays ..."),
-        ({"adds_samples": True}, "Answered after this sample."),
-        ({"refines_lamps": True}, "Answered after the samples of lamps."),
-        ({"renderer": BUSY}, "Answered after this picture."),
-        ({"motion": SimpleNamespace(is_animating=True)}, "Answered when nothing moves."),
-    ],
-)
-def test_what_was_asked_says_what_it_waits_for(state: dict[str, object], said: str) -> None:
-    assert unanswered(SimpleNamespace(controller=idle(**state))) == said
+def test_the_bar_the_empty_picture_and_the_inspector_say_what_goes_on(says, state: dict[str, object], said: str):
+    assert says(idle(**state)) == said
 
 
 def test_beams_are_named_where_they_ask() -> None:
@@ -102,3 +93,37 @@ def test_modes_that_are_only_looked_at_are_named_as_no_part_of_the_time() -> Non
         assert beside == f"{label} (for display)" and why.startswith(tip) and "no part of the frame's time" in why
     assert terms.phase("shading", Settings(modes=True)) == terms.PHASES["shading"]
     assert terms.phase("new", Settings()) == ("new", "")
+
+
+# --- beside the method ---------------------------------------------------------------------------------
+
+
+def shown(method: str, **more: object) -> SimpleNamespace:
+    """A controller with a frame by a method, which is the one that is chosen."""
+    settings = Settings(16, 8, method=method, **more)
+    session = SimpleNamespace(settings=settings, draw=DrawOptions(View.DIFFERENCE))
+    return SimpleNamespace(frame=make_frame(settings), scheduler=SimpleNamespace(settings=settings), session=session,
+                           runs=SimpleNamespace(current=None))  # fmt: skip
+
+
+def test_wrong_answers_are_those_of_the_method_that_is_shown() -> None:
+    c = shown("paper", verify=True)
+    text, color = wrong_answers(c)
+    assert text.startswith("3 wrong answers (") and color == ERROR
+    c.session.settings = Settings(16, 8, method="paper")
+    assert wrong_answers(c)[0] == f"{text} (verified for the view Difference)", "the box Verify is not ticked"
+    c.runs.current = SimpleNamespace(name="zoom test")
+    text, color = wrong_answers(c)
+    assert text == "The panel of the zoom test shows its wrong answers." and color != ERROR
+    c.runs.current, c.scheduler.settings = None, Settings(16, 8, method="auto", verify=True)
+    assert wrong_answers(c) is None
+
+
+def test_below_a_method_stands_what_it_trusts_whether_it_is_exact_and_what_it_does_now() -> None:
+    first, second = trust(shown("paper+cache")).split(" cache: ")
+    assert first.startswith("paper: Trusts ") and "Wrong now and then." in first and second.endswith("as the method.")
+    c = shown("auto")
+    c.frame.statistics.decision = "Every shadow ray is traced."
+    assert trust(c).endswith(" Exact. Every shadow ray is traced.")
+    c.session.settings = Settings(16, 8, method="certified")
+    assert "Every shadow ray" not in trust(c), "the picture is another method's"

@@ -30,16 +30,20 @@ def size_of(number: int) -> tuple[int, int]:
     return cases(SIZES[0], SIZES[number % len(SIZES)])
 
 
+def _ends_the_process(name: str) -> bool:
+    return name.startswith("closing_while")
+
+
 @pytest.mark.parametrize(
     ("name", "size"),
     [
         pytest.param(name, size_of(number), id=name, marks=() if name == "flying" else pytest.mark.slow)
-        for number, name in enumerate(SCENARIOS)
+        for number, name in enumerate(sorted(SCENARIOS, key=_ends_the_process))
     ],
 )
 def test_window(name: str, size: tuple[int, int], player: Player, tiny_scene_file: Path, own_settings: Path) -> None:
     (tiny_scene_file.parent / "big.aff").write_text(_big_scene())
-    code, said = player.play(name, size, tiny_scene_file, own_settings, last=name.startswith("closing_while"))
+    code, said = player.play(name, size, tiny_scene_file, own_settings, last=_ends_the_process(name))
     assert code == 0, said[-6000:]
     assert "[imgui-error]" not in said, "ImGui was used wrongly"
     settings = json.loads((own_settings / "settings.json").read_text())

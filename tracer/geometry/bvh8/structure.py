@@ -19,15 +19,12 @@ from tracer.geometry.bvh8.layout import BOX, CHILDREN, PRIMITIVES, Tree
 from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, build_top_level, load_corners, move_objects
 from tracer.geometry.bvh8.parts import PieceParts
 from tracer.geometry.bvh8.pieces import PiecewiseTree
-from tracer.geometry.bvh8.placed import DYNAMIC_TREES, MOVING_TREE, RESTING_TREE, STATIC_TREE, STATIC_TREES
-from tracer.geometry.bvh8.walk import TreeAt, Walk
+from tracer.geometry.bvh8.placed import MOVING_TREE, RESTING_TREE, STATIC_TREE
 from tracer.geometry.layout import triangle_rows
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, WorldTriangles
-from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, Placed
-from tracer.geometry.rays import Ray
+from tracer.geometry.queries import Placed
 from tracer.geometry.structure import Built
-from tracer.geometry.visits import Visit
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
 from tracer.parallel import thread_count
@@ -184,18 +181,6 @@ class Bvh8:
         """The blocks of what never moves, all of which is built now."""
         self.build()
         return (self.static if self._pieces is None else self._pieces.used).blocks
-
-    def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
-        """The nodes that a ray itself enters, whatever its packet does."""
-        asked = STATIC_TREES * bool(which & STATIC_GEOMETRY) | DYNAMIC_TREES * bool(which & DYNAMIC_OBJECTS)
-        every = (
-            TreeAt("static", self.static, 0),
-            TreeAt("resting objects", self.dynamic, self.resting_root),
-            TreeAt("moving objects", self.dynamic, 0),
-        )
-        trees = [tree for number, tree in enumerate(every) if self._there & asked & 1 << number]
-        opened = None if self._pieces is None else self._pieces.opened
-        return Walk(self.world_quadrics, len(self._primitives.triangles), nearest, opened).go(ray, trees)
 
     def built(self) -> Built | None:
         """What rays have had built of a large tree of what never moves, with the trees of all that moves."""

@@ -18,12 +18,9 @@ from tracer.geometry.kdtree import traverse
 from tracer.geometry.kdtree.build import bounds_of, build_tree
 from tracer.geometry.kdtree.object_space import InObjectSpace
 from tracer.geometry.kdtree.tree import LEAF, Parts, Trees
-from tracer.geometry.kdtree.walk import Walk
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import Placed
-from tracer.geometry.rays import Ray
-from tracer.geometry.visits import Visit
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Progress
 
@@ -129,10 +126,6 @@ class KdTree(InObjectSpace):
             bool(moving.any()),
             moving_box,
         )
-
-    def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
-        """The nodes that a ray enters, as `traverse` counts them."""
-        return Walk(self.parts, poses.to_world, nearest).go(ray, which)
 
     def build(self) -> None:
         """Nothing waits for rays."""

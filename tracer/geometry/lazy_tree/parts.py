@@ -92,7 +92,7 @@ class LazyParts:
 
     def __init__(self, structure: LazyKdTree, present: NDArray[np.int32], primitives: int) -> None:
         self._structure = weakref.ref(structure)
-        self._present, self._to_object = present, structure.told.to_object
+        self._present, self._to_object = present, structure.parts.to_object
         self._boxes = structure.world_boxes
         self.levels = round(8 + 1.3 * math.log2(max(primitives, 1)))  # as kd-trees are mostly deep
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import sys
 import weakref
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +20,10 @@ from tracer.geometry.lazy_tree.hierarchy import bounds_of_roots, hierarchy_over
 from tracer.geometry.lazy_tree.parts import LazyParts
 from tracer.geometry.lazy_tree.references import BYTES, NODES
 from tracer.geometry.lazy_tree.upper import raise_over
-from tracer.geometry.lazy_tree.walk import Told, Walk
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import Placed
-from tracer.geometry.rays import Ray
 from tracer.geometry.structure import Built
-from tracer.geometry.visits import Visit
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Progress
 
@@ -39,6 +37,21 @@ def _pause() -> int:
 
 
 PAUSE = _pause()
+
+
+class Parts(NamedTuple):
+    """A placed world: the address of its root, and the box (6,) around everything; of each object the address of its
+    root, its box (6,), the map (12,) into its space, and whether it rests; the box (6,) around those that move, and
+    whether any does.  Kernels are given the arrays by address: they live as long as this does."""
+
+    root: int
+    bounds: NDArray[np.float32]
+    object_roots: NDArray[np.int64]
+    object_boxes: NDArray[np.float32]
+    to_object: NDArray[np.float32]
+    rests: NDArray[np.uint8]
+    moving_box: NDArray[np.float32]
+    moves: bool
 
 
 class LazyTree:
@@ -124,10 +137,11 @@ class LazyKdTree(InObjectSpace):
             root = self._upper[0].ctypes.data
         roots = np.array([tree.root for tree in self._trees], np.int64)
         to_object, rests = poses.to_object.reshape(-1, 12).astype(np.float32), (present & ~moving).astype(np.uint8)
-        arrays = primitives.triangles, primitives.quadrics
         has, moving_box = bool(moves.any()), bounds_of(boxes[moves])
-        self.told = told = Told(*arrays, root, bounds, roots, object_boxes, to_object, rests, PAUSE, moving_box, has)
-        addresses = [x.ctypes.data if isinstance(x, np.ndarray) else x for x in told[:8]]
+        self.parts = Parts(root, bounds, roots, object_boxes, to_object, rests, moving_box, has)
+        arrays = bounds, roots, object_boxes, to_object, rests
+        shapes = primitives.triangles.ctypes.data, primitives.quadrics.ctypes.data
+        addresses = *shapes, root, *(a.ctypes.data for a in arrays)
         count = len(primitives.triangles)
         self._data = np.array([*addresses, open_node.address, PAUSE, moving_box.ctypes.data, count, has], np.int64)
         return Placed(
@@ -141,10 +155,6 @@ class LazyKdTree(InObjectSpace):
             has,
             moving_box,
         )
-
-    def visits(self, ray: Ray, which: int, nearest: bool, poses: Poses) -> list[Visit]:
-        """The nodes that a ray enters, as `traverse` counts them; those that are not built are built."""
-        return Walk(self.told, poses.to_world, nearest).go(ray, which)
 
     def build(self) -> None:
         """Nodes wait for rays by nature."""
@@ -165,4 +175,4 @@ class LazyKdTree(InObjectSpace):
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
-        return self.told.bounds
+        return self.parts.bounds

@@ -12,7 +12,7 @@ from tracer.kernels import inlined, subkernel
 from tracer.shading.lightcuts.block import BLOCK, Block, Clusters, CutWork
 from tracer.shading.lightcuts.cut import refine, shade_block
 from tracer.shading.lightcuts.drawn import Draws, shade_drawn
-from tracer.shading.lightcuts.seen import Seen, tell, tell_watched
+from tracer.shading.lightcuts.seen import Seen, tell
 
 
 class Cuts(NamedTuple):
@@ -45,6 +45,3 @@ def shade_by_cut(cuts, clusters, points, wave, given, block, counts):
     lights = len(clusters.samples)
     counts[PASSED_OVER] += (min(block.size, 16 * block.last) - 16 * block.first) * (lights - nodes)
     tell(cuts.seen, wave, place, block, nodes, nodes == cuts.limit and nodes < lights, cuts.work, given.bounce)
-    if cuts.seen.watched >= 0:
-        drawn = len(cuts.draws.order) > 0
-        tell_watched(cuts.seen, clusters, drawn, points, wave, place, block, nodes, cuts.work, given.bounce)

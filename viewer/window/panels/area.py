@@ -7,17 +7,19 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.frame import Frame
 from viewer.state.pixels import Zoom
 from viewer.state.projection import Stroke
+from viewer.views.legend import BACKDROP, TEXT
 from viewer.window.widgets import em
 
-_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.90), ImVec4(0.93, 0.94, 0.96, 1.0)
+BACK, FRONT = ImVec4(*BACKDROP, 0.9), ImVec4(*TEXT, 1.0)
 _PAD = 0.4  # ems around words
-SHADE = ImVec4(0.05, 0.06, 0.08, 0.6)
+SHADE = ImVec4(*BACKDROP, 0.6)
 """Around what is drawn, so that it is seen on any picture."""
 
 
@@ -30,20 +32,20 @@ class Area:
     size: ImVec2
     zoom: Zoom
 
-    @property
+    @cached_property
     def end(self) -> ImVec2:
         return ImVec2(self.corner.x + self.size.x, self.corner.y + self.size.y)
 
-    @property
+    @cached_property
     def whole_size(self) -> ImVec2:
         return ImVec2(self.size.x * self.zoom.scale, self.size.y * self.zoom.scale)
 
-    @property
+    @cached_property
     def whole(self) -> ImVec2:
         size = self.whole_size
         return ImVec2(self.corner.x - self.zoom.left * size.x, self.corner.y - self.zoom.top * size.y)
 
-    @property
+    @cached_property
     def whole_end(self) -> ImVec2:
         return self.to_screen(1.0, 1.0)
 
@@ -63,10 +65,10 @@ def size_of(lines: Sequence[str]) -> tuple[float, float]:
     return width + 2.0 * em(_PAD), imgui.get_text_line_height() * len(lines) + 2.0 * em(_PAD)
 
 
-def write_lines(lines: Sequence[str], at: ImVec2, color: ImVec4 = _FRONT) -> None:
+def write_lines(lines: Sequence[str], at: ImVec2, color: ImVec4 = FRONT) -> None:
     """Write a few lines on a dark ground, from a corner on."""
     (width, height), pad, draw = size_of(lines), em(_PAD), imgui.get_window_draw_list()
-    draw.add_rect_filled(at, ImVec2(at.x + width, at.y + height), imgui.get_color_u32(_BACK), em(0.3))
+    draw.add_rect_filled(at, ImVec2(at.x + width, at.y + height), imgui.get_color_u32(BACK), em(0.3))
     for number, text in enumerate(lines):
         below = number * imgui.get_text_line_height()
         draw.add_text(ImVec2(at.x + pad, at.y + pad + below), imgui.get_color_u32(color), text)
@@ -84,23 +86,14 @@ class Pen:
 
     def __init__(self, area: Area, frame: Frame) -> None:
         self.area, self.draw = area, imgui.get_window_draw_list()
-        self._corner, self._size = area.whole, area.whole_size  # asked for once, as there are thousands of strokes
-        self.pixel = self._size.x / frame.width, self._size.y / frame.height
+        self.to_screen = area.to_screen
+        self.pixel = area.whole_size.x / frame.width, area.whole_size.y / frame.height
         self.radius = max(0.4, 0.5 * math.hypot(*self.pixel) / em(1.0) + 0.2)
 
-    def to_screen(self, u: float, v: float) -> ImVec2:
-        """Return the point of the screen that shows a point of the picture."""
-        return ImVec2(self._corner.x + u * self._size.x, self._corner.y + v * self._size.y)
-
     def strokes(
-        self,
-        strokes: Iterable[Stroke],
-        color: ImVec4,
-        width: float,
-        behind: float = 0.6,
-        around: ImVec4 = SHADE,
-        rim: float = 0.06,
-    ) -> None:
+        self, strokes: Iterable[Stroke], color: ImVec4, width: float, behind: float = 0.6,
+        around: ImVec4 = SHADE, rim: float = 0.06,
+    ) -> None:  # fmt: skip
         """Draw strokes with a rim `around` them; what lies behind something has the opacity `behind`."""
         edge = ImVec4(around.x, around.y, around.z, around.w * color.w)
         outer, inner = (  # of what lies behind something, and of what is seen
@@ -134,9 +127,11 @@ class Pen:
 
 
 @contextmanager
-def pen(area: Area, frame: Frame) -> Iterator[Pen]:
-    """Return a pen that leaves what is around the picture alone."""
-    made = Pen(area, frame)
-    made.draw.push_clip_rect(area.corner, area.end, True)
-    yield made
-    made.draw.pop_clip_rect()
+def inside(area: Area) -> Iterator[None]:
+    """What is drawn here leaves what is around the picture alone."""
+    draw = imgui.get_window_draw_list()
+    draw.push_clip_rect(area.corner, area.end, True)
+    try:
+        yield
+    finally:
+        draw.pop_clip_rect()

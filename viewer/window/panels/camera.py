@@ -4,26 +4,23 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.scene.model import Camera
 from viewer.state import navigation
-from viewer.state.picking import extent_at, part_points, point_at, primitive_points
-from viewer.window.command import Command, Condition, scene_open, switch
+from viewer.state.picking import extent_at, point_at, points_of
+from viewer.state.preferences import NAVIGATION
+from viewer.window import menus
+from viewer.window.command import Command, Condition, scene_open
 from viewer.window.panels import named_states
 from viewer.window.panels.named_states import KEYED_BOOKMARKS
-from viewer.window.setting_rows import ALL, setting_command, setting_row
+from viewer.window.setting_rows import in_panel, setting_command, setting_row
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, heading, paragraph, properties, row, same_line_for, tooltip, wide_button
-
-_MODES = {
-    "Fly": "drag to look around, W A S D Q E to move",
-    "Orbit": "drag to turn around the point that was clicked",
-}
+from viewer.window.widgets import QUIET, heading, paragraph, properties, row
 
 
 def show(ui: Ui) -> None:
@@ -57,30 +54,17 @@ def _place(ui: Ui) -> None:
             changed, angle = imgui.slider_float("##angle", camera.angle, 1.0, 170.0, "%.1f degrees", clamped)
             if changed:
                 c.motion.move(replace(camera, angle=angle))
-    if wide_button(
-        f"{icons.ICON_FA_CROSSHAIRS}  Focus", f"on what is selected, or under the pointer{ui.key('Focus')}", 2
-    ):
-        focus(ui)
+    menus.button(ui, "Focus", icons.ICON_FA_CROSSHAIRS, columns=2)
     imgui.same_line()
-    if wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Reset", f"back to the scene's own camera{ui.key('Reset camera')}"):
-        c.motion.reset_camera()
+    menus.button(ui, "Reset camera", icons.ICON_FA_ROTATE_LEFT, "Reset")
 
 
 def _moving(ui: Ui) -> None:
-    p = ui.controller.preferences
     heading("Moving")
     with properties("moving", 5.0) as shown:
-        if shown:
-            row("Mode")
-            for name, tip in _MODES.items():
-                if name != "Fly":
-                    same_line_for(name)
-                if imgui.radio_button(name, p.navigation == name.lower()):
-                    p.navigation = name.lower()
-                tooltip(f"{tip}{ui.key(name)}")
-            setting_row(ui, ALL["speed"])
-            if ui.controller.session.animated:
-                setting_row(ui, ALL["playback_rate"])
+        for one in in_panel(ui, "Camera") if shown else ():
+            if one.path != "playback_rate" or ui.controller.session.animated:
+                setting_row(ui, one)
 
 
 # --- what it does, and the menus -------------------------------------------------------------------
@@ -91,15 +75,17 @@ def camera_commands(ui: Ui) -> list[Command]:
     c, p = ui.controller, ui.controller.preferences
     here = scene_open(c)
 
-    def mode(name: str) -> Callable[[], None]:
-        return lambda: setattr(p, "navigation", name)
+    def mode(name: str, key: str) -> Command:
+        return Command(name.capitalize(), "Camera", lambda: setattr(p, "navigation", name), key, tip=NAVIGATION[name],
+                       checked=lambda: p.navigation == name)  # fmt: skip
 
     marks, text = "Camera/Bookmarks", "Camera/Copy and paste"
     return [
-        Command("Fly", "Camera", mode("fly"), "G", checked=lambda: p.navigation == "fly"),
-        Command("Orbit", "Camera", mode("orbit"), "O", checked=lambda: p.navigation == "orbit"),
-        Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True),
-        Command("Reset camera", "Camera", c.motion.reset_camera, "R", enabled=here),
+        mode("fly", "G"),
+        mode("orbit", "O"),
+        Command("Focus", "Camera", lambda: focus(ui), "F", enabled=here, separated=True,
+                tip="on what is under the pointer, or is selected"),
+        Command("Reset camera", "Camera", lambda: c.motion.follow_path(True), "R", enabled=here),
         Command("Follow the scene's path", "Camera", lambda: c.motion.follow_path(not c.session.on_path), "P",
                 checked=lambda: c.session.on_path, enabled=here),
         Command("Copy camera", text, lambda: _copy(ui), "Ctrl+Shift+C", enabled=here, separated=True,
@@ -112,7 +98,7 @@ def camera_commands(ui: Ui) -> list[Command]:
 
 def time_commands(ui: Ui) -> list[Command]:
     """The menu Time."""
-    c, p = ui.controller, ui.controller.preferences
+    c = ui.controller
     moves = Condition(lambda: c.session.animated, "nothing moves in this scene")
 
     def to_end() -> None:
@@ -125,7 +111,7 @@ def time_commands(ui: Ui) -> list[Command]:
         Command("Step back", "Time", lambda: c.motion.step(-1), "LeftArrow", enabled=moves, repeats=True),
         Command("First frame", "Time", lambda: c.motion.step(-c.session.frame), "Home", enabled=moves),
         Command("Last frame", "Time", to_end, "End", enabled=moves),
-        switch("Loop", "Time", p, "loop", separated=True),
+        setting_command(ui, "loop", "Time", separated=True),
         setting_command(ui, "pace.every_frame", "Time"),
     ]
 
@@ -133,42 +119,44 @@ def time_commands(ui: Ui) -> list[Command]:
 def focus(ui: Ui) -> None:
     """Turn to what is under the pointer, else to what is selected, and go near it; orbits turn around it then."""
     c = ui.controller
-    at, pixel = c.selection.hovered, c.selection.pixel
-    if at is None and pixel is not None and c.selection.part is None and c.frame is not None:
+    at, picked, pixel = c.selection.hovered, c.selection.picked, c.selection.pixel
+    if at is None and pixel is not None and picked is not None and picked.part is None and c.frame is not None:
         at = (pixel[0] + 0.5) / c.frame.width, (pixel[1] + 0.5) / c.frame.height
-    if at is None and c.selection.picked is not None:
+    if at is None and picked is not None:
         fly_to_selected(ui)
     elif at is None or c.frame is None:
-        c.notices.say("point at something, or click it, to focus on it")
+        c.notices.say("Point at something, or click it, to focus on it.")
     else:
         point, extent = point_at(c.frame, *at), extent_at(c.frame, *at)
         if point is None or extent is None:
             c.notices.say("there is nothing to focus on here")
-            return
-        ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
-        c.motion.glide(navigation.focus(c.session.camera, ui.picture.pivot, extent, c.motion.world_up))
+        else:
+            _go_near(ui, point, extent)
 
 
 def fly_to_selected(ui: Ui) -> None:
     """Go near what is selected, whether or not it is seen from here; orbits turn around it then."""
     c = ui.controller
-    now, picked, part = c.session.edited, c.selection.picked, c.selection.part
+    now, picked = c.session.edited, c.selection.picked
     if now is None or picked is None:
         return
-    time = c.session.time
-    points = primitive_points(now.scene, picked.primitive, time) if part is None else part_points(now, part, time)
+    points = points_of(now, picked, c.session.time)
     if not len(points):
         c.notices.say("the selection is not in the scene at this time")
         return
     low, high = points.min(axis=0), points.max(axis=0)
-    x, y, z = (0.5 * (low + high)).tolist()
+    _go_near(ui, 0.5 * (low + high), 0.5 * math.dist(low, high))
+
+
+def _go_near(ui: Ui, point: np.ndarray, radius: float) -> None:
+    motion = ui.controller.motion
+    x, y, z = point.tolist()
     ui.picture.pivot = x, y, z
-    radius = 0.5 * math.dist(low, high)
-    c.motion.glide(navigation.focus(c.session.camera, ui.picture.pivot, radius, c.motion.world_up))
+    motion.glide(navigation.focus(ui.controller.session.camera, ui.picture.pivot, radius, motion.world_up))
 
 
 def _copy(ui: Ui) -> None:
-    ui.desktop.copy(json.dumps(ui.controller.session.camera.to_json()))
+    imgui.set_clipboard_text(json.dumps(ui.controller.session.camera.to_json()))
     ui.controller.notices.say("camera copied as JSON")
 
 
@@ -176,7 +164,7 @@ def _paste(ui: Ui) -> None:
     """Fly to the camera on the clipboard; what its JSON leaves out stays as it is."""
     c = ui.controller
     try:
-        data = c.session.camera.to_json() | {"position": None} | json.loads(ui.desktop.paste() or "")
+        data = c.session.camera.to_json() | {"position": None} | json.loads(imgui.get_clipboard_text() or "")
         c.motion.glide(Camera.from_json(data))
     except (TypeError, ValueError, RecursionError):
         c.notices.say("no camera pasted: the clipboard holds no camera as JSON", error=True)

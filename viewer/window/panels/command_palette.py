@@ -12,8 +12,10 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.state.preferences import RECENT_COMMANDS
 from viewer.util.resources import embedded_scenes
 from viewer.window import setting_rows
-from viewer.window.finder import Finder, Item, Kind
+from viewer.window.command import Command, Kind
+from viewer.window.finder import Finder
 from viewer.window.menus import ANY_POPUP, run
+from viewer.window.panels.named_states import preset_commands
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, fitted, paragraph, tooltip
 
@@ -49,22 +51,19 @@ def show(ui: Ui) -> None:
     finder.update(items(ui), preferences.used)
     aimed = finder.aimed
     entered = _line(finder)
-    clicked = _list(finder) if finder.setting is None else None
-    hint = finder.setting.hint if finder.setting is not None else aimed.why_not if aimed is not None else ""
+    clicked = _list(ui, finder) if finder.setting is None else None
+    hint = finder.setting.tip if finder.setting is not None else aimed.why_not if aimed is not None else ""
     if finder.problem or hint:
         paragraph(finder.problem or hint, ERROR if finder.problem else QUIET)
-    do = None
-    if entered or clicked is not None:
-        chosen = clicked or finder.aimed or finder.setting
-        do = finder.enter(clicked or finder.aimed)
-        if do is not None and chosen is not None:
-            names = [chosen.name, *(name for name in preferences.used if name != chosen.name)]
-            preferences.used = names[:RECENT_COMMANDS]
-    if do is not None or imgui.is_key_pressed(imgui.Key.escape):
+    chosen = clicked or finder.aimed or finder.setting
+    done = (entered or clicked is not None) and finder.enter(clicked or finder.aimed)
+    if done or imgui.is_key_pressed(imgui.Key.escape):
         imgui.close_current_popup()
     imgui.end_popup()
-    if do is not None:
-        do()
+    if done and chosen is not None:
+        names = [chosen.name, *(name for name in preferences.used if name != chosen.name)]
+        preferences.used = names[:RECENT_COMMANDS]
+        run(ui, chosen)
 
 
 def close() -> None:
@@ -101,7 +100,7 @@ def _line(finder: Finder) -> bool:
     return bool(entered)
 
 
-def _list(finder: Finder) -> Item | None:
+def _list(ui: Ui, finder: Finder) -> Command | None:
     """Show what was found; returns what was clicked."""
     if not finder.found:
         imgui.text_colored(QUIET, "no matches")
@@ -110,7 +109,7 @@ def _list(finder: Finder) -> Item | None:
     height = min(len(finder.found), _LINES) * imgui.get_text_line_height_with_spacing()
     if imgui.begin_child("found", ImVec2(0.0, min(height, 0.7 * imgui.get_main_viewport().work_size.y))):
         for number, item in enumerate(finder.found):
-            if _row(item, number == finder.marked):
+            if _row(ui, item, number == finder.marked):
                 finder.marked, clicked = number, item
             if number == finder.marked and finder.moved:
                 imgui.set_scroll_here_y()
@@ -119,22 +118,22 @@ def _list(finder: Finder) -> Item | None:
     return clicked
 
 
-def _row(item: Item, marked: bool) -> bool:
+def _row(ui: Ui, item: Command, marked: bool) -> bool:
     imgui.push_id(item.name)
     clicked = imgui.selectable("##row", marked, _ROW)[0]
-    if item.why_not or item.hint:
-        tooltip(item.why_not or item.hint)
+    if item.why_not or item.tip:
+        tooltip(item.why_not or item.tip)
     imgui.same_line(em(0.3))
-    imgui.text_colored(QUIET, icons.ICON_FA_CHECK if item.checked else _ICONS[item.kind])
+    imgui.text_colored(QUIET, icons.ICON_FA_CHECK if item.is_checked else _ICONS[item.kind])
     imgui.same_line(em(1.9))
     left, edge = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
-    shown = item.key or item.value or ""
+    shown, menu = ui.key_label(item.name) or item.value or "", item.menu.replace("/", " > ")
     key_room = imgui.calc_text_size(shown).x + em(0.3)
-    clipped(item.label, None if item.enabled else imgui.get_style_color_vec4(imgui.Col_.text_disabled))
+    clipped(item.label, None if item.enabled() else imgui.get_style_color_vec4(imgui.Col_.text_disabled))
     path_room = edge - key_room - imgui.calc_text_size(item.label).x - em(1.8)
-    if item.path and path_room > em(3.0):
+    if menu and path_room > em(3.0):
         imgui.same_line(0.0, em(0.8))
-        imgui.text_colored(QUIET, fitted(item.path, path_room))
+        imgui.text_colored(QUIET, fitted(menu, path_room))
     if shown:
         imgui.same_line(left + edge - key_room)
         clipped(shown, QUIET)
@@ -142,32 +141,23 @@ def _row(item: Item, marked: bool) -> bool:
     return bool(clicked)
 
 
-def items(ui: Ui) -> list[Item]:
+def items(ui: Ui) -> list[Command]:
     """Return everything, as it is now; commands first, in the order of the menus."""
-    return [*_commands(ui), *setting_rows.entries(ui), *_others(ui)]
+    own = [command for command in ui.commands if command.label and command.name != Dialog.PALETTE.value]
+    return [*own, *setting_rows.entries(ui), *_others(ui)]
 
 
-def _commands(ui: Ui) -> Iterator[Item]:
-    for command in ui.commands:
-        if command.label and command.name != Dialog.PALETTE.value:
-            yield Item(
-                command.name, command.label, Kind.COMMAND, partial(run, ui, command), command.menu.replace("/", " > "),
-                key=ui.key_label(command.name), checked=command.checked() if command.checked is not None else None,
-                enabled=command.enabled(), why_not=command.why_not, also=f"{command.name} {command.also}",
-            )  # fmt: skip
-
-
-def _others(ui: Ui) -> Iterator[Item]:
+def _others(ui: Ui) -> Iterator[Command]:
     """Return presets, panels, bookmarks and scenes."""
     c, own = ui.controller, embedded_scenes()
-    for name in c.presets.states:
-        yield Item(f"preset {name}", name, Kind.PRESET, partial(c.presets.apply, name), "Edit > Presets", also="apply")
+    yield from preset_commands(ui)
     for label in ui.panel_labels:
-        show = partial(ui.show_panel, label)
-        yield Item(f"panel {label}", f"Panel {label}", Kind.COMMAND, show, "Panels", also="show open")
+        yield Command(f"panel {label}", "Panels", partial(ui.show_panel, label), title=f"Panel {label}", also="open")
     for number, mark in enumerate(c.bookmarks.all):
-        yield Item(f"bookmark {number}", mark.name, Kind.BOOKMARK, partial(c.go_to_bookmark, number), "go there")
+        go = partial(c.go_to_bookmark, number)
+        yield Command(f"bookmark {number}", "go there", go, title=mark.name, kind=Kind.BOOKMARK)
     scenes = {path: (name, "comes with Shadowcull") for name, path in own.items()}
     recent = {path: (path.name, str(path.parent)) for path in map(Path, c.preferences.recent)}
     for path, (name, place) in (recent | scenes).items():
-        yield Item(f"scene {path}", name, Kind.SCENE, partial(c.loader.open, path), place, also="open recent")
+        open_ = partial(c.loader.open, path)
+        yield Command(f"scene {path}", place, open_, title=name, kind=Kind.SCENE, also="open recent")

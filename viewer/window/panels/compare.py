@@ -7,7 +7,7 @@ from itertools import groupby
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.state.comparison import CompareMode, Source
+from viewer.state.comparison import CompareMode
 from viewer.state.frame_rows import beside, change
 from viewer.state.palette import LESS, MORE
 from viewer.window.panels.culling import method_list
@@ -62,39 +62,38 @@ def _controls(ui: Ui) -> None:
     with properties("comparison", 5.0) as shown:
         if shown:
             row("A is", "What the live picture, B, is compared with.")
-            names = {Source.KEPT: "a kept picture", Source.METHOD: "another method, live"}
-            changed, index = imgui.combo("##source", list(names).index(state.source), list(names.values()))
+            kinds = ["a kept picture", "another method, live"]
+            changed, live = imgui.combo("##source", int(bool(state.second)), kinds)
             if changed:
-                comparing.use(list(names)[index])
-            if state.source is Source.METHOD:
+                comparing.trace_by(comparing.other_method if live else "")
+            if state.second:
                 row("A's method", "Each frame is traced a second time by this method, with its own modes and counters.")
-                method_list(ui, "##second", state.second or "none", comparing.trace_by)
+                method_list(ui, "##second", state.second, comparing.trace_by)
             held = ui.key_label("Show A")
             row("Show", f"How A and B are shown.{f' Hold {held} to see A.' if held else ''}")
             _mode(ui)
             if comparing.seen is not None and comparing.seen.difference is not None:
                 row("Rings", f"Draw rings around pixels that differ{ui.key('Mark wrong pixels')}.")
                 checkbox("##rings", session.draw.mark_wrong, lambda on: session.set_draw(mark_wrong=on))
-    if state.source is Source.KEPT and kept is None:
+    if not state.second and kept is None:
         paragraph("Nothing is kept yet. Keep a picture, change anything, and compare.", QUIET)
-    elif state.source is Source.KEPT and kept is not None:
+    elif comparing.remark:
+        paragraph(comparing.remark, WARNING)
+    if not state.second and kept is not None:
         size = f"{kept.frame.width} x {kept.frame.height}"
         paragraph(f"kept: {kept.scene}, frame {kept.number}, {kept.method}, {size}", QUIET)
-    if comparing.remark and (kept is not None or state.source is Source.METHOD):
-        paragraph(comparing.remark, WARNING)
 
 
 def _mode(ui: Ui) -> None:
     comparing, state = ui.controller.comparing, ui.controller.comparing.state
-    if not imgui.begin_combo("##mode", state.mode.label if state.on else "B alone"):
-        return
-    if imgui.selectable("B alone", not state.on)[0]:
-        comparing.end()
-    for mode in CompareMode:
-        if imgui.selectable(mode.label, state.on and state.mode is mode)[0]:
-            comparing.start(mode)
-        tooltip(mode.help)
-    imgui.end_combo()
+    if imgui.begin_combo("##mode", state.mode.label if state.on else "B alone"):
+        if imgui.selectable("B alone", not state.on)[0]:
+            comparing.end()
+        for mode in CompareMode:
+            if imgui.selectable(mode.label, state.on and state.mode is mode)[0]:
+                comparing.start(mode)
+            tooltip(mode.help)
+        imgui.end_combo()
 
 
 def _columns(ui: Ui) -> None:

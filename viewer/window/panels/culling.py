@@ -13,9 +13,10 @@ from tracer.setting import Setting
 from viewer.services.controller import Controller
 from viewer.state import verified
 from viewer.state.methods import groups, toggled, with_base
+from viewer.window import menus
 from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, em, fitted, outlined, paragraph, properties, row, tooltip, wide_button
+from viewer.window.widgets import ERROR, QUIET, em, fitted, outlined, paragraph, properties, row, tooltip
 
 _OF_MODES = ("settings.symmetric", "settings.zoom_factor")
 _NAMES = 10.5  # ems of the names of methods; sentences begin behind them
@@ -46,13 +47,9 @@ def show(ui: Ui) -> None:
         for one in settings if shown else ():
             if one.kind is not bool:
                 setting_row(ui, one, note(one))
-    forget = f"Forget all modes and certificates{ui.key('Reset modes')}."
-    if wide_button(f"{icons.ICON_FA_ERASER}  Reset modes", forget, 2):
-        c.reset_modes()
+    menus.button(ui, "Reset modes", icons.ICON_FA_ERASER, columns=2)
     imgui.same_line()
-    again = f"Trace the same frame once more, with what is known after the last one{ui.key('Trace again')}."
-    if wide_button(f"{icons.ICON_FA_ROTATE_RIGHT}  Trace again", again):
-        c.scheduler.trace_again()
+    menus.button(ui, "Trace again", icons.ICON_FA_ROTATE_RIGHT)
     setting_switch(ui, ALL["pace.keep_tracing"])
     said = wrong_answers(c)
     if said is not None:  # at the end, where it moves nothing
@@ -76,7 +73,7 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
     if c.frame is None or not c.frame.settings.verify:
         return None
     if c.runs.current is not None:
-        return f"wrong answers of the {c.runs.current.name} are in its own panel", QUIET
+        return f"The panel of the {c.runs.current.name} shows its wrong answers.", QUIET
     if c.frame.settings.method != c.scheduler.settings.method:
         return None
     said, color = verified.in_words(c.frame.statistics), ERROR if verified.is_wrong(c.frame.statistics) else QUIET
@@ -105,7 +102,7 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
                 choose(with_base(method, kind.name))
             _sentence(kind, fits)
     if combined:
-        imgui.separator_text("Added to it, any number of them")
+        imgui.separator_text("Additions, any number of them")
         for kind in additions(parsed.base):
             with outlined():
                 changed, _ = imgui.checkbox(f"+{kind.name}", parsed.has(kind.name))

@@ -1,11 +1,14 @@
-"""What comes up over the window: opening a file, questions, the list of keys, about."""
+"""What comes up over the window: questions, opening a file, the list of keys, presets."""
 
 from __future__ import annotations
 
+import glob
 import os
 import shutil
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,43 +18,45 @@ from imgui_bundle import portable_file_dialogs as native
 from viewer.services.scene_files import CAPTURE_SUFFIXES, SCENE_SUFFIXES, refusal
 from viewer.window.panels import command_palette, keys, named_states, saving
 from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import ERROR, QUIET, centred, clipped, em, paragraph
+from viewer.window.widgets import ERROR, QUIET, begin_modal, centred, clipped, em, paragraph
 
 OPEN = Dialog.OPEN_FILE.value
 _PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # which portable_file_dialogs asks, outside macOS and Windows
-_FILTERS = ["Scenes and saved pictures", " ".join(f"*{suffix}" for suffix in (*SCENE_SUFFIXES, *CAPTURE_SUFFIXES))]
+_SUFFIXES = (*SCENE_SUFFIXES, *CAPTURE_SUFFIXES)
+_FILTERS = ["Scenes and saved pictures", " ".join(f"*{suffix}" for suffix in _SUFFIXES)]
 _LINE = int(imgui.InputTextFlags_.enter_returns_true) | int(imgui.InputTextFlags_.callback_completion)
 _MOST = 100  # names that are listed
 
 
 def show(ui: Ui) -> None:
-    """Show all of them; each shows itself only when it is wanted."""
+    """Show all that are open."""
     overlay = ui.guard.overlay
-    overlay(OPEN, lambda: _open_file(ui), lambda: ui.close(Dialog.OPEN_FILE))
-    overlay(saving.NAME, lambda: saving.show_dialog(ui), lambda: ui.close(Dialog.SAVE_AS))
     overlay("The question", lambda: _question(ui), ui.controller.questions.drop)
     overlay("The command palette", lambda: command_palette.show(ui), command_palette.close)
-    overlay("The list of keys", lambda: keys.show(ui), lambda: ui.close(Dialog.KEYS))
-    overlay("The presets", lambda: named_states.show_presets(ui), lambda: ui.close(Dialog.PRESETS))
-    overlay("The dialog about the program", lambda: _about(ui), lambda: ui.close(Dialog.ABOUT))
+    for dialog, content in (
+        (Dialog.OPEN_FILE, _open_file),
+        (Dialog.SAVE_AS, saving.show_dialog),
+        (Dialog.KEYS, partial(_window, Dialog.KEYS, 58.0, 46.0, keys.show)),
+        (Dialog.PRESETS, partial(_window, Dialog.PRESETS, 30.0, 0.0, named_states.show_presets)),
+    ):
+        overlay(f"The dialog {dialog.value}", partial(content, ui), partial(ui.close, dialog))
+    if Dialog.KEYS not in ui.dialogs:
+        ui.keyboard.wanted_for = ""
 
 
-def _about(ui: Ui) -> None:
-    if Dialog.ABOUT not in ui.dialogs:
+def _window(dialog: Dialog, width: float, height: float, content: Callable[[Ui], None], ui: Ui) -> None:
+    """Show a dialog beside which the window can be used, so many ems large; one without a height fits its content."""
+    if dialog not in ui.dialogs:
         return
-    centred(em(30.0))
-    flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_resize
-    shown, open_ = imgui.begin(Dialog.ABOUT.value, True, int(flags))
-    if not open_:
-        ui.close(Dialog.ABOUT)
+    centred(em(width), em(height))
+    flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_collapse
+    if not height:
+        flags |= imgui.WindowFlags_.no_resize | imgui.WindowFlags_.always_auto_resize
+    shown, stays = imgui.begin(dialog.value, True, int(flags))
+    if not stays:
+        ui.close(dialog)
     if shown:
-        paragraph("A ray tracer that remembers its shadows.\n\n")
-        paragraph(
-            "Shadow results are kept on each primitive and reused in later frames, so that most shadow rays need not "
-            "be traced: Nah, Lee, Park and Han, A Shadow Culling Algorithm for Interactive Ray Tracing."
-            f"\n\nDrawn by {ui.graphics.renderer_name}",
-            QUIET,
-        )
+        content(ui)
     imgui.end()
 
 
@@ -61,16 +66,12 @@ def _question(ui: Ui) -> None:
     if question is None:
         return
     name = f"{question.title}###question"
-    if not imgui.is_popup_open(name):
-        imgui.open_popup(name)
-    centred(em(30.0))
-    flags = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_saved_settings
-    shown, stays = imgui.begin_popup_modal(name, True, int(flags))
+    shown, closed = begin_modal(name, 30.0)
     if not shown:
         return
     paragraph(question.text)
     imgui.spacing()
-    chosen = question.answers[0][0] if not stays or imgui.is_key_pressed(imgui.Key.escape) else ""
+    chosen = question.answers[0][0] if closed else ""
     for number, (answer, _) in enumerate(question.answers):
         if number:
             imgui.same_line()
@@ -87,53 +88,22 @@ def _question(ui: Ui) -> None:
 
 @dataclass
 class OpenFileState:
-    """`native` is the desktop's dialog while it is open.  Else `typed` is a path, from `folder` on, `problem` says what
-    is wrong with it, and `listed` has the names that were found in which folder."""
+    """`native` is the desktop's dialog while it is open.  Else `typed` is a path, from `folder` on, `found` is what can
+    be opened and begins so, and `problem` says what is wrong with it."""
 
     native: Any = None
     folder: Path = field(default_factory=Path.cwd)
     typed: str = ""
+    found: list[str] = field(default_factory=list)
     problem: str = ""
-    listed: tuple[Path, list[str]] | None = None
 
-    def names(self) -> list[str]:
-        """Return what can be opened in the folder of what is typed, and begins with its last part."""
-        folder, part = self.inside, self.part
-        if self.listed is None or self.listed[0] != folder:  # read once, as a folder may be slow
-            self.listed = folder, names_in(folder)
-        hidden = part.startswith(".")
-        return [n for n in self.listed[1] if n.lower().startswith(part.lower()) and (hidden or n[0] != ".")]
-
-    def completed(self) -> str:
-        """Return what is typed, as far as the names agree on how it goes on."""
-        common = os.path.commonprefix(self.names())  # noqa: RUF071 - character by character is what is meant
-        return self.typed.removesuffix(self.part) + (common if len(common) >= len(self.part) else self.part)
-
-    @property
-    def inside(self) -> Path:
-        """The folder that the typed path is in."""
-        return self.folder / os.path.expanduser(self.typed.removesuffix(self.part))
-
-    @property
-    def part(self) -> str:
-        """The last part of the typed path."""
-        return self.typed[self.typed.rfind("/") + 1 :]
-
-
-def names_in(folder: Path) -> list[str]:
-    """Return folders, with a slash, and then files that may be opened; none where the folder cannot be read."""
-    try:
-        with os.scandir(folder) as found:
-            items = sorted((not item.is_dir(), item.name.lower(), item.name) for item in found)
-    except OSError:
-        return []
-    openable = [(is_file, name) for is_file, _, name in items if not is_file or is_openable(Path(name))]
-    return [name if is_file else f"{name}/" for is_file, name in openable]
-
-
-def is_openable(path: Path) -> bool:
-    """Return whether it is called like something that can be opened."""
-    return path.suffix.lower() in SCENE_SUFFIXES + CAPTURE_SUFFIXES
+    def type(self, text: str) -> None:
+        """Take another path, and look what there is: folders, with a slash, and then files."""
+        self.typed, self.problem = text, ""
+        found = sorted(glob.glob(glob.escape(os.path.expanduser(text)) + "*", root_dir=self.folder), key=str.lower)
+        folders = [f"{path}/" for path in found if (self.folder / path).is_dir()]
+        files = [path for path in found if path.lower().endswith(_SUFFIXES) and f"{path}/" not in folders]
+        self.found = folders + files
 
 
 def has_native_dialog() -> bool:
@@ -164,24 +134,22 @@ def _open(ui: Ui, path: Path) -> None:
 def _ask(ui: Ui, state: OpenFileState) -> None:
     """Show a dialog of our own, which needs nothing from the desktop."""
     if not imgui.is_popup_open(OPEN):
-        imgui.open_popup(OPEN)
-        state.typed, state.problem, state.listed = "", "", None
-    centred(em(38.0))
-    shown, stays = imgui.begin_popup_modal(OPEN, True, int(imgui.WindowFlags_.no_resize))
+        state.type("")
+    shown, cancelled = begin_modal(OPEN, 38.0)
     if not shown:
         return
     clipped(str(state.folder), QUIET)
     entered = _line(state)
-    names = state.names()
-    more = f"  and {len(names) - _MOST} more" if len(names) > _MOST else ""
-    paragraph(state.problem or "  ".join(names[:_MOST]) + more, ERROR if state.problem else QUIET)
+    more = f"  and {len(state.found) - _MOST} more" if len(state.found) > _MOST else ""
+    paragraph(state.problem or "  ".join(state.found[:_MOST]) + more, ERROR if state.problem else QUIET)
     entered = imgui.button("Open", ImVec2(em(6.0), 0.0)) or entered
     imgui.same_line()
-    cancelled = imgui.button("Cancel", ImVec2(em(6.0), 0.0)) or imgui.is_key_pressed(imgui.Key.escape) or not stays
-    path = state.inside / state.part.strip()
+    cancelled = imgui.button("Cancel", ImVec2(em(6.0), 0.0)) or cancelled
+    path = state.folder / os.path.expanduser(state.typed.strip())
     opened = False
     if entered and state.typed.strip() and path.is_dir():
-        state.folder, state.typed = Path(os.path.abspath(path)), ""
+        state.folder = Path(os.path.abspath(path))
+        state.type("")
     elif entered and state.typed.strip():
         state.problem = refusal(path) or ""
         opened = not state.problem
@@ -198,9 +166,9 @@ def _line(state: OpenFileState) -> bool:
     pressed."""
 
     def complete(data: imgui.InputTextCallbackData) -> int:
-        text = state.completed()
-        data.delete_chars(0, data.buf_text_len)
-        data.insert_chars(0, text)
+        if state.found:
+            data.delete_chars(0, data.buf_text_len)
+            data.insert_chars(0, os.path.commonprefix(state.found))  # noqa: RUF071 - character by character
         return 0
 
     imgui.set_next_item_width(-1.0)
@@ -208,5 +176,5 @@ def _line(state: OpenFileState) -> bool:
         imgui.set_keyboard_focus_here()
     entered, text = imgui.input_text_with_hint("##path", "a path; Tab completes it", state.typed, _LINE, complete)
     if text != state.typed:
-        state.typed, state.problem = text, ""
+        state.type(text)
     return bool(entered)

@@ -88,7 +88,7 @@ def _table(ui: Ui, run: Experiment, results: Results) -> None:
     rows: list[Row] = ui.cached("table 1", results, 0, lambda: experiment.table(results))
     said = in_window_style("; ".join(caveats(results, in_window=True)))
     paragraph(f"{said[:1].upper()}{said[1:]}.", QUIET)
-    results_table("table 1", [METHOD, *table_1(run.settings.verify)], rows)
+    results_table("table 1", [METHOD, *table_1(results)], rows)
 
 
 def _plot(ui: Ui, run: Experiment, results: Results) -> None:

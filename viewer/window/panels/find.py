@@ -15,11 +15,10 @@ from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
 from viewer.state.row_filter import HELP, HINT
 from viewer.state.scene_rows import COLUMNS, Column, Level
 from viewer.util.numbers import several
-from viewer.window.panels import lights
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, count, em, paragraph, swatch, tooltip
 
-_FIELD, _LIGHT, _NUMBER = 12.0, 10.0, 4.2  # ems of width: of the filter at least, of a light's name, and of a number
+_FIELD, _NUMBER = 12.0, 4.2  # ems of width: of the filter at least, and of a number
 _COLORS = {
     "occlusion": {int(mode): color for mode, color in OCCLUSION_COLORS.items() if isinstance(mode, OcclusionMode)},
     "shadow": {int(mode): color for mode, color in SHADOW_COLORS.items() if isinstance(mode, ShadowMode)},
@@ -34,14 +33,14 @@ _LEVEL_TIPS = {
 @dataclass
 class FindState:
     """`focus` asks for the keyboard above the table; `enters` says that Enter was pressed there, and the row that it
-    selects is to come.  `drawn` rows were drawn last, in the order `order`, and `serial` is of the selection whose row
-    has been shown."""
+    selects is to come.  `drawn` rows were drawn last, in the order `order`, and the row `shown` has been scrolled
+    to."""
 
     focus: bool = False
     enters: bool = False
     drawn: int = 0
     order: object = None
-    serial: int = 0
+    shown: int = -1
 
 
 def show(ui: Ui) -> None:
@@ -49,14 +48,14 @@ def show(ui: Ui) -> None:
     c = ui.controller
     table = c.table
     table.watch()
-    table.held = False
+    table.pointed_at = False
     if c.session.scene is None:
         paragraph("Open a scene to list its objects and primitives.", QUIET)
         return
     _tools(ui, table)
     listing = table.listing
     if listing is None:
-        paragraph("The table is made when the picture is whole.", QUIET)
+        paragraph("The table is listed when the picture is complete.", QUIET)
         return
     _take_enter(ui, table, listing)
     _said(ui, table, listing)
@@ -67,41 +66,29 @@ def show(ui: Ui) -> None:
 
 
 def _tools(ui: Ui, table: SceneTable) -> None:
-    """What rows are, the filter, the light, and saving, in one line where there is room."""
+    """What rows are, the filter, and saving, in one line where there is room."""
     for level in Level:
         if imgui.radio_button(level.value, table.level is level):
             table.level = level
         tooltip(_LEVEL_TIPS[level])
         imgui.same_line()
-    beside = em(_LIGHT + 2.0) + 2.0 * imgui.get_style().item_spacing.x
+    beside = em(2.0) + imgui.get_style().item_spacing.x
     if imgui.get_content_region_avail().x < em(_FIELD) + beside:
         imgui.new_line()
-    _filter(ui, table, imgui.get_content_region_avail().x - beside)
-    imgui.same_line()
-    imgui.set_next_item_width(em(_LIGHT))
-
-    def choose(light: int | None) -> None:
-        table.all_lights = light is None
-        if light is not None:
-            ui.controller.settings.set_light(light)
-
-    lights.combo(
-        ui, "find", None if table.all_lights else ui.controller.session.draw.light, choose, lambda: choose(None)
-    )
-    tooltip(f"the light that shadow modes are of{ui.key('Next light')}, or all lights together")
+    imgui.set_next_item_width(imgui.get_content_region_avail().x - beside)
+    _filter(ui, table)
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK}##save", ImVec2(em(2.0), 0.0)):
         table.save()
     tooltip("save these rows as CSV, in this order")
 
 
-def _filter(ui: Ui, table: SceneTable, width: float) -> None:
+def _filter(ui: Ui, table: SceneTable) -> None:
     state = ui.state(FindState)
     if state.focus:
         imgui.set_keyboard_focus_here()
         state.focus = False
     hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  {HINT}"
-    imgui.set_next_item_width(width)
     changed, text = imgui.input_text_with_hint(f"##filter{table.level.value}", hint, table.order.text)
     if changed:
         table.filter(text)
@@ -131,6 +118,8 @@ def _said(ui: Ui, table: SceneTable, listing: Listing) -> None:
     said = several(rows, noun) if found == rows else f"{count(found)} of {several(rows, noun)}"
     if row >= 0 and _place_of(ui, listing, row) is None:
         said += "; the selection is not among them"
+    elif not found and listing.table.level is Level.OBJECTS:
+        said += "; materials and textures are those of primitives"
     paragraph(said, QUIET)
     if edits.hidden or edits.hidden_primitives:
         imgui.same_line()
@@ -157,16 +146,15 @@ def _table(ui: Ui, table: SceneTable, listing: Listing) -> None:
     if not imgui.begin_table(f"table{listing.table.level.value}", len(columns), int(flags)):
         return
     imgui.table_setup_scroll_freeze(1, 1)
-    scene = ui.controller.session.scene
     for number, column in enumerate(columns):
-        _set_up(table, number, column, there=column.name != "texture" or bool(scene is not None and scene.textures))
+        _set_up(table, number, column)
     imgui.table_next_row(int(imgui.TableRowFlags_.headers))
     for number, column in enumerate(columns):
         if imgui.table_set_column_index(number):
             imgui.table_header(column.title)
             tooltip(column.tip)
     _sort(table, columns)
-    table.held = imgui.is_window_hovered()
+    table.pointed_at = imgui.is_window_hovered()
     wanted, selected = _to_show(ui, table, listing), table.selected
     clipper = imgui.ListClipper()
     clipper.begin(len(listing.rows), imgui.get_text_line_height() + 2.0 * imgui.get_style().cell_padding.y)
@@ -184,15 +172,13 @@ def _table(ui: Ui, table: SceneTable, listing: Listing) -> None:
     imgui.end_table()
 
 
-def _set_up(table: SceneTable, number: int, column: Column, there: bool) -> None:
+def _set_up(table: SceneTable, number: int, column: Column) -> None:
     kinds = imgui.TableColumnFlags_
     flags = kinds.prefer_sort_descending if column.numeric and column.name != "number" else kinds.prefer_sort_ascending
     if number == 0:
         flags |= kinds.no_hide | kinds.no_reorder
     if column.name == table.order.column:
         flags |= kinds.default_sort
-    if not there:
-        flags |= kinds.disabled
     imgui.table_setup_column(column.title, int(flags), em(_NUMBER) if column.numeric else 0.0)
 
 
@@ -211,9 +197,9 @@ def _to_show(ui: Ui, table: SceneTable, listing: Listing) -> int | None:
     """The place of the row to bring to the eye, once it is there: of what was selected elsewhere, or in another order,
     whose first rows are seen where nothing is selected."""
     state = ui.state(FindState)
-    if listing.order != table.order or (state.order, state.serial) == (listing.order, table.selection.serial):
+    if listing.order != table.order or (state.order, state.shown) == (listing.order, table.selected):
         return None
-    another, state.order, state.serial = state.order != listing.order, listing.order, table.selection.serial
+    another, state.order, state.shown = state.order != listing.order, listing.order, table.selected
     place = _place_of(ui, listing, table.selected)
     if place is None and another:
         imgui.set_scroll_y(0.0)
@@ -227,7 +213,7 @@ def _row(ui: Ui, table: SceneTable, listing: Listing, row: int, selected: bool, 
     flags |= imgui.SelectableFlags_.allow_overlap
     if imgui.selectable("##row", selected, int(flags))[0]:
         table.select(row)
-        ui.state(FindState).serial = table.selection.serial  # it is seen
+        ui.state(FindState).shown = table.selected  # where it is
         if imgui.is_mouse_double_clicked(0) and table.level is Level.OBJECTS:
             table.open_part(row)
     if wanted and not imgui.is_item_visible():

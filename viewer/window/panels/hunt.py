@@ -11,6 +11,7 @@ from tracer.scene.model import Scene
 from viewer.output.reports import findings
 from viewer.services.hunts import Hunts
 from viewer.window.panels.culling import method_list
+from viewer.window.panels.rays import show_rays
 from viewer.window.panels.runs import Part, frames_row, results_table, show_run
 from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
@@ -45,7 +46,7 @@ def _plan(ui: Ui, hunts: Hunts) -> None:
             return
         row("Method", "The method whose wrong pixels are searched; an exact one has none.")
         method_list(ui, "##method", plan.method, lambda name: setattr(plan, "method", name), combined=False)
-        frames_row(plan, hunts.frames, "First and last frame of the path, traced one after another.")
+        frames_row(ui, plan, "First and last frame of the path, traced one after another.")
         plan_rows(ui, plan, "step", "around", "radius", "seed", "size")
 
 
@@ -72,7 +73,7 @@ def _details(ui: Ui, number: int, find: Counterexample, scene: Scene) -> None:
     rays = f"{icons.ICON_FA_CODE_BRANCH}  Rays"
     same_line_for(rays)
     if imgui.button(rays):
-        ui.show_rays()
+        show_rays(ui)
     tooltip(f"what became of each ray of the pixel{ui.key('Rays of the clicked pixel')}")
     for sentence in (*counterexample.in_words(find, scene), counterexample.in_its_frame(find)):
         paragraph(in_window_style(sentence))

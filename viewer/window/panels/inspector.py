@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
@@ -27,10 +28,9 @@ from viewer.state.palette import (
     SHADOW_MEANING,
     Color,
 )
-from viewer.state.picking import Pick, shadow_mode_of, wrong_at
-from viewer.state.views import View, can_draw
+from viewer.state.picking import Pick, shadow_mode_of, unit_of, wrong_at
+from viewer.state.views import has_modes_of_cells
 from viewer.util.numbers import several
-from viewer.views import cell_lights
 from viewer.window.panels import lights, rays
 from viewer.window.panels.links import Pointed, sentence
 from viewer.window.panels.status import traced_before_an_answer
@@ -60,10 +60,15 @@ def show(ui: Ui) -> None:
     selection = ui.controller.selection
     picked, at = selection.picked, selection.pixel
     if picked is not None:
+        close = icons.ICON_FA_XMARK
+        button = imgui.calc_text_size(close).x + 2.0 * imgui.get_style().frame_padding.x
         named = f"{picked.object_name} ({picked.kind})"
-        clipped(f"pixel {at[0]}, {at[1]}: {named}" if at is not None else named, QUIET)
+        clipped(
+            f"pixel {at[0]}, {at[1]}: {named}" if at is not None else named, QUIET,
+            imgui.get_content_region_avail().x - button - imgui.get_style().item_spacing.x,
+        )  # fmt: skip
         imgui.same_line()
-        if imgui.small_button(f"{icons.ICON_FA_XMARK}##release"):
+        if imgui.small_button(f"{close}##release"):
             selection.clear()
             return
         tooltip(f"clear the selection, and inspect what the pointer is on{ui.key('Stop, or clear the selection')}")
@@ -84,29 +89,30 @@ def _details(ui: Ui, pick: Pick, at: Pixel | None) -> None:
     frame, scene = ui.controller.frame, ui.controller.session.scene
     if frame is None or scene is None:
         return
+    unit = unit_of(frame, pick.primitive, at)
     if at is None:
         paragraph("Not visible from here. Its shadow rays are explained when it is in view again.", QUIET)
     else:
         wrong = wrong_at(frame, *at)
         if wrong:
-            of = f"in its {frame.settings.samples} samples, at all bounces" if frame.settings.samples > 1 else ""
-            paragraph(f"{several(wrong, 'wrong shadow answer')} at this pixel, {of or 'at all bounces'}.", ERROR)
-        _why(ui, pick, frame, scene)  # first, as it is what a click asks
+            of = f"in its {frame.settings.samples} samples, " if frame.settings.samples > 1 else ""
+            paragraph(f"{several(wrong, 'wrong shadow answer')} at this pixel, {of}at all bounces.", ERROR)
+        _why(ui, pick, unit, frame, scene)  # first, as it is what a click asks
         if frame.settings.keeps_modes:
-            heading("Modes of its cell" if pick.in_cells else "Modes")
-            _modes(ui, pick, frame, scene)
+            heading("Modes of its cell" if has_modes_of_cells(frame) else "Modes")
+            _modes(ui, unit, frame, scene)
         rays.section(ui)
     heading("Surface")
     with properties("primitive", 5.8) as shown:
         if shown:
-            _surface(pick, at, frame, scene)
+            _surface(pick, unit, at, frame, scene)
 
 
-def _surface(pick: Pick, at: Pixel | None, frame: Frame, scene: Scene) -> None:
+def _surface(pick: Pick, unit: int, at: Pixel | None, frame: Frame, scene: Scene) -> None:
     value("Object", pick.object_name + ("  (moves)" if pick.dynamic else ""), wraps=True)
     value("Primitive", f"{pick.primitive}  ({pick.kind})")
-    if pick.in_cells:
-        value("Cell", f"{pick.unit}", "the part of the primitive that has modes and pixel counts of its own")
+    if has_modes_of_cells(frame) and unit >= 0:
+        value("Cell", f"{unit}", "the part of the primitive that has modes and pixel counts of its own")
     if pick.primitive < scene.primitive_count:  # an edit may be on its way
         material = scene.material_of(pick.primitive)
         value("Material", material.name, _describe(material), wraps=True)
@@ -115,12 +121,8 @@ def _surface(pick: Pick, at: Pixel | None, frame: Frame, scene: Scene) -> None:
     if at is None:
         return
     x, y = at
-    asked = int(cell_lights.VIEW.find(frame)[y, x]) if can_draw(frame, View.CELL_LIGHTS) else -1
-    if asked >= 0:
-        of = "of the octree of this method: all but those known to be hidden from it"
-        value("Its cell", f"looks at {count(asked)} of {count(frame.lights)} lights", of)
-    if not frame.settings.keeps_modes and 0 <= pick.unit < len(frame.pixel_count):  # else it is said above
-        value("Pixels", f"{count(frame.pixel_count[pick.unit])} now")
+    if not frame.settings.keeps_modes and 0 <= unit < len(frame.pixel_count):  # else it is said above
+        value("Pixels", f"{count(frame.pixel_count[unit])} now")
     value("Depth", f"{frame.depth[y, x]:.5g}")
     value("Normal", ", ".join(f"{along:z.2f}" for along in frame.normal[y, x]))
 
@@ -131,40 +133,56 @@ def _describe(m: Material) -> str:
     return text + (f", transmission {m.transmission:.3g}, index {m.ior:.3g}" if m.transmission else "")
 
 
-# --- why: a sentence for the chosen light, a line for each other one -----------------------------------
+# --- why: sentences for the chosen light, a line for each other one ------------------------------------
 
 
-def _why(ui: Ui, pick: Pick, frame: Frame, scene: Scene) -> None:
+def _why(ui: Ui, pick: Pick, unit: int, frame: Frame, scene: Scene) -> None:
     """The sentences, the chosen light's first; nothing but what the answer waits for while they are not known."""
     found = ui.controller.inspector.why
     if found is None:
         paragraph(unanswered(ui), QUIET)
         return
-    found = _with_origins(ui, found)
+    origins = ui.controller.history.origins_of(frame, unit)
+    if origins is not None:
+        found = ui.cached("why", found, origins, partial(with_origins, found, origins, "picture {}".format))
     words = Words(scene, found)
     if not found.reasons:
         paragraph("The scene has no lights.", QUIET)
     number = min(ui.controller.session.draw.light, len(found.reasons) - 1)
     chosen = found.reasons[number] if found.reasons else None
+    told = None  # what hides the primitive, where the light's sentence says so
     if chosen is not None:
         _name(ui, chosen, chosen=True)
         sentence(ui, words.reason(chosen), "reason")
         if said := words.answer(chosen):
             sentence(ui, said, "answer", ERROR if chosen.wrong else QUIET)
-    many = len(found.reasons) > lights.FEW
-    for one in () if many else found.reasons:
-        if one is not chosen:
-            _line(ui, words, one)
+        if (chosen.instead or chosen).rule in (Rule.PARTLY_OCCLUDED, Rule.NOT_SEEN_WHOLE, Rule.EXAMINED_ANEW):
+            told = chosen.occluded
     if found.coverage is not None:
         imgui.dummy(ImVec2(0.0, em(0.1)))
-        told = chosen.occluded if chosen is not None and _says_what_hides(chosen) else None
         sentence(ui, words.coverage(found.coverage, told), "coverage")
     beyond = wrong_beyond(found)
     if beyond:
         answers = several(beyond, "shadow answer")
         paragraph(f"Also wrong: {answers} at what is reflected here or seen through it; Rays lists them.", ERROR)
+    _other_lights(ui, words, found, number, scene.light_positions(frame.time), pick.point)
+
+
+def _other_lights(
+    ui: Ui, words: Words, found: Why, chosen: int, places: NDArray, point: Sequence[float] | None
+) -> None:
+    """A line for each; of many those that are looked for, wrong answers and the nearest first."""
+    many = len(found.reasons) > lights.FEW
     if many:
-        _many(ui, words, found, scene.light_positions(frame.time), pick.point)
+        paragraph(summary(found.reasons), QUIET)
+    wanted = [found.reasons[light] for light in lights.found(ui, "inspector") if light < len(found.reasons)]
+    if many:
+        wanted.sort(key=lambda one: (not one.wrong, math.dist(places[one.light], point) if point is not None else 0.0))
+    for one in wanted[:_MOST_LIGHTS]:
+        if one.light != chosen:
+            _line(ui, words, one)
+    if len(wanted) > _MOST_LIGHTS:
+        paragraph(f"the nearest {_MOST_LIGHTS} are listed", QUIET)
 
 
 def unanswered(ui: Ui) -> str:
@@ -195,21 +213,6 @@ def wrong_beyond(found: Why) -> int:
     return sum(int(ray.shadows.wrong.sum()) for ray in rays if ray.shadows is not None)
 
 
-def _with_origins(ui: Ui, found: Why) -> Why:
-    """The same with the pictures that set the modes of what was clicked."""
-    picked = ui.controller.selection.picked
-    origins = None if picked is None else ui.controller.history.origins_of(picked)
-    if origins is None:
-        return found
-    named = ui.cached("why", found, origins, lambda: with_origins(found, origins, lambda number: f"picture {number}"))
-    return named  # type: ignore[no-any-return]
-
-
-def _says_what_hides(one: Reason) -> bool:
-    """Whether a light's sentence says what hides the primitive."""
-    return (one.instead or one).rule in (Rule.PARTLY_OCCLUDED, Rule.NOT_SEEN_WHOLE, Rule.EXAMINED_ANEW)
-
-
 def _name(ui: Ui, one: Reason, chosen: bool) -> ImVec2:
     """A light's colour and name, and where that ends; resting on it picks it out over the picture, a click chooses
     it."""
@@ -237,34 +240,20 @@ def _line(ui: Ui, words: Words, one: Reason) -> None:
     imgui.set_cursor_screen_pos(below)
 
 
-def _many(ui: Ui, words: Words, found: Why, places: NDArray, point: Sequence[float] | None) -> None:
-    """Those of many lights that are looked for, those that are answered wrongly and the nearest first."""
-    paragraph(summary(found.reasons), QUIET)
-    wanted = [found.reasons[light] for light in lights.found(ui, "inspector") if light < len(found.reasons)]
-    wanted.sort(key=lambda one: (not one.wrong, math.dist(places[one.light], point) if point is not None else 0.0))
-    for one in wanted[:_MOST_LIGHTS]:
-        if one.light != ui.controller.session.draw.light:
-            _line(ui, words, one)
-    if len(wanted) > _MOST_LIGHTS:
-        paragraph(f"the nearest {_MOST_LIGHTS} are listed", QUIET)
-
-
 # --- modes ----------------------------------------------------------------------------------------------
 
 
-def _modes(ui: Ui, pick: Pick, frame: Frame, scene: Scene) -> None:
+def _modes(ui: Ui, unit: int, frame: Frame, scene: Scene) -> None:
     """The occlusion mode and the shadow mode per light, and how the pixel compares with its two reference pixels."""
-    if not 0 <= pick.unit < len(frame.modes):
-        paragraph("Known when the picture shows its cell.", QUIET)
+    if not 0 <= unit < len(frame.modes):
+        paragraph("Known when its cell is visible.", QUIET)
         return
-    occlusion = OcclusionMode(int(modes.occlusion_mode(frame.modes[pick.unit])))
-    origins, covered = ui.controller.history.origins_of(pick), 0
-    if imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_prop)):
-        imgui.table_setup_column("light", int(imgui.TableColumnFlags_.width_stretch), 1.0)
-        imgui.table_setup_column("mode", int(imgui.TableColumnFlags_.width_stretch), 1.5)
+    occlusion = OcclusionMode(int(modes.occlusion_mode(frame.modes[unit])))
+    origins, covered = ui.controller.history.origins_of(frame, unit), 0
+    if imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_same)):
         _mode("occlusion", occlusion.name, OCCLUSION_COLORS[occlusion], OCCLUSION_MEANING[occlusion])
         for light in range(len(scene.lights)):
-            shadow = shadow_mode_of(frame, pick.unit, light)
+            shadow = shadow_mode_of(frame, unit, light)
             if shadow is None:
                 break
             covered += 1

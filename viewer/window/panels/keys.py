@@ -7,8 +7,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.window.command import MENUS
 from viewer.window.keyboard import HELD
-from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, tooltip
+from viewer.window.ui import Ui
+from viewer.window.widgets import ERROR, QUIET, clipped, em, paragraph, properties, tooltip, value
 
 _KEY = 7.6  # width of a key in ems
 _POINTER = (
@@ -19,33 +19,20 @@ _POINTER = (
     ("Shift", "while flying: faster"),
     ("Ctrl + wheel, Ctrl + left drag", "zoom into the picture itself around the pointer; move it"),
     ("Drag the wipe's line", "compare the picture with the right one, or A with B"),
-    ("Drag the legend", "put it elsewhere in the picture; it snaps to edges and corners"),
+    ("Drag the legend", "move it within the picture"),
     ("Click", "inspect a pixel, and draw its shadow rays; click the background to clear the selection"),
 )
 
 
 def show(ui: Ui) -> None:
-    """Show the dialog, while it is open."""
-    if Dialog.KEYS not in ui.dialogs:
-        ui.keyboard.wanted_for = ""
-        return
-    viewport = imgui.get_main_viewport()
-    size = ImVec2(min(em(58.0), 0.96 * viewport.work_size.x), min(em(46.0), 0.92 * viewport.work_size.y))
-    imgui.set_next_window_pos(viewport.get_work_center(), int(imgui.Cond_.appearing), ImVec2(0.5, 0.5))
-    imgui.set_next_window_size(size, int(imgui.Cond_.appearing))
-    flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_collapse
-    shown, open_ = imgui.begin(Dialog.KEYS.value, True, int(flags))
-    if not open_:
-        ui.close(Dialog.KEYS)
-    if shown:
-        _capture(ui)
-        conflicts = ui.keymap.conflicts()
-        _head(ui, len(conflicts))
-        if imgui.begin_child("all keys"):
-            _groups(ui, conflicts)
-            _pointer()
-        imgui.end_child()
-    imgui.end()
+    """Show what is in the dialog."""
+    _capture(ui)
+    conflicts = ui.keymap.conflicts()
+    _head(ui, len(conflicts))
+    if imgui.begin_child("all keys"):
+        _groups(ui, conflicts)
+        _pointer()
+    imgui.end_child()
 
 
 def _capture(ui: Ui) -> None:
@@ -72,13 +59,13 @@ def _head(ui: Ui, conflicts: int) -> None:
     if imgui.button("Reset all keys"):
         ui.keymap.reset()
     imgui.end_disabled()
-    tooltip("give every command its usual key again")
+    tooltip("Restore the default keys of all commands.")
     if conflicts:
         imgui.same_line(0.0, em(1.0))
         imgui.text_colored(ERROR, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {conflicts} conflicts")
     paragraph(
-        f"Press a key for {waiting}, or Escape to leave it." if waiting else
-        "Click a key to choose another; the right button offers more. Keys without Ctrl or Alt are places on the "
+        f"Press a key for {waiting}, or Escape to cancel." if waiting else
+        "Click a key to change it, right-click for more. Keys without Ctrl or Alt are places on the "
         "keyboard, shown by what is printed there.",
         None if waiting else QUIET,
     )  # fmt: skip
@@ -119,7 +106,7 @@ def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
         if imgui.menu_item("No key", "", False, bool(keymap.of(name)))[0]:
             keymap.choose(name, [])
         usual = ", ".join(map(ui.keyboard.label, keymap.usual(name))) or "no key"
-        if imgui.menu_item(f"The usual key: {usual}", "", False, keymap.changed(name))[0]:
+        if imgui.menu_item(f"Default key: {usual}", "", False, keymap.changed(name))[0]:
             keymap.reset(name)
         imgui.end_popup()
     imgui.same_line()
@@ -131,12 +118,6 @@ def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
 def _pointer() -> None:
     """Show what the pointer does on the picture."""
     imgui.separator_text("On the picture")
-    if imgui.begin_table("pointer", 2):
-        imgui.table_setup_column("gesture", int(imgui.TableColumnFlags_.width_fixed), em(10.0))
-        imgui.table_setup_column("meaning", int(imgui.TableColumnFlags_.width_stretch))
-        for gesture, meaning in _POINTER:
-            imgui.table_next_column()
-            imgui.text_unformatted(gesture)
-            imgui.table_next_column()
-            paragraph(meaning, QUIET)
-        imgui.end_table()
+    with properties("pointer", 10.0) as shown:
+        for gesture, meaning in _POINTER if shown else ():
+            value(gesture, meaning, wraps=True)

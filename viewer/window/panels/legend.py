@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 from imgui_bundle import ImVec2, imgui
 
 from viewer.views import legend_of
-from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, Swatch, fitting, lay_out
+from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, fitting, lay_out
 from viewer.window.panels import sides
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, tooltip_at
 
-_STEPS = 24  # of a bar of the colour map
 _MARGIN = 0.5  # ems between the legend and the picture's edge
 _MOST = 0.62  # of the picture's width, and of its height
 
@@ -109,34 +108,11 @@ def draw_layout(draw: imgui.ImDrawList, layout: Layout, at: ImVec2) -> None:
     """Draw a legend as it is laid out."""
     end = ImVec2(at.x + layout.width, at.y + layout.height)
     draw.add_rect_filled(at, end, packed(BACKDROP, BACKDROP_OPACITY), em(0.3))
-    for swatch in layout.swatches:
-        _fill(draw, swatch, at)
+    for box in layout.boxes:
+        start = ImVec2(at.x + box.x, at.y + box.y)
+        draw.add_rect_filled(start, ImVec2(start.x + box.width, start.y + box.height), packed(box.color))
     for words in layout.words:
         draw.add_text(ImVec2(at.x + words.x, at.y + words.y), packed(words.color), words.text)
-
-
-def _fill(draw: imgui.ImDrawList, swatch: Swatch, at: ImVec2) -> None:
-    x, y, bottom = at.x + swatch.x, at.y + swatch.y, at.y + swatch.y + swatch.height
-    if swatch.color is not None:
-        draw.add_rect_filled(ImVec2(x, y), ImVec2(x + swatch.width, bottom), packed(swatch.color), em(0.15))
-        if swatch.stripes is not None:
-            _stripe(draw, packed(swatch.stripes), ImVec2(x, y), ImVec2(x + swatch.width, bottom))
-        return
-    steps = [packed(tuple(color)) for color in swatch.colors(_STEPS + 1).tolist()]
-    for i in range(_STEPS):
-        start, stop = (x + swatch.width * k / _STEPS for k in (i, i + 1))
-        left, right = steps[i], steps[i + 1]
-        draw.add_rect_filled_multi_color(ImVec2(start, y), ImVec2(stop, bottom), left, right, right, left)
-
-
-def _stripe(draw: imgui.ImDrawList, color: int, at: ImVec2, end: ImVec2) -> None:
-    """Three slanted stripes over a square."""
-    side = end.x - at.x
-    draw.push_clip_rect(at, end, True)
-    for third in (1.0, 3.0, 5.0):
-        x = at.x + third * side / 3.0
-        draw.add_line(ImVec2(x, at.y), ImVec2(x - side, end.y), color, 0.22 * side)
-    draw.pop_clip_rect()
 
 
 def _tell(layout: Layout, at: ImVec2) -> None:

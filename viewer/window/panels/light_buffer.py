@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-import numpy as np
 from imgui_bundle import ImVec2, imgui
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
-from viewer.output.light_cube import cross_of, seen
+from viewer.output.light_cube import Unfolded, by_depths, by_lists
 from viewer.services.queries import Newest
 from viewer.state.views import LIGHT_CUBES
 from viewer.window.panels import legend, lights
@@ -24,28 +21,14 @@ class CubeState(Newest):
     depths = False
 
 
-@dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
-class Unfolded:
-    """A cube as a picture (3 side, 4 side, 3), which becomes a texture, and its legend."""
-
-    cross: np.ndarray
-    key: legend.Legend
-
-    def pixels(self, height: int = 0) -> np.ndarray:
-        return self.cross
-
-    thumbnail = pixels
-
-
 def unfold(renderer: Renderer, frame: Frame, light: int, depths: bool, cancelled: object) -> Unfolded | str:
     """Unfold the cube of a light, or return why it has none, in a line."""
     cubes, name = frame.structures.get(LIGHT_CUBES, ()), named_light(renderer.scene.lights, light)
     if light >= len(cubes) or cubes[light].cube is None:
         why = cubes[light].why if light < len(cubes) else f"the method {frame.settings.method} keeps none for it"
         return f"No light buffer of {name}: {why or 'there is nothing static'}."
-    cube = seen(cubes[light].cube)
-    colors = cube.depth_colors() if depths else cube.list_colors()
-    return Unfolded(cross_of(colors), cube.depth_legend() if depths else cube.list_legend(name))
+    cube = cubes[light].cube
+    return by_depths(cube) if depths else by_lists(cube, name)
 
 
 def show(ui: Ui) -> None:
@@ -53,7 +36,7 @@ def show(ui: Ui) -> None:
     c, state = ui.controller, ui.state(CubeState)
     if c.frame is not None:
         state.take(c.renderer.query(unfold, c.frame, c.session.draw.light, state.depths))
-    checkbox("distance at which full shadow begins", state.depths, lambda on: setattr(state, "depths", on))
+    checkbox("Distance at which full shadow begins", state.depths, lambda on: setattr(state, "depths", on))
     imgui.same_line()
     imgui.set_next_item_width(min(em(14.0), imgui.get_content_region_avail().x))
     lights.combo(ui, "light buffer", c.session.draw.light, c.settings.set_light)
@@ -61,10 +44,10 @@ def show(ui: Ui) -> None:
     if not isinstance(found, Unfolded):
         paragraph(state.problem or found or "The light buffer is drawn when the picture is whole.", QUIET)
         return
-    room, (down, across, _) = imgui.get_content_region_avail(), found.cross.shape
+    room, (down, across, _) = imgui.get_content_region_avail(), found.picture.shape
     scale = max(min((room.x - em(16.0)) / across, room.y / down), 0.1)
     texture = ui.graphics.textures.texture_id(found, small=False) if ui.graphics.textures is not None else None
     if texture is not None:
         imgui.image(imgui.ImTextureRef(texture), ImVec2(across * scale, down * scale))
         imgui.same_line()
-    legend.draw(found.key)
+    legend.draw(found.legend)

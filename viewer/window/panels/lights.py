@@ -88,18 +88,28 @@ def combo(
 
 def _list(ui: Ui, place: str, most: int, chosen: int | None, choose: Callable[[int], None]) -> bool:
     """The lights that are found, so many rows of them at once; whether one was clicked."""
-    numbers, line, clicked = found(ui, place), imgui.get_text_line_height_with_spacing(), False
-    if imgui.begin_child("lights", (0.0, min(max(len(numbers), 1), most) * line + 2.0)):
+    clicked = False
+
+    def row(number: int) -> None:
+        nonlocal clicked
+        if _row(ui, number, chosen == number):
+            choose(number)
+            clicked = True
+
+    rows(found(ui, place), most, imgui.get_text_line_height_with_spacing(), row)
+    return clicked
+
+
+def rows(numbers: Sequence[int], most: int, height: float, row: Callable[[int], None]) -> None:
+    """Show rows of lights, each so high, of which only those are drawn that are seen: up to `most` at once."""
+    if imgui.begin_child("lights", (0.0, min(max(len(numbers), 1), most) * height + 2.0)):
         clipper = imgui.ListClipper()
-        clipper.begin(len(numbers), line)
+        clipper.begin(len(numbers), height)
         while clipper.step():
             for k in range(clipper.display_start, clipper.display_end):
-                if _row(ui, numbers[k], chosen == numbers[k]):
-                    choose(numbers[k])
-                    clicked = True
+                row(numbers[k])
         clipper.end()
     imgui.end_child()
-    return clicked
 
 
 def _row(ui: Ui, index: int, chosen: bool) -> bool:

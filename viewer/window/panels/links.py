@@ -89,7 +89,7 @@ def go_to(ui: Ui, link: Link) -> None:
     selection, point = c.selection, _point(ui, link)
     if link.frame is not None:
         picked = selection.picked
-        c.navigator.go(link.frame)
+        c.navigator.go(link.frame)  # which clears the selection
         selection.picked = picked
     elif point is not None:
         selection.select(point)

@@ -10,8 +10,9 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.named_states import BUILT_IN, NamedStates
-from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import QUIET, centred, em, fitted, heading, paragraph, tooltip
+from viewer.window.command import Command, Kind
+from viewer.window.ui import Ui
+from viewer.window.widgets import QUIET, em, fitted, heading, paragraph, tooltip
 
 _ENTER = int(imgui.InputTextFlags_.enter_returns_true)
 _RENAMING = _ENTER | int(imgui.InputTextFlags_.auto_select_all)
@@ -46,39 +47,29 @@ def show_bookmarks(ui: Ui) -> None:
 
 
 def show_presets(ui: Ui) -> None:
-    """The dialog, while it is open."""
-    if Dialog.PRESETS not in ui.dialogs:
-        return
+    """What is in the dialog."""
     presets = ui.controller.presets
-    centred(em(30.0))
-    flags = imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_resize
-    flags |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.always_auto_resize
-    shown, open_ = imgui.begin("Presets", True, int(flags))
-    if not open_:
-        ui.close(Dialog.PRESETS)
-    if shown:
-        _new(ui, presets, "name for the settings as they are now", "Save", em(5.0))
-        imgui.separator_text("Saved by you")
-        if not presets.all:
-            paragraph("None yet. A preset keeps settings and view; not scene, camera and time.", QUIET)
-        _list(ui, presets, lambda index: presets.apply(presets.all[index].name), lambda index: "apply it")
-        imgui.separator_text("Built in")
-        for preset in BUILT_IN:
-            if imgui.selectable(preset.name, False)[0]:
-                presets.apply(preset.name)
-            tooltip(preset.tip)
-    imgui.end()
+    _new(ui, presets, "name for the settings as they are now", "Save", em(5.0))
+    imgui.separator_text("Saved by you")
+    if not presets.all:
+        paragraph("None yet. A preset keeps settings and view; not scene, camera and time.", QUIET)
+    _list(ui, presets, lambda index: presets.apply(presets.all[index].name), lambda index: "apply it")
+    imgui.separator_text("Built in")
+    for preset in BUILT_IN:
+        if imgui.selectable(preset.name, False)[0]:
+            presets.apply(preset.name)
+        tooltip(preset.tip)
 
 
-def presets_menu(ui: Ui) -> None:
-    """Those that can be applied, in the menu Edit."""
-    presets, tips = ui.controller.presets, {preset.name: preset.tip for preset in BUILT_IN}
-    for number, name in enumerate(presets.states):
-        if number in (0, len(BUILT_IN)):
-            imgui.separator()
-        if imgui.menu_item(f"{name}##preset {number}", "", False, True)[0]:
-            ui.guard.step("Applying a preset", partial(presets.apply, name))
-        tooltip(tips.get(name, "saved by you"))
+def preset_commands(ui: Ui) -> list[Command]:
+    """Return all presets as they are now, for the menu Edit and the palette."""
+    presets = ui.controller.presets
+    tips = [preset.tip for preset in BUILT_IN] + ["saved by you"] * len(presets.all)
+    return [
+        Command(f"preset {name}", "Edit/Presets", partial(presets.apply, name), title=name, kind=Kind.PRESET,
+                also="apply", tip=tip, separated=number in (0, len(BUILT_IN)))
+        for number, (name, tip) in enumerate(zip(presets.states, tips, strict=True))
+    ]  # fmt: skip
 
 
 def _new(ui: Ui, states: NamedStates, hint: str, button: str, width: float) -> None:

@@ -11,10 +11,10 @@ from tracer.frame import Frame
 from tracer.reasons import Why
 from viewer.state.methods import missing, with_base
 from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
-from viewer.state.picking import outline_of, part_points, primitive_points
+from viewer.state.picking import outline_of, points_of, primitive_points
 from viewer.state.projection import Stroke, strokes
 from viewer.window.panels import rays
-from viewer.window.panels.area import Area, Pen, pen
+from viewer.window.panels.area import BACK, FRONT, Area, Pen
 from viewer.window.panels.links import Pointed
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, paragraph, tooltip
@@ -27,7 +27,6 @@ _HIDER, _WHITE = ImVec4(*FATE_COLORS[Fate.PARTLY_OCCLUDED], 1.0), ImVec4(1.0, 1.
 _SAME, _MISSED = ImVec4(0.6, 0.64, 0.7, 1.0), ImVec4(0.3, 0.85, 0.95, 1.0)
 _SIDE = 0.5  # ems, of a pixel's square at least
 _NOTE, _LEAST = 26.0, 8.0  # in ems of width: of a note, and of a picture that has room for one
-_BACK, _FRONT = ImVec4(0.05, 0.06, 0.08, 0.86), ImVec4(0.93, 0.94, 0.96, 1.0)
 
 
 def show(ui: Ui, area: Area) -> None:
@@ -35,10 +34,10 @@ def show(ui: Ui, area: Area) -> None:
     frame = ui.controller.frame
     if frame is None:
         return
-    with pen(area, frame) as made:
-        rays.draw(ui, made, frame)
-        _why(ui, made, frame)
-        _occluded_selection(ui, made, frame)
+    made = Pen(area, frame)
+    rays.draw(ui, made, frame)
+    _why(ui, made, frame)
+    _occluded_selection(ui, made, frame)
 
 
 # --- why -------------------------------------------------------------------------------------------
@@ -66,19 +65,18 @@ def _why(ui: Ui, made: Pen, frame: Frame) -> None:
             _figure_3(made, frame, found)
     if link is not None and link.primitive is not None:
         _outline(ui, made, frame, link.primitive, _WHITE, "pointed link")
-    if link is not None and link.pixel is not None and link.frame is None and in_place:
+    if link is not None and link.pixel is not None and in_place:
         made.square(*_square_of(made, frame, link.pixel), _WHITE)
 
 
 def _outline(ui: Ui, made: Pen, frame: Frame, primitive: int, color: ImVec4, name: str) -> None:
     scene = ui.controller.session.scene
-    if scene is not None and primitive < scene.primitive_count:
-
-        def lines() -> list[Stroke]:
-            return _projected(frame, outline_of(primitive_points(scene, primitive, frame.time)))
-
-        pieces = ui.cached(name, frame, primitive, lines)
-        made.strokes(pieces, color, _OUTLINE)
+    if scene is None or primitive >= scene.primitive_count:
+        return
+    pieces = ui.cached(
+        name, frame, primitive, lambda: _projected(frame, outline_of(primitive_points(scene, primitive, frame.time)))
+    )
+    made.strokes(pieces, color, _OUTLINE)
 
 
 def _projected(frame: Frame, lines: list) -> list[Stroke]:
@@ -109,17 +107,16 @@ def _square_of(made: Pen, frame: Frame, pixel: tuple[int, int]) -> tuple[ImVec2,
 def _occluded_selection(ui: Ui, made: Pen, frame: Frame) -> None:
     """Where what is selected lies behind something, as dashed lines."""
     c = ui.controller
-    now, picked, part, at = c.session.edited, c.selection.picked, c.selection.part, c.selection.pixel
+    now, picked, at = c.session.edited, c.selection.picked, c.selection.pixel
     if now is None or picked is None:
         return
-    if at is not None and (part is not None or frame.primitive[at[1], at[0]] == picked.primitive):
+    if at is not None and (picked.part is not None or frame.primitive[at[1], at[0]] == picked.primitive):
         return
 
     def lines() -> list[Stroke]:
-        points = primitive_points(now.scene, picked.primitive, frame.time)
-        return _projected(frame, outline_of(points if part is None else part_points(now, part, frame.time)))
+        return _projected(frame, outline_of(points_of(now, picked, frame.time)))
 
-    made.strokes(ui.cached("occluded selection", frame, (picked.primitive, part), lines), _WHITE, 0.12, behind=0.75)
+    made.strokes(ui.cached("occluded selection", frame, picked, lines), _WHITE, 0.12, behind=0.75)
 
 
 def show_missing(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
@@ -130,10 +127,10 @@ def show_missing(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
         return
     width = min(em(_NOTE), room)
     imgui.set_cursor_screen_pos(ImVec2((corner.x + end.x - width) / 2.0, corner.y + (end.y - corner.y) / 3.0))
-    imgui.push_style_color(imgui.Col_.child_bg, _BACK)
+    imgui.push_style_color(imgui.Col_.child_bg, BACK)
     flags = imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.always_use_window_padding
     if imgui.begin_child("missing", ImVec2(width, 0.0), int(flags)):
-        paragraph(found.text, _FRONT)
+        paragraph(found.text, FRONT)
         imgui.begin_disabled(run is not None)
         if found.base and imgui.button(f"Use {found.base}##instead"):
             c.settings.change(method=with_base(c.session.settings.method, found.base))

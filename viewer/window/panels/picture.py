@@ -8,29 +8,30 @@ when it was pressed on the picture itself.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, imgui
 
 from viewer.state import navigation, verified
 from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
+from viewer.state.pixels import STEP, panned
 from viewer.util.numbers import whole_percent
+from viewer.window.menus import ANY_POPUP
 from viewer.window.panels import (
     legend,
     overlays,
     pixels,
     savings,
     sides,
-    slicing,
     status,
     timeline,
     tour,
     what_if,
 )
-from viewer.window.panels.area import Area, pointer, size_of, write_lines
+from viewer.window.panels.area import Area, inside, pointer, size_of, write_lines
 from viewer.window.panels.legend import LegendState
+from viewer.window.panels.view import show_words_in_space
+from viewer.window.setting_rows import ALL
 from viewer.window.style import ON_PICTURE_ERROR
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, em
@@ -79,8 +80,6 @@ def _picture(ui: Ui, room: ImVec2) -> None:
             left, top, size = _fitted(ui.picture.shape, room)
             imgui.set_cursor_pos(ImVec2(left, top))
             imgui.image(imgui.ImTextureRef(texture), size)
-        elif _preview(ui, room):
-            _drag(ui, room.y, 0.0)
         else:
             _placeholder(ui, room)
     elif texture is not None and c.session.scene is not None:
@@ -95,7 +94,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
         left, top, size = _fitted(ui.picture.shape, room, 2, gap)
         area = _area(ui, "picture of A", left, top, size)
         sides.draw_a(ui, area)
-        _pointer(ui, area, takes_edits=False)
+        _pointer(ui, area)
         pixels.draw(ui, area, seen.a)
         left += size.x + gap
     else:
@@ -103,17 +102,17 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
     area = _area(ui, "picture", left, top, size)
     sides.draw_picture(ui, sides.PICTURE, texture, area)
     sides.draw_wiped(ui, area)
-    with _inside(area):
+    with inside(area):
         overlays.show(ui, area)
     _pointer(ui, area)
     pixels.draw(ui, area)
-    with _inside(area):
-        what_if.show_lights(ui, area.whole, area.whole_end)
+    with inside(area):
+        what_if.show_lights(ui, area)
     lower = _title(ui, area)
     sides.show(ui, area, lower)
     legend.show(ui, area.corner, area.end)
     overlays.show_missing(ui, area.corner, area.end)
-    slicing.show(ui)
+    show_words_in_space(ui)
 
 
 def _fitted(shape: tuple[int, int], room: ImVec2, count: int = 1, gap: float = 0.0) -> tuple[float, float, ImVec2]:
@@ -135,44 +134,19 @@ def _area(ui: Ui, name: str, left: float, top: float, size: ImVec2) -> Area:
     return Area(corner, size, ui.controller.session.draw.zoom)
 
 
-@contextmanager
-def _inside(area: Area) -> Iterator[None]:
-    """What is drawn over the picture does not go beyond it."""
-    draw = imgui.get_window_draw_list()
-    draw.push_clip_rect(area.corner, area.end, True)
-    try:
-        yield
-    finally:
-        draw.pop_clip_rect()
-
-
 def _placeholder(ui: Ui, room: ImVec2) -> None:
     """What stands there before the first picture: what goes on, and how far it is."""
     c = ui.controller
     job, text = c.loader.warm_up_job or c.loader.load_job, status.first_picture(c)
     if c.session.scene is None and job is None:
         text = f"Open a scene{ui.key('Open...')}, or drop one on this window"
-    at, width = imgui.get_cursor_pos(), min(room.x, max(imgui.calc_text_size(text).x, em(16.0)))
+    at, width = imgui.get_cursor_pos(), min(room.x, max(imgui.calc_text_size(text).x, em(24.0)))
     left = at.x + (room.x - width) / 2.0
     imgui.set_cursor_pos(ImVec2(left, at.y + room.y / 2.0))
     clipped(text, QUIET)
     if job is not None:
         imgui.set_cursor_pos_x(left)
-        imgui.progress_bar(job.fraction, ImVec2(width, 0.0))
-
-
-def _preview(ui: Ui, room: ImVec2) -> bool:
-    """The preview, if there is any, as an item that takes the pointer, and what it is."""
-    texture = ui.graphics.preview.texture_id if ui.graphics.preview is not None else None
-    if texture is None:
-        return False
-    corner = imgui.get_cursor_screen_pos()
-    imgui.set_next_item_allow_overlap()
-    imgui.invisible_button("preview", room, int(imgui.ButtonFlags_.mouse_button_mask_))
-    end = ImVec2(corner.x + room.x, corner.y + room.y)
-    imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), corner, end)
-    write_lines(["Preview: no shadows, no reflections, no textures", status.first_picture(ui.controller)], corner)
-    return True
+        imgui.progress_bar(job.fraction, ImVec2(width, 0.0), job.label)  # with the time that is left
 
 
 def _title(ui: Ui, area: Area) -> float:
@@ -203,38 +177,43 @@ def _title(ui: Ui, area: Area) -> float:
 # --- the pointer and the keys that fly -------------------------------------------------------------
 
 
-def _pointer(ui: Ui, area: Area, takes_edits: bool = True) -> None:
-    """Hovering, clicking and dragging on the picture, which is ImGui's last item; of lights too if it `takes_edits`."""
-    c, io = ui.controller, imgui.get_io()
+def _pointer(ui: Ui, area: Area) -> None:
+    """Hovering, clicking and dragging on the picture, which is ImGui's last item."""
+    c = ui.controller
     if ui.picture.pivot_scene is not c.session.scene:  # a point of another scene is none to orbit around
         ui.picture.pivot, ui.picture.pivot_scene = None, c.session.scene
     u, v = area.to_picture(*pointer())
     if imgui.is_item_hovered() and 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
         c.selection.hovered = (u, v)
-        if not pixels.wheel(ui, area):
-            _wheel(ui, io.mouse_wheel)
-    if takes_edits and what_if.handle(ui, area.whole, area.whole_size):
+        if imgui.get_io().mouse_wheel:
+            _wheel(ui, imgui.get_io().mouse_wheel, (u, v))
+    if sides.drag_line(ui, area):
         return
-    if sides.drag_line(ui, area) or pixels.drag(ui, area):
-        return
-    if imgui.is_item_activated():
+    if imgui.is_item_activated() and not imgui.get_io().key_ctrl:
         _take_pivot(ui, (u, v))
-    if _drag(ui, area.size.y, CLICK_SLACK) and not ui.picture.dragged and ui.picture.pressed != RIGHT:
+    released = _drag(ui, area, CLICK_SLACK)
+    if released and not ui.picture.dragged and ui.picture.pressed == LEFT and not ui.picture.with_ctrl:
         c.selection.select((u, v))
 
 
-def _drag(ui: Ui, height: float, slack: float) -> bool:
-    """Move the camera by the pointer on the last item, which is so high; a way of up to `slack` pixels is none.
-    Returns whether the pointer has let go."""
+def _drag(ui: Ui, area: Area, slack: float) -> bool:
+    """Move the camera by the pointer on the last item, or with Ctrl the picture in its room; a way of up to `slack`
+    pixels is none.  Returns whether the pointer has let go."""
     c, picture, io = ui.controller, ui.picture, imgui.get_io()
     if imgui.is_item_activated():
         picture.dragged, picture.pressed_at = False, (io.mouse_pos.x, io.mouse_pos.y)
         picture.pressed = next((b for b in BUTTONS if imgui.is_mouse_clicked(b)), LEFT)
+        picture.with_ctrl = io.key_ctrl and picture.pressed == LEFT
     released = imgui.is_item_deactivated()
     if not imgui.is_item_active() and not released:  # a quick hand drags and lets go within one of our frames
         return False
+    if picture.with_ctrl:
+        draw, by = c.session.draw, io.mouse_delta
+        c.session.set_draw(zoom=panned(draw.zoom, by.x / area.size.x, by.y / area.size.y))
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+        return released
     picture.dragged |= math.dist(picture.pressed_at, (io.mouse_pos.x, io.mouse_pos.y)) > slack
-    dx, dy = io.mouse_delta.x / height, io.mouse_delta.y / height
+    dx, dy = io.mouse_delta.x / area.size.y, io.mouse_delta.y / area.size.y
     if not picture.dragged or (dx == 0.0 and dy == 0.0):
         return released
     camera, world, pivot = c.session.camera, c.motion.world_up, picture.pivot
@@ -257,15 +236,17 @@ def _take_pivot(ui: Ui, at: tuple[float, float]) -> None:
         ui.picture.pivot = (float(point[0]), float(point[1]), float(point[2]))
 
 
-def _wheel(ui: Ui, notches: float) -> None:
-    c = ui.controller
-    if notches and c.preferences.navigation == "orbit":
-        if c.selection.hovered is not None:
-            _take_pivot(ui, c.selection.hovered)
+def _wheel(ui: Ui, notches: float, at: tuple[float, float]) -> None:
+    """Zoom into the picture with Ctrl; else come nearer to what is seen at this point of it, or fly faster."""
+    c, speed = ui.controller, ALL["speed"]
+    if imgui.get_io().key_ctrl:
+        pixels.zoom_by(ui, STEP**notches)
+    elif c.preferences.navigation == "orbit":
+        _take_pivot(ui, at)
         if ui.picture.pivot is not None:
             c.motion.move(navigation.dolly(c.session.camera, ui.picture.pivot, notches))
-    elif notches:
-        c.preferences.speed = min(max(c.preferences.speed * 1.2**notches, 0.001), 1000.0)
+    else:
+        c.settings.set(speed, min(max(c.preferences.speed * 1.2**notches, speed.low), speed.high))
         c.notices.say(f"flying speed {c.preferences.speed:.3g}")
 
 
@@ -273,9 +254,9 @@ def fly(ui: Ui) -> None:
     """Move by the keys that are held down; called once per frame, for every window but those being typed in."""
     c, io = ui.controller, imgui.get_io()
     chord = io.key_ctrl or io.key_alt or io.key_super
-    if ui.keyboard.wanted_for or io.want_text_input or chord or c.session.seen is None:
+    if ui.keyboard.wanted_for or io.want_text_input or chord or c.session.scene is None:
         return
-    if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup_id | imgui.PopupFlags_.any_popup_level)):
+    if imgui.is_popup_open("", ANY_POPUP):
         return
 
     def down(name: str) -> float:

@@ -1,27 +1,24 @@
 """Exact values: the picture itself is looked at closely, with the values of its pixels in them, and the panel says how
 those lie that are seen.
-
-The wheel with Ctrl zooms around the pointer, and a drag with Ctrl pans.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from viewer.state.comparison import Side
-from viewer.state.pixels import FIT, GRID_FROM, STEP, Point, panned, pixels_shown, zoomed
+from viewer.state.pixels import FIT, GRID_FROM, pixels_shown, zoomed
 from viewer.state.views import can_draw
 from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
-from viewer.views.color import CHANNELS
 from viewer.window.panels import sides
-from viewer.window.panels.area import Area, pointer
+from viewer.window.panels.area import Area, inside
+from viewer.window.setting_rows import ALL, setting_switch
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, right
+from viewer.window.widgets import QUIET, clipped, count, em, paragraph, right
 
 _FIGURES, _PLOT = 20.0, 5.4  # ems: the width of the figures, and the least height of the histogram
 _OF_CHANNELS = (ImVec4(0.92, 0.33, 0.31, 1.0), ImVec4(0.25, 0.70, 0.35, 1.0), ImVec4(0.35, 0.58, 0.96, 1.0))
@@ -32,27 +29,20 @@ _SMALLEST = 0.62  # of the usual size of letters, for the numbers in pixels
 _MOST_NUMBERS = 1500  # pixels whose values are written at once
 
 
-@dataclass
-class PixelsState:
-    """Whether a drag on the picture pans it."""
-
-    pans: bool = False
-
-
 # --- the panel ----------------------------------------------------------------------------------------
 
 
 def show(ui: Ui) -> None:
     """How closely the picture is looked at, how the values that are seen lie, and the range of colours from them."""
-    p, zoom = ui.controller.preferences, ui.controller.session.draw.zoom
-    tip = "numbers in the pixels, and a grid, where the picture is enlarged enough"
-    checkbox("Values in pixels", p.pixel_values, lambda on: setattr(p, "pixel_values", on), tip)
+    session = ui.controller.session
+    zoom = session.draw.zoom
+    setting_switch(ui, ALL["pixel_values"])
     imgui.same_line(0.0, em(1.0))
     if zoom.fits:
         clipped("Ctrl+wheel zooms into the picture, Ctrl+drag moves it", QUIET)
     else:
         if imgui.small_button("Fit"):
-            fit(ui)
+            session.set_draw(zoom=FIT)
         imgui.same_line()
         clipped(f"enlarged {zoom.scale:.3g} times", QUIET)
     _histogram(ui)
@@ -126,42 +116,13 @@ def _plot(found: Histogram, names: tuple[str, ...]) -> None:
     implot.setup_axes_limits(found.low, found.high, 0.0, 1.08 * top, int(imgui.Cond_.always))
     implot.setup_legend(implot.Location_.north_east)
     edges = np.linspace(found.low, found.high, found.counts.shape[1] + 1)
-    colors = _OF_CHANNELS if names == CHANNELS or len(names) == 3 else _OF_VALUES
+    colors = _OF_CHANNELS if len(names) == 3 else _OF_VALUES
     for name, counts, color in zip(names, found.counts, colors, strict=True):
         steps = np.append(counts, counts[-1]).astype(np.float64)
         look = implot.Spec(line_color=color, line_weight=1.4, fill_color=color, fill_alpha=0.28)
         look.flags = int(implot.StairsFlags_.shaded)
         implot.plot_stairs(name, edges, steps, look)
     implot.end_plot()
-
-
-# --- the pointer on the picture -----------------------------------------------------------------------
-
-
-def wheel(ui: Ui, area: Area) -> bool:
-    """Zoom around the pointer, with Ctrl; whether the wheel was for that."""
-    io = imgui.get_io()
-    if not io.key_ctrl:
-        return False
-    if io.mouse_wheel:
-        mouse = pointer()
-        at = (mouse.x - area.corner.x) / area.size.x, (mouse.y - area.corner.y) / area.size.y
-        zoom_by(ui, STEP**io.mouse_wheel, at)
-    return True
-
-
-def drag(ui: Ui, area: Area) -> bool:
-    """Pan with Ctrl; whether the pointer, on ImGui's last item, does that."""
-    state, io = ui.state(PixelsState), imgui.get_io()
-    if imgui.is_item_activated():
-        state.pans = io.key_ctrl and imgui.is_mouse_clicked(imgui.MouseButton_.left)
-    if not state.pans or not (imgui.is_item_active() or imgui.is_item_deactivated()):
-        return False
-    session, by = ui.controller.session, io.mouse_delta
-    session.set_draw(zoom=panned(session.draw.zoom, by.x / area.size.x, by.y / area.size.y))
-    imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
-    state.pans = not imgui.is_item_deactivated()
-    return True
 
 
 # --- over the picture ---------------------------------------------------------------------------------
@@ -173,16 +134,14 @@ def draw(ui: Ui, area: Area, side: Side | None = None) -> None:
     if found is None or not ui.controller.preferences.pixel_values:
         return
     frame, words = found
-    made = imgui.get_window_draw_list()
-    made.push_clip_rect(area.corner, area.end, True)
-    _grid(made, area, frame.width, frame.height)
-    _numbers(made, area, frame.width, frame.height, words)
-    made.pop_clip_rect()
+    with inside(area):
+        _grid(area, frame.width, frame.height)
+        _numbers(area, frame.width, frame.height, words)
 
 
-def _grid(made: imgui.ImDrawList, area: Area, width: int, height: int) -> None:
+def _grid(area: Area, width: int, height: int) -> None:
     """Lines between the picture's pixels, where these are large."""
-    across, down = area.whole_size.x / width, area.whole_size.y / height
+    made, across, down = imgui.get_window_draw_list(), area.whole_size.x / width, area.whole_size.y / height
     if min(across, down) < GRID_FROM:
         return
     color, (columns, rows) = imgui.get_color_u32(_GRID), pixels_shown(area.zoom, width, height)
@@ -194,9 +153,7 @@ def _grid(made: imgui.ImDrawList, area: Area, width: int, height: int) -> None:
         made.add_line(ImVec2(area.corner.x, at), ImVec2(area.end.x, at), color)
 
 
-def _numbers(
-    made: imgui.ImDrawList, area: Area, width: int, height: int, words: Callable[[int, int], tuple[str, ...]]
-) -> None:
+def _numbers(area: Area, width: int, height: int, words: Callable[[int, int], tuple[str, ...]]) -> None:
     """The value of each pixel in it, as large as fits, where all fit."""
     across, down = area.whole_size.x / width, area.whole_size.y / height
     columns, rows = pixels_shown(area.zoom, width, height)
@@ -209,7 +166,7 @@ def _numbers(
     part = min(0.9 * across / widest, 0.9 * down / tallest, 1.0) if widest and tallest else 0.0
     if part < _SMALLEST:
         return
-    font, size = imgui.get_font(), part * letters
+    made, font, size = imgui.get_window_draw_list(), imgui.get_font(), part * letters
     back, front = imgui.get_color_u32(_BACK), imgui.get_color_u32(_FRONT)
     for (x, y), lines in texts.items():
         middle = area.to_screen((x + 0.5) / width, (y + 0.5) / height)
@@ -221,23 +178,13 @@ def _numbers(
             made.add_text(font, size, ImVec2(middle.x - halves[number], top + number * size), front, line)
 
 
-# --- zoom, which commands change as well ---------------------------------------------------------------
+# --- zoom, by the wheel and by commands ---------------------------------------------------------------
 
 
-def pointed_at(ui: Ui) -> tuple[float, float]:
-    """Return where the pointer is in the picture's room, else its middle."""
-    hovered, zoom = ui.controller.selection.hovered, ui.controller.session.draw.zoom
-    if hovered is None:
-        return 0.5, 0.5
-    return (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale
-
-
-def zoom_by(ui: Ui, factor: float, at: Point = (0.5, 0.5)) -> None:
-    """Enlarge the picture; `at`, 0 to 1 in the room that it has, stays where it is."""
-    session = ui.controller.session
-    session.set_draw(zoom=zoomed(session.draw.zoom, factor, at))
-
-
-def fit(ui: Ui) -> None:
-    """Show all of the picture."""
-    ui.controller.session.set_draw(zoom=FIT)
+def zoom_by(ui: Ui, factor: float) -> None:
+    """Enlarge the picture around what is under the pointer, which stays where it is; else around its middle."""
+    session, hovered = ui.controller.session, ui.controller.selection.hovered
+    zoom, at = session.draw.zoom, (0.5, 0.5)
+    if hovered is not None:
+        at = (hovered[0] - zoom.left) * zoom.scale, (hovered[1] - zoom.top) * zoom.scale
+    session.set_draw(zoom=zoomed(zoom, factor, at))

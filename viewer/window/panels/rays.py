@@ -5,26 +5,51 @@ Rays are drawn on their way, and shadow rays as far as light comes, and on."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from enum import Enum
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
+from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.told_rays import AWAY, TRACED, RayTree
-from viewer.output.ray_rows import Filter, RayRows, Row, Shown, totals, unfolded
+from viewer.output.ray_rows import SUBSET_HELP, RayFilter, RayKey, RayRow, RayRows, RaySubset, totals, unfolded
 from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels import lights
 from viewer.window.panels.area import SHADE, Pen
 from viewer.window.panels.links import Pointed
 from viewer.window.setting_rows import ALL, setting_switch
-from viewer.window.ui import RaysState, Ui
+from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip, tooltip_at
 
 _ROWS = 14  # of the tree that are seen at once
 _LIGHT = 14.0  # ems of width, at most, for the name of a light
+
+
+@dataclass
+class RaysState:
+    """The tree of a pixel's rays: which shadow rays are `shown`, the keys of the rows that are folded otherwise than at
+    first and of the `selected` one, the row that the pointer is on, for how many frames it is to `unfold`, and the
+    window's frame in which it was `drawn` last."""
+
+    shown: RayFilter = field(default_factory=RayFilter)
+    toggled: frozenset[RayKey] = frozenset()
+    selected: RayKey | None = None
+    pointed: RayRow | None = None
+    unfold: int = 0
+    drawn: int = -2
+
+    def is_open(self, row: RayRow) -> bool:
+        """Whether what is below a row is seen: at first, what is below rays on their way."""
+        return (len(row.places) == 0) != (row.key in self.toggled)
+
+
+def show_rays(ui: Ui) -> None:
+    """Show the rays of the clicked pixel."""
+    ui.state(RaysState).unfold = 3  # until what is to be scrolled is laid out
+    ui.show_panel("Inspector")
 
 
 def section(ui: Ui) -> None:
@@ -43,7 +68,7 @@ def section(ui: Ui) -> None:
         if ui.controller.selection.picked is None:
             paragraph("Click a pixel to see what became of each of its rays.", QUIET)
         elif tree is None:
-            paragraph("The rays are listed when the picture is whole.", QUIET)
+            paragraph("The rays are listed when the picture is complete.", QUIET)
         else:
             _tree(ui, tree)
     setting_switch(ui, ALL["draw.rays"])
@@ -55,13 +80,13 @@ def are_listed(ui: Ui) -> bool:
     return drawn_now and ui.controller.selection.picked is not None
 
 
-def rows(ui: Ui) -> list[tuple[int, Row]]:
+def rows(ui: Ui) -> list[tuple[int, RayRow]]:
     """The rows that are seen, with their levels: at first, all that is below rays on their way."""
     state, tree, scene = ui.state(RaysState), ui.controller.inspector.tree, ui.controller.session.scene
     if tree is None or scene is None:
         return []
     top = ui.cached("rows of rays", tree, state.shown, lambda: RayRows(tree, scene, state.shown).top)
-    found: list[tuple[int, Row]] = ui.cached(
+    found: list[tuple[int, RayRow]] = ui.cached(
         "rows of rays that are seen", top, state.toggled, lambda: list(unfolded(top, state.is_open))
     )
     return found
@@ -72,12 +97,12 @@ def rows(ui: Ui) -> list[tuple[int, Row]]:
 
 def _filters(ui: Ui, state: RaysState) -> None:
     """Which shadow rays are listed and drawn."""
-    for number, shown in enumerate(Shown):
+    for number, shown in enumerate(RaySubset):
         if number:
             same_line_for(shown.value)
         if imgui.radio_button(shown.value, state.shown.shown is shown):
             state.shown = state.shown._replace(shown=shown)
-        tooltip(shown.meaning)
+        tooltip(SUBSET_HELP[shown])
     imgui.set_next_item_width(min(em(_LIGHT), imgui.get_content_region_avail().x))
 
     def choose(light: int | None) -> None:
@@ -105,7 +130,7 @@ def _tree(ui: Ui, tree: RayTree) -> None:
     imgui.end_child()
 
 
-def _row(state: RaysState, level: int, row: Row) -> None:
+def _row(state: RaysState, level: int, row: RayRow) -> None:
     """One row: its arrow folds it, a click selects it."""
     flags = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_avail_width
     flags |= imgui.TreeNodeFlags_.open_on_arrow | imgui.TreeNodeFlags_.open_on_double_click
@@ -144,14 +169,14 @@ _FADED = 0.16  # of rays other than the one that is pointed at or selected
 _BLOCKED = ImVec4(0.84, 0.37, 0.0, 1.0)
 _PALE = ImVec4(0.8, 0.86, 1.0, 0.35)  # around what is dark
 _MANY = 40  # lines, from which on they are thin
-_MOST_OF_A_ROW = 64  # shadow rays of a row that are picked out
+_MOST_CHOSEN = 64  # shadow rays that stand out together
 
 
 class Part(Enum):
     """What a line stands for, with its colour and its width in ems."""
 
     PATH = (0.36, 0.93, 0.72), 0.2  # a reflected or refracted ray
-    ASKED = (0.98, 0.87, 0.25), 0.15  # a shadow ray that was traced, as far as light comes
+    TRACED = (0.98, 0.87, 0.25), 0.15  # a shadow ray that was traced, as far as light comes
     SAVED = (0.98, 0.93, 0.66), 0.08  # one that was culled, as far as light comes
     DARK = (0.06, 0.10, 0.24), 0.13  # the rest of a shadow ray, behind what blocks it
 
@@ -165,7 +190,7 @@ class RayLine(NamedTuple):
     strokes: list[Stroke]
 
 
-def ray_lines(frame: Frame, tree: RayTree, shown: Filter, further: bool = True) -> list[RayLine]:
+def ray_lines(frame: Frame, tree: RayTree, shown: RayFilter, further: bool = True) -> list[RayLine]:
     """The rays on their way and the shadow rays that a filter lets be seen, MOST_DRAWN of these at most: those of the
     first points first, and of one point evenly.  Not `further`: those of the clicked point alone."""
     lines, left = [], MOST_DRAWN
@@ -181,25 +206,22 @@ def ray_lines(frame: Frame, tree: RayTree, shown: Filter, further: bool = True) 
         if len(places) > left:
             places = places[np.linspace(0, len(places) - 1, left).astype(int)]
         left -= len(places)
-        for number in places.tolist():
-            lines += _shadow_lines(frame, tree, ray.number, number)
+        lines += _shadow_lines(frame, tree, ray.number, places)
     return lines
 
 
-def _shadow_lines(frame: Frame, tree: RayTree, number: int, place: int) -> list[RayLine]:
-    """A shadow ray from its light to its point."""
-    ray = tree.rays[number]
-    s = ray.shadows
+def _shadow_lines(frame: Frame, tree: RayTree, number: int, places: NDArray[np.int64]) -> list[RayLine]:
+    """Shadow rays from their lights to their point, dark behind what blocks them."""
+    ray, lines = tree.rays[number], []
+    s, end = ray.shadows, ray.end.astype(np.float64)
     assert s is not None
-    start, end = tree.samples[place].astype(np.float64), ray.end.astype(np.float64)
-    part = Part.ASKED if s.verdict[place] == TRACED else Part.SAVED
-    if s.blocker[place] < 0:
-        return [RayLine(part, number, place, strokes(frame, [start, end]))]
-    stop = start + float(s.blocked_at[place]) * (end - start)
-    return [
-        RayLine(part, number, place, strokes(frame, [start, stop])),
-        RayLine(Part.DARK, number, place, strokes(frame, [stop, end])),
-    ]
+    for one in places.tolist():
+        start, part = tree.samples[one].astype(np.float64), Part.TRACED if s.verdict[one] == TRACED else Part.SAVED
+        stop = end if s.blocker[one] < 0 else start + float(s.blocked_at[one]) * (end - start)
+        lines.append(RayLine(part, number, one, strokes(frame, [start, stop])))
+        if s.blocker[one] >= 0:
+            lines.append(RayLine(Part.DARK, number, one, strokes(frame, [stop, end])))
+    return lines
 
 
 def draw(ui: Ui, made: Pen, frame: Frame) -> None:
@@ -210,31 +232,34 @@ def draw(ui: Ui, made: Pen, frame: Frame) -> None:
     tree, listed = c.inspector.tree, are_listed(ui)
     if tree is None or c.selection.picked is None or not (listed or c.session.draw.rays):
         return
-    shown = state.shown if listed else Filter()
+    shown = state.shown if listed else RayFilter()
     lines: list[RayLine] = ui.cached(
         "rays", frame, (tree, shown, listed), lambda: ray_lines(frame, tree, shown, listed)
     )
     selected = next((row for _, row in rows(ui) if row.key == state.selected), None) if listed else None
-    picked_out = [row for row in (selected, state.pointed) if row is not None and listed]
-    s = tree.rays[0].shadows
+    chosen = [row for row in (selected, state.pointed) if row is not None and listed]
+    standing_out: list[RayLine] = ui.cached(
+        "rays that stand out", lines, (chosen, light), lambda: _standing_out(tree, frame, lines, chosen, light)
+    )
     for line in lines:
-        of_light = (
-            light is not None and s is not None and line.ray == 0 and line.place >= 0 and s.light[line.place] == light
-        )
-        faded = picked_out or light is not None
-        _line(made, line, _FADED if faded and not of_light else 1.0, 0.55 if len(lines) > _MANY else 1.0)
-    for number, row in enumerate(picked_out):
-        for line in ui.cached(f"rays of row {number}", frame, row, partial(_of_row, tree, frame, lines, row)):
-            _line(made, line, 1.0)
-    _points(made, tree, frame, (state.pointed or selected) if listed else None, listed)
+        _line(made, line, _FADED if standing_out else 1.0, 0.55 if len(lines) > _MANY else 1.0)
+    for line in standing_out:
+        _line(made, line, 1.0)
+    _points(made, tree, frame, chosen[-1] if chosen else None, listed)
 
 
-def _of_row(tree: RayTree, frame: Frame, lines: Sequence[RayLine], row: Row) -> list[RayLine]:
-    """The lines of a row's rays."""
-    if not len(row.places):
-        return [line for line in lines if line.ray == row.ray and line.place < 0]
-    wanted = row.places[:: -(-len(row.places) // _MOST_OF_A_ROW)].tolist()
-    return [line for number in wanted for line in _shadow_lines(frame, tree, row.ray, number)]
+def _standing_out(
+    tree: RayTree, frame: Frame, lines: Sequence[RayLine], chosen: Sequence[RayRow], light: int | None
+) -> list[RayLine]:
+    """The lines of chosen rows' rays, and of the clicked point's shadow rays to a light."""
+    found = [line for row in chosen for line in lines if line.ray == row.ray and line.place < 0 and not len(row.places)]
+    groups = [(row.ray, row.places) for row in chosen if len(row.places)]
+    s = tree.rays[0].shadows
+    if light is not None and s is not None:
+        groups.append((0, RayFilter(RaySubset.ALL, light).places(s)))
+    for ray, places in groups:
+        found += _shadow_lines(frame, tree, ray, places[:: -(-len(places) // _MOST_CHOSEN) or 1])
+    return found
 
 
 def _line(made: Pen, line: RayLine, alpha: float, width: float = 1.0) -> None:
@@ -243,7 +268,7 @@ def _line(made: Pen, line: RayLine, alpha: float, width: float = 1.0) -> None:
     made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around)
 
 
-def _points(made: Pen, tree: RayTree, frame: Frame, chosen: Row | None, further: bool) -> None:
+def _points(made: Pen, tree: RayTree, frame: Frame, chosen: RayRow | None, further: bool) -> None:
     """A ring around each point that is shaded, a larger one at the clicked one; a cross where the chosen ray ends."""
     for ray in tree.rays if further else tree.rays[:1]:
         at = place(frame, ray.end) if ray.shadows is not None else None

@@ -11,10 +11,11 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from tracer.experiments.experiment import Experiment
 from tracer.experiments.hunt import Hunt
 from tracer.experiments.runner import Run
+from tracer.experiments.titles import title
 from tracer.experiments.zoom import ZoomTest
-from viewer.output.reports import Column, title
+from viewer.output.reports import Column
 from viewer.services.runs import duration
-from viewer.state.plans import FilmPlan, HuntPlan
+from viewer.state.plans import PathPlan
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     ERROR,
@@ -41,10 +42,10 @@ _ROW = int(imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allo
 Row = TypeVar("Row")
 
 
-def frames_row(plan: FilmPlan | HuntPlan, frames: tuple[int, int], tip: str) -> None:
+def frames_row(ui: Ui, plan: PathPlan, tip: str) -> None:
     """Show the row of the first and the last frame."""
     row("Frames", tip)
-    changed, span = imgui.input_int2("##frames", list(frames))
+    changed, span = imgui.input_int2("##frames", list(plan.frames(ui.controller.session.scene)))
     if changed:
         plan.first, plan.last = max(0, span[0]), max(0, span[1])
 
@@ -151,7 +152,7 @@ def results_table(
     for column in columns:
         imgui.table_next_column()
         clipped(column.heading, QUIET)
-        tooltip(column.meaning.strip())
+        tooltip(column.meaning)
     clipper = imgui.ListClipper()
     clipper.begin(len(rows))
     while clipper.step():

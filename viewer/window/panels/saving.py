@@ -6,65 +6,40 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.output import exr
+from viewer.output.capture import TEMPLATE_HELP
 from viewer.services.film import Films
 from viewer.services.runs import duration
+from viewer.window import menus
 from viewer.window.panels.runs import either, frames_row, start_or_progress
-from viewer.window.setting_rows import in_panel, plan_rows, setting_switch
-from viewer.window.ui import CaptureKind, Dialog, Ui
-from viewer.window.widgets import QUIET, WARNING, centred, em, paragraph, properties, row, tooltip, wide_button
+from viewer.window.setting_rows import in_panel, plan_rows, setting_row, setting_switches
+from viewer.window.ui import Dialog, Ui
+from viewer.window.widgets import QUIET, WARNING, begin_modal, em, paragraph, properties, row, tooltip
 
-NAME = "The dialog that saves a picture"
-TITLE = "Save picture as"
+TITLE = Dialog.SAVE_AS.value
 
 
 def show(ui: Ui) -> None:
     """The panel."""
-    p = ui.controller.preferences
-    if wide_button(f"{icons.ICON_FA_CAMERA}  Save", f"the picture alone{ui.key('Save picture')}", 2):
-        ui.capture_wanted = CaptureKind.PICTURE
+    menus.button(ui, "Save picture", icons.ICON_FA_CAMERA, "Save", 2)
     imgui.same_line()
-    if wide_button(f"{icons.ICON_FA_DISPLAY}  With panels", f"the whole window{ui.key('Save picture with panels')}"):
-        ui.capture_wanted = CaptureKind.WINDOW
-    if wide_button(
-        f"{icons.ICON_FA_FLOPPY_DISK}  Save as", f"larger, with a caption, or as EXR{ui.key('Save picture as...')}", 2
-    ):
-        ui.open(Dialog.SAVE_AS)
+    menus.button(ui, "Save picture with panels", icons.ICON_FA_DISPLAY, "With panels")
+    menus.button(ui, f"{Dialog.SAVE_AS.value}...", icons.ICON_FA_FLOPPY_DISK, "Save as", 2)
     imgui.same_line()
-    if wide_button(
-        f"{icons.ICON_FA_TERMINAL}  Copy command", f"the command that makes this picture{ui.key('Copy as command')}"
-    ):
-        copy_command(ui)
+    menus.button(ui, "Copy as command", icons.ICON_FA_TERMINAL, "Copy command")
+    settings = in_panel(ui, "Saving")
     with properties("pictures", 5.0) as shown:
-        if shown:
-            row("Folder", "where pictures are saved")
-            hint = str(ui.default_folder)
-            _, p.screenshot_folder = imgui.input_text_with_hint("##folder", hint, p.screenshot_folder)
-            tooltip(p.screenshot_folder or hint)
-            row("Name", "template of the file's name")
-            _, p.screenshot_template = imgui.input_text("##template", p.screenshot_template)
-            tooltip(ui.template_help)
-            row("tev", "where tev or HDRView listens, for File, Send to tev")
-            _, p.tev = imgui.input_text("##tev", p.tev)
-    for one in in_panel(ui, "Saving"):
-        setting_switch(ui, one)
+        for one in settings if shown else ():
+            if one.kind is not bool:
+                setting_row(ui, one, f"\n{TEMPLATE_HELP}" if one.path == "screenshot_template" else "")
+    setting_switches(ui, [one for one in settings if one.kind is bool])
     paragraph("A saved picture carries scene, camera, settings and statistics: open or drop it to come back.", QUIET)
-
-
-def copy_command(ui: Ui) -> None:
-    """Put the command that makes the picture on the clipboard."""
-    words = ui.controller.pictures.command()
-    if words is not None:
-        ui.desktop.copy(words)
 
 
 def show_dialog(ui: Ui) -> None:
     """The dialog, while it is open."""
     if Dialog.SAVE_AS not in ui.dialogs:
         return
-    if not imgui.is_popup_open(TITLE):
-        imgui.open_popup(TITLE)
-    centred(em(27.0))
-    shown, stays = imgui.begin_popup_modal(TITLE, True, int(imgui.WindowFlags_.no_resize))
+    shown, done = begin_modal(TITLE, 27.0)
     if not shown:
         return
     pictures = ui.controller.pictures
@@ -73,9 +48,8 @@ def show_dialog(ui: Ui) -> None:
             plan_rows(ui, pictures.plan, "multiple", "samples", "ending")
             if pictures.plan.ending != exr.ENDING:
                 plan_rows(ui, pictures.plan, "legend", "caption")
-                tooltip(ui.template_help)
+                tooltip(TEMPLATE_HELP)
     imgui.spacing()
-    done = not stays or imgui.is_key_pressed(imgui.Key.escape)
     width, height = pictures.size
     paragraph(f"{width} x {height} pixels, into {ui.controller.preferences.picture_folder}", QUIET)
     imgui.spacing()
@@ -116,7 +90,7 @@ def _way(ui: Ui, films: Films) -> None:
         row("Along", "The frames of the animation, or a flight through the bookmarks at an even speed.")
         plan.through_bookmarks = either("path", f"bookmarks ({marks})###bookmarks", plan.through_bookmarks)
         if not plan.through_bookmarks:
-            frames_row(plan, films.frames, "First and last frame of the animation.")
+            frames_row(ui, plan, "First and last frame of the animation.")
             row("Camera", "The scene's own camera, or the one in the picture now, which stays where it is.")
             plan.from_here = either("own", "as here", plan.from_here)
         plan_rows(ui, plan, "seconds", "fps")
@@ -127,7 +101,7 @@ def _looks(ui: Ui, films: Films) -> None:
     with properties("looks", 7.6) as shown:
         if shown:
             plan_rows(ui, films.plan, "size", "samples", "video", "legend", "caption")
-            tooltip(ui.template_help)
+            tooltip(TEMPLATE_HELP)
 
 
 def _start(ui: Ui, films: Films) -> None:

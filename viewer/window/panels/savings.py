@@ -6,9 +6,8 @@ from imgui_bundle import ImVec2, imgui
 
 from viewer.services.controller import Controller
 from viewer.state.palette import FATE_COLORS, label_color
-from viewer.state.savings import LONGEST, WOULD_OPACITY, Bar, Clause, Part, Standing, Tone, bar_of, sentence
+from viewer.state.savings import LONGEST, WOULD_OPACITY, Clause, Part, Standing, Tone, bar_of, places, sentence
 from viewer.state.views import View
-from viewer.util.numbers import count
 from viewer.views.legend import BACKDROP, TEXT
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, packed, tooltip
@@ -20,13 +19,9 @@ _GAP, _PAD = 0.3, 0.35  # ems between sentence and bar, and beside the words of 
 
 def standing(c: Controller) -> Standing:
     """Return what is known of the newest frame beside its counters."""
-    frame, run, proves = c.frame, c.runs.current, ""
-    if frame is not None and c.scheduler.certifies:
-        at, most = c.scheduler.refinement.progress
-        far = f" (picture {at} of at most {most})" if most else ""
-        proves = f"proving{far}: {count(frame.statistics.certificates)} made in the last"
+    run = c.runs.current
     name = run.name if run is not None and run.is_shown else ""
-    return Standing(c.baseline.measured, c.baseline.moving, proves, c.baseline.why_not, name)
+    return Standing(c.baseline.measured, c.scheduler.certifies, c.baseline.why_not, name)
 
 
 def height(ui: Ui, room: ImVec2) -> float:
@@ -74,12 +69,12 @@ def _write(ui: Ui, clauses: tuple[Clause, ...], start: ImVec2, width: float, lin
         x += imgui.calc_text_size(text).x
 
 
-def _draw(ui: Ui, bar: Bar, width: float) -> None:
+def _draw(ui: Ui, bar: tuple[Part, ...], width: float) -> None:
     """The parts beside each other, each as wide as its share; a click shows the pixels of one."""
     corner, high = imgui.get_cursor_screen_pos(), imgui.get_text_line_height() + em(0.1)
     draw, next_light = imgui.get_window_draw_list(), f"Next light{ui.key('Next light')}"
     draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), packed(BACKDROP), em(0.15))
-    for part, left, right in bar.places(corner.x, corner.x + width):
+    for part, left, right in places(bar, corner.x, corner.x + width):
         at, end = ImVec2(left, corner.y), ImVec2(max(right, left + 1), corner.y + high)
         imgui.set_cursor_screen_pos(at)
         if imgui.invisible_button(f"{part.name}##savings", ImVec2(end.x - at.x, high)):

@@ -35,8 +35,7 @@ def show(ui: Ui) -> None:
         imgui.open_popup("recent")
     _recent(ui)
     if c.session.scene is None:
-        read = c.session.previewed
-        paragraph(f"{read.path.name} is read." if read is not None else "No scene is open.", QUIET)
+        paragraph("No scene is open.", QUIET)
         return
     _facts(ui)
     _lights(ui)

@@ -9,13 +9,13 @@ from imgui_bundle import ImVec2, imgui
 
 from tracer.frame import Frame
 from tracer.method import Method
-from viewer.state.comparison import CompareMode, Side, Source
+from viewer.state.comparison import CompareMode, Side
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import LESS, MORE, Color
 from viewer.state.picking import pixel_at
 from viewer.state.views import View
 from viewer.views import words_at
-from viewer.views.base import Highlight, Pixels, Words
+from viewer.views.base import Pixels, Words
 from viewer.views.compare import composed, difference_legend
 from viewer.views.legend import Legend
 from viewer.views.wipe import wipe_column
@@ -55,7 +55,7 @@ def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
         compared.draw_difference(seen.difference, comparing.limit(seen.difference), options.mark_wrong)
     else:
         of_a = replace(options, view=seen.a.view, light=seen.a.light)
-        compared.a.draw(seen.a.frame, of_a, InWindow(smooth=smooth, highlight=Highlight(line=False)))
+        compared.a.draw(seen.a.frame, of_a, InWindow(smooth=smooth))
 
 
 def filling(ui: Ui) -> PictureTexture | None:
@@ -151,7 +151,7 @@ def area_of_b(ui: Ui, room: tuple[int, int]) -> tuple[int, int]:
     comparing, state = ui.controller.comparing, ui.controller.comparing.state
     if not state.on or state.mode is not CompareMode.SIDE or min(room) < 1:
         return room
-    if state.source is Source.KEPT:
+    if not state.second:
         kept = comparing.kept
         return room if kept is None else (kept.frame.width, kept.frame.height)
     gap = round(em(GAP) * imgui.get_io().display_framebuffer_scale.x)
@@ -182,24 +182,22 @@ def draw_a(ui: Ui, area: Area, right: float = 1.0) -> None:
 
 def draw_wiped(ui: Ui, area: Area) -> None:
     """Draw A left of the line, where A and B are wiped."""
-    if ui.controller.comparing.seen is not None and _line_is_there(ui):
+    seen = ui.controller.comparing.seen
+    if seen is not None and seen.has_line:
         draw_a(ui, area, ui.controller.session.draw.wipe)
 
 
 def drag_line(ui: Ui, area: Area) -> bool:
     """Let the pointer drag the line across the picture, which is ImGui's last item; returns whether it holds it."""
-    state, near = ui.state(WipeState), abs(imgui.get_io().mouse_pos.x - _line_at(ui, area)) <= em(_REACH)
-    if not _line_is_there(ui):
-        state.held = False
-        return False
-    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left) and near:
-        state.held = True
-    held = state.held
+    state, there, x = ui.state(WipeState), _line_is_there(ui), imgui.get_io().mouse_pos.x
+    near = there and abs(x - _line_at(ui, area)) <= em(_REACH)
+    if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
+        state.held = near
+    held = state.held = state.held and there
     if held:
-        across = area.to_picture(imgui.get_io().mouse_pos.x, 0.0)[0]
-        ui.controller.session.set_draw(wipe=min(max(across, 0.0), 1.0))
+        ui.controller.session.set_draw(wipe=min(max(area.to_picture(x, 0.0)[0], 0.0), 1.0))
         state.held = imgui.is_item_active()
-    if held or (imgui.is_item_hovered() and not imgui.is_item_active() and near):
+    if held or (near and imgui.is_item_hovered() and not imgui.is_item_active()):
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     return held
 
@@ -218,21 +216,22 @@ def _line_at(ui: Ui, area: Area) -> float:
 def show(ui: Ui, area: Area, top: float) -> None:
     """Draw what says which is which, below the picture's title, which ends at `top`; and the line of a wipe."""
     seen, frame, y, room = ui.controller.comparing.seen, ui.controller.frame, top + em(0.2), area.size.x - em(0.6)
-    if seen is None and frame is not None and _line_is_there(ui):
-        method = frame.settings.method
-        _line(ui, area, y, (method if Method.parse(method).culls else "no culling", "reference"), (None, None))
+    corner = ImVec2(area.corner.x, y)
     if seen is None:
+        if frame is not None and _line_is_there(ui):
+            method = frame.settings.method if Method.parse(frame.settings.method).culls else "no culling"
+            _line(ui, area, y, (method, "reference"), (None, None))
         return
     a, b = seen.names
     if seen.mode is CompareMode.SIDE:
         _label(ImVec2(area.corner.x - em(GAP) - area.size.x, area.corner.y), a, LESS, room)
-        _label(ImVec2(area.corner.x, y), b, MORE, room)
+        _label(corner, b, MORE, room)
     elif seen.has_line:
         _line(ui, area, y, (a, b), (LESS, MORE))
     elif seen.difference is not None:
-        _label(ImVec2(area.corner.x, y), f"{b}   minus   {a}", None, room)
+        _label(corner, f"{b}   minus   {a}", None, room)
     else:
-        _label(ImVec2(area.corner.x, y), *((a, LESS) if seen.shows_a else (b, MORE)), room)
+        _label(corner, *((a, LESS) if seen.shows_a else (b, MORE)), room)
 
 
 def _label(at: ImVec2, text: str, color: Color | None, room: float, ends_there: bool = False) -> None:

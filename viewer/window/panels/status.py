@@ -1,5 +1,5 @@
-"""What the program says: the status bar, the log of all messages, and internal errors, over the window or in the place
-of a panel that failed."""
+"""What the program says: the status bar, the log of all messages, and what stands in the place of a panel that
+failed."""
 
 from __future__ import annotations
 
@@ -37,8 +37,10 @@ def show(ui: Ui) -> None:
     if width > 0.6 * room:  # a narrow window: what happens comes first
         right, width = "", 0.0
     if message is not None:
-        icon, _ = _ICONS[Level.ERROR if message.error else Level.NOTICE]
-        clipped(f"{icon}  {message.text}", ERROR if message.error else None, room - width)
+        said = f"{_ICONS[message.level][0]}  {message.text}{_times(message)}"
+        clipped(said, ERROR if message.error else None, room - width)
+        if message.level is Level.FAULT:
+            tooltip("Internal error. Nothing was lost; the log has the details, which help to fix it.")
         if message.error and imgui.is_item_clicked():
             c.notices.message = None
     else:
@@ -97,8 +99,8 @@ def doing(c: Controller) -> str:
     if run is not None:
         return f"{run.name}{f', traced: {run.label}' if run.traced else ' is starting'}   (Escape stops it)"
     if preparing is not None:
-        what = "compiling what makes certificates (first start only)"
-        return f"{what if c.loader.compiles else 'loading what makes certificates'}: {100.0 * preparing.fraction:.0f} %"
+        does, when = ("compiling", " (first start only)") if c.loader.compiles else ("loading", "")
+        return f"{does} the kernels of certificates{when}: {100.0 * preparing.fraction:.0f} %"
     if c.loader.method_job is not None:
         return f"{c.loader.method_job.title}, once for this version"
     if c.session.scene is None:
@@ -111,7 +113,7 @@ def doing(c: Controller) -> str:
         made = c.frame.statistics.certificates if c.frame is not None else 0
         before = ", before more samples" if c.session.settings.samples > 1 else ""
         makes, _ = terms.made(c.session.settings.method)
-        return f"preparing{before}{f' ({makes} in the last picture: {count(made)})' if made else ''}"
+        return f"making certificates{before}{f' ({makes} in the last picture: {count(made)})' if made else ''}"
     if c.renderer.busy or c.scheduler.awaits:
         is_there = c.frame is not None and not c.scheduler.outdated and c.frame.camera == c.session.camera
         return "refining the picture" if c.scheduler.becoming_finer or is_there else TRACING
@@ -137,7 +139,7 @@ def first_picture(c: Controller) -> str:
     return "Tracing the first picture ..." if now == TRACING else f"{now[0].upper()}{now[1:]}"
 
 
-# --- the log, and internal errors --------------------------------------------------------------------
+# --- the log --------------------------------------------------------------------
 
 
 def show_log(ui: Ui) -> None:
@@ -177,34 +179,6 @@ def _entry(ui: Ui, entry: Entry) -> None:
         imgui.text_unformatted(entry.details.rstrip())
         imgui.tree_pop()
     imgui.unindent(em(5.8))
-
-
-def show_fault(ui: Ui) -> None:
-    """Show the newest internal error at the window's lower right, until it is dismissed."""
-    notices = ui.controller.notices
-    entry = notices.newest_fault
-    if entry is None:
-        return
-    viewport = imgui.get_main_viewport()
-    x, y = viewport.work_pos.x + viewport.work_size.x, viewport.work_pos.y + viewport.work_size.y
-    imgui.set_next_window_pos(ImVec2(x - em(1.0), y - em(3.0)), int(imgui.Cond_.always), ImVec2(1.0, 1.0))
-    imgui.set_next_window_size(ImVec2(min(em(30.0), 0.9 * viewport.work_size.x), 0.0))
-    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_docking | imgui.WindowFlags_.no_saved_settings
-    flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_move
-    if imgui.begin("##fault", None, int(flags)):
-        others = f", and {len(notices.faults) - 1} more in the log" if len(notices.faults) > 1 else ""
-        icon, color = _ICONS[entry.level]
-        imgui.text_colored(color, f"{icon}  Internal error{_times(entry)}{others}")
-        paragraph(entry.text)
-        paragraph("Nothing was lost. The details help to fix it.", QUIET)
-        _copy_button(ui, entry)
-        imgui.same_line()
-        if imgui.button("Show log"):
-            ui.show_panel("Log")
-        imgui.same_line()
-        if imgui.button("Dismiss"):
-            notices.dismiss_faults()
-    imgui.end()
 
 
 def instead_of_part(ui: Ui, name: str, entry: Entry) -> None:

@@ -11,7 +11,7 @@ from viewer.services.tour import LAST_WORD, STEPS
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, em, paragraph, tooltip
 
-_AGAIN = "end the tour; the menu Help has it again"
+_AGAIN = "End the tour. The menu Help starts it again."
 
 
 def height(ui: Ui, width: float) -> float:
@@ -32,13 +32,12 @@ def show(ui: Ui, width: float) -> None:
             _head("The tour is done", ("Close", tour.end, ""))
             paragraph(LAST_WORD, QUIET)
         else:
-            begun = ui.controller.frame is not None or ui.graphics.preview is not None
+            begun = ui.controller.frame is not None
             text = tour.text(step) if begun else "You can begin as soon as there is a picture."
             number, last = STEPS.index(step) + 1, step is STEPS[-1]
             _head(
                 f"Step {number} of {len(STEPS)}:  {step.title}",
-                (f"{icons.ICON_FA_PLAY}  Show me", tour.show, "do this step for you"),
-                ("Finish" if last else "Skip", tour.skip, _AGAIN if last else "go on to the next step"),
+                ("Finish" if last else "Skip", tour.skip, _AGAIN if last else "Go on to the next step."),
                 (f"{icons.ICON_FA_XMARK}##end", tour.end, _AGAIN),
             )
             paragraph(text, QUIET)

@@ -8,15 +8,16 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.runs import missing_in
-from viewer.state.draw_options import NEUTRAL
+from viewer.state.draw_options import AXES
+from viewer.state.pixels import pixel_at
 from viewer.state.view_state import LONGEST_SIDE
 from viewer.state.views import View, can_draw
-from viewer.window.panels import legend, lights, slicing
+from viewer.views import view_of, words_at
+from viewer.window import menus
+from viewer.window.panels import legend, lights
 from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, em, paragraph, properties, right, row, size_field, tooltip
-
-_BUTTON = 2.2  # ems that a row leaves for a button
+from viewer.window.widgets import QUIET, WARNING, em, paragraph, properties, right, row, size_field, tooltip, tooltip_at
 
 
 def show(ui: Ui) -> None:
@@ -31,11 +32,12 @@ def show(ui: Ui) -> None:
                 row("Light", f"The light that the view is about{ui.key('Next light')}.")
                 lights.combo(ui, "view", draw.light, ui.controller.settings.set_light)
             if draw.view.has_slice:
-                slicing.rows(ui)
+                _slice_rows(ui)
             for one in settings:
-                if one.path == "draw.tone.exposure" and not draw.tone.neutral:
-                    setting_row(ui, one, room=_BUTTON)
-                    _reset_tone(ui)
+                if one.path == "draw.tone.exposure":
+                    setting_row(ui, one, room=2.2)
+                    imgui.same_line(0.0, em(0.3))
+                    menus.button(ui, "Colours as traced", icons.ICON_FA_ROTATE_LEFT, width=1.9)
                 elif one.kind is not bool:
                     setting_row(ui, one)
             _range(ui)
@@ -61,13 +63,6 @@ def show_rendering(ui: Ui) -> None:
                 setting_row(ui, one)
         if shown and c.session.scene is not None and c.session.scene.lights:
             lights.lamp_rows(ui)
-
-
-def _reset_tone(ui: Ui) -> None:
-    imgui.same_line(0.0, em(0.3))
-    if imgui.button(f"{icons.ICON_FA_ROTATE_LEFT}##reset tone", (-1.0, 0.0)):
-        ui.controller.session.set_draw(tone=NEUTRAL)
-    tooltip("Reset exposure, white and curve: colours as traced.")
 
 
 def _views(ui: Ui) -> None:
@@ -116,3 +111,55 @@ def _explanation(ui: Ui) -> None:
         return
     cost = " It traces every culled ray as well, so that frames take longer." if view.needs_verify else ""
     paragraph(f"{view.help}{cost}", QUIET)
+
+
+# --- views of space: the slice through it, and what they say beside the pointer -------------------------
+
+
+def _slice_rows(ui: Ui) -> None:
+    """Rows of the slice through space."""
+    session, frame = ui.controller.session, ui.controller.frame
+    cut = session.draw.slice
+    row("Slice", "The axis that the slice goes across.")
+    for axis, name in enumerate(AXES):
+        if axis:
+            imgui.same_line(0.0, em(0.6))
+        if imgui.radio_button(f"{name}##slice", cut.axis == axis):
+            session.set_draw(slice=cut._replace(axis=axis))
+    layers = view_of(session.draw.view).layers(frame, cut.axis) if frame is not None else 0
+    if layers:
+        row("Layer", "Where along the axis it is. Ctrl+click to type a number.")
+        flags = int(imgui.SliderFlags_.always_clamp)
+        changed, number = imgui.slider_int("##layer", cut.layer(layers), 0, layers - 1, "%d", flags)
+        if changed:
+            session.set_draw(slice=cut.in_layer(number, layers))
+
+
+def step_slice(ui: Ui, layers: int) -> None:
+    """Move the slice by so many layers."""
+    session, frame = ui.controller.session, ui.controller.frame
+    cut = session.draw.slice
+    many = view_of(session.draw.view).layers(frame, cut.axis) if frame is not None else 0
+    if many:
+        session.set_draw(slice=cut.in_layer(cut.layer(many) + layers, many))
+
+
+def words_in_space(ui: Ui, x: int, y: int) -> list[str]:
+    """What a pixel of the newest frame shows of space, in a view of that; nothing where it shows none."""
+    c = ui.controller
+    view = c.scheduler.drawn_view
+    if c.frame is None or not (view.has_slice or view is View.CELL_LIGHTS):
+        return []
+    words = words_at(c.frame, c.session.draw, x, y)
+    return [] if words in (("-",), ("miss",)) else list(words)
+
+
+def show_words_in_space(ui: Ui) -> None:
+    """Beside the pointer, what is under it."""
+    c = ui.controller
+    at, frame = c.selection.hovered, c.frame
+    if at is None or frame is None or imgui.is_mouse_down(0):
+        return
+    lines = words_in_space(ui, *pixel_at(frame, *at))
+    if lines:
+        tooltip_at("\n".join(lines))

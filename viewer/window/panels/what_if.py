@@ -4,7 +4,6 @@ While the panel is on the screen, lights are marked in the picture, to be dragge
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,13 +15,13 @@ from tracer.frame import Frame
 from tracer.scene.edits import Edited
 from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
-from viewer.state.comparison import CompareMode, Source
+from viewer.state.comparison import CompareMode
 from viewer.state.picking import same_place
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.view_state import one_by_one
 from viewer.window.command import Command, Condition
 from viewer.window.panels import lights
-from viewer.window.panels.area import SHADE
+from viewer.window.panels.area import SHADE, Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
@@ -43,16 +42,16 @@ _MOST_MARKS = 64  # of lights: more would hide the picture
 _REACH = 0.7  # ems from a mark's middle at which it can be taken hold of
 _ON, _HELD, _OFF = ImVec4(1.0, 0.93, 0.45, 1.0), ImVec4(0.42, 0.70, 0.96, 1.0), ImVec4(0.62, 0.65, 0.70, 1.0)
 _DIGITS = 6  # of a place to which a light is brought
-_STATIC = "It stays where it is at this moment, and counts as what never moves: its primitives carry modes."
-_CAN_MOVE = "It stays where it is, but counts as able to move: no modes, and its shadows are always traced."
+_STATIC = "It stays where it is at this moment, and counts as static: its primitives carry modes."
+_CAN_MOVE = "It stays where it is, but counts as dynamic: it carries no modes, and its shadow rays are always traced."
 
 
 @dataclass
 class WhatIfState:
-    """The frame of ImGui's in which the panel was drawn last, and the light that the pointer drags."""
+    """In which frame of ImGui the panel was drawn last, and whether the light that the pointer holds was dragged."""
 
     drawn: int = -9
-    held_light: int | None = None
+    dragged: bool = False
 
 
 def commands(ui: Ui) -> list[Command]:
@@ -70,7 +69,7 @@ def commands(ui: Ui) -> list[Command]:
         Command("Show everything", "Edit/What if", editing.show_everything,
                 enabled=Condition(lambda: bool(editing.now.hidden or editing.now.hidden_primitives),
                                   "nothing is hidden")),
-        Command("Take all edits back", "Edit/What if", editing.clear, tip="the scene as its file says",
+        Command("Clear all edits", "Edit/What if", editing.clear, tip="the scene as its file says",
                 enabled=Condition(lambda: bool(editing.now), "the scene is as its file says")),
     ]  # fmt: skip
 
@@ -95,7 +94,7 @@ def show(ui: Ui) -> None:
         return
     ui.state(WhatIfState).drawn = imgui.get_frame_count()
     if not ui.controller.editing.now:
-        paragraph("Change the scene, not its file, and see what that changes. Undo brings all back.", QUIET)
+        paragraph("Edits change the scene, but not its file. Undo takes them back.", QUIET)
     _object(ui, edited)
     _lights(ui, edited)
     _edits(ui)
@@ -107,7 +106,7 @@ def _object(ui: Ui, edited: Edited) -> None:
     pick, editing = ui.controller.selection.picked, ui.controller.editing
     heading("Object")
     if pick is None or not 0 <= pick.primitive < len(edited.primitives):
-        paragraph("Click an object in the picture to hide it, or to let it move.", QUIET)
+        paragraph("Click an object in the picture to hide it, or to make it static or dynamic.", QUIET)
         return
     thing, primitive = edited.thing_of(pick.primitive), int(edited.primitives[pick.primitive])
     clipped(thing.name)
@@ -128,7 +127,7 @@ def _object(ui: Ui, edited: Edited) -> None:
         def move(on: bool) -> None:
             editing.change(editing.now.with_moving(thing.name, on))
 
-        checkbox("Can move", thing.name in editing.now.moving, move, _CAN_MOVE)
+        checkbox("Dynamic", thing.name in editing.now.moving, move, _CAN_MOVE)
 
 
 def _lights(ui: Ui, edited: Edited) -> None:
@@ -140,17 +139,13 @@ def _lights(ui: Ui, edited: Edited) -> None:
         return
     numbers = lights.found(ui, "what if", original)
     places = original.light_positions(ui.controller.session.time)
-    line = imgui.get_frame_height_with_spacing()
-    if imgui.begin_child("switches", (0.0, min(max(len(numbers), 1), _ROWS) * line + 2.0)):
-        clipper = imgui.ListClipper()
-        clipper.begin(len(numbers), line)
-        while clipper.step():
-            for k in range(clipper.display_start, clipper.display_end):
-                imgui.push_id(numbers[k])
-                _light(ui, edited, numbers[k], places[numbers[k]].tolist())
-                imgui.pop_id()
-        clipper.end()
-    imgui.end_child()
+
+    def row(number: int) -> None:
+        imgui.push_id(number)
+        _light(ui, edited, number, places[number].tolist())
+        imgui.pop_id()
+
+    lights.rows(numbers, _ROWS, imgui.get_frame_height_with_spacing(), row)
     paragraph("Drag a light in the picture, or type where it is.", QUIET)
 
 
@@ -177,7 +172,7 @@ def _light(ui: Ui, edited: Edited, number: int, own_place: list[float]) -> None:
         imgui.same_line(0.0, 0.0)
         if imgui.button(icons.ICON_FA_ROTATE_LEFT, (button, button)):
             editing.change(editing.now.with_light_at(number, None))
-        tooltip("back to where it was")
+        tooltip("back to its place in the scene")
 
 
 def _move(ui: Ui, number: int, to: tuple[float, float, float] | list[float]) -> None:
@@ -198,11 +193,11 @@ def _edits(ui: Ui) -> None:
         imgui.push_id(number)
         if imgui.small_button(icons.ICON_FA_XMARK):
             editing.change(without)
-        tooltip("take this edit back")
+        tooltip("remove this edit")
         imgui.same_line()
         clipped(words)
         imgui.pop_id()
-    if len(listed) > 1 and wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Take all back"):
+    if len(listed) > 1 and wide_button(f"{icons.ICON_FA_ROTATE_LEFT}  Clear all"):
         editing.clear()
 
 
@@ -214,7 +209,7 @@ def _changed(ui: Ui) -> None:
         return
     heading("What has changed")
     if not same_place(before.frame, frame):
-        text = "The picture before the edits is from elsewhere. Take all back and undo that, to compare from here."
+        text = "The picture before the edits has another camera or time: clear the edits and undo that, to compare."
         paragraph(text, QUIET)
         return
     on = comparing.state.on and comparing.kept is before
@@ -223,7 +218,7 @@ def _changed(ui: Ui) -> None:
             comparing.end()
         else:
             comparing.kept = before
-            comparing.change(source=Source.KEPT)
+            comparing.trace_by("")
             comparing.start(CompareMode.DIFFERENCE)
     then, now = before.frame.statistics.shadow, frame.statistics.shadow
     for name in ("due", "saved", "traced"):
@@ -262,57 +257,39 @@ def marks_of(ui: Ui, frame: Frame) -> list[Mark]:
     return found
 
 
-def _open(ui: Ui) -> bool:
-    """Whether the panel is on the screen."""
-    return imgui.get_frame_count() - ui.state(WhatIfState).drawn <= 2
-
-
-def handle(ui: Ui, corner: ImVec2, size: ImVec2) -> bool:
-    """Let the pointer drag a light in the plane of the screen; whether it holds one.  The picture is ImGui's last
-    item."""
-    state, frame = ui.state(WhatIfState), ui.controller.frame
-    if frame is None or not (_open(ui) or state.held_light is not None):
-        state.held_light = None
-        return False
-    mouse, marks, editing = imgui.get_io().mouse_pos, marks_of(ui, frame), ui.controller.editing
-    if state.held_light is None:
-        near = _nearest(marks, corner, size) if imgui.is_item_hovered() else None
-        if near is None:
-            return False
-        if not (imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left)):
-            if not imgui.is_item_active():
-                tooltip_at(f"{near.name}: drag it; a click switches it {'off' if near.on else 'on'}")
-            return False
-        state.held_light, ui.picture.dragged, ui.picture.pressed_at = near.number, False, (mouse.x, mouse.y)
-    held, delta = state.held_light, imgui.get_io().mouse_delta
-    ui.picture.dragged |= math.dist(ui.picture.pressed_at, (mouse.x, mouse.y)) > em(0.3)
-    mark = next((mark for mark in marks if mark.number == held), None)  # none while it is out of the picture
-    if mark is not None and ui.picture.dragged and (delta.x or delta.y):  # as far along the view as it is
-        at = (mouse.x - corner.x) / size.x, (mouse.y - corner.y) / size.y
-        _move(ui, held, at_depth(frame, at, float(seen_from(frame.camera, mark.position)[2])))
-    if not imgui.is_item_active():
-        if not ui.picture.dragged:
-            editing.change(editing.now.with_light(held, held in editing.now.lights_off))
-        state.held_light = None
-    return True
-
-
-def _nearest(marks: list[Mark], corner: ImVec2, size: ImVec2) -> Mark | None:
-    """The mark that the pointer reaches, if any."""
-    mouse = imgui.get_io().mouse_pos
-    away = [math.dist((mouse.x, mouse.y), (corner.x + m.at[0] * size.x, corner.y + m.at[1] * size.y)) for m in marks]
-    return marks[away.index(min(away))] if min(away, default=math.inf) <= em(_REACH) else None
-
-
-def show_lights(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
-    """A sun for each light that is on, a ring for each that is off."""
-    frame = ui.controller.frame
-    if frame is None or not _open(ui):
+def show_lights(ui: Ui, area: Area) -> None:
+    """Mark each light while the panel is on the screen, a sun where it is on, a cross where it is off: to be dragged,
+    or switched by a click."""
+    frame, draw, reach = ui.controller.frame, imgui.get_window_draw_list(), em(_REACH)
+    if frame is None or imgui.get_frame_count() - ui.state(WhatIfState).drawn > 2:
         return
-    draw, held = imgui.get_window_draw_list(), ui.state(WhatIfState).held_light
     for mark in marks_of(ui, frame):
-        at = ImVec2(corner.x + mark.at[0] * (end.x - corner.x), corner.y + mark.at[1] * (end.y - corner.y))
+        at = area.to_screen(*mark.at)
+        if not (area.corner.x <= at.x <= area.end.x and area.corner.y <= at.y <= area.end.y):
+            continue
+        imgui.set_cursor_screen_pos(ImVec2(at.x - reach, at.y - reach))
+        clicked = imgui.invisible_button(f"light {mark.number}", ImVec2(2.0 * reach, 2.0 * reach))
+        color = _HELD if imgui.is_item_active() else _ON if mark.on else _OFF
         icon = icons.ICON_FA_SUN if mark.on else icons.ICON_FA_CIRCLE_XMARK
-        color, size = _HELD if mark.number == held else _ON if mark.on else _OFF, imgui.calc_text_size(icon)
+        size = imgui.calc_text_size(icon)
         draw.add_circle_filled(at, 0.65 * size.y, imgui.get_color_u32(SHADE))
         draw.add_text(ImVec2(at.x - size.x / 2.0, at.y - size.y / 2.0), imgui.get_color_u32(color), icon)
+        _hold(ui, area, frame, mark, clicked)
+
+
+def _hold(ui: Ui, area: Area, frame: Frame, mark: Mark, clicked: bool) -> None:
+    """Let the pointer drag a light, whose mark is ImGui's last item, as far along the view as it is; or switch it."""
+    state, io, editing = ui.state(WhatIfState), imgui.get_io(), ui.controller.editing
+    if imgui.is_item_activated():
+        state.dragged = False
+    if imgui.is_item_active():
+        state.dragged |= imgui.is_mouse_dragging(imgui.MouseButton_.left, em(0.3))
+        if state.dragged and (io.mouse_delta.x or io.mouse_delta.y):  # and no further than to the picture's edge
+            x = min(max(io.mouse_pos.x, area.corner.x + 1.0), area.end.x - 1.0)
+            y = min(max(io.mouse_pos.y, area.corner.y + 1.0), area.end.y - 1.0)
+            depth = float(seen_from(frame.camera, mark.position)[2])
+            _move(ui, mark.number, at_depth(frame, area.to_picture(x, y), depth))
+    elif clicked and not state.dragged:
+        editing.change(editing.now.with_light(mark.number, not mark.on))
+    elif imgui.is_item_hovered():
+        tooltip_at(f"{mark.name}: drag it; a click switches it {'off' if mark.on else 'on'}")

@@ -7,9 +7,10 @@ from collections.abc import Iterable
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
+from tracer.experiments.filmstrip import Shot
+from tracer.experiments.titles import happenings
 from tracer.experiments.zoom import Approach, Results, Step
-from viewer.output.filmstrip import Shot
-from viewer.output.reports import STEPS, changes_in_words, happenings
+from viewer.output.reports import STEPS, changes_in_words
 from viewer.services.runs import RecordedZoomTest
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
 from viewer.window.panels.runs import Part, results_table, show_run

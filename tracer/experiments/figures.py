@@ -1,4 +1,4 @@
-"""Figures for slides and papers: of experiments, zoom tests and sweeps, and what all figures have in common.
+"""Figures for slides and papers: of experiments and zoom tests, and what all figures have in common.
 
 Importing this loads matplotlib, which takes a second: import it where a figure is wanted.  Nothing of a user's own
 matplotlib settings shows, and the same data give the same file.
@@ -6,11 +6,12 @@ matplotlib settings shows, and the same data give the same file.
 
 from __future__ import annotations
 
+import io
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from matplotlib import style
@@ -21,14 +22,9 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, PercentFor
 
 from tracer.experiments import zoom
 from tracer.experiments.experiment import REFERENCE, Results, Row, table
-from tracer.experiments.lamp_experiment import LampResults
-from viewer.output.filmstrip import Filmstrip, Shot
-from viewer.output.reports import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
-from viewer.util.files import write_whole
-from viewer.util.numbers import saved
-
-if TYPE_CHECKING:  # this needs pyarrow
-    from tracer.experiments.sweep_summary import Line
+from tracer.experiments.filmstrip import Filmstrip, Shot
+from tracer.experiments.titles import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
+from tracer.text import saved
 
 ENDINGS = (".png", ".svg", ".pdf")
 # Okabe and Ito's colours, those that read well as letters first; in greys, dashes and marks distinguish methods.
@@ -70,16 +66,12 @@ def check_ending(path: Path) -> None:
 
 
 @styled()
-def save(figure: Figure, path: Path, kept: Mapping[str, str] | None = None) -> None:
-    """Write a figure as its ending says, one of ENDINGS, whole or not at all, with texts to be kept in it; raises
-    OSError in one line."""
-    kind = path.suffix.lower()[1:]
-    no_date: dict[str, dict[str, Any]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
-
-    def write(file: BinaryIO) -> None:
-        figure.savefig(file, format=kind, dpi=_DPI, metadata={**no_date.get(kind, {}), **(kept or {})})
-
-    write_whole(path, write)
+def file_of(figure: Figure, ending: str, kept: Mapping[str, str] | None = None) -> bytes:
+    """Return a figure as a file with this ending, one of ENDINGS, with texts to be kept in it."""
+    no_date: dict[str, dict[str, Any]] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    file, metadata = io.BytesIO(), {**no_date.get(ending.lower(), {}), **(kept or {})}
+    figure.savefig(file, format=ending.lower()[1:], dpi=_DPI, metadata=metadata)
+    return file.getvalue()
 
 
 def page(title: str, size: tuple[float, float] = SIZE) -> Figure:
@@ -98,10 +90,9 @@ def bare(panel: Axes) -> None:
         side.set_visible(False)
 
 
-def look(number: int, mark: bool = True) -> dict[str, Any]:
-    """Return how the curve with this number is drawn: its colour, its dashes, and its mark."""
-    found = {"color": COLORS[number % len(COLORS)], "linestyle": DASHES[number % len(DASHES)]}
-    return found | ({"marker": MARKS[number % len(MARKS)]} if mark else {})
+def look(number: int) -> dict[str, Any]:
+    """Return how the curve with this number is drawn: its colour and its dashes."""
+    return {"color": COLORS[number % len(COLORS)], "linestyle": DASHES[number % len(DASHES)]}
 
 
 def _over(figure: Figure, panels: Sequence[Axes], what: str) -> Figure:
@@ -112,15 +103,6 @@ def _over(figure: Figure, panels: Sequence[Axes], what: str) -> Figure:
     panels[-1].xaxis.set_major_locator(MaxNLocator(steps=[1, 2, 5, 10], integer=True, min_n_ticks=1))
     figure.align_ylabels(panels)
     return figure
-
-
-def figure_of(results: Results | zoom.Results | LampResults) -> Figure:
-    """Draw the plot of results; raises ValueError where there is none."""
-    if isinstance(results, zoom.Results):
-        return zoom_figure(results)
-    if isinstance(results, Results):
-        return savings_figure(results)
-    raise ValueError("there is no plot of several kinds of lamps")
 
 
 # --- experiments -----------------------------------------------------------------------------------
@@ -174,7 +156,7 @@ def _draw_savings(panel: Axes, results: Results, row: Row, work: str, number: in
 def _draw_curve(panel: Axes, results: Results, values: Sequence[float] | np.ndarray, number: int, label: str) -> str:
     """One value per frame, in the look of the method of this number; returns its colour."""
     dot = "." if len(results.frames) <= _FEW else ""
-    (drawn,) = panel.plot(results.frames, values, marker=dot, markersize=9, label=label, **look(number, mark=False))
+    (drawn,) = panel.plot(results.frames, values, marker=dot, markersize=9, label=label, **look(number))
     return str(drawn.get_color())
 
 
@@ -199,7 +181,7 @@ def zoom_figure(results: zoom.Results) -> Figure:
     for place, approach in enumerate(approaches):
         numbers, factor = [step.number for step in approach.steps], f"{approach.factor:g}"
         limits = [approach.factor * step.highest or np.nan for step in approach.steps]
-        looks = look(place, mark=False)
+        looks = look(place)
         counts.step(numbers, limits, where="post", label=f"{factor} × highest count", **looks)
         changed = [step.number for step in approach.steps if step.changes]
         marks = [max(approach.steps[number].pixels, 0.5) for number in changed]
@@ -260,52 +242,3 @@ def chosen_steps(results: zoom.Results, kept: list[int]) -> list[int]:
     wanted = [kept[0], kept[-1], *happened]
     even = [kept[round(i * (len(kept) - 1) / (COLUMNS - 1))] for i in range(COLUMNS)]
     return sorted(list(dict.fromkeys([*wanted, *even]))[:COLUMNS])
-
-
-# --- sweeps ----------------------------------------------------------------------------------------
-
-MOST_PANELS = 6
-_ROWS: tuple[tuple[str, Callable[[Line], float]], ...] = (
-    (_WORKS[0][1], lambda line: line.steps),
-    (_WORKS[1][1], lambda line: line.tests),
-    ("Speed-up over none\n(processor time)", lambda line: line.speed_up),
-)
-
-
-@styled()
-def sweep_figure(title: str, lines: Sequence[Line]) -> Figure:
-    """Draw a column of panels for each scene and combination of settings, with a curve for each method over sizes.
-
-    Raises ValueError where there is nothing to compare, or too much for one figure."""
-    drawn = [line for line in lines if line.method != REFERENCE and line.steps == line.steps]
-    if not drawn:
-        raise ValueError(f"there is nothing to plot: no frame by {REFERENCE} and by another method")
-    columns = list(dict.fromkeys((line.scene, line.settings) for line in drawn))
-    if len(columns) > MOST_PANELS:
-        raise ValueError(
-            f"{len(columns)} scenes and combinations of settings, more than the {MOST_PANELS} of one plot; "
-            "plot studies of fewer, or draw results.parquet by other means"
-        )
-    methods = list(dict.fromkeys(line.method for line in drawn))
-    frames = sum(line.frames for line in lines)
-    figure = page(f"{title}\n{frames:,} frames", (max(SIZE[0], 3.6 * len(columns) + 2.4), 9.0))
-    panels = figure.subplots(len(_ROWS), len(columns), squeeze=False, sharex="col", sharey="row")
-    for column, (scene, settings) in enumerate(columns):
-        mine = [line for line in drawn if (line.scene, line.settings) == (scene, settings)]
-        panels[0][column].set_title("\n".join(filter(None, (scene, *settings.split(", ")))), fontsize=15.0)
-        for (_, value), panel in zip(_ROWS, panels[:, column], strict=True):
-            for number, method in enumerate(methods):
-                of_method = [line for line in mine if line.method == method]  # the smallest first
-                sizes = [f"{line.width}×{line.height}" for line in of_method]
-                panel.plot(sizes, [value(line) for line in of_method], label=method, markersize=8, **look(number))
-        panels[-1][column].tick_params(axis="x", labelsize=12.0, labelrotation=30.0)
-    for row, (label, _) in enumerate(_ROWS):
-        panels[row][0].set_ylabel(label)
-        if row < 2:
-            panels[row][0].yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
-    for panel in panels[-1]:
-        panel.axhline(1.0, color="black", linewidth=1.0)
-    handles, names = panels[0][0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside right upper")
-    figure.align_ylabels()
-    return figure

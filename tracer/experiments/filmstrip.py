@@ -1,7 +1,7 @@
 """The pictures of a zoom test, kept as it goes: the filmstrip of the paper's Figure 4.
 
-Each is the traced picture with rings around wrong pixels, as a PNG.  Memory is bounded: where they get too many or too
-large, every second step's is given up, then every second of the rest, for all zoom factors alike.
+Each is kept as a PNG.  Memory is bounded: where they take too much, every
+second step's is given up, then every second of the rest, for all zoom factors alike.
 """
 
 from __future__ import annotations
@@ -14,11 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from tracer.frame import Frame
-from viewer.views.difference import ringed
-
 MOST_BYTES = 64_000_000
-MOST_SHOTS = 600
 
 
 @dataclass(frozen=True)
@@ -46,26 +42,23 @@ class Shot:
 class Filmstrip:
     """Recorded on one thread while others look."""
 
-    def __init__(self, most_bytes: int = MOST_BYTES, most_shots: int = MOST_SHOTS) -> None:
-        self._most_bytes, self._most_shots = most_bytes, most_shots
+    def __init__(self, most_bytes: int = MOST_BYTES) -> None:
+        self._most_bytes = most_bytes
         self._lock = threading.Lock()
         self._shots: list[Shot] = []
         self._every = 1
 
-    def record(self, factor: float, number: int, frame: Frame) -> None:
-        """Keep the picture of a step's verified frame."""
+    def record(self, factor: float, number: int, pixels: NDArray[np.uint8]) -> None:
+        """Keep the picture of a step, (height, width, 3)."""
         if number % self._every:
             return
         file = io.BytesIO()
-        Image.fromarray(ringed(frame)).save(file, "PNG", compress_level=1)
+        Image.fromarray(pixels).save(file, "PNG", compress_level=1)
         with self._lock:
-            self._shots.append(Shot(factor, number, frame.width, frame.height, file.getvalue()))
-            while self._too_much() and any(shot.number for shot in self._shots):
+            self._shots.append(Shot(factor, number, pixels.shape[1], pixels.shape[0], file.getvalue()))
+            while sum(len(one.png) for one in self._shots) > self._most_bytes and any(s.number for s in self._shots):
                 self._every *= 2
                 self._shots = [shot for shot in self._shots if shot.number % self._every == 0]
-
-    def _too_much(self) -> bool:
-        return len(self._shots) > self._most_shots or sum(len(shot.png) for shot in self._shots) > self._most_bytes
 
     def of(self, factor: float) -> list[Shot]:
         """Return the pictures that are kept of the way with a zoom factor, in their order."""
