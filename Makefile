@@ -11,7 +11,7 @@ ARGS ?=
 RUN := .venv/bin/python
 PARALLEL := -n auto --maxprocesses 4 --dist worksteal
 QUICK := tests/test_house.py tests/test_golden.py tests/scene tests/experiments/test_zoom.py \
-    $(addprefix tests/viewer/,cli/test_cli.py views/test_legend.py state services window) \
+    $(addprefix tests/viewer/,cli/test_cli.py cli/test_mistakes.py views/test_legend.py state services window) \
     $(addprefix tests/tracing/test_,culling.py modes.py pictures.py intersect.py traversal.py waves.py) \
     -m "not slow"
 

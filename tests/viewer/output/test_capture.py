@@ -71,7 +71,7 @@ def test_templates_become_file_names(template: str, name: str):
 
 @pytest.mark.parametrize(
     "template",
-    ["{sceen}", "{frame:zz}", "{", "}", "{frame!q}", "", " .png", "{scene.__class__}", "{frame:99999999d}", "{0}"],
+    ["{sceen}", "{frame:zz}", "{", "}", "{frame!q}", "", " .png", "{scene.__class__}", "{frame:9999999d}", "{0}", "{}"],
 )  # fmt: skip
 def test_templates_that_are_wrong(template: str):
     with pytest.raises(capture.CaptureError, match="template") as caught:
