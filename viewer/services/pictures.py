@@ -21,14 +21,13 @@ from viewer.services.runs import FileRun, Runs
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.pixels import FIT
-from viewer.state.plans import MOST_MULTIPLE, PicturePlan
+from viewer.state.plans import MOST_PICTURE_PIXELS, PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
 from viewer.util.files import write_new
 
-MOST_PIXELS = 1 << 26
 UNKNOWN = "its modes were learnt from other frames as well"
 
 
@@ -155,8 +154,10 @@ class Pictures:
     def _planned(self, state: ViewState, scene: Scene) -> ViewState:
         plan = self.plan
         width, height = self.size
-        if not 1 <= plan.multiple <= MOST_MULTIPLE or width * height > MOST_PIXELS:
-            raise ValueError(f"{width} x {height} are more than {MOST_PIXELS:,} pixels; choose a smaller multiple")
+        if width * height > MOST_PICTURE_PIXELS:
+            raise ValueError(
+                f"{width} x {height} are more than {MOST_PICTURE_PIXELS:,} pixels; choose a smaller multiple"
+            )
         if plan.ending == exr.ENDING:
             exr.check()
         settings = replace(state.settings, width=width, height=height, samples=plan.samples).validated()
