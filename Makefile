@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
+.PHONY: files run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -164,6 +164,10 @@ format:  ## put the sources in the form that lint asks for
 lock:  ## choose the newest versions within pyproject.toml's ranges (ARGS="numba numpy": only these)
 	@tools/environment.sh dev
 	@tools/lock.sh $(ARGS)
+
+files:  ## print every file with the first line of what it says of itself
+	@tools/environment.sh dev
+	@$(RUN) tools/files.py
 
 clean:  ## remove what was compiled, cached or built; the environment and pictures stay
 	rm -rf .cache .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis dist build

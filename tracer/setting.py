@@ -168,6 +168,10 @@ class Setting:
         """Whether it takes an infinite number, as its default is one."""
         return self.kind is float and self.default == math.inf
 
+    def clamped(self, value: float) -> float:
+        """Return the number of its range that is nearest."""
+        return min(max(value, self.low), self.high)
+
     def parse(self, word: str, shown: bool = False) -> Any:
         """Return the value that somebody has typed, in the unit in which it is `shown` or as it is; raises ValueError,
         in one line."""

@@ -14,6 +14,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene, scene_info
 from tracer.scene.model import Camera
 from viewer.services.controller import Controller
+from viewer.services.frame_scheduler import Activity
 from viewer.services.runs import ExperimentPlan
 from viewer.state.preferences import Preferences
 from viewer.window.app import advance
@@ -60,7 +61,8 @@ class Desk:
 
         def rested() -> bool:
             nonlocal quiet
-            quiet = 0 if self.c.active or not self.c.scheduler.rests else quiet + 1  # all samples have come
+            rests = not self.c.active and self.c.scheduler.activity is Activity.RESTING  # all samples have come
+            quiet = quiet + 1 if rests else 0
             return quiet > 10
 
         self.until(rested)

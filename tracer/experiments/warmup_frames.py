@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from tracer.scene.model import Camera
 
-MOST = 100_000
+MOST_WARMUP_FRAMES = 100_000
 """Frames before one picture."""
 MAX_TIME = 1e300
 """Seconds; JSON may hold numbers that are no finite float."""
@@ -30,7 +30,7 @@ def from_json(data: Any) -> tuple[WarmupFrame, ...]:
     ValueError, in one line, on anything else."""
     if isinstance(data, Mapping):
         data = data.get("before")
-    if not isinstance(data, list) or len(data) > MOST:
+    if not isinstance(data, list) or len(data) > MOST_WARMUP_FRAMES:
         raise ValueError("these are no frames before: a list of [time, camera], with null for the scene's own camera")
     frames = []
     for item in data:

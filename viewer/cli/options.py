@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from tracer.compilation import compiled_before, make_ready, warm_up
+from tracer.experiments.warmup_frames import MOST_WARMUP_FRAMES
 from tracer.geometry.accelerators import BVH8
 from tracer.kernel_cache import outlives_process
 from tracer.method import Method, additions, bases
-from tracer.scene.edits import Edits, edited
+from tracer.scene.edits import NO_EDITS, Edits, edited
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
@@ -24,7 +25,7 @@ from viewer.cli.arguments import UPS, Parser, before, count, light_at, number, s
 from viewer.cli.console import Work
 from viewer.services import stills
 from viewer.state.draw_options import Slice
-from viewer.state.view_state import as_options
+from viewer.state.view_state import EDITS, as_options
 from viewer.util import resources
 from viewer.views.legend import lights_in_words
 
@@ -67,7 +68,7 @@ def read_scene(path: Path, options: Namespace, work: Work) -> Scene:
     scene = load_visible_scene(path, work.progress, options.folder, mesh_options(options))
     for warning in scene.warnings:
         work.note(f"warning: {warning}")
-    if not hasattr(options, "hide"):
+    if not hasattr(options, "hidden"):
         return scene
     check_edits(edits := edits_of(options), scene)
     return edited(scene, edits).scene
@@ -96,18 +97,17 @@ def mesh_options(options: Namespace) -> MeshOptions:
 
 
 def add_edits(parser: argparse.ArgumentParser) -> None:
-    """Add what edits the scene before it is traced."""
+    """Add what edits the scene before it is traced; each option has the name of its field of `Edits`."""
     group = parser.add_argument_group("edits of the scene, each of which may be given several times")
+    kinds: dict[str, Any] = {"N": INDEX, "N=X,Y,Z": _light_at, "NAME": str, "NAME=T": _name_at}
+    for name, kind in EDITS.items():
+        group.add_argument(kind.option, dest=name, type=kinds[kind.metavar], action="append", default=[],
+                           metavar=kind.metavar, help=kind.help)  # fmt: skip
 
-    def add(name: str, metavar: str, help_: str, kind: Any = str) -> None:
-        group.add_argument(name, type=kind, action="append", default=[], metavar=metavar, help=help_)
 
-    add("--without-light", "N", "switch off this light", INDEX)
-    add("--move-light", "N=X,Y,Z", "put this light elsewhere", light_at)
-    add("--hide", "NAME", "hide this object")
-    add("--hide-primitive", "N", "hide this primitive alone", INDEX)
-    add("--make-static", "NAME=T", "freeze a moving object where it is at T seconds, as static geometry", _name_at)
-    add("--make-moving", "NAME", "treat a static object as one that could move; it stays where it is")
+def _light_at(text: str) -> tuple[int, tuple[float, ...]]:
+    light, *place = light_at(text)
+    return int(light), tuple(place)
 
 
 def _name_at(text: str) -> tuple[str, float]:
@@ -123,14 +123,11 @@ def _name_at(text: str) -> tuple[str, float]:
 
 def edits_of(options: Namespace) -> Edits:
     """Return the edits that are asked for."""
-    return Edits(
-        frozenset(options.without_light),
-        tuple(sorted({int(light): tuple(place) for light, *place in options.move_light}.items())),
-        frozenset(options.hide),
-        frozenset(options.hide_primitive),
-        tuple(sorted(dict(options.make_static).items())),
-        frozenset(options.make_moving),
-    )
+    edits: dict[str, Any] = {}
+    for name in EDITS:
+        found, is_set = getattr(options, name), isinstance(getattr(NO_EDITS, name), frozenset)
+        edits[name] = frozenset(found) if is_set else tuple(sorted(dict(found).items()))
+    return Edits(**edits)
 
 
 def check_edits(edits: Edits, scene: Scene) -> None:
@@ -191,7 +188,7 @@ def moment(scene: Scene, options: Namespace) -> float:
 def add_history(parser: Parser) -> None:
     """Add the frames from which modes are learnt: those before on the path, or any."""
     help_ = "first trace the N frames before it, from which culling learns"
-    parser.add_argument("--warmup", type=count(0, 100_000), default=0, metavar="N", help=help_)
+    parser.add_argument("--warmup", type=count(0, MOST_WARMUP_FRAMES), default=0, metavar="N", help=help_)
     help_ = "before these, trace the frames of this list of [time, camera], or of a JSON file of `hunt`"
     parser.add_argument("--before", type=before, default=(), metavar="JSON", help=help_)
 

@@ -19,7 +19,7 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
 from viewer.services.editing import Editing
 from viewer.services.film import Films
-from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
+from viewer.services.frame_scheduler import Activity, FrameInputs, FrameScheduler
 from viewer.services.history import FrameHistory, FrameNavigator
 from viewer.services.hunts import Hunts
 from viewer.services.inspector import Inspector, Selection
@@ -177,7 +177,7 @@ class Controller:
         second = self.comparing.second_method
         wanted = self.preferences.savings or bool(second)
         busy = self.renderer.busy or self.loader.busy or self.runs.current is not None or self.editing.at_work
-        busy = busy or not self.scheduler.rests or self.scheduler.refines_lamps or not wanted
+        busy = busy or self.scheduler.activity is not Activity.RESTING or not wanted
         self.baseline.update(self.traced, second, self.motion.is_animating, busy)
 
     # --- going elsewhere -------------------------------------------------------------------------

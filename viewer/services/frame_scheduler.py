@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from enum import Enum
 
 from tracer.experiments.runner import Run
 from tracer.frame import Frame, Settings
@@ -52,6 +53,16 @@ class FrameInputs:
     second: str = ""
     focus: tuple[float, float] | None = None
     inspected: bool = False
+
+
+class Activity(Enum):
+    """What comes next of a picture."""
+
+    RESTING = "nothing"
+    TRACING = "a frame, or the rest of it"
+    SAMPLING_LAMPS = "the whole picture that is shown, with more samples of lamps"
+    CERTIFYING = "the picture that is shown, with more certificates"
+    ADDING_SAMPLES = "more samples a pixel"
 
 
 class FrameScheduler:
@@ -149,7 +160,7 @@ class FrameScheduler:
             self._new = False
             self._wake()
             return
-        if self._at_rest and not self.refines_lamps and self._should_refine():
+        if self._at_rest and not self._lacks_lamp_samples and self._should_refine():
             self._serial += 1
             self._refines = True
         self._refines = self._refines and self._at_rest
@@ -221,8 +232,7 @@ class FrameScheduler:
 
     def _next_lamp_samples(self) -> int:
         """Return how many samples lamps have in the next frame: all of them once a picture with fewer is there."""
-        shown = self.traced is not None and self.traced.whole and self._is_of_inputs(self.traced.request)
-        return self.lamps.wanted if (shown and self._at_rest) or self._each_is_whole else self.lamps.first
+        return self.lamps.wanted if (self._shows_inputs and self._at_rest) or self._each_is_whole else self.lamps.first
 
     @property
     def settings(self) -> Settings:
@@ -243,12 +253,6 @@ class FrameScheduler:
             certificate_seconds=now.state.pace.certificate_share * self._frame_seconds,
         )
 
-    def _is_of_inputs(self, asked: RenderRequest) -> bool:
-        """Return whether a request is for what should be seen now, however finely."""
-        now = self.inputs
-        wanted = now.state.time, now.camera, self._until_ready(now.second), as_asked(self.settings, asked.settings)
-        return wanted == (asked.time, asked.camera, asked.second, asked.settings)
-
     # --- what the newest frame is -------------------------------------------------------------------
 
     @property
@@ -261,27 +265,17 @@ class FrameScheduler:
         return self.traced is not None and self.traced.request == request
 
     @property
-    def awaits(self) -> bool:
-        """Whether a frame that was asked for has not come yet, or not all of it; its further samples do not count."""
+    def activity(self) -> Activity:
+        """What is to come of what was asked for."""
         coming, traced = self._coming, self.traced
-        return coming is not None and (traced is None or not traced.whole or not self._is_shown(coming))
-
-    @property
-    def adds_samples(self) -> bool:
-        """Whether the frame that was asked for is there, and more samples a pixel are to come."""
-        coming = self._coming
-        return coming is not None and not self.awaits and self.samples_shown < coming.samples
-
-    @property
-    def rests(self) -> bool:
-        """Whether nothing that was asked for is to come."""
-        return not self.awaits and not self.adds_samples
-
-    @property
-    def certifies(self) -> bool:
-        """Whether the picture is there, and another is to come because certificates can be made for it."""
-        refines = self._asked is not None and self._asked.refinement_seconds > 0.0
-        return refines and self.refinement.proves and self.awaits and not self.outdated
+        if coming is None:
+            return Activity.RESTING
+        if traced is not None and traced.whole and self._is_shown(coming):
+            return Activity.ADDING_SAMPLES if self.samples_shown < coming.samples else Activity.RESTING
+        if self._lacks_lamp_samples:
+            return Activity.SAMPLING_LAMPS
+        certifies = coming.refinement_seconds > 0.0 and self.refinement.proves and not self.outdated
+        return Activity.CERTIFYING if certifies else Activity.TRACING
 
     @property
     def becoming_finer(self) -> bool:
@@ -300,11 +294,18 @@ class FrameScheduler:
         return self.lamps.most(self.traced.frame.settings) if self.traced is not None else 0
 
     @property
-    def refines_lamps(self) -> bool:
-        """Whether a whole picture is shown, and the same with more samples of lamps is to come."""
-        traced = self.traced
-        shown = traced is not None and traced.whole and self._is_of_inputs(traced.request)
-        return shown and self.lamp_samples_shown < self.lamps.wanted
+    def _shows_inputs(self) -> bool:
+        """Whether there is a whole picture of what should be seen now, however finely."""
+        if self.traced is None or not self.traced.whole:
+            return False
+        now, shown = self.inputs, self.traced.request
+        wanted = now.state.time, now.camera, self._until_ready(now.second), as_asked(self.settings, shown.settings)
+        return wanted == (shown.time, shown.camera, shown.second, shown.settings)
+
+    @property
+    def _lacks_lamp_samples(self) -> bool:
+        """Whether the same picture with more samples of lamps should follow."""
+        return self._shows_inputs and self.lamp_samples_shown < self.lamps.wanted
 
     @property
     def samples_shown(self) -> int:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.frame import Frame, Settings
+from tracer.frame import Frame
 from tracer.method import Method
 from tracer.mode_origins import ModeOrigins, Origins
 from tracer.scene.model import Camera
@@ -32,13 +32,12 @@ from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 from viewer.state.views import View, has_modes_of_cells
 
-CAPACITY = 600
-"""Frames in the plots."""
-MOST_RECORDS = 10_000
+PLOTTED_FRAMES = 600
+KEPT_FRAMES = 10_000
 """Frames that can be gone back to, the newest."""
 RATE_SECONDS = 1.0
 """Seconds back that frames count for their rate, or as far as the last two reach."""
-MOST_ORIGINS = 4
+KEPT_MODE_HISTORIES = 4
 """Mode histories, of resolutions and lamps, whose origins are known."""
 Key = tuple[int, int, bool, float | None, int | None]
 
@@ -88,59 +87,57 @@ def counters(frame: Frame, drawn_seconds: float) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class FrameRecord:
-    """What it takes to come back to a traced frame, by its `number` in the plots.
+    """A traced frame: what it takes to come back to it, and its `counters`.
 
-    `camera` is where it was seen from; `state` has the settings that were chosen, `settings` are those that the frame
-    was traced with; `size` is that of the window's picture then, of which this may be a coarser version; `whole` says
-    that all of its pixels were shaded, so that it set modes."""
+    `state` has the settings that were chosen; `size` is that of the window's picture then, of which this may be a
+    coarser version."""
 
-    number: int
     state: ViewState
-    camera: Camera
-    settings: Settings
     size: tuple[int, int]
-    whole: bool
+    counters: dict[str, float]
 
 
-class Plots:
-    """The `counters` of the last frames, as series; `frames` counts all that were ever added."""
+class FrameHistory:
+    """The `records` of the last frames by their numbers, the newest last, and the origins of the modes; `frames` counts
+    all that there were."""
 
-    def __init__(self, capacity: int = CAPACITY) -> None:
-        self.frames = 0
-        self._counters: deque[dict[str, float]] = deque(maxlen=capacity)
-        self._series: dict[str, NDArray[np.float64]] = {}  # as plots are drawn more often than frames come
-
-    def add(self, frame: Frame, drawn_seconds: float, again: bool = False) -> None:
-        """Append one traced frame's numbers, or put them in the place of the last where it is that frame `again`, with
-        more of its pixels shaded."""
-        if again and self._counters:
-            self._counters.pop()
-        self._counters.append(counters(frame, drawn_seconds))
-        self._series.clear()
-        self.frames += not again
+    def __init__(self, session: Session, clock: Callable[[], float] = time.monotonic) -> None:
+        self._session, self._clock = session, clock
+        # Origins look at all units of each frame, for which the window need not wait.
+        self._worker = ThreadPoolExecutor(1, "shadowcull mode origins")
+        self.clear()
 
     def clear(self) -> None:
-        """Begin to count anew."""
-        self.hide()
+        """Begin anew: another scene is open."""
         self.frames = 0
+        self.records: dict[int, FrameRecord] = {}
+        self._came: deque[float] = deque()  # when the newest frames came
+        self._request: RenderRequest | None = None
+        self._shown: Key | None = None
+        self._repeats: dict[tuple[int, int], tuple[Hashable, int]] = {}  # by size: what set the modes, and how often
+        self.clear_plots()
+        self.forget_modes()
 
-    def hide(self) -> None:
+    def clear_plots(self) -> None:
         """Plot what comes from here on; frames keep their numbers."""
-        self._counters.clear()
-        self._series.clear()
+        self._plotted_from = self.frames
+        self._series: dict[str, NDArray[np.float64]] = {}  # as plots are drawn more often than frames come
+
+    # --- plots ------------------------------------------------------------------------------------
 
     def __len__(self) -> int:
-        return len(self._counters)
+        return self.frames - self.first
 
     @property
     def first(self) -> int:
         """Number of the oldest frame that is plotted."""
-        return self.frames - len(self)
+        return max(self._plotted_from, self.frames - PLOTTED_FRAMES)
 
     def values(self, name: str) -> NDArray[np.float64]:
         """The values of a series, oldest first, contiguous."""
         if name not in self._series:
-            self._series[name] = np.array([one[name] for one in self._counters], np.float64)
+            plotted = range(self.first, self.frames)
+            self._series[name] = np.array([self.records[number].counters[name] for number in plotted], np.float64)
         return self._series[name]
 
     def per_pixel(self, name: str) -> NDArray[np.float64]:
@@ -149,34 +146,6 @@ class Plots:
         of_all = self.values(_OF_ALL[name]) if name in _OF_ALL else 0.0
         shaded, every = (np.maximum(self.values(pixels), 1.0) for pixels in ("pixels", "all_pixels"))
         return (self.values(name) - of_all) / shaded + of_all / every
-
-    def shaded_of(self, number: int) -> float:
-        """The part of a frame's pixels that is shaded, 0 to 1, by its number; 1 for one that is no longer plotted."""
-        place = number - self.first
-        kept = self._counters[place] if 0 <= place < len(self) else {}
-        return kept["pixels"] / max(kept["all_pixels"], 1.0) if kept else 1.0
-
-
-class FrameHistory(Plots):
-    """Counters of the last frames, `records` of those that can be gone back to by their numbers, and the origins of the
-    modes."""
-
-    def __init__(self, session: Session, clock: Callable[[], float] = time.monotonic) -> None:
-        super().__init__()
-        self._session, self._clock = session, clock
-        # Origins look at all units of each frame, for which the window need not wait.
-        self._worker = ThreadPoolExecutor(1, "shadowcull mode origins")
-        self.clear()
-
-    def clear(self) -> None:
-        """Begin anew: another scene is open."""
-        super().clear()
-        self.records: dict[int, FrameRecord] = {}
-        self._came: deque[float] = deque()  # when the newest frames came
-        self._request: RenderRequest | None = None
-        self._shown: Key | None = None
-        self._repeats: dict[tuple[int, int], tuple[Hashable, int]] = {}  # by size: what set the modes, and how often
-        self.forget_modes()
 
     def forget_modes(self, blank: bool = True) -> None:
         """Forget who set which mode; `blank` says that no modes are left from frames before."""
@@ -205,10 +174,11 @@ class FrameHistory(Plots):
             self._count(newest, drawn_seconds)
 
     def _count(self, traced: Traced, drawn_seconds: float) -> int:
-        """Put a frame into the plots and the records; returns its number."""
+        """Record a frame, in the place of the last where it is that frame with more of its pixels shaded; returns its
+        number."""
         again, self._request, frame = traced.request is self._request, traced.request, traced.frame
-        self.add(frame, drawn_seconds, again)
         if not again:
+            self.frames += 1
             now = self._clock()
             self._came.append(now)
             while len(self._came) > 2 and self._came[0] < now - RATE_SECONDS:
@@ -217,8 +187,9 @@ class FrameHistory(Plots):
         state = self._session.state_of(frame).with_settings(  # of these the frame may have had others
             samples=chosen.samples, lamp_samples=chosen.lamp_samples, verify=chosen.verify, method=chosen.method
         )
-        self.records[number] = FrameRecord(number, state, frame.camera, frame.settings, traced.full_size, traced.whole)
-        if len(self.records) > MOST_RECORDS:
+        self.records[number] = FrameRecord(state, traced.full_size, counters(frame, drawn_seconds))
+        self._series.clear()
+        if len(self.records) > KEPT_FRAMES:
             del self.records[next(iter(self.records))]
         return number
 
@@ -239,7 +210,7 @@ class FrameHistory(Plots):
             self._shown = key
         origins = self._origins.pop(key, None) or ModeOrigins(frame.lights, blank=self._blank)
         self._origins[key] = origins  # the newest last
-        if len(self._origins) > MOST_ORIGINS:
+        if len(self._origins) > KEPT_MODE_HISTORIES:
             del self._origins[next(iter(self._origins))]
             self._blank = False  # should that come again, it would have modes from before
         lights, before = scene.light_positions(frame.time), self._lights.get(key)
@@ -299,7 +270,7 @@ class FrameNavigator:
         if self._session.scene is None or self._runs.refuses():
             return
         if record is None:
-            self._notices.say(f"picture {number} is no longer kept: only the last {MOST_RECORDS:,} are")
+            self._notices.say(f"picture {number} is no longer kept: only the last {KEPT_FRAMES:,} are")
             return
         self.go_to(record.state, f"picture {number}", record.size)
         said = ": the same picture, bit for bit" if record.size == self._scheduler.full_size else ""

@@ -30,20 +30,18 @@ from viewer.output import capture, commands
 from viewer.output.comparison import Comparison, Shown
 from viewer.output.overlays import with_caption, with_legend, with_savings
 from viewer.state import codec
+from viewer.state.plans import MOST_PICTURE_PIXELS
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 from viewer.state.views import MOST_RECORDED, View, can_record_lights, records_lights
 from viewer.views import colorize, legend_of
 from viewer.views.legend import lights_in_words
 
-MOST_PIXELS = 1 << 26
-"""Pixels of a picture: 8192 × 8192, whose buffers take some 4 GB."""
-
 
 def check_size(width: int, height: int) -> None:
     """Raise ValueError, in one line, for a picture that is too large."""
-    if width * height > MOST_PIXELS:
-        raise ValueError(f"{width} x {height} pixels are too many: {MOST_PIXELS:,} at most")
+    if width * height > MOST_PICTURE_PIXELS:
+        raise ValueError(f"{width} x {height} pixels are too many: {MOST_PICTURE_PIXELS:,} at most")
 
 
 def check_lights(state: ViewState, scene: Scene, everything: bool = False) -> None:

@@ -50,6 +50,11 @@ def text(value: Any, indent: int | None = None) -> str:
     return json.dumps(to_json(value), indent=indent)
 
 
+def from_text(text: str | bytes) -> Any:
+    """Return what the text of JSON says; raises ValueError, in one line, and RecursionError."""
+    return json.loads(text)
+
+
 def forgiven(data: Any, kind: Any, default: Any) -> Any:
     """Return what stored data has of a type: of lists and dictionaries what is right of them, else the default."""
     try:

@@ -13,13 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.setting import setting, settings_of
+from tracer.setting import setting, setting_of, settings_of
 from viewer.state.palette import BENEATH
 from viewer.state.pixels import FIT, Zoom
 from viewer.state.views import View
-
-MOST_EXPOSURE = 16.0
-"""Stops of exposure, up and down."""
 
 # Hable's filmic curve, "Uncharted 2: HDR Lighting" (GDC 2010): shoulder, linear strength and angle, toe strength,
 # numerator and denominator.
@@ -53,7 +50,7 @@ class Tone:
 
     exposure: float = setting(
         0.0, "Exposure", "Make colours brighter or darker by so many stops, each of which doubles them.",
-        low=-MOST_EXPOSURE, high=MOST_EXPOSURE, slider=(-6.0, 6.0), unit=" EV", option="--exposure", panel="Tone",
+        low=-16.0, high=16.0, slider=(-6.0, 6.0), unit=" EV", option="--exposure", panel="Tone",
         applies=_in_pictures, remembered=False,
     )  # fmt: skip
     white: float = setting(
@@ -141,10 +138,6 @@ def _check_place(place: tuple[float, float]) -> None:
         raise ValueError("the legend lies outside the picture")
 
 
-def _has_span(draw: DrawOptions) -> bool:
-    return draw.view.has_range and not (draw.view.needs_work and draw.shares)
-
-
 @dataclass(frozen=True)
 class DrawOptions:
     """How a frame is drawn.
@@ -176,7 +169,7 @@ class DrawOptions:
     tone: Tone = NEUTRAL
     spans: tuple[tuple[View, Span], ...] = setting(
         (), "Range", "What has the first and the last colour of the map.", option="--range", remembered=False,
-        applies=lambda state: _has_span(state.draw), check=_check_spans,
+        applies=lambda state: state.draw.has_span, check=_check_spans,
     )  # fmt: skip
     legend: bool = setting(
         False, "Legend", "Draw into the picture what its colours mean.", option="--legend",
@@ -218,9 +211,14 @@ class DrawOptions:
     zoom: Zoom = setting(FIT, "Zoom", "How closely the picture is looked at.", remembered=False)
 
     @property
+    def has_span(self) -> bool:
+        """Whether the view is of numbers that run from one to another; shares run from none to all."""
+        return self.view.has_range and not (self.view.needs_work and self.shares)
+
+    @property
     def span(self) -> Span | None:
         """The range that was chosen for the view; None: as the frame has it."""
-        return dict(self.spans).get(self.view) if _has_span(self) else None
+        return dict(self.spans).get(self.view) if self.has_span else None
 
     def with_span(self, span: Span | None, view: View | None = None) -> DrawOptions:
         """Return these with another range for a view, the one that is shown where none is named."""
@@ -288,5 +286,5 @@ def clipped(color: NDArray[np.float32], tone: Tone) -> tuple[NDArray[np.bool_], 
 
 def brighter(tone: Tone, stops: float) -> Tone:
     """The tone with another exposure, within its limits."""
-    exposure = min(max(tone.exposure + stops, -MOST_EXPOSURE), MOST_EXPOSURE)
-    return Tone(0.0 if math.isclose(exposure, 0.0, abs_tol=1e-9) else exposure, tone.white, tone.curve)
+    exposure = setting_of(Tone, "exposure").clamped(tone.exposure + stops)
+    return replace(tone, exposure=0.0 if math.isclose(exposure, 0.0, abs_tol=1e-9) else exposure)

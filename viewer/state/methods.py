@@ -39,15 +39,6 @@ def groups() -> list[tuple[str, list[Kind]]]:
     return [("Exact: the picture is that of none", exact), ("With errors", other)]
 
 
-def is_method(name: str) -> bool:
-    """Return whether there is a method of this name."""
-    try:
-        Method.parse(name)
-    except ValueError:
-        return False
-    return True
-
-
 def with_base(method: str, base: str) -> str:
     """Return the method with another base and the same additions, but what is the base now."""
     return _named(base, Method.parse(method).additions)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.model import Camera, Scene
+from viewer.state.plans import MOST_RUN_FRAMES
 
 Vector = NDArray[np.float64]
 
@@ -23,8 +24,6 @@ STEEPEST = math.radians(89.0)
 RADIANS_PER_HEIGHT = math.radians(100.0)
 CROSSING_SECONDS = 8.0
 SHORTEST_FLIGHT, LONGEST_FLIGHT = 0.35, 1.5
-MOST_FRAMES = 100_000
-"""Of a film."""
 LEG = 2.0
 """Seconds from one bookmark to the next, where nothing else is said."""
 _FINE = 400  # points between two bookmarks, by which the way is measured
@@ -230,8 +229,8 @@ def through(stops: Sequence[Stop], frames: int) -> list[Take]:
 
 
 def _check(frames: int) -> None:
-    if not 2 <= frames <= MOST_FRAMES:
-        raise ValueError(f"a film has 2 to {MOST_FRAMES:,} frames, not {frames:,}")
+    if not 2 <= frames <= MOST_RUN_FRAMES:
+        raise ValueError(f"a film has 2 to {MOST_RUN_FRAMES:,} frames, not {frames:,}")
 
 
 def _span(rows: NDArray[np.float64], n: int) -> NDArray[np.float64]:

@@ -11,11 +11,12 @@ from tracer.geometry.accelerators import KD_TREE
 from tracer.scene.model import Scene
 from tracer.setting import setting
 
-MOST_FACTORS = 6  # that are compared in one zoom test
-MOST_MULTIPLE = 8
-MOST_FRAMES = 100_000
-LONGEST_SIDE = 4096
+MOST_ZOOM_FACTORS = 6
+MOST_RUN_FRAMES = 100_000
+LONGEST_RUN_SIDE = 4096
 """Pixels of a run's pictures, of which there are many."""
+MOST_PICTURE_PIXELS = 1 << 26
+"""8192 x 8192: a frame's buffers then take some 4 GB."""
 
 
 @dataclass
@@ -24,8 +25,8 @@ class ExperimentPlan:
     paper's unless another is chosen."""
 
     methods: set[str]
-    frames: int = setting(100, "Frames", "Frames over the whole path of the scene.", low=1, high=MOST_FRAMES)
-    size: tuple[int, int] = setting((512, 512), "Size", "Size of the pictures.", high=LONGEST_SIDE)
+    frames: int = setting(100, "Frames", "Frames over the whole path of the scene.", low=1, high=MOST_RUN_FRAMES)
+    size: tuple[int, int] = setting((512, 512), "Size", "Size of the pictures.", high=LONGEST_RUN_SIDE)
     depth: int = 10
     accelerator: str = KD_TREE
     verify: bool = False
@@ -47,7 +48,7 @@ class ZoomPlan:
     )  # fmt: skip
     size: tuple[int, int] = setting(
         (256, 256), "Size", "Size of the pictures: it decides the pixel counts, and what can be seen from afar.",
-        high=LONGEST_SIDE,
+        high=LONGEST_RUN_SIDE,
     )  # fmt: skip
 
 
@@ -77,7 +78,7 @@ class FilmPlan(PathPlan):
         low=0.0, high=3600.0, digits=1,
     )  # fmt: skip
     fps: float = setting(25.0, "Frames / s", "Frames a second of the video.", low=1.0, high=240.0, digits=2)
-    size: tuple[int, int] = setting((640, 480), "Size", "Size of the pictures.", high=LONGEST_SIDE)
+    size: tuple[int, int] = setting((640, 480), "Size", "Size of the pictures.", high=LONGEST_RUN_SIDE)
     samples: int = 1
     caption: str = setting("", "Caption", "A line below each picture.", unset="none")
     legend: bool = setting(False, "Legend", "Draw what the colours mean, in views that have any.")
@@ -89,9 +90,9 @@ class HuntPlan(PathPlan):
     """Frames of the path, by a method whose wrong pixels are searched; the worst `keep` are kept."""
 
     method: str = "paper"
-    step: int = setting(1, "Step", "Search only every nth of these frames.", low=1, high=MOST_FRAMES)
+    step: int = setting(1, "Step", "Search only every nth of these frames.", low=1, high=MOST_RUN_FRAMES)
     around: int = setting(
-        40, "Extra views", "Extra random views near the worst findings.", low=0, high=MOST_FRAMES
+        40, "Extra views", "Extra random views near the worst findings.", low=0, high=MOST_RUN_FRAMES
     )  # fmt: skip
     radius: float = setting(
         0.3, "Radius", "How far extra views are from a finding's camera, as a part of its distance to what is wrong.",
@@ -100,7 +101,7 @@ class HuntPlan(PathPlan):
     seed: int = setting(1, "Seed", "Seed of the extra views.", low=0, high=2**31 - 1)
     keep: int = 12
     size: tuple[int, int] = setting(
-        (256, 256), "Size", "Size of the pictures: modes are those of a size.", high=LONGEST_SIDE
+        (256, 256), "Size", "Size of the pictures: modes are those of a size.", high=LONGEST_RUN_SIDE
     )
 
 
@@ -110,7 +111,7 @@ class PicturePlan:
     fields of the `caption` are those of names."""
 
     multiple: int = setting(2, "Size", "Times the width and the height of the picture as it is now.", low=1,
-                            high=MOST_MULTIPLE, unit=" x")  # fmt: skip
+                            high=8, unit=" x")  # fmt: skip
     samples: int = 16
     ending: str = setting(
         ".png", "Format", "The kind of file.",
@@ -125,13 +126,13 @@ class PicturePlan:
 
 
 def parse_factors(text: str) -> list[float]:
-    """Zoom factors, from words like "4, 16", each once, MOST_FACTORS at most; raises ValueError in one line."""
+    """Zoom factors, from words like "4, 16", each once, MOST_ZOOM_FACTORS at most; raises ValueError in one line."""
     try:
         factors = list(dict.fromkeys(float(word) for word in text.replace(",", " ").split()))
     except ValueError:
         factors = []
     if not factors or not all(1.0 <= factor <= 1e6 for factor in factors):
         raise ValueError(f"{text!r} are not zoom factors; give numbers from 1 up, like 4,16")
-    if len(factors) > MOST_FACTORS:
-        raise ValueError(f"these are {len(factors)} zoom factors; give {MOST_FACTORS} at most")
+    if len(factors) > MOST_ZOOM_FACTORS:
+        raise ValueError(f"these are {len(factors)} zoom factors; give {MOST_ZOOM_FACTORS} at most")
     return factors

@@ -7,7 +7,6 @@ JSON is kept under another name and reported.
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields
@@ -19,12 +18,11 @@ import platformdirs
 from tracer.method import DEFAULT_METHOD, Method
 from tracer.setting import setting, settings_of
 from viewer.state import codec
-from viewer.state.methods import ADAPTIVE, NO_CULLING, is_method, with_base
 from viewer.util.files import file_lock, write_text
 
 SETTINGS_FILE = "settings.json"
 FORMAT = 3
-"""Of the file. Version 0.2 wrote none, which is 1 here."""
+"""Of the file; of older ones, what has the same name is read."""
 PATIENCE = 2.0  # seconds that one window waits for another to save
 RECENT_SCENES = 10
 RECENT_COMMANDS = 30
@@ -84,8 +82,10 @@ class Preferences:
     tev: str = setting("127.0.0.1:14158", "tev", "Where tev or HDRView listens, for Send to tev.", panel="Saving")
     tour: bool = True
     theme: str = setting("dark", "Theme", "The colours of the interface.", choices=THEMES)
-    ui_scale: float = setting(1.0, "Size of the interface", "How large its letters are.", low=0.75, high=2.0,
-                              percent=True, panel="Window")  # fmt: skip
+    ui_scale: float = setting(
+        1.0, "Size of the interface", "How large its letters are.", low=SCALES[0], high=SCALES[-1], percent=True,
+        panel="Window",
+    )  # fmt: skip
     watch_scene: bool = setting(
         True, "Reload when files change", "Read the scene, and what it includes, again: textures, materials, meshes."
     )
@@ -142,7 +142,7 @@ def save_preferences(
             if base is not None:
                 stored, _ = _read(path)
                 mine = merged(base, mine, {**base, **(stored or {})})
-            write_text(path, json.dumps(mine, indent=2))
+            write_text(path, codec.text(mine, indent=2))
     except OSError as error:
         return f"settings not saved: {f'{path}: {error.strerror}' if error.strerror else error}"
     return None
@@ -153,10 +153,10 @@ def _read(path: Path) -> tuple[Mapping[str, Any] | None, str | None]:
 
     A file that cannot be read is kept under another name, so that saving does not destroy it."""
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = codec.from_text(path.read_text(encoding="utf-8"))
         if not isinstance(data, dict):
             raise ValueError("not an object")
-        return _of_today(data), None
+        return data, None
     except FileNotFoundError:
         return None, None
     except (OSError, ValueError, RecursionError) as error:
@@ -181,62 +181,6 @@ def _from_json(data: Mapping[str, Any]) -> Preferences:
     preferences.format = FORMAT
     preferences.recent, preferences.used = preferences.recent[:RECENT_SCENES], preferences.used[:RECENT_COMMANDS]
     return preferences
-
-
-# Where the fields of formats 1 and 2 are in a state, by the names of today.
-_MOVED = {
-    "symmetric": "settings.symmetric", "zoom_factor": "settings.zoom_factor", "depth": "settings.depth",
-    "samples": "settings.samples", "threads": "settings.threads", "verify": "settings.verify", "view": "draw.view",
-    "shading": "draw.shading", "outlines": "draw.outlines", "mark_wrong": "draw.mark_wrong", "beneath": "draw.beneath",
-    "work_shares": "draw.shares", "legend": "draw.legend", "draw_explanation": "draw.rays",
-    "smooth_upscaling": "draw.smooth", "fixed_resolution": "pace.fixed_size", "fixed_width": "pace.width",
-    "fixed_height": "pace.height", "dynamic_resolution": "pace.progressive", "target_fps": "pace.target_fps",
-    "keep_tracing": "pace.keep_tracing", "every_frame": "pace.every_frame",
-    "certificate_share": "pace.certificate_share",
-}  # fmt: skip
-
-
-def _of_today(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """What is stored, in the format of today.  The default method of version 0.2, which it has written unasked, becomes
-    that of today; what is added to it was chosen."""
-    written = data.get("format", 1)
-    if written == FORMAT:
-        return data
-    method, state = data.get("method"), _nested(data)
-    if written == 1 and isinstance(method, str) and is_method(method) and Method.parse(method).base == ADAPTIVE:
-        method = with_base(method, DEFAULT_METHOD)
-    state["settings"]["method"] = method if data.get("culling", True) else NO_CULLING
-    if data.get("lamp_samples"):
-        state["settings"]["lamp_samples"] = data["lamp_samples"]
-    if "legend_x" in data and "legend_y" in data:
-        state["draw"]["legend_at"] = [data["legend_x"], data["legend_y"]]
-    presets = data.get("presets")
-    return {
-        **data,
-        "format": FORMAT,
-        "method": method,
-        "state": state,
-        "presets": [_preset_of_today(one) for one in presets] if isinstance(presets, list) else [],
-    }
-
-
-def _preset_of_today(data: Any) -> Any:
-    """A preset of formats 1 and 2: its `looks` were fields of the preferences."""
-    choices = data.get("choices") if isinstance(data, Mapping) else None
-    if not isinstance(choices, Mapping):
-        return data
-    state, looks = _nested(looks if isinstance(looks := choices.get("looks"), Mapping) else {}), choices
-    state["draw"] |= {name: looks[name] for name in ("view", "light", "wipe", "tone", "clipping") if name in looks}
-    return {"name": data.get("name"), "state": {**state, "settings": choices.get("settings", {})}}
-
-
-def _nested(data: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return what is stored of a state, as it is nested today."""
-    state: dict[str, dict[str, Any]] = {"settings": {}, "draw": {}, "pace": {}}
-    for name in data.keys() & _MOVED.keys():
-        part, _, field_name = _MOVED[name].partition(".")
-        state[part][field_name] = data[name]
-    return state
 
 
 # --- two windows -----------------------------------------------------------------------------------

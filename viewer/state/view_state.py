@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
-from tracer.experiments.warmup_frames import WarmupFrame
+from tracer.experiments.warmup_frames import MOST_WARMUP_FRAMES, WarmupFrame
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.camera import Camera
@@ -19,12 +19,8 @@ from tracer.settings import Settings
 from viewer.state.comparison import Compare
 from viewer.state.draw_options import DrawOptions
 
-LONGEST_SIDE = 8192
+LONGEST_FIXED_SIDE = 8192
 """Pixels of a picture of fixed size."""
-MOST_CERTIFYING = 0.9
-"""Part of a frame's time that may go into certificates."""
-MOST_FRAMES = 100_000
-"""Frames that are traced before one picture."""
 
 
 def _fixed_size(state: ViewState) -> bool:
@@ -38,9 +34,9 @@ class Pace:
     fixed_size: bool = setting(
         False, "Fixed size", "Trace pictures of a size of their own, not of the window's.", panel="Rendering"
     )
-    width: int = setting(512, "Picture width", "Of pictures of fixed size.", low=1, high=LONGEST_SIDE,
+    width: int = setting(512, "Picture width", "Of pictures of fixed size.", low=1, high=LONGEST_FIXED_SIDE,
                          applies=_fixed_size, unit=" px")  # fmt: skip
-    height: int = setting(512, "Picture height", "Of pictures of fixed size.", low=1, high=LONGEST_SIDE,
+    height: int = setting(512, "Picture height", "Of pictures of fixed size.", low=1, high=LONGEST_FIXED_SIDE,
                           applies=_fixed_size, unit=" px")  # fmt: skip
     progressive: bool = setting(
         True, "Progressive refinement",
@@ -62,7 +58,7 @@ class Pace:
     certificate_share: float = setting(
         0.15, "Certificate budget",
         "The share of each frame's time for certificates while anything moves; when idle they get more.",
-        low=0.0, high=MOST_CERTIFYING, percent=True, digits=0, panel="Culling",
+        low=0.0, high=0.9, percent=True, digits=0, panel="Culling",
         applies=lambda state: Method.parse(state.settings.method).has_certificates,
     )  # fmt: skip
 
@@ -153,8 +149,8 @@ class ViewState:
             or min([0, *numbers]) < 0
         ):
             raise ValueError("the edits of the scene are out of range")
-        if not 0 <= max(self.warmup.of_path, self.warmup.repeats, len(self.warmup.frames)) <= MOST_FRAMES:
-            raise ValueError(f"a picture has 0 to {MOST_FRAMES:,} frames before it")
+        if not 0 <= max(self.warmup.of_path, self.warmup.repeats, len(self.warmup.frames)) <= MOST_WARMUP_FRAMES:
+            raise ValueError(f"a picture has 0 to {MOST_WARMUP_FRAMES:,} frames before it")
         if self.settings.accelerator not in ACCELERATORS:
             raise ValueError(f"the tree {self.settings.accelerator} is not known")
         return self
@@ -164,16 +160,31 @@ class ViewState:
 
 CAMERA = "camera"
 
-_EDITS = {
-    "lights_off": ("light {}", "off", "on", "--without-light={}"),
-    "moved_lights": ("light {}", "moved", "where it was", "--move-light={}={}"),
-    "hidden": ("{}", "hidden", "shown", "--hide={}"),
-    "hidden_primitives": ("primitive {}", "hidden", "shown", "--hide-primitive={}"),
-    "static": ("{}", "static", "moving", "--make-static={}={}"),
-    "moving": ("{}", "moving", "static", "--make-moving={}"),
-}
-"""By the field of `Edits`: what is edited, what it is then and what without the edit, and the option that asks for it,
-with a place or a time where there is one."""
+
+class EditKind(NamedTuple):
+    """A kind of edit: what is edited, what it is then and what without the edit, and the option that asks for it."""
+
+    called: str
+    edited: str
+    unedited: str
+    option: str
+    metavar: str
+    help: str
+
+
+EDITS = {
+    "lights_off": EditKind("light {}", "off", "on", "--without-light", "N", "switch off this light"),
+    "moved_lights": EditKind("light {}", "moved", "where it was", "--move-light", "N=X,Y,Z",
+                             "put this light elsewhere"),
+    "hidden": EditKind("{}", "hidden", "shown", "--hide", "NAME", "hide this object"),
+    "hidden_primitives": EditKind("primitive {}", "hidden", "shown", "--hide-primitive", "N",
+                                  "hide this primitive alone"),
+    "static": EditKind("{}", "static", "moving", "--make-static", "NAME=T",
+                       "freeze a moving object where it is at T seconds, as static geometry"),
+    "moving": EditKind("{}", "moving", "static", "--make-moving", "NAME",
+                       "treat a static object as one that could move; it stays where it is"),
+}  # fmt: skip
+"""By the fields of `Edits`."""
 
 
 def changes(old: ViewState, new: ViewState) -> dict[str, str]:
@@ -192,10 +203,11 @@ def changes(old: ViewState, new: ViewState) -> dict[str, str]:
 def edits_in_words(before: Edits, after: Edits) -> dict[str, str]:
     """Return what has changed from the one to the other: for each target, in a few words, what it is now."""
     changed = {}
-    for name, (called, edited, unedited, _) in _EDITS.items():
+    for name, kind in EDITS.items():
         old, new = _targets(before, name), _targets(after, name)
         for target in sorted(target for target in {**old, **new} if old.get(target) != new.get(target)):
-            changed[f"{name} {target}"] = f"{called.format(target)} {edited if target in new else unedited}"
+            now = kind.edited if target in new else kind.unedited
+            changed[f"{name} {target}"] = f"{kind.called.format(target)} {now}"
     return changed
 
 
@@ -213,10 +225,10 @@ def one_by_one(edits: Edits) -> list[tuple[str, Edits]]:
 def as_options(edits: Edits) -> list[str]:
     """Return the options of a command line that ask for these edits, to the bit."""
     options = []
-    for name, (_, _, _, option) in _EDITS.items():
+    for name, kind in EDITS.items():
         for target, value in sorted(_targets(edits, name).items()):
             place = ",".join(map(repr, value)) if isinstance(value, tuple) else repr(value)
-            options.append(option.format(target, place))
+            options.append(f"{kind.option}={target}" + ("" if value is True else f"={place}"))
     return options
 
 

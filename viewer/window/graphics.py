@@ -7,6 +7,7 @@ from dataclasses import replace
 import moderngl
 
 from viewer.services.controller import Controller
+from viewer.services.frame_scheduler import Activity
 from viewer.services.runs import missing_in
 from viewer.state.methods import missing
 from viewer.state.parts import parts_of
@@ -94,7 +95,7 @@ def _why_none(c: Controller) -> str:
         return ""
     if run is not None and (lacks := missing_in(run, view)):
         return f"the {run.name} {lacks}"
-    if run is None and (c.scheduler.awaits or c.renderer.busy):
+    if run is None and (c.renderer.busy or c.scheduler.activity not in (Activity.RESTING, Activity.ADDING_SAMPLES)):
         return ""
     found = missing(view, frame)
     return found.text if found is not None else ""

@@ -5,13 +5,14 @@ from __future__ import annotations
 import time
 
 from tests.viewer.driver import Driver
+from viewer.services.frame_scheduler import Activity
 
 
 def closing_while_tracing(d: Driver) -> None:
     """The window goes at once, whatever is being traced."""
     d.settle()
     d.c.settings.change(samples=4000)
-    d.wait(lambda: d.c.scheduler.adds_samples, "a long trace")
+    d.wait(lambda: d.c.scheduler.activity is Activity.ADDING_SAMPLES, "a long trace")
     _close(d)
 
 

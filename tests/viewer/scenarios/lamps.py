@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from tracer.renderer import Renderer
+from viewer.services.frame_scheduler import Activity
 from viewer.state import views as view_names
 from viewer.state.views import View
 from viewer.views import penumbra
@@ -38,7 +39,7 @@ def lamps(d: Driver) -> None:
         if d.c.scheduler.traced.whole and d.c.frame.settings.lamp_radius == 0.5:
             seen.append(d.c.frame.settings.lamp_samples)
         said.add(doing(d.c))
-        return d.c.frame.settings.lamp_samples == 64 and not d.c.scheduler.refines_lamps
+        return d.c.frame.settings.lamp_samples == 64 and d.c.scheduler.activity is not Activity.SAMPLING_LAMPS
 
     d.wait(refined, "all samples of the lamps")
     assert set(seen) <= {1, 4, 16, 64} and seen == sorted(seen), f"{seen}"

@@ -15,7 +15,7 @@ from tracer.frame import Settings
 from tracer.scene.lights import Light
 from tracer.scene.model import Camera, Scene
 from tracer.statistics import FrameStatistics
-from viewer.services.frame_scheduler import FrameInputs, FrameScheduler
+from viewer.services.frame_scheduler import Activity, FrameInputs, FrameScheduler
 from viewer.services.jobs import Wake
 from viewer.services.refinement import MOST_FRAMES, MOST_LEARNING, Refinement
 from viewer.services.render_request import RenderRequest, Traced
@@ -127,9 +127,9 @@ def test_at_rest_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_fo
     window = Window(lamp_radius=0.5, lamp_samples=64)
     assert window.rest() == [(4, 1), (64, 2), (64, 2)], "the last knows more about shadows"
     assert window.rest() == []
-    assert not window.scheduler.refines_lamps and window.scheduler.lamp_samples_shown == 64
+    assert window.scheduler.activity is Activity.RESTING and window.scheduler.lamp_samples_shown == 64
     window.session.set_settings(lamp_samples=256)
-    assert window.rest(1) == [(256, 2)] and window.scheduler.refines_lamps
+    assert window.rest(1) == [(256, 2)] and window.scheduler.activity is Activity.SAMPLING_LAMPS
     assert window.rest() == [(256, 2)], "what there is goes on"
     window.session.set_settings(lamp_samples=1)
     assert window.rest() == [(1, 2), (1, 2)]
@@ -177,18 +177,19 @@ def test_between_steps_it_is_known_that_more_is_to_come():
     """Whatever the thread is at: it may be between two pictures."""
     window = Window(lamp_radius=0.5, lamp_samples=64)
     scheduler, seen = window.scheduler, []
-    assert not scheduler.awaits and not scheduler.adds_samples
+    assert scheduler.activity is Activity.RESTING
     for _ in range(12):
         window.request()
-        seen.append((scheduler.lamp_samples_shown, scheduler.awaits, scheduler.refines_lamps))
+        seen.append((scheduler.lamp_samples_shown, scheduler.activity))
         scheduler.take()
-    assert seen[:3] == [(0, True, False), (4, True, True), (64, True, False)], "the last knows more"
-    assert seen[-1] == (64, False, False)
+    coming = (Activity.TRACING, Activity.SAMPLING_LAMPS, Activity.TRACING)
+    assert seen[:3] == list(zip((0, 4, 64), coming, strict=True)), "the last knows more"
+    assert seen[-1] == (64, Activity.RESTING)
     window.move()
     window.request()
-    assert scheduler.awaits
+    assert scheduler.activity is Activity.TRACING
     scheduler.give_up()
-    assert not scheduler.awaits and not scheduler.adds_samples, "it has failed"
+    assert scheduler.activity is Activity.RESTING, "it has failed"
 
 
 # --- what views need ---------------------------------------------------------------------------------

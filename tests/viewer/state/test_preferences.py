@@ -40,45 +40,17 @@ def test_what_a_window_starts_with_is_what_the_last_one_remembered():
     assert found.draw.view is View.COLOR and found.draw.outlines and found.pace == ViewState.in_window().pace
 
 
-@pytest.mark.parametrize(
-    ("stored", "found"),
-    [
-        ({"method": "auto"}, "paper"),
-        ({"method": "auto+rest"}, "paper+rest"),
-        ({"method": "certified"}, "certified"),
-        ({"method": "auto", "format": 2}, "auto"),
-        ({"method": 3}, "paper"),
-    ],
-)
-def test_the_default_method_of_version_0_2_was_not_chosen(tmp_path: Path, stored: dict, found: str):
-    """That version has written `auto` whether anybody chose it or not; since then, what is stored was chosen."""
-    (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(stored))
-    read, problem = load_preferences(tmp_path)
-    assert (read.method, codec.recalled(read.state).settings.method, problem) == (found, found, None)
-    save_preferences(read, tmp_path, base=codec.to_json(read))
-    assert load_preferences(tmp_path)[0].method == found, "nor is it when two windows' changes are put together"
-
-
-def test_formats_1_and_2_are_read(tmp_path: Path):
-    old = {
-        "format": 2, "method": "certified", "culling": False, "depth": 4, "outlines": True, "legend_x": 0.25,
-        "legend_y": 0.5, "work_shares": True, "fixed_resolution": True, "fixed_width": 300, "lamp_samples": 16,
-        "keep_tracing": True, "view": "depth", "theme": "light",
-        "presets": [{"name": "mine", "choices": {
-            "settings": {"depth": 2}, "view": "normal", "light": 1, "wipe": 0.5, "looks": {"every_frame": True}}}],
-        "bookmarks": {"/a.aff": [{"name": "here", "state": {"time": 1.0}}]},
-    }  # fmt: skip
+def test_of_an_older_format_what_has_the_same_name_is_read(tmp_path: Path):
+    marks = {"/a.aff": [{"name": "here", "state": {"time": 1.0}}]}
+    old = {"method": "auto", "depth": 4, "outlines": True, "theme": "light", "bookmarks": marks}
+    old["presets"] = [{"name": "mine", "choices": {}}]
     (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(old))
     read, problem = load_preferences(tmp_path)
-    state = codec.recalled(read.state)
-    assert problem is None and (read.method, read.theme, read.format) == ("certified", "light", prefs.FORMAT)
-    assert (state.settings.method, state.settings.depth, state.settings.lamp_samples) == ("none", 4, 16)
-    assert (state.draw.outlines, state.draw.legend_at, state.draw.shares) == (True, (0.25, 0.5), True)
-    assert (state.pace.fixed_size, state.pace.width, state.pace.keep_tracing) == (True, 300, True)
-    (preset,) = read.presets
-    draw = {"view": "normal", "light": 1, "wipe": 0.5}
-    assert preset == NamedState("mine", {"settings": {"depth": 2}, "draw": draw, "pace": {"every_frame": True}})
-    assert read.bookmarks == {"/a.aff": [NamedState("here", {"time": 1.0})]}
+    assert problem is None and (read.theme, read.format) == ("light", prefs.FORMAT)
+    assert codec.recalled(read.state) == ViewState.in_window(), (
+        "the default method, which that version stored unasked, too"
+    )
+    assert read.bookmarks == {"/a.aff": [NamedState("here", {"time": 1.0})]} and read.presets == []
 
 
 def test_odd_values_keep_their_defaults_and_the_rest_is_read(tmp_path: Path):

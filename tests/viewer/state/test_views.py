@@ -11,9 +11,8 @@ from tests.viewer.drawn import luminance
 from tests.viewer.fakes import make_frame
 from tracer.culling.fate import Fate
 from tracer.frame import Settings
-from viewer.services.history import Plots, counters
 from viewer.state import palette
-from viewer.state.draw_options import MOST_EXPOSURE, Curve, Tone, brighter, clipped, toned
+from viewer.state.draw_options import Curve, Tone, brighter, clipped, toned
 from viewer.views import penumbra
 from viewer.views.difference import Mark, wrong_marks
 from viewer.window.widgets import percent
@@ -90,56 +89,6 @@ def test_the_colour_map_grows_lighter_all_the_way():
     assert (np.diff(grey) > -1e-3).all() and grey[-1] - grey[0] > 0.6
 
 
-def test_history_keeps_the_newest_in_order_and_contiguous():
-    history, frame = Plots(capacity=5), make_frame()
-    for i in range(13):
-        frame.statistics.shadow.due = i
-        history.add(frame, 0.001)
-        due = history.values("due")
-        assert list(due) == list(range(max(0, i - 4), i + 1))
-        assert due.flags.c_contiguous and due.dtype == np.float64
-    assert history.first == 8 and all(len(history.values(name)) == 5 for name in counters(frame, 0.0))
-    history.clear()
-    assert len(history) == 0 and len(history.values("due")) == 0
-
-
-def test_fates_of_shadow_rays_add_up_to_those_due():
-    history, frame = Plots(), make_frame()
-    shadow = frame.statistics.shadow
-    shadow.due, shadow.culled, shadow.candidates_only, shadow.dynamic_only, shadow.cache_hits = 100, 40, 25, 20, 10
-    frame.statistics.certificate_steps, frame.statistics.certificate_tests = 7, 3
-    history.add(frame, 0.0)
-    fates = ("culled", "candidates_only", "dynamic_only", "cache_hits", "traced")
-    assert [history.values(name)[0] for name in fates] == [40, 25, 20, 10, 5]
-    assert history.values("steps")[0] == history.values("shadow_steps")[0] == 7, "certificates count against it"
-    assert history.values("tests")[0] == history.values("shadow_tests")[0] == 3
-
-
-def test_a_picture_that_is_shaded_in_part_counts_for_each_pixel_as_a_whole_one():
-    """Primary rays and proofs are of all pixels, all else is of those that are shaded."""
-    history, pixels = Plots(), make_frame().primitive.size
-    for part in (0.25, 1.0):
-        frame = make_frame()
-        s = frame.statistics
-        s.part, s.primary.traversal_steps, s.certificate_steps = part, 30 * pixels, 2 * pixels
-        s.shadow.due, s.shadow.traversal_steps = round(4 * part * pixels), round(40 * part * pixels)
-        history.add(frame, 0.0)
-    assert list(history.per_pixel("due")) == [4.0, 4.0]
-    assert list(history.per_pixel("steps")) == [72.0, 72.0]
-    assert list(history.per_pixel("shadow_steps")) == [42.0, 42.0]
-    assert list(history.values("shadow_steps")) == [12 * pixels, 42 * pixels], "the work that was done"
-    assert [history.shaded_of(number) for number in (0, 1, 7)] == [0.25, 1.0, 1.0]
-
-
-def test_a_picture_that_becomes_whole_is_one_frame_of_the_history():
-    history = Plots()
-    for part, again in ((0.25, False), (0.5, True), (1.0, True), (0.25, False)):
-        frame = make_frame()
-        frame.statistics.shadow.due = round(100 * part)
-        history.add(frame, 0.0, again)
-    assert history.frames == 2 and list(history.values("due")) == [100, 25]
-
-
 GREYS = np.repeat(np.linspace(0.0, 8.0, 161, dtype=np.float32)[:, None, None], 3, axis=2)
 
 
@@ -160,7 +109,7 @@ def test_a_stop_of_exposure_doubles_colours_and_has_limits():
     for curve in Curve:
         assert toned(GREYS, Tone(-2.0, 1.0, curve)) == pytest.approx(toned(GREYS / 4.0, Tone(0.0, 1.0, curve)))
     assert brighter(brighter(Tone(), 0.1), -0.1).neutral
-    assert brighter(Tone(MOST_EXPOSURE), 1.0).exposure == MOST_EXPOSURE
+    assert brighter(Tone(16.0), 1.0).exposure == 16.0
 
 
 def test_known_values_of_the_curves():

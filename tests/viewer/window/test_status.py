@@ -8,6 +8,7 @@ import pytest
 
 from tests.viewer.fakes import make_frame, with_certificates
 from tracer.settings import Settings
+from viewer.services.frame_scheduler import Activity
 from viewer.state import terms
 from viewer.state.draw_options import DrawOptions
 from viewer.state.views import View
@@ -23,8 +24,7 @@ def job(title: str, label: str = "", fraction: float = 0.5) -> SimpleNamespace:
 
 def idle(**changes: object) -> SimpleNamespace:
     """A controller with a scene and nothing to do, but for what is given of it, its loader and its scheduler."""
-    off = dict.fromkeys(("refines_lamps", "certifies", "awaits", "adds_samples", "becoming_finer"), False)
-    tracing = SimpleNamespace(**off, samples_shown=1, samples_wanted=4)
+    tracing = SimpleNamespace(activity=Activity.RESTING, becoming_finer=False, samples_shown=1, samples_wanted=4)
     loader = SimpleNamespace(warm_up_job=None, load_job=None, method_job=None, compiles=False)
     c = SimpleNamespace(
         loader=loader, frame=None, runs=SimpleNamespace(current=None), scheduler=tracing,
@@ -60,7 +60,8 @@ def run(traced: int, label: str) -> SimpleNamespace:
         (doing, {"warm_up_job": KERNELS, "frame": FRAME}, "loading the kernels of certificates: 50 %"),
         (doing, {"runs": run(0, "starting")}, "experiment is starting   (Escape stops it)"),
         (doing, {"runs": run(1, "frame 1 of 5, none")}, "experiment, traced: frame 1 of 5, none   (Escape stops it)"),
-        (doing, {"certifies": True, "frame": FRAME}, "making certificates (cells settled in the last picture: 1)"),
+        (doing, {"activity": Activity.CERTIFYING, "frame": FRAME},
+         "making certificates (cells settled in the last picture: 1)"),
         (doing, {}, "idle"),
         (first_picture, {}, "No picture has been traced yet."),
         (first_picture, {"renderer": BUSY}, "Tracing the first picture ..."),
@@ -68,8 +69,8 @@ def run(traced: int, label: str) -> SimpleNamespace:
         (first_picture, {"load_job": job("Opening office.aff", "reading")},
          "Opening office.aff: reading   (Escape cancels)"),
         (answers, {}, "Tracing its shadow rays ..."),
-        (answers, {"adds_samples": True}, "Answered after this sample."),
-        (answers, {"refines_lamps": True}, "Answered after the samples of lamps."),
+        (answers, {"activity": Activity.ADDING_SAMPLES}, "Answered after this sample."),
+        (answers, {"activity": Activity.SAMPLING_LAMPS}, "Answered after the samples of lamps."),
         (answers, {"renderer": BUSY}, "Answered after this picture."),
         (answers, {"motion": SimpleNamespace(is_animating=True)}, "Answered when nothing moves."),
     ],

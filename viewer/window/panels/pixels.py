@@ -77,7 +77,7 @@ def _histogram(ui: Ui) -> None:
     if found.pixels < found.of or difference is not None:
         what = "have a value" if difference is None else "differ"
         paragraph(f"{count(found.pixels)} of {count(found.of)} pixels {what}; these are counted here", QUIET)
-    ranged = view.has_range and not (view.needs_work and c.session.draw.shares)
+    ranged = c.session.draw.has_span
     if difference is None and ranged and imgui.small_button("Use as the range of colours"):
         span = min(found.least), max(max(found.largest), min(found.least) + 1e-6)
         c.session.change(draw=c.session.draw.with_span(span, view))

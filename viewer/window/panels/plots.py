@@ -91,7 +91,7 @@ def show(ui: Ui) -> None:
         paragraph("Curves appear with the first frames.", QUIET)
         return
     if imgui.small_button("Clear"):
-        history.hide()
+        history.clear_plots()
         return
     imgui.same_line()
     clipped(f"the last {len(history)} pictures" if len(history) > 1 else "one picture so far", QUIET)
@@ -171,9 +171,9 @@ def _go_to_frame(ui: Ui, number: int, values: list[str]) -> None:
     if record is None:
         return
     ui.state(PlotsState).pointed = number
-    width, height, part = record.settings.width, record.settings.height, c.history.shaded_of(number)
+    (width, height), part = record.state.size, record.counters["pixels"] / record.counters["all_pixels"]
     shaded = f", {whole_percent(part)} shaded" if part < 1.0 else ""
-    said = f"{record.state.time:.3f} s, {record.settings.method}, {width} x {height}{shaded}"
+    said = f"{record.state.time:.3f} s, {record.state.settings.method}, {width} x {height}{shaded}"
     if _clicked([c.navigator.name_of(number), said, *values]):
         c.navigator.go(number)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 
 from viewer.services.controller import Controller
+from viewer.services.frame_scheduler import Activity
 from viewer.state.palette import FATE_COLORS, label_color
 from viewer.state.savings import LONGEST, WOULD_OPACITY, Clause, Part, Standing, Tone, bar_of, places, sentence
 from viewer.state.views import View
@@ -21,7 +22,7 @@ def standing(c: Controller) -> Standing:
     """Return what is known of the newest frame beside its counters."""
     run = c.runs.current
     name = run.name if run is not None and run.is_shown else ""
-    return Standing(c.baseline.measured, c.scheduler.certifies, c.baseline.why_not, name)
+    return Standing(c.baseline.measured, c.scheduler.activity is Activity.CERTIFYING, c.baseline.why_not, name)
 
 
 def height(ui: Ui, room: ImVec2) -> float:

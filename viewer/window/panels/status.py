@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.controller import Controller
+from viewer.services.frame_scheduler import Activity
 from viewer.state import terms, verified
 from viewer.state.notices import Entry, Level
 from viewer.window.ui import Ui
@@ -107,28 +108,26 @@ def doing(c: Controller) -> str:
         return "no scene is open"
     if c.motion.under_way or c.session.playing:
         return TRACING
-    if c.scheduler.refines_lamps:
+    activity = c.scheduler.activity
+    if activity is Activity.SAMPLING_LAMPS:
         return f"lamp samples: {c.scheduler.lamp_samples_shown} of {c.scheduler.lamps.wanted}"
-    if c.scheduler.certifies:
+    if activity is Activity.CERTIFYING:
         made = c.frame.statistics.certificates if c.frame is not None else 0
         before = ", before more samples" if c.session.settings.samples > 1 else ""
         makes, _ = terms.made(c.session.settings.method)
         return f"making certificates{before}{f' ({makes} in the last picture: {count(made)})' if made else ''}"
-    if c.renderer.busy or c.scheduler.awaits:
+    if c.renderer.busy or activity is Activity.TRACING:
         is_there = c.frame is not None and not c.scheduler.outdated and c.frame.camera == c.session.camera
         return "refining the picture" if c.scheduler.becoming_finer or is_there else TRACING
-    if c.scheduler.adds_samples:
+    if activity is Activity.ADDING_SAMPLES:
         return f"adding samples: {c.scheduler.samples_shown} of {c.scheduler.samples_wanted}"
     return IDLE
 
 
 def traced_before_an_answer(c: Controller) -> str:
     """Return what is traced before a question about the picture is answered; "" where it is answered at once."""
-    if c.scheduler.refines_lamps:
-        return "the samples of lamps"
-    if c.scheduler.adds_samples:
-        return "this sample"
-    return "this picture" if c.renderer.busy else ""
+    sampled = {Activity.SAMPLING_LAMPS: "the samples of lamps", Activity.ADDING_SAMPLES: "this sample"}
+    return sampled.get(c.scheduler.activity, "this picture" if c.renderer.busy else "")
 
 
 def first_picture(c: Controller) -> str:

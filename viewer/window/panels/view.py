@@ -10,7 +10,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.services.runs import missing_in
 from viewer.state.draw_options import AXES
 from viewer.state.pixels import pixel_at
-from viewer.state.view_state import LONGEST_SIDE
+from viewer.state.view_state import LONGEST_FIXED_SIDE
 from viewer.state.views import View, can_draw
 from viewer.views import view_of, words_at
 from viewer.window import menus
@@ -53,7 +53,7 @@ def show_rendering(ui: Ui) -> None:
     setting_switch(ui, ALL["pace.fixed_size"])
     if pace.fixed_size:
         imgui.same_line()
-        width, height = size_field((pace.width, pace.height), LONGEST_SIDE, c.notices.say)
+        width, height = size_field((pace.width, pace.height), LONGEST_FIXED_SIDE, c.notices.say)
         if (width, height) != (pace.width, pace.height):
             c.session.set_pace(width=width, height=height)
     setting_switch(ui, ALL["pace.progressive"])
