@@ -80,54 +80,30 @@ def works_while_typing(key: str) -> bool:
 
 
 class Keymap:
-    """The keys of all that can have some: `defaults` maps names of commands to their keys, first the one to be shown;
-    those of HELD come with them, and the user's own go before."""
+    """The keys of all that can have some.  `defaults` has those of HELD, and of commands by their names, first the one
+    to be shown; the user's own go before."""
 
-    def __init__(self, preferences: Preferences, defaults: Mapping[str, tuple[str, ...]]) -> None:
-        self._own = lambda: preferences.keys
-        self._defaults = {**{name: (key,) for name, key in HELD.items()}, **defaults}
-
-    @property
-    def names(self) -> Iterable[str]:
-        """All that can have keys."""
-        return self._defaults.keys()
+    def __init__(self, preferences: Preferences, commands: Mapping[str, tuple[str, ...]]) -> None:
+        self._preferences = preferences
+        self.defaults = {**{name: (key,) for name, key in HELD.items()}, **commands}
 
     def of(self, name: str) -> tuple[str, ...]:
         """Return its keys as they are now; the first is to be shown."""
-        return tuple(self._own().get(name, self.usual(name)))
-
-    def usual(self, name: str) -> tuple[str, ...]:
-        """Return its keys unless the user chooses others."""
-        return self._defaults.get(name, ())
-
-    def shown(self, name: str) -> str:
-        """Return its first key, "" where it has none."""
-        return next(iter(self.of(name)), "")
-
-    def changed(self, name: str) -> bool:
-        """Return whether the user has chosen its keys."""
-        return name in self._own()
+        return tuple(self._preferences.keys.get(name, self.defaults.get(name, ())))
 
     def choose(self, name: str, keys: Iterable[str]) -> None:
         """Give it these keys; its usual ones are not remembered as chosen."""
-        chosen = [tidy(key) for key in keys]
-        if tuple(chosen) == self.usual(name):
-            self._own().pop(name, None)
-        else:
-            self._own()[name] = list(dict.fromkeys(chosen))
-
-    def reset(self, name: str | None = None) -> None:
-        """Give it its usual keys again, or everything."""
-        for each in [name] if name is not None else list(self._own()):
-            self._own().pop(each, None)
+        self._preferences.keys[name] = list(dict.fromkeys(map(tidy, keys)))
+        if self.of(name) == self.defaults.get(name, ()):
+            del self._preferences.keys[name]
 
     def conflicts(self) -> dict[str, list[str]]:
         """Return all that share a key, each with what else has one of its keys."""
         owners: dict[str, list[str]] = {}
-        for name in self._defaults:
+        for name in self.defaults:
             for key in self.of(name):
                 owners.setdefault(key, []).append(name)
-        shared = {name: [o for key in self.of(name) for o in owners[key] if o != name] for name in self._defaults}
+        shared = {name: [o for key in self.of(name) for o in owners[key] if o != name] for name in self.defaults}
         return {name: list(dict.fromkeys(others)) for name, others in shared.items() if others}
 
 

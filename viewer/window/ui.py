@@ -151,7 +151,7 @@ class Ui:
 
     def key_label(self, name: str) -> str:
         """The same without brackets."""
-        return self.keyboard.label(self.keymap.shown(name))
+        return self.keyboard.label(next(iter(self.keymap.of(name)), ""))
 
     def key_or_menu(self, name: str) -> str:
         """The key of a command, or of what is done while one is held, as the user reads it; without one, where the

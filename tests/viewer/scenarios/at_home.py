@@ -10,8 +10,8 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from viewer.state.views import View
-from viewer.window.finder import Finder
 from viewer.window.menus import ANY_POPUP
+from viewer.window.panels.command_palette import Finder
 from viewer.window.panels.named_states import NameFields
 
 KEY = imgui.Key

@@ -105,11 +105,11 @@ def _keys(d: Driver) -> None:
     d.frames(2)
     assert d.ui.keymap.conflicts()["Fly back"] == ["Orbit"] and "also Orbit" in d.said
     assert d.c.preferences.navigation == "fly", "a key that was chosen did what it does"
-    d.ui.keymap.reset("Fly back")
+    del d.c.preferences.keys["Fly back"]
     d.press(KEY.f1)
     d.hold(KEY.w, 0.1)
     assert d.c.session.camera == before
     d.hold(KEY.x, 0.1)
     assert (np.subtract(d.c.session.camera.position, before.position) @ before.basis()[2]) > 0.0
-    d.ui.keymap.reset()
+    d.c.preferences.keys.clear()
     d.settle()

@@ -35,7 +35,7 @@ def _by_hand(d: Driver) -> None:
     assert d.c.frame.statistics.shadow.dynamic_only > 0, "the method at the start saves rays"
     d.ui.keymap.choose("Shadow culling", ["F7"])
     d.expect("Press F7 twice")
-    d.ui.keymap.reset("Shadow culling")
+    d.c.preferences.keys.clear()
     d.expect("Press C twice")
     d.change(method="auto")
     assert not d.c.frame.statistics.shadow.dynamic_only

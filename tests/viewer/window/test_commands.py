@@ -9,8 +9,7 @@ import pytest
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window.command import MENUS, Command, Kind
-from viewer.window.finder import Finder, find, match
-from viewer.window.panels.command_palette import items
+from viewer.window.panels.command_palette import Finder, find, items, match
 from viewer.window.ui import Ui
 
 

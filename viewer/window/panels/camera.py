@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from imgui_bundle import imgui
@@ -15,7 +16,7 @@ from viewer.state import navigation
 from viewer.state.picking import extent_at, point_at, points_of
 from viewer.state.preferences import NAVIGATION
 from viewer.window import menus
-from viewer.window.command import Command, Condition, scene_open
+from viewer.window.command import Command, Condition, Kind, scene_open
 from viewer.window.panels import named_states
 from viewer.window.panels.named_states import KEYED_BOOKMARKS
 from viewer.window.setting_rows import in_panel, setting_command, setting_row
@@ -179,5 +180,5 @@ def _bookmark(ui: Ui, index: int) -> Command:
         return f"{index + 1}  {marks.all[index].name}" if index < len(marks.all) else ""
 
     there = Condition(lambda: index < len(marks.all), "this scene has fewer bookmarks")
-    return Command(f"Go to bookmark {index + 1}", "Camera/Bookmarks", lambda: c.go_to_bookmark(index),
-                   f"Alt+{index + 1}", enabled=there, title=title, separated=index == 0)  # fmt: skip
+    return Command(f"Go to bookmark {index + 1}", "Camera/Bookmarks", partial(c.go_to_bookmark, index),
+                   f"Alt+{index + 1}", enabled=there, title=title, separated=not index, kind=Kind.BOOKMARK)  # fmt: skip

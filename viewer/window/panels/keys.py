@@ -57,7 +57,7 @@ def _head(ui: Ui, conflicts: int) -> None:
     waiting = ui.keyboard.wanted_for
     imgui.begin_disabled(not ui.controller.preferences.keys)
     if imgui.button("Reset all keys"):
-        ui.keymap.reset()
+        ui.controller.preferences.keys.clear()
     imgui.end_disabled()
     tooltip("Restore the default keys of all commands.")
     if conflicts:
@@ -92,7 +92,8 @@ def _groups(ui: Ui, conflicts: dict[str, list[str]]) -> None:
 
 
 def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
-    keymap, waiting = ui.keymap, ui.keyboard.wanted_for == name
+    keymap, own, waiting = ui.keymap, ui.controller.preferences.keys, ui.keyboard.wanted_for == name
+    changed = name in own
     label = "press a key" if waiting else ui.key_label(name) or "none"
     left = imgui.get_cursor_pos_x()
     imgui.push_style_color(imgui.Col_.text, ERROR if conflicts else imgui.get_style_color_vec4(imgui.Col_.text))
@@ -105,13 +106,12 @@ def _line(ui: Ui, name: str, conflicts: list[str]) -> None:
     if imgui.begin_popup_context_item("more"):
         if imgui.menu_item("No key", "", False, bool(keymap.of(name)))[0]:
             keymap.choose(name, [])
-        usual = ", ".join(map(ui.keyboard.label, keymap.usual(name))) or "no key"
-        if imgui.menu_item(f"Default key: {usual}", "", False, keymap.changed(name))[0]:
-            keymap.reset(name)
+        usual = ", ".join(map(ui.keyboard.label, keymap.defaults[name])) or "no key"
+        if imgui.menu_item(f"Default key: {usual}", "", False, changed)[0]:
+            del own[name]
         imgui.end_popup()
     imgui.same_line()
     imgui.set_cursor_pos_x(left + em(_KEY))
-    changed = keymap.changed(name)
     clipped(f"{name}{'  (changed)' if changed else ''}", ERROR if conflicts else None if changed else QUIET)
 
 
