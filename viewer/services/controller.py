@@ -168,7 +168,7 @@ class Controller:
         return FrameInputs(
             session.state, session.scene, session.camera, size,
             moving=self.motion.under_way, playing=session.playing, counting=session.counting, run=self.runs.current,
-            edited=self.editing.at_work, ready=self.loader.ready, second=self.comparing.second_method,
+            edited=self.editing.at_work, ready=self.loader.warm_up_job is None, second=self.comparing.second_method,
             focus=self.selection.hovered, inspected=session.playing and self.selection.pixel is not None,
         )  # fmt: skip
 

@@ -225,8 +225,8 @@ class FrameScheduler:
         return (0.5 if self.inputs.second else 1.0) / self.inputs.state.pace.target_fps
 
     def _until_ready(self, method: str) -> str:
-        """The method, or the one without culling until what makes certificates has been compiled: the picture is the
-        same."""
+        """The method, or the one without culling until what makes certificates has been compiled, which comes last: the
+        picture is the same."""
         waits = bool(method) and not self.inputs.ready and Method.parse(method).has_certificates
         return with_base(method, NO_CULLING) if waits else method
 

@@ -94,11 +94,6 @@ class SceneLoader:
     def busy(self) -> bool:
         return not (self.load_job is None and self._restored is None and self.warm_up_job is None)
 
-    @property
-    def ready(self) -> bool:
-        """Whether all kernels are; those that make certificates come last, and pictures without them look the same."""
-        return self.warm_up_job is None
-
     def start(self, settings: Mapping[str, Any], folders: Sequence[Path] = (), meshes: MeshOptions = IN_STUDIO) -> None:
         """Compile or load the kernels in the background; a first scene is opened meanwhile.
 
