@@ -11,7 +11,7 @@ ARGS ?=
 RUN := .venv/bin/python
 PARALLEL := -n auto --maxprocesses 4 --dist worksteal
 QUICK := tests/test_house.py tests/test_golden.py tests/scene tests/experiments/test_zoom.py \
-    $(addprefix tests/viewer/,cli/test_cli.py views/test_legend.py state services window) \
+    $(addprefix tests/viewer/,cli/test_cli.py cli/test_mistakes.py views/test_legend.py state services window) \
     $(addprefix tests/tracing/test_,culling.py modes.py pictures.py intersect.py traversal.py waves.py) \
     -m "not slow"
 
@@ -25,11 +25,11 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
+.PHONY: files run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
-	@$(RUN) -m viewer --or-picture $(ARGS)
+	@$(RUN) tools/run.py $(ARGS)
 
 kernels:  ## compile all that the tests use
 	@tools/environment.sh dev
@@ -164,6 +164,10 @@ format:  ## put the sources in the form that lint asks for
 lock:  ## choose the newest versions within pyproject.toml's ranges (ARGS="numba numpy": only these)
 	@tools/environment.sh dev
 	@tools/lock.sh $(ARGS)
+
+files:  ## print every file with the first line of what it says of itself
+	@tools/environment.sh dev
+	@$(RUN) tools/files.py
 
 clean:  ## remove what was compiled, cached or built; the environment and pictures stay
 	rm -rf .cache .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis dist build

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
-from time import monotonic, sleep
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from tracer.culling.fate import CACHED, CANDIDATES, CULLED, DYNAMIC_ONLY, FACES_AWAY, MOVING_SHADOW, TRACED
@@ -29,6 +30,11 @@ from tracer.scene.model import (
     empty_quadrics,
 )
 from tracer.statistics import BuiltPart, CutCounts, FrameStatistics, WrongCounts
+from viewer.services.motion import Motion
+from viewer.state import codec
+from viewer.state.notices import Notices
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
 
 TINY_SCENE = """
 b 0.3 0.4 0.5
@@ -251,10 +257,10 @@ PATIENCE = 60.0
 
 def until(happens: Callable[[], object]) -> None:
     """Wait for what another thread brings about."""
-    end = monotonic() + PATIENCE
+    end = time.monotonic() + PATIENCE
     while not happens():
-        assert monotonic() < end, "waited in vain"
-        sleep(0.001)
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.001)
 
 
 class FakeRenderer:
@@ -310,3 +316,19 @@ class FakeRenderer:
         if self.failing is not None:
             raise self.failing
         return make_frame(self.settings, time, camera)
+
+
+class Moving:
+    """A session whose camera and time move, and a clock that is set by hand."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now, self.locked = 100.0, False
+        monkeypatch.setattr(time, "monotonic", lambda: self.now)
+        self.session, self.preferences, self.notices = Session(state=codec.recalled({})), Preferences(), Notices()
+        self.session.open(make_scene())
+        self.motion = Motion(self.session, self.preferences, self.notices, lambda: self.locked)
+
+    def after(self, seconds: float, shown: float | None = None) -> None:
+        """So many seconds later, with a whole picture of some time."""
+        self.now += seconds
+        self.motion.advance(shown)

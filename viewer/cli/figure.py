@@ -68,7 +68,6 @@ def run(given: Namespace) -> int:
         state = pictures.wanted_state(scene, settings, given)
         crops = tuple(Crop(*crop) for crop in given.crops)
         wanted = Comparison(tuple(given.methods), crops).checked(state.size)
-        pictures.check_lights(state, scene)
         options.warmup_times(scene, state.time, state.warmup.of_path, work)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, *wanted.methods)
         world = World(scene, state.time, given.accelerator, work.progress)

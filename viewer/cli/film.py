@@ -77,8 +77,6 @@ def run(given: Namespace) -> int:
         state = pictures.wanted_state(scene, settings, given)
         state = state.with_warmup(frames=())  # modes are learnt from the film alone
         stills.with_caption_filled(state, scene)  # or say now what is wrong with it
-        pictures.check_tree(settings, state.draw.view, scene)
-        pictures.check_lights(state, scene)
         frames = given.frames or (0, scene.frames - 1)
         takes = films.takes(scene, frames, _stops(scene, given), given.seconds, given.fps, given.camera)
         films.prepare(folder, video)

@@ -6,10 +6,8 @@ line on standard error.  What needs GL is imported only to open the window, and 
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
-from argparse import Namespace
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
@@ -103,8 +101,6 @@ def _view(arguments: list[str], open_window: OpenWindow) -> int:
         _check_is_scene(parser, arguments[0])
     options = parser.parse_args(arguments)
     if not has_display():
-        if options.or_picture:
-            return _picture_instead(options, arguments)
         named = options.scene or resources.DEFAULT_SCENE
         say(f"{no_display_reason()}; without one, use: shadowcull render {named} -o out.png")
         return MISUSED
@@ -130,7 +126,6 @@ def viewer_parser() -> Parser:
     add_settings(parser, Settings, "lamp_radius", "lamp_samples")
     add_meshes(parser)
     parser.add_argument("--version", action="version", version=f"shadowcull {program_version()}")
-    parser.add_argument("--or-picture", action="store_true", help=argparse.SUPPRESS)
     return parser
 
 
@@ -140,25 +135,3 @@ def _check_is_scene(parser: Parser, name: str) -> None:
         return
     hint = did_you_mean(name, [*COMMANDS, *resources.embedded_scenes()]) or f": the commands are {', '.join(COMMANDS)}"
     parser.error(f"{name!r} is not a command, a file or a scene that comes with the program{hint}")
-
-
-_PICTURE, _FIGURE = "out/first-light.png", "out/figure-1.svg"
-_SIZE = ("--size", "640x480")
-_INSTEAD = (  # three times the same frame: what the first ones teach is what the last one saves
-    ("render", "-o", _PICTURE, "--figure1", _FIGURE, "--method", "paper", "--repeat", "2", *_SIZE),
-    ("bench", "--path-frames", "20", "--accelerator", "bvh8", *_SIZE),
-)
-
-
-def _picture_instead(options: Namespace, arguments: list[str]) -> int:
-    """Without a display, `make run` still does the main job: a picture, its Figure 1, and what culling saves."""
-    say(f"{no_display_reason()}; rendering to files instead")
-
-    from viewer.cli import pictures
-
-    if pictures.carries_state(resources.scene_path(options.scene or resources.DEFAULT_SCENE)):
-        return _run("render", [str(options.scene)])
-    Path(_PICTURE).parent.mkdir(exist_ok=True)
-    scene = [] if options.scene is not None else [resources.DEFAULT_SCENE]
-    words = [*scene, *(word for word in arguments if word != "--or-picture")]
-    return max(_run(name, [*words, *more]) for name, *more in _INSTEAD)

@@ -25,7 +25,6 @@ from viewer.cli.arguments import UPS, Parser, before, count, light_at, number, s
 from viewer.cli.console import Work
 from viewer.services import stills
 from viewer.state.draw_options import Slice
-from viewer.state.plans import MOST_PICTURE_PIXELS
 from viewer.state.view_state import EDITS, as_options
 from viewer.util import resources
 from viewer.views.legend import lights_in_words
@@ -246,8 +245,7 @@ def add_tracing(parser: Parser, accelerator: str = BVH8, zoom_factor: bool = Tru
 def tracing_settings(options: Namespace, **more: Any) -> Settings:
     """Return what the options say of tracing, and `more`, which wins; raises ValueError in one line."""
     width, height = options.size
-    if width * height > MOST_PICTURE_PIXELS:
-        raise ValueError(f"--size {width}x{height}: more than {MOST_PICTURE_PIXELS:,} pixels")
+    stills.check_size(width, height)
     given = {one.name: getattr(options, one.name, None) for one in settings_of(Settings) if one.option}
     given = {"width": width, "height": height} | {name: value for name, value in given.items() if value is not None}
     return Settings(**given | more).validated()

@@ -23,10 +23,9 @@ from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
 from viewer.state.methods import BY_MODES, SHOWN_BY, default_for
 from viewer.state.view_state import ViewState, Warmup
-from viewer.state.views import MOST_RECORDED, View
+from viewer.state.views import View
 
-_SPECIAL = {"view", "spans", "savings", "caption"}  # whose options are no plain values
-DRAWN = [one for one in settings_of(DrawOptions) if one.option and one.path not in _SPECIAL]
+DRAWN = [one for one in settings_of(DrawOptions) if one.option and f"draw.{one.path}" not in commands.NOT_PLAIN]
 OR_PICTURE = ", or a saved picture or a state as .json, for its scene, settings and view"
 _LARGEST_STATE = 1 << 26  # bytes
 
@@ -71,23 +70,23 @@ def picture_settings(given: Namespace) -> Settings:
     return settings
 
 
-def wanted_state(scene: Scene, settings: Settings, given: Namespace) -> ViewState:
-    """Return what the options ask for, with a caption that may have fields.
+def wanted_state(scene: Scene, settings: Settings, given: Namespace, everything: bool = False) -> ViewState:
+    """Return what the options ask for, with a caption that may have fields; `everything`: all buffers are wanted.
 
-    Raises ValueError, in one line, for a moment or a light that the scene does not have."""
+    Raises ValueError, in one line, for what the scene does not have, and what there is no memory for."""
+    check_tree(settings, given.view.view, scene)
     draw = replace(given.view, legend_at=given.legend_at, savings=given.savings, caption=given.caption)
     if draw.view.of_light:
         draw = replace(draw, light=options.light_index(given, f"--view {draw.view}:", draw.light, scene))
     for one in DRAWN:
         draw = one.put(draw, getattr(given, one.name))
     draw = draw.with_span(given.range)
-    unknown = ""
-    if commands.by_chance(settings, draw):
-        unknown = f"what the method {settings.method} makes depends on time and threads"
-    warmup = Warmup(given.before, given.warmup, given.repeat, unknown=unknown)
+    warmup = Warmup(given.before, given.warmup, given.repeat)
     meshes = options.mesh_options(given).of_file(given.path)
     path, time = str(given.path.absolute()), options.moment(scene, given)
-    return ViewState(path, meshes, options.edits_of(given), time, given.camera, settings, draw, warmup=warmup)
+    state = ViewState(path, meshes, options.edits_of(given), time, given.camera, settings, draw, warmup=warmup)
+    stills.check_lights(state, scene, everything)
+    return state.with_warmup(unknown=commands.chance(state))
 
 
 def check_display(given: Namespace) -> None:
@@ -129,15 +128,6 @@ def check_tree(settings: Settings, view: View, scene: Scene) -> None:
         raise ValueError(f"--view {view.value}: {why}")
 
 
-def check_lights(wanted: ViewState, scene: Scene, everything: bool = False) -> None:
-    """Raise ValueError, in one line, where memory has no room for what all lights send to each pixel: for a view that
-    shows it, or `everything`, as buffers have it."""
-    if not stills.lights_fit(wanted, scene, everything):
-        what, lights = "all buffers" if everything else f"--view {wanted.draw.view.value}", len(scene.lights)
-        most = MOST_RECORDED // lights
-        raise ValueError(f"{what} of {lights:,} lights: too much for memory; give a --size of up to {most:,} pixels")
-
-
 # --- saved pictures and states ----------------------------------------------------------------------
 
 
@@ -155,10 +145,11 @@ def state_of(path: Path) -> ViewState:
     else:
         try:
             data = json.loads(read_regular(path, _LARGEST_STATE))
-            state = codec.picture_from_json(data) if "state" in data else codec.state_from_file(data)
+            of_picture = isinstance(data, dict) and "state" in data
+            state = capture.carried_from_json(data).view_state() if of_picture else codec.state_from_file(data)
         except FileNotFoundError:
             raise capture.CaptureError(f"{path}: no such file") from None
-        except (OSError, ValueError, TypeError, RecursionError) as error:
+        except (OSError, ValueError, RecursionError) as error:
             raise capture.CaptureError(f"{path}: holds no state of the viewer: {error}") from None
     scene = find_scene(state.scene, path)
     if scene is None:

@@ -89,7 +89,6 @@ def parser() -> Parser:
 def run(given: Namespace) -> int:
     """Trace one frame and write it; raises SceneError, ValueError and OSError in one line, or Cancelled."""
     check_scene_file(given.path)
-    view = given.view.view
     as_exr = given.output is not None and given.output.suffix.lower() == exr.ENDING
     everything = given.buffers is not None or as_exr or given.to_tev is not None
     if as_exr:
@@ -99,13 +98,11 @@ def run(given: Namespace) -> int:
     settings = pictures.picture_settings(given)
     with working() as work:
         scene = options.read_scene(given.path, given, work)
-        wanted = stills.with_caption_filled(pictures.wanted_state(scene, settings, given), scene)
+        wanted = stills.with_caption_filled(pictures.wanted_state(scene, settings, given, everything), scene)
         if given.print_command:
             words = commands.words(wanted, scene, str(given.output or f"{given.path.stem}.png"), given.folder)
             print(shlex.join(["shadowcull", *words]))
             return 0
-        pictures.check_tree(settings, view, scene)
-        pictures.check_lights(wanted, scene, everything)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)
         modes = given.figure1 is not None and not Method.parse(settings.method).culls  # it says what they would do

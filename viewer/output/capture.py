@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import string
-from collections.abc import Mapping
+from dataclasses import dataclass, field
 from datetime import datetime
 from io import BytesIO
 from pathlib import Path
@@ -54,6 +54,64 @@ class CaptureError(ValueError):
     """A picture cannot be saved or restored; the message is one line."""
 
 
+@dataclass(frozen=True)
+class Made:
+    """What a file was made of: by which version, and fingerprints of the parts of the scene and of its own pixels."""
+
+    version: str = ""
+    scene: dict[str, str] = field(default_factory=dict)
+    pixels: str = ""
+
+
+@dataclass(frozen=True)
+class Carried:
+    """What a saved picture or figure carries, as JSON.
+
+    `state` is stored as the codec does it; `camera` is the frame's, also where the state has the scene's own.  The
+    `statistics` are those of the frame, or of each method of a `figure`.  `window` is true of what shows more than one
+    picture, such as panels, and `picture` is what version 0.2 kept of how it was drawn."""
+
+    state: dict[str, Any]
+    camera: dict[str, Any] | None = None
+    frame: int = 0
+    size: tuple[int, int] | None = None
+    statistics: dict[str, Any] = field(default_factory=dict)
+    made: Made | None = None
+    figure: dict[str, Any] | None = None
+    window: bool | None = None
+    picture: dict[str, Any] | None = None
+    format: int = codec.FORMAT
+
+    def text(self) -> str:
+        """Return it as JSON."""
+        return codec.text({name: value for name, value in vars(self).items() if value is not None})
+
+    def view_state(self) -> ViewState:
+        """Return the state; raises ValueError, in one line, where it is damaged."""
+        found = codec.state_from_json(self.state, drawn=self.picture or self.figure)
+        if not found.scene:
+            raise ValueError("its saved state lacks a scene")
+        if self.size is None:
+            return found
+        width, height = self.size
+        return found.with_settings(width=width, height=height).validated()
+
+
+def carried_from_json(data: Any) -> Carried:
+    """Return what a file carries; raises ValueError in one line."""
+    if not isinstance(data, dict) or not isinstance(data.get("state"), dict):
+        raise ValueError("no saved state in it")
+    return codec.from_json(data, Carried, "what it carries")
+
+
+def carried_from_text(path: Path, text: str) -> Carried:
+    """Return what a file carries; raises CaptureError."""
+    try:
+        return carried_from_json(json.loads(text))
+    except (ValueError, RecursionError) as error:
+        raise CaptureError(f"{path}: cannot be restored: {error}") from None
+
+
 def filled(template: str, values: dict[str, Any], now: datetime | None = None, what: str = "name template") -> str:
     """Return the template with its fields filled in; raises CaptureError, naming what is wrong with it."""
     now = now or datetime.now()
@@ -77,28 +135,6 @@ def file_name(template: str, values: dict[str, Any], now: datetime | None = None
     if not stem.strip(" ."):
         raise CaptureError(f"the name template {template!r} gives no file name")
     return stem[:_LONGEST_NAME] + ".png"
-
-
-def metadata(
-    state: ViewState,
-    camera: Camera,
-    frame_number: int,
-    size: tuple[int, int],
-    statistics: dict[str, Any],
-    more: Mapping[str, Any] | None = None,
-) -> str:
-    """Return the JSON text that a capture carries; `camera` is the state's, or the scene's own in its place, and `more`
-    says how it was made."""
-    data = {
-        "format": codec.FORMAT,
-        "state": codec.state_to_json(state, of_picture=True),
-        "camera": camera.to_json(),
-        "frame": frame_number,
-        "size": list(size),
-        "statistics": statistics,
-        **(more or {}),
-    }
-    return codec.text(data)
 
 
 def encoded(pixels: NDArray[np.uint8], text: str = "", kind: str = "PNG") -> bytes:
@@ -131,28 +167,29 @@ def save(pixels: NDArray[np.uint8], text: str, folder: Path, name: str) -> Path:
 
 def read(path: Path) -> ViewState:
     """Return the state that a picture carries; raises CaptureError."""
-    return _restored(path, read_data(path))
+    return restored(path, read_carried(path))
 
 
 def read_camera(path: Path) -> tuple[float, Camera]:
     """Return the time and the camera of a picture; raises CaptureError."""
-    data = read_data(path)
-    state = _restored(path, data)
+    carried = read_carried(path)
+    state = restored(path, carried)
     try:
-        return state.time, state.camera or Camera.from_json(data.get("camera") or data["state"]["camera"])
+        return state.time, state.camera or Camera.from_json(carried.camera or carried.state["camera"])
     except (ValueError, KeyError, TypeError) as error:
         raise CaptureError(f"{path}: cannot be restored: {error}") from None
 
 
-def _restored(path: Path, data: Mapping[str, Any]) -> ViewState:
+def restored(path: Path, carried: Carried) -> ViewState:
+    """Return the state of what a picture carries; raises CaptureError."""
     try:
-        return codec.picture_from_json(data)
+        return carried.view_state()
     except ValueError as error:
         raise CaptureError(f"{path}: cannot be restored: {error}") from None
 
 
-def read_data(path: Path) -> dict[str, Any]:
-    """Return all that a picture carries, as JSON has it; raises CaptureError."""
+def read_carried(path: Path) -> Carried:
+    """Return all that a PNG carries; raises CaptureError."""
     try:
         file = read_regular(path)
         with open_image(BytesIO(file), ("PNG",)) as image:
@@ -168,10 +205,4 @@ def read_data(path: Path) -> dict[str, Any]:
         raise CaptureError(f"{path}: cannot be read as a picture: {in_one_line(error)}") from None
     if text is None:
         raise CaptureError(f"{path}: a picture, but not one saved by Shadowcull")
-    try:
-        data = json.loads(text)
-        if not isinstance(data, dict):
-            raise ValueError("no saved state in it")
-    except (ValueError, RecursionError) as error:
-        raise CaptureError(f"{path}: cannot be restored: {error}") from None
-    return data
+    return carried_from_text(path, text)

@@ -23,9 +23,9 @@ from tracer.scene.load import AFF_EXTENSIONS
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
 from tracer.setting import settings_of
-from tracer.settings import Settings
 from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
+from viewer.state.session import Session
 from viewer.state.view_state import ViewState, as_options
 from viewer.state.views import View
 from viewer.util import resources
@@ -36,30 +36,25 @@ BUILT = "what rays have had built depends on all that has been seen"
 
 def needs_history(state: ViewState) -> bool:
     """Return whether frames before it show in the picture of a state."""
-    return _shows_history(state.settings, state.draw.view, state.draw.savings is not None)
-
-
-def _shows_history(settings: Settings, view: View, counters: bool) -> bool:
-    method = Method.parse(settings.method)
+    method, view = Method.parse(state.settings.method), state.draw.view
     of_culling = view is View.CERTIFICATE or ((view.needs_work or view.needs_fates) and method.culls)
-    return of_culling or counters or view.of_modes or view is View.TREE or not method.exact
+    of_modes_or_tree = view.of_modes or view is View.TREE
+    return of_culling or of_modes_or_tree or state.draw.savings is not None or not method.exact
 
 
-def by_chance(settings: Settings, draw: DrawOptions) -> bool:
-    """Return whether chance has a part in a picture: what is certified within a limit of time, or by several threads,
-    or what `auto` measures."""
-    method, view = Method.parse(settings.method), draw.view
+def chance(state: ViewState) -> str:
+    """Return, in words, why chance has a part in a picture: what is certified within a limit of time, or by several
+    threads, or what `auto` measures; empty where it has none."""
+    method, settings = Method.parse(state.settings.method), state.settings
     limited = method.has_certificates and (math.isfinite(settings.certificate_seconds) or settings.threads != 1)
-    shows = _shows_history(settings, view, draw.savings is not None)
-    return shows and method.exact and not view.of_modes and (limited or method.adaptive)
+    by_chance = method.exact and not state.draw.view.of_modes and (limited or method.adaptive)
+    return CHANCE if by_chance and needs_history(state) else ""
 
 
-def cannot_come_back(settings: Settings, draw: DrawOptions) -> str:
+def cannot_come_back(state: ViewState) -> str:
     """Return why no frames before it bring a picture of the window back, in words; empty where some do, or none
     count."""
-    if draw.view is View.TREE:
-        return BUILT
-    return CHANCE if by_chance(settings, draw) else ""
+    return BUILT if state.draw.view is View.TREE else chance(state)
 
 
 def by_one_thread(state: ViewState) -> bool:
@@ -86,7 +81,7 @@ def options(state: ViewState, scene: Scene | None = None) -> list[str]:
         found += ["--camera", json.dumps(state.camera.to_json())]
     for one in settings_of(ViewState):
         counts = by_one_thread(state) if one.path == "settings.threads" else state.applies(one)
-        if one.path not in _SPECIAL and counts:
+        if one.path not in NOT_PLAIN and counts:
             found += one.words(one.get(state))
     for option, count in (("--warmup", warmup.of_path), ("--repeat", warmup.repeats)):
         found += [option, str(count)] if count else []
@@ -104,8 +99,8 @@ def options(state: ViewState, scene: Scene | None = None) -> list[str]:
     return found + ([] if Path(state.scene).suffix.lower() in AFF_EXTENSIONS else mesh_options(state.meshes))
 
 
-_SPECIAL = {"settings.method", "draw.view", "draw.spans", "draw.savings", "draw.caption"}
-"""Settings whose options are no plain values."""
+NOT_PLAIN = {"settings.method", "draw.view", "draw.spans", "draw.savings", "draw.caption"}
+"""Settings whose options take more, or else, than a plain value."""
 
 
 def _view(state: ViewState) -> list[str]:
@@ -133,11 +128,8 @@ def scene_word(path: Path) -> str:
 
 def _moment(time: float, scene: Scene | None) -> list[str]:
     """The number of the frame where it is one's time to the bit, else the time."""
-    if scene is not None:
-        start, end = scene.time_range
-        number = round((time - start) / (end - start) * (scene.frames - 1)) if scene.frames > 1 and end > start else 0
-        if scene.frame_time(number) == time:
-            return ["--frame", str(number)]
+    if scene is not None and scene.frame_time(number := Session(scene).frame_at(time)) == time:
+        return ["--frame", str(number)]
     return [f"--time={time!r}"]
 
 
@@ -147,16 +139,12 @@ LARGEST_MODES = 1 << 20
 """Bytes of their text, at most: pictures of more modes do without them."""
 
 
-def suffice(state: ViewState) -> bool:
-    """Whether modes are all that its history means to the picture: other methods learn more, and views of modes show
-    what the frame itself has taught, which depends on more."""
-    method = Method.parse(state.settings.method)
-    return method.uses_modes and len(method.kinds) == 1 and not state.draw.view.of_modes and needs_history(state)
-
-
 def packed(frame: Frame, state: ViewState) -> str:
-    """What `unpacked` makes the modes of again; empty where they are not needed, or do not suffice."""
-    if not state.warmup.unknown or not suffice(state):
+    """What `unpacked` makes the modes of again; empty where they are not needed, or do not suffice: other methods learn
+    more, and views of modes show what the frame itself has taught, which depends on more."""
+    method = Method.parse(state.settings.method)
+    by_modes_alone = method.uses_modes and len(method.kinds) == 1 and not state.draw.view.of_modes
+    if not (state.warmup.unknown and by_modes_alone and needs_history(state)):
         return ""
     words = np.ascontiguousarray(frame.modes_before)
     text = base64.b64encode(zlib.compress(words.astype(words.dtype.newbyteorder("<")).tobytes(), 6)).decode()

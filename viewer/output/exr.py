@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracer.culling import modes
 from tracer.frame import Frame
-from viewer.output.capture import CHUNK, CaptureError
+from viewer.output.capture import CHUNK, CaptureError, Carried, carried_from_text
 from viewer.util.files import whole_file
 
 ENDING = ".exr"
@@ -72,8 +71,8 @@ def write(path: Path, frame: Frame, text: str, half: bool = False) -> None:
             raise OSError(f"is the disk full? {str(error).replace(str(part), str(path))}") from None
 
 
-def read(path: Path) -> tuple[NDArray[Any], dict[str, Any]]:
-    """The colours, (h, w, 3), and what the file carries, as JSON has it; raises CaptureError."""
+def read(path: Path) -> tuple[NDArray[Any], Carried]:
+    """Return the colours, (h, w, 3), and what the file carries; raises CaptureError."""
     import OpenEXR
 
     if not path.is_file():
@@ -82,12 +81,11 @@ def read(path: Path) -> tuple[NDArray[Any], dict[str, Any]]:
         with OpenEXR.File(str(path), separate_channels=True) as file:
             text = file.header().get(CHUNK)
             color = np.stack([file.channels()[letter].pixels for letter in "RGB"], axis=-1)
-        data = json.loads(text) if isinstance(text, str) else None
-    except (RuntimeError, KeyError, ValueError, RecursionError) as error:
+    except (RuntimeError, KeyError, ValueError) as error:
         raise CaptureError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
-    if not isinstance(data, dict):
-        raise CaptureError(f"{path}: an EXR, but not one of Shadowcull")
-    return color, data
+    if not isinstance(text, str):
+        raise CaptureError(f"{path}: an EXR, but not one saved by Shadowcull")
+    return color, carried_from_text(path, text)
 
 
 def buffers(frame: Frame) -> dict[str, NDArray[Any]]:

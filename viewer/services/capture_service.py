@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
+from tracer.scene.model import Scene
 from viewer.output import capture, other_programs
 from viewer.output.overlays import with_legend
 from viewer.services import stills
@@ -60,11 +61,7 @@ class CaptureService:
         return job
 
     def capture(
-        self,
-        frame: Frame | None,
-        pixels: Pixels | None,
-        legend: Legend | None = None,
-        state: ViewState | None = None,
+        self, frame: Frame | None, pixels: Pixels | None, legend: Legend | None = None, state: ViewState | None = None
     ) -> None:
         """Save a picture, (h, w, 3) uint8, of a frame, named by the user's template.
 
@@ -74,51 +71,50 @@ class CaptureService:
         if frame is None or pixels is None or scene is None:
             self._notices.say("there is no picture to save yet", error=True)
             return
-        # What the picture shows: another moment than the session's where a run goes on, or a finer frame is to come.
-        here = session.state_of(frame).with_settings(verify=session.settings.verify)  # a view may verify by itself
-        values = stills.fields_of(here, scene) | {"width": pixels.shape[1], "height": pixels.shape[0]}
-        size, more = (frame.width, frame.height), {"window": True}
-        text = capture.metadata(here, frame.camera, values["frame"], size, frame.statistics.to_dict(), more)
+        height, width = pixels.shape[:2]
+        values = stills.fields_of(session.state_of(frame), scene) | {"width": width, "height": height}
         try:
             name = capture.file_name(preferences.screenshot_template, values)
         except capture.CaptureError as error:
             self._notices.say(str(error), error=True)
             return
-        folder, finish = preferences.picture_folder, self._finishing(frame, pixels, legend, state, text)
+        folder, finish = preferences.picture_folder, self._finishing(frame, pixels, scene, legend, state)
         self.write(lambda: capture.save(*finish(), folder, name))
 
     def copy(
         self, frame: Frame | None, pixels: Pixels | None, legend: Legend | None = None, state: ViewState | None = None
     ) -> None:
-        """Put a picture on the clipboard; as `capture`, but without a state it says nothing of itself."""
-        if frame is None or pixels is None or self._session.scene is None:
+        """Put a picture on the clipboard; as `capture`."""
+        scene = self._session.scene
+        if frame is None or pixels is None or scene is None:
             self._notices.say("there is no picture to copy yet", error=True)
             return
         if other_programs.clipboard_command() is None:
             self._notices.say(other_programs.NO_CLIPBOARD, error=True)
             return
-        finish = self._finishing(frame, pixels, legend, state, "")
+        finish = self._finishing(frame, pixels, scene, legend, state)
 
         def work() -> str:
             drawn, text = finish()
             other_programs.copy(capture.encoded(drawn, text))
-            return f"the picture, {drawn.shape[1]} x {drawn.shape[0]}, is on the clipboard"
+            return f"picture copied, {drawn.shape[1]} x {drawn.shape[0]}"
 
         self.begin("Copying", work)
 
     def _finishing(
-        self, frame: Frame, pixels: Pixels, legend: Legend | None, state: ViewState | None, text: str
+        self, frame: Frame, pixels: Pixels, scene: Scene, legend: Legend | None, state: ViewState | None
     ) -> Callable[[], tuple[Pixels, str]]:
-        """Return what draws the rest of a picture and gives what it carries, which may take a while; `text` is that of
-        one without a state."""
-        scene, place = self._session.scene, self._session.draw.legend_at
-        assert scene is not None
+        """Return what draws the rest of a picture and gives what it carries, which may take a while."""
+        session, place = self._session, self._session.draw.legend_at
+        # What the picture shows: another moment than the session's where a run goes on, or a finer frame is to come.
+        here = session.state_of(frame).with_settings(verify=session.settings.verify)  # a view may verify by itself
 
         def finish() -> tuple[Pixels, str]:
             if state is not None:
-                drawn, _ = stills.dressed(pixels, frame, scene, state)
-                return drawn, stills.text(drawn, frame, scene, state, by_gpu=True)
+                drawn, _ = stills.draw(frame, scene, state, pixels)
+                return drawn, stills.text(drawn, frame, scene, state)
             described = with_legend(pixels, legend, place) if legend is not None else None
+            text = stills.carried(here, frame, scene, window=True).text()
             return pixels if described is None else described, text
 
         return finish

@@ -193,7 +193,8 @@ class Films:
             state.settings, width=plan.size[0], height=plan.size[1], samples=plan.samples,
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()  # fmt: skip
-        state = replace(state, settings=settings, warmup=Warmup(unknown=cannot_come_back(settings, state.draw)))
+        state = replace(state, settings=settings)
+        state = replace(state, warmup=Warmup(unknown=cannot_come_back(state)))
         state = state.with_draw(magnified=1, caption=plan.caption, legend=plan.legend)
         folder = self._preferences.picture_folder
         folder.mkdir(parents=True, exist_ok=True)

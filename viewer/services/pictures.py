@@ -21,7 +21,7 @@ from viewer.services.runs import FileRun, Runs
 from viewer.services.scene_loader import SceneLoader
 from viewer.state.notices import Notices
 from viewer.state.pixels import FIT
-from viewer.state.plans import MOST_PICTURE_PIXELS, PicturePlan
+from viewer.state.plans import PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
@@ -97,7 +97,7 @@ class Pictures:
         state = state.with_settings(verify=session.settings.verify, modes=False)
         if not needs_history(state):
             return state
-        why, repeats = cannot_come_back(frame.settings, draw), self._history.repeats_of(frame)
+        why, repeats = cannot_come_back(state), self._history.repeats_of(frame)
         if why or repeats is None:
             return state.with_warmup(unknown=why or UNKNOWN)
         return state.with_warmup(repeats=repeats)
@@ -154,20 +154,15 @@ class Pictures:
     def _planned(self, state: ViewState, scene: Scene) -> ViewState:
         plan = self.plan
         width, height = self.size
-        if width * height > MOST_PICTURE_PIXELS:
-            raise ValueError(
-                f"{width} x {height} are more than {MOST_PICTURE_PIXELS:,} pixels; choose a smaller multiple"
-            )
+        stills.check_size(width, height)
         if plan.ending == exr.ENDING:
             exr.check()
         settings = replace(state.settings, width=width, height=height, samples=plan.samples).validated()
         # Modes are those of a resolution, and begin anew in another; once more, and they show what they are.
-        repeats, unknown = 1 if needs_history(state) else 0, cannot_come_back(settings, state.draw)
-        wanted = replace(state, settings=settings, warmup=Warmup(repeats=repeats, unknown=unknown))
+        wanted = replace(state, settings=settings)
+        wanted = replace(wanted, warmup=Warmup(repeats=int(needs_history(wanted)), unknown=cannot_come_back(wanted)))
         wanted = wanted.with_draw(magnified=1, legend=plan.legend, caption=plan.caption)
-        stills.check_light(wanted, scene)
-        if not stills.lights_fit(wanted, scene, plan.ending == exr.ENDING):
-            raise ValueError("there are too many lights for all buffers of a picture of this size")
+        stills.check_lights(wanted, scene, plan.ending == exr.ENDING)
         return stills.with_caption_filled(wanted, scene)
 
     # --- what is shown, elsewhere ------------------------------------------------------------------

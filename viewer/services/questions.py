@@ -81,7 +81,7 @@ class Questions:
             return
         done, frames = run.done_of
         text = f"{done} of {frames} frames are done. {kept}"
-        self.question = Question(f"Stop the {run.name} and {goal}?", text, (("Keep running", _nothing), *answers), run)
+        self.question = Question(f"Stop the {run.name} and {goal}?", text, (("Keep running", self.drop), *answers), run)
         self._wake()
 
     def before_resetting(self, reset: Callable[[Collection[str]], None]) -> None:
@@ -90,7 +90,7 @@ class Questions:
             "Reset all settings?",
             "View, culling, quality, keys, theme, sizes and the picture folder go back to their defaults. Bookmarks, "
             "presets and recent scenes stay.",
-            (("Keep them", _nothing), ("Reset", lambda: reset(_COLLECTED))),
+            (("Keep them", self.drop), ("Reset", lambda: reset(_COLLECTED))),
         )
 
     def leave_when_saved(self) -> None:
@@ -111,7 +111,3 @@ class Questions:
             self._leaving = None
             if all(job.failure is None for job in self._files):
                 leave()
-
-
-def _nothing() -> None:
-    pass

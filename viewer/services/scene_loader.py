@@ -24,6 +24,7 @@ from tracer.scene.studio import model_bounds, up_in_studio
 from viewer.output import capture
 from viewer.services.jobs import Job
 from viewer.services.scene_files import FileWatch, find_scene, is_capture, refusal
+from viewer.state.draw_options import AROUND
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
@@ -196,11 +197,8 @@ class SceneLoader:
     def _as_here(self, state: ViewState) -> ViewState:
         """A state from a picture, with what the window shows around pictures, and not in them, as it is here."""
         here = self._session.state
-        draw = here.draw
-        return replace(state, pace=here.pace).with_draw(
-            legend=draw.legend, legend_at=draw.legend_at, rays=draw.rays, smooth=draw.smooth, zoom=draw.zoom,
-            savings=draw.savings, caption=draw.caption, magnified=draw.magnified,
-        )  # fmt: skip
+        around = {name: getattr(here.draw, name) for name in (*AROUND, "magnified")}
+        return replace(state, pace=here.pace).with_draw(**around)
 
     def _begin(
         self,

@@ -27,23 +27,34 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version
 from viewer.output import capture, commands
-from viewer.output.commands import by_one_thread
 from viewer.output.comparison import Comparison, Shown
 from viewer.output.overlays import with_caption, with_legend, with_savings
 from viewer.state import codec
-from viewer.state.draw_options import DrawOptions
+from viewer.state.plans import MOST_PICTURE_PIXELS
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View, can_record_lights, records_lights
+from viewer.state.views import MOST_RECORDED, View, can_record_lights, records_lights
 from viewer.views import colorize, legend_of
 from viewer.views.legend import lights_in_words
 
 
-def check_light(state: ViewState, scene: Scene) -> None:
-    """Raise ValueError, in one line, where the view speaks of a light that the scene does not have."""
-    if state.draw.view.of_light and state.draw.light >= len(scene.lights):
-        number, lights = state.edits.light_number(state.draw.light), len(scene.lights) + len(state.edits.lights_off)
-        raise ValueError(f"--view {state.draw.view.value}:{number}: {lights_in_words(lights)}")
+def check_size(width: int, height: int) -> None:
+    """Raise ValueError, in one line, for a picture that is too large."""
+    if width * height > MOST_PICTURE_PIXELS:
+        raise ValueError(f"{width} x {height} pixels are too many: {MOST_PICTURE_PIXELS:,} at most")
+
+
+def check_lights(state: ViewState, scene: Scene, everything: bool = False) -> None:
+    """Raise ValueError, in one line, where the scene does not have the light of the view, or where memory has no room
+    for what all lights send to each pixel: for a view that shows it, or `everything`, as buffers have it."""
+    draw, (width, height), lights = state.draw, state.size, len(scene.lights)
+    if draw.view.of_light and draw.light >= lights:
+        there = lights_in_words(lights + len(state.edits.lights_off))
+        raise ValueError(f"--view {draw.view.value}:{state.edits.light_number(draw.light)}: {there}")
+    recorded = everything or draw.view is View.LIGHTS or draw.view.needs_fates
+    if recorded and not can_record_lights(width * height, lights):
+        what, most = "all buffers" if everything else f"the view {draw.view.value}", MOST_RECORDED // lights
+        raise ValueError(f"{what} with {lights:,} lights: not enough memory; make the picture {most:,} pixels at most")
 
 
 def times_before(scene: Scene, time: float, count: int) -> list[float]:
@@ -100,28 +111,19 @@ def trace(
     return with_light(renderer, frame, state.draw.light) if view.needs_lights and not lights else frame
 
 
-def lights_fit(state: ViewState, scene: Scene, everything: bool = False) -> bool:
-    """Whether there is memory for what all lights send to each pixel, where that is to be recorded."""
-    width, height = state.size
-    recorded = everything or state.draw.view is View.LIGHTS or state.draw.view.needs_fates
-    return not recorded or can_record_lights(width * height, len(scene.lights))
-
-
-def draw(frame: Frame, scene: Scene, state: ViewState) -> tuple[NDArray[np.uint8], str]:
-    """(h, w, 3) uint8, the frame as the state draws it, with all that goes with it; and why there is no legend where
-    one was wanted, in words."""
-    pixels = colorize(frame, state.draw)
-    return dressed(pixels, frame, scene, state)
-
-
-def dressed(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, state: ViewState) -> tuple[NDArray[np.uint8], str]:
-    """What lies over a drawn view (h, w, 3), above and below it; as `draw`."""
+def draw(
+    frame: Frame, scene: Scene, state: ViewState, view: NDArray[np.uint8] | None = None
+) -> tuple[NDArray[np.uint8], str]:
+    """(h, w, 3) uint8, the frame as the state draws it, with all that goes over, above and below it; and why there is
+    no legend where one was wanted, in words.  `view` is the view itself, where it is drawn already."""
+    pixels = colorize(frame, state.draw) if view is None else view
     options, missing = state.draw, ""
     if options.legend:
         legend = legend_of(frame, options, scene.lights)
         described = with_legend(pixels, legend, options.legend_at) if legend is not None else None
         if described is None:
-            missing = f"no legend: {'the picture is too small for it' if legend else 'the traced picture needs none'}"
+            none = f"the view {options.view.value} needs none"
+            missing = f"no legend: {'the picture is too small for it' if legend is not None else none}"
         pixels = pixels if described is None else described
     pixels = with_savings(pixels, frame, options.savings)
     return with_caption(pixels, options.caption), missing
@@ -181,38 +183,23 @@ def save_methods(shown: Shown, path: Path, text: str = "") -> None:
     raises OSError in one line."""
     from viewer.output import comparison_figure  # loads matplotlib
 
-    state = shown.state
-    more = {
-        "figure": codec.to_json(shown.comparison),
-        "made": {"version": program_version(), "scene": fingerprint.of_scene(shown.scene)},
-    }
-    statistics = {method: frame.statistics.to_dict() for method, frame in shown.frames.items()}
-    number = Session(shown.scene).frame_at(state.time)
-    own = capture.metadata(state, shown.reference.camera, number, state.size, statistics, more)
-    comparison_figure.save(shown, path, text or own)
+    made = capture.Made(program_version(), fingerprint.of_scene(shown.scene))
+    own = carried(shown.state, shown.reference, shown.scene, made=made, figure=codec.to_json(shown.comparison))
+    own = replace(own, statistics={method: frame.statistics.to_dict() for method, frame in shown.frames.items()})
+    comparison_figure.save(shown, path, text or own.text())
 
 
-def as_kept(state: ViewState) -> ViewState:
-    """Return a state as its picture carries it: with one thread only where that shows."""
-    return state if by_one_thread(state) else state.with_settings(threads=0)
+def carried(state: ViewState, frame: Frame, scene: Scene, **more: Any) -> capture.Carried:
+    """Return what a picture of the frame carries, and `more` fields of it."""
+    return capture.Carried(
+        codec.state_to_json(state, of_picture=True), frame.camera.to_json(), Session(scene).frame_at(frame.time),
+        (frame.width, frame.height), frame.statistics.to_dict(), **more,
+    )  # fmt: skip
 
 
-def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, state: ViewState, by_gpu: bool = False) -> str:
-    """Return what a picture carries: its state, its statistics, and what they were made of; and its modes, where these
-    cannot be learnt again.  Where it was drawn `by_gpu`, which may round otherwise, that too."""
-    kept = as_kept(state).with_warmup(modes=commands.packed(frame, state))
-    more = {
-        "picture": {"by_gpu": by_gpu and not _as_traced(state.draw)},
-        "made": {
-            "version": program_version(),
-            "scene": fingerprint.of_scene(scene),
-            "pixels": fingerprint.of_pixels(pixels),
-        },
-    }
-    number, size = Session(scene).frame_at(frame.time), (frame.width, frame.height)
-    return capture.metadata(kept, frame.camera, number, size, frame.statistics.to_dict(), more)
-
-
-def _as_traced(options: DrawOptions) -> bool:
-    """Whether a picture is shown as it was traced, without anything that is drawn."""
-    return replace(options.of_pixels(), magnified=1) == DrawOptions()
+def text(pixels: NDArray[np.uint8], frame: Frame, scene: Scene, state: ViewState) -> str:
+    """Return what a picture carries as text, with its modes, where these cannot be learnt again."""
+    kept = state if commands.by_one_thread(state) else state.with_settings(threads=0)
+    kept = kept.with_warmup(modes=commands.packed(frame, state))
+    made = capture.Made(program_version(), fingerprint.of_scene(scene), fingerprint.of_pixels(pixels))
+    return carried(kept, frame, scene, made=made).text()

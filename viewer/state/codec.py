@@ -107,11 +107,13 @@ def state_to_json(state: ViewState, of_picture: bool = False) -> dict[str, Any]:
     return {"format": FORMAT, **data}
 
 
-def state_from_json(data: Any, onto: ViewState | None = None) -> ViewState:
-    """Return a stored state; what it lacks is as in `onto`.  Raises ValueError, in one line."""
+def state_from_json(data: Any, onto: ViewState | None = None, drawn: Mapping[str, Any] | None = None) -> ViewState:
+    """Return a stored state; what it lacks is as in `onto`.  Raises ValueError, in one line.
+
+    `drawn` is what version 0.2 kept beside it of how its picture was drawn."""
     if not isinstance(data, Mapping):
         raise ValueError("no saved state in it")
-    today = _of_today(data) if "draw" not in data and "view" in data else data
+    today = _of_today(data, drawn) if "draw" not in data and (drawn or "view" in data) else data
     stored = {name: value for name, value in today.items() if name != "compare"}
     whole = _onto(to_json(onto or ViewState()), _without(stored, (NEVER,)))
     return from_json(whole, ViewState, "its saved state").validated()
@@ -139,21 +141,6 @@ def _unknown(known: Mapping[str, Any], data: Mapping[str, Any], within: str = ""
             yield within + name
         elif isinstance(value, Mapping) and isinstance(known[name], Mapping):
             yield from _unknown(known[name], value, f"{within}{name}.")
-
-
-def picture_from_json(data: Mapping[str, Any]) -> ViewState:
-    """Return the state that a saved picture carries, of any version; raises ValueError, in one line."""
-    state, size = data.get("state"), data.get("size")
-    picture = data.get("picture") or data.get("figure")
-    if isinstance(state, Mapping) and isinstance(picture, Mapping) and "draw" not in state:
-        state = _of_today(state, picture)
-    found = state_from_json(state)
-    if not found.scene:
-        raise ValueError("its saved state lacks a scene")
-    if not isinstance(size, list):
-        return found
-    width, height = from_json(size, tuple[int, int], "its size")
-    return found.with_settings(width=width, height=height).validated()
 
 
 def remembered(state: ViewState) -> dict[str, Any]:

@@ -240,11 +240,11 @@ class DrawOptions:
         """Return these with the defaults of all that does not count for the pixels of the view: another value whenever
         these must be drawn anew."""
         used, state = self.as_needed(), SimpleNamespace(draw=self)
-        unused = [one for one in settings_of(DrawOptions) if one.name in _AROUND or not one.applies(state)]
+        unused = [one for one in settings_of(DrawOptions) if one.name in AROUND or not one.applies(state)]
         return replace(used, **{one.name: one.default for one in unused if not one.within})
 
 
-_AROUND = ("legend", "legend_at", "rays", "smooth", "savings", "caption", "zoom")
+AROUND = ("legend", "legend_at", "rays", "smooth", "savings", "caption", "zoom")
 """What lies over the pixels of a view, or around them."""
 
 

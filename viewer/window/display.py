@@ -6,6 +6,7 @@ longer referred to here is freed on the GPU by `graphics.draw`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol
@@ -20,7 +21,6 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.pixels import Zoom
 from viewer.util.resources import shader_source
 from viewer.views import Pixels, colorize
-from viewer.views.compare import Difference, signed_picture
 
 
 class DisplayError(RuntimeError):
@@ -30,11 +30,10 @@ class DisplayError(RuntimeError):
 @dataclass(frozen=True)
 class InWindow:
     """What the window adds to how a frame is drawn: a bright border around the `selected` primitive, or around all of
-    the selected part of the scene; whether pixels are blended where they are enlarged; and the fate that stands out."""
+    the selected part of the scene; and the fate that stands out."""
 
     selected: int = -1
     selected_part: int = -1
-    smooth: bool = True
     fate: Fate | None = None
 
 
@@ -53,13 +52,26 @@ class PictureTexture:
         self.version = 0
         self.picture: Any = None
         self._pixels: Pixels | None = None
+        self._drawn: object = None
+        self._failed: object = None
 
     @property
     def texture_id(self) -> int | None:
         """Name of the GL texture, None while there is none; row 0 is the top."""
         return self.picture.glo if self.picture is not None else None
 
-    def write(self, pixels: Pixels, smooth: bool) -> None:
+    def update(self, wanted: object, draw: Callable[[], Pixels]) -> None:
+        """Bring what `draw` returns to the GPU, unless what is `wanted` is there already.
+
+        What failed is not tried again, and the texture keeps what it showed, until something else is wanted.  Raises
+        what `draw` does, and DisplayError for what is too much for the GPU."""
+        if wanted in (self._drawn, self._failed):
+            return
+        self._failed = wanted
+        self.write(draw())
+        self._drawn, self._failed = wanted, None
+
+    def write(self, pixels: Pixels) -> None:
         """Bring a picture (h, w, 3) to the GPU.  Raises DisplayError for what is too much for it."""
         size, most = (pixels.shape[1], pixels.shape[0]), self.context.info["GL_MAX_TEXTURE_SIZE"]
         if max(size) > most:
@@ -69,8 +81,6 @@ class PictureTexture:
             self.picture = self.context.texture(size, 3, alignment=1)
             self.picture.repeat_x = self.picture.repeat_y = False
         self.picture.write(np.ascontiguousarray(pixels), alignment=1)
-        filtering = moderngl.LINEAR if smooth else moderngl.NEAREST
-        self.picture.filter = (filtering, filtering)
         problem = self.context.error
         if problem != "GL_NO_ERROR":
             raise DisplayError(f"the GPU could not draw this: {problem}")
@@ -84,7 +94,7 @@ class PictureTexture:
 
     def clear(self) -> None:
         """Let it go."""
-        self.picture = self._pixels = None
+        self.picture = self._pixels = self._drawn = None
 
 
 class Display(PictureTexture):
@@ -95,8 +105,6 @@ class Display(PictureTexture):
         self.frame: Frame | None = None
         self.part_of: NDArray[np.int32] | None = None
         """(primitives,) the part of the scene that each primitive belongs to, needed while one is selected."""
-        self._drawn: tuple[Frame, object] | None = None
-        self._failed: tuple[Frame, object] | None = None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -105,25 +113,22 @@ class Display(PictureTexture):
     def draw(self, frame: Frame | None, draw: DrawOptions, window: InWindow = PLAIN) -> None:
         """Draw a frame, unless it is there already; without one, what was drawn stays.
 
-        What failed is not tried again, and the texture keeps what it showed, until something else is asked for.
-        Raises ValueError where the frame has nothing for the view, and DisplayError for what is too much for the
-        GPU."""
+        Raises ValueError where the frame has nothing for the view, and DisplayError."""
         self.frame = frame
         if frame is None:
             return
-        wanted = frame, (draw.of_pixels(), window)
-        if wanted in (self._drawn, self._failed):  # frames are equal only where they are the same
-            return
-        self._failed = wanted
-        pixels = colorize(frame, draw, window.fate)
-        if window.selected >= 0:
-            pixels[_selected_border(frame, window, self.part_of)] = 255
-        self.write(pixels, window.smooth and draw.view.shows_clipped)
-        self._drawn, self._failed = wanted, None
+
+        def colored() -> Pixels:
+            pixels = colorize(frame, draw, window.fate)
+            if window.selected >= 0:
+                pixels[_selected_border(frame, window, self.part_of)] = 255
+            return pixels
+
+        self.update((frame, draw.of_pixels(), window), colored)  # frames are equal only where they are the same
 
     def shows(self, draw: DrawOptions, window: InWindow = PLAIN) -> bool:
         """Return whether the frame is drawn like this."""
-        return self._drawn == (self.frame, (draw.of_pixels(), window))
+        return self._drawn == (self.frame, draw.of_pixels(), window)
 
     def read_window(self, width: int, height: int) -> Pixels:
         """Return all of the window as it was just drawn, (height, width, 3) uint8, row 0 at the top."""
@@ -132,28 +137,19 @@ class Display(PictureTexture):
 
     def clear(self) -> None:
         super().clear()
-        self.frame = self._drawn = None
+        self.frame = None
 
 
 class Compared:
     """What a comparison needs on the GPU beside the live picture; nothing of it stays when the comparison ends."""
 
     def __init__(self, context: moderngl.Context) -> None:
-        self.a = Display(context)
-        self.difference = PictureTexture(context)
-        self._drawn: tuple[Difference, float, bool] | None = None
-
-    def draw_difference(self, found: Difference, limit: float, ringed: bool) -> None:
-        """Draw a signed difference as far as `limit` to both sides, unless it is there."""
-        if self._drawn != (found, limit, ringed):
-            self.difference.write(signed_picture(found, limit, ringed), smooth=False)
-            self._drawn = found, limit, ringed
+        self.a, self.difference = Display(context), PictureTexture(context)
 
     def clear(self) -> None:
         """Let all of it go."""
         self.a.clear()
         self.difference.clear()
-        self._drawn = None
 
 
 class Recorded(Protocol):
@@ -185,9 +181,8 @@ class TextureCache:
         """Keep, or bring, what was asked for since the last time, and nothing else."""
         self._textures = {key: texture for key, texture in self._textures.items() if key in self._wanted}
         for shot, small in list(self._wanted - self._textures.keys())[:BROUGHT_IN_A_FRAME]:
-            pixels = shot.thumbnail(THUMBNAIL) if small else shot.pixels()
             self._textures[shot, small] = texture = PictureTexture(self._context)
-            texture.write(pixels, smooth=small)  # a lone wrong pixel stays
+            texture.write(shot.thumbnail(THUMBNAIL) if small else shot.pixels())
         self._wanted.clear()
 
 

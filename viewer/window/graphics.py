@@ -40,8 +40,8 @@ def draw(ui: Ui) -> None:
     if picked is not None:
         window = replace(window, selected=picked.primitive, selected_part=-1 if picked.part is None else picked.part)
     display.draw(c.frame, options, window)
-    sides.draw(ui, options, window.smooth)
-    sides.magnify(ui, options, window.smooth)
+    sides.draw(ui, options)
+    sides.magnify(ui, options)
 
 
 def draw_recorded(ui: Ui) -> None:
@@ -52,9 +52,7 @@ def draw_recorded(ui: Ui) -> None:
 
 def in_window(ui: Ui) -> InWindow:
     """Return what the window adds to the picture, but for what is selected."""
-    c = ui.controller
-    smooth, view = c.session.draw.smooth and c.session.draw.zoom.fits, c.scheduler.drawn_view
-    return InWindow(smooth=smooth, fate=ui.fate_shown if view is View.FATE else None)
+    return InWindow(fate=ui.fate_shown if ui.controller.scheduler.drawn_view is View.FATE else None)
 
 
 def capture(ui: Ui) -> None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import json
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,26 +38,14 @@ def pixels(path: str) -> np.ndarray:
 
 
 def test_pictures_stay_true_until_something_changes(capfd: pytest.CaptureFixture[str]) -> None:
-    modes = (
-        "--method",
-        "paper",
-        "--view",
-        "shadow:1",
-        "--frame",
-        5,
-        "--warmup",
-        4,
-        "--legend",
-        "--caption",
-        "A {view}",
-    )
+    modes = ("--view", "shadow:1", "--frame", 5, "--warmup", 4, "--legend", "--caption", "A {view}")
     assert run(capfd, "render", "room.aff", "-o", "modes.png", *SIZE, *modes)[0] == 0
     assert run(capfd, "render", "room.aff", "-o", "plain.png", *SIZE, "--samples", 3)[0] == 0
     code, lines = verdict(capfd, "modes.png", "plain.png")
     assert code == 0 and [line.split(": ")[:2] for line in lines] == [["modes.png", "true"], ["plain.png", "true"]]
     assert all("bit for bit" in line for line in lines)
 
-    capture.write(Path("edited.png"), pixels("plain.png") ^ 1, json.dumps(capture.read_data(Path("plain.png"))))
+    capture.write(Path("edited.png"), pixels("plain.png") ^ 1, capture.read_carried(Path("plain.png")).text())
     code, (line,) = verdict(capfd, "edited.png")
     assert code == 1 and "FALSE: 3,072 of 3,072 pixels differ, by 1 of 255" in line and "the file's own pixels" in line
 
@@ -66,12 +55,12 @@ def test_pictures_stay_true_until_something_changes(capfd: pytest.CaptureFixture
     assert all("FALSE" in line and "pixels differ" in line for line in lines)
 
     Path("room.aff").write_text(ROOM)
-    data = capture.read_data(Path("plain.png"))
-    data["made"]["version"] = "0.0.1"
-    capture.write(Path("old.png"), pixels("plain.png"), json.dumps(data))
+    carried = capture.read_carried(Path("plain.png"))
+    carried = replace(carried, made=replace(carried.made, version="0.0.1"))
+    capture.write(Path("old.png"), pixels("plain.png"), carried.text())
     assert verdict(capfd, "old.png")[0] == 0, "another version that makes the same picture"
-    data["state"]["settings"]["depth"] = 0
-    capture.write(Path("old.png"), pixels("plain.png"), json.dumps(data))
+    carried.state["settings"]["depth"] = 0
+    capture.write(Path("old.png"), pixels("plain.png"), carried.text())
     code, (line,) = verdict(capfd, "old.png")
     assert code == 1 and "the version, 0.0.1 then" in line
 
@@ -100,26 +89,17 @@ def test_what_culling_saves_stands_above_the_picture_and_comes_back(
 
 def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> None:
     assert run(capfd, "render", "room.aff", "-o", "a.png", *SIZE)[0] == 0
-    data = capture.read_data(Path("a.png"))
-    state = data["state"]
-    unknown = state | {"warmup": {"unknown": "its modes were learnt elsewhere"}, "draw": {"view": "occlusion"}}
-    for name, change in (
-        ("window", {"window": True}),
-        ("unknown", {"state": unknown}),
-        ("gone", {"state": state | {"scene": "/gone/gone.aff"}}),
-        ("damaged", {"state": state | {"warmup": {"of_path": "many"}}}),
-        ("figure", {"figure": {}}),
-        ("drawn", {"picture": {"style": {"annotations": [{"kind": "box"}]}}}),
-    ):
-        capture.write(Path(f"{name}.png"), pixels("a.png"), json.dumps(data | change))
-    said = {
-        "window.png": "panels",
-        "unknown.png": "learnt elsewhere",
-        "gone.png": "its scene is gone",
-        "damaged.png": "warmup.of_path: expected a whole number, got text",
-        "drawn.png": "drawn on it",
-        "figure.png": "its figure is damaged",
-    }
+    carried = capture.read_carried(Path("a.png"))
+    unknown = {"warmup": {"unknown": "its modes were learnt elsewhere"}, "draw": {"view": "occlusion"}}
+    said = {"window.png": "panels", "unknown.png": "learnt elsewhere", "gone.png": "its scene is gone",
+            "damaged.png": "warmup.of_path: expected a whole number, got text",
+            "figure.png": "its figure is damaged"}  # fmt: skip
+    changes: list[dict[str, Any]] = [
+        {"window": True}, {"state": carried.state | unknown}, {"state": carried.state | {"scene": "/gone/gone.aff"}},
+        {"state": carried.state | {"warmup": {"of_path": "many"}}}, {"figure": {}},
+    ]  # fmt: skip
+    for name, change in zip(said, changes, strict=True):
+        capture.write(Path(name), pixels("a.png"), replace(carried, **change).text())
     code, lines = verdict(capfd, *said)
     assert code == 1 and len(lines) == len(said)
     for line, (name, words) in zip(lines, said.items()):
@@ -185,10 +165,7 @@ def test_figures_that_cannot_be_drawn(capfd: pytest.CaptureFixture[str]) -> None
         (("-o", "f.png", "--view", "certificate:0"), "one method alone"),
         (("-o", "f.png", "--view", "shadow:9"), "lights are 0 to 1"),
         (("-o", "f.png", "--view", "voxels"), "the method none has nothing for it; give --methods voxels"),
-        (
-            ("-o", "f.png", "--view", "cuts", "--methods", "lightcuts,paper"),
-            "nothing for it; give --methods lightcuts",
-        ),
+        (("-o", "f.png", "--view", "cuts", "--methods", "lightcuts,paper"), "it; give --methods lightcuts"),
         (("-o", "f.png", "--view", "tree", "--accelerator", "kdtree-lazy"), "all methods share one tree"),
     ]
     for options, said in cases:

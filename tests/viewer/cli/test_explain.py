@@ -8,18 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.commands import ROOM, complaint, run
+from tests.commands import complaint, run
 from tracer.method import DEFAULT_METHOD
 from viewer.cli.explain import EPILOG
 
 ROOT = Path(__file__).parents[3]
-
-
-@pytest.fixture
-def room(tmp_path: Path) -> Path:
-    path = tmp_path / "room.aff"
-    path.write_text(ROOM)
-    return path
 
 
 def explained(capfd: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:

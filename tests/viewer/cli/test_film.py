@@ -63,7 +63,7 @@ def test_a_flight_goes_through_saved_pictures_or_bookmarks(
     for name, original in (("0000", "at0"), ("0004", "at9")):
         assert np.array_equal(pixels(f"flight/{name}.png"), pixels(f"{original}.png"))
     path = str(Path("room.aff").absolute())
-    state = [NamedState(name, capture.read_data(Path(name))["state"]) for name in seen]
+    state = [NamedState(name, capture.read_carried(Path(name)).state) for name in seen]
     save_preferences(Preferences(bookmarks={path: state}))
     assert run(capfd, "film", "room.aff", "-o", "marks", "--bookmarks", *flight)[0] == 0
     for picture in Path("flight").iterdir():

@@ -82,7 +82,7 @@ def test_a_state_as_json_is_rendered_like_a_picture_that_carries_it(
     """Alone, or all that a picture carries; options given beside it win."""
     state = capture.read(saved)
     Path("state.json").write_text(json.dumps(codec.state_to_json(state, of_picture=True)))
-    Path("all.json").write_text(json.dumps(capture.read_data(saved)))
+    Path("all.json").write_text(capture.read_carried(saved).text())
     for name in ("state", "all"):
         assert run(capfd, "render", f"{name}.json")[0] == 0
         with Image.open(saved) as before, Image.open(f"{name}-rendered.png") as again:

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image, PngImagePlugin
 
-from tests.viewer.fakes import make_frame
 from tracer.scene.model import Camera
 from tracer.settings import Settings
 from viewer.output import capture
 from viewer.output.overlays import with_caption
+from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
@@ -32,7 +32,7 @@ STATE = ViewState(
 
 
 def text() -> str:
-    return capture.metadata(STATE, CAMERA, 7, (6, 4), make_frame().statistics.to_dict())
+    return capture.Carried(codec.state_to_json(STATE, of_picture=True), CAMERA.to_json(), 7, (6, 4)).text()
 
 
 def test_a_picture_brings_back_its_state_and_its_pixels(tmp_path: Path):
@@ -40,14 +40,13 @@ def test_a_picture_brings_back_its_state_and_its_pixels(tmp_path: Path):
     assert capture.read(path) == STATE
     with Image.open(path) as image:
         assert np.array_equal(np.asarray(image), PIXELS)
-        assert '"statistics"' in image.text["shadowcull"]
 
 
 def test_a_state_is_read_without_decoding_the_pixels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """The window waits for it, and a picture may be large."""
     path = capture.save(PIXELS, text(), tmp_path, "a.png")
     monkeypatch.setattr(PngImagePlugin.PngImageFile, "load", lambda self: pytest.fail("its pixels are decoded"))
-    assert capture.read_data(path)["frame"] == 7
+    assert capture.read_carried(path).frame == 7
 
 
 def test_nothing_is_overwritten(tmp_path: Path):
@@ -56,32 +55,28 @@ def test_nothing_is_overwritten(tmp_path: Path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a-2.png", "a-3.png", "a.png"]
 
 
-def test_templates_become_file_names():
-    for template, name in (
+@pytest.mark.parametrize(
+    ("template", "name"),
+    [
         ("{scene}-{view}-{frame:04d}-{date}-{time}.png", "kitchen-shadow-0007-2024-05-31-14-05-09.png"),
         ("{scene}", "kitchen.png"),
         ("t={seconds:.2f} {width}x{height}.PNG", "t=1.25 640x480.png"),
         ("../{scene}/..\\x:y", "..-kitchen-..-x-y.png"),
         ("x" * 400, "x" * 200 + ".png"),
-    ):
-        assert capture.file_name(template, VALUES, NOW) == name
-    wrong = (
-        "{sceen}",
-        "{frame:zz}",
-        "{",
-        "}",
-        "{frame!q}",
-        "",
-        " .png",
-        "{scene.__class__}",
-        "{frame:99999999d}",
-        "{0}",
-        "{}",
-    )
-    for template in wrong:
-        with pytest.raises(capture.CaptureError) as caught:
-            capture.file_name(template, VALUES, NOW)
-        assert "template" in str(caught.value) and "\n" not in str(caught.value)
+    ],
+)
+def test_templates_become_file_names(template: str, name: str):
+    assert capture.file_name(template, VALUES, NOW) == name
+
+
+@pytest.mark.parametrize(
+    "template",
+    ["{sceen}", "{frame:zz}", "{", "}", "{frame!q}", "", " .png", "{scene.__class__}", "{frame:9999999d}", "{0}", "{}"],
+)  # fmt: skip
+def test_templates_that_are_wrong(template: str):
+    with pytest.raises(capture.CaptureError, match="template") as caught:
+        capture.file_name(template, VALUES, NOW)
+    assert "\n" not in str(caught.value)
 
 
 def test_a_folder_that_cannot_be_written_to_is_one_line(tmp_path: Path):
@@ -92,21 +87,15 @@ def test_a_folder_that_cannot_be_written_to_is_one_line(tmp_path: Path):
 
 
 def test_other_files_are_refused_in_one_line(tmp_path: Path):
-    plain = tmp_path / "plain.png"
-    Image.fromarray(PIXELS).save(plain)
-    damaged = tmp_path / "damaged.png"
-    damaged.write_bytes(plain.read_bytes()[:40])
-    noise = tmp_path / "noise.png"
-    noise.write_bytes(b"not a picture")
+    """What is no picture, and what is none of ours, `check` promises as well."""
     info = PngImagePlugin.PngInfo()
     info.add_itxt("shadowcull", '{"state": [1, 2]}')
-    wrong = tmp_path / "wrong.png"
-    Image.fromarray(PIXELS).save(wrong, pnginfo=info)
-    for path, told in [(plain, "not one saved"), (damaged, "cannot be read"), (noise, "cannot be read"),
-                       (wrong, "cannot be restored"), (tmp_path / "none.png", "no such file")]:  # fmt: skip
+    Image.fromarray(PIXELS).save(tmp_path / "wrong.png", pnginfo=info)
+    (tmp_path / "noise.png").write_bytes(b"not a picture")
+    for name, told in (("wrong.png", "cannot be restored"), ("noise.png", "cannot be read")):
         with pytest.raises(capture.CaptureError, match=told) as caught:
-            capture.read(path)
-        assert str(path) in str(caught.value) and "\n" not in str(caught.value)
+            capture.read(tmp_path / name)
+        assert name in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_a_program_named_like_a_picture_is_not_run(tmp_path, monkeypatch):

@@ -120,7 +120,7 @@ def _copy(d: Driver) -> None:
         d.press(int(KEY.c) | CTRL)
         d.wait(lambda: (folder / "got.png").exists() and not d.c.captures.busy, "the copy")
         d.frames(2)
-        assert "is on the clipboard" in d.said
+        assert "picture copied" in d.said
         with Image.open(folder / "got.png") as image:
             assert np.array_equal(np.asarray(image), d.shown())
         d.c.comparing.keep()

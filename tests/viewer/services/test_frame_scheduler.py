@@ -185,6 +185,11 @@ def test_between_steps_it_is_known_that_more_is_to_come():
     coming = (Activity.TRACING, Activity.SAMPLING_LAMPS, Activity.TRACING)
     assert seen[:3] == list(zip((0, 4, 64), coming, strict=True)), "the last knows more"
     assert seen[-1] == (64, Activity.RESTING)
+    window.session.set_settings(lamp_samples=256)
+    window.request()
+    assert scheduler.activity is Activity.SAMPLING_LAMPS
+    scheduler.give_up()
+    assert scheduler.activity is Activity.RESTING, "a failure ends it"
     window.move()
     window.request()
     assert scheduler.activity is Activity.TRACING
@@ -306,24 +311,21 @@ def test_the_view_of_certificates_asks_for_more_of_them():
 
 def test_a_window_stays_until_nobody_is_just_waking_it():
     """A thread that refreshed a window which has gone would call into what is no more."""
-    wake, waking, go_on, gone = Wake(), Event(), Event(), Event()
+    wake, waking, go_on = Wake(), Event(), Event()
 
     def refresh() -> None:
         waking.set()
-        assert go_on.wait(20.0) and not gone.is_set()
-
-    def close() -> None:
-        wake.connect(None)
-        gone.set()
+        assert go_on.wait(20.0)
 
     wake.connect(refresh)
-    threads = Thread(target=wake), Thread(target=close)
-    threads[0].start()
+    waker, closer = Thread(target=wake), Thread(target=wake.connect, args=[None])
+    waker.start()
     assert waking.wait(20.0)
-    threads[1].start()
-    assert not gone.wait(0.05), "the window has gone while a thread was waking it"
+    closer.start()
+    closer.join(0.05)
+    assert closer.is_alive(), "the window has gone while a thread was waking it"
     go_on.set()
-    for thread in threads:
+    for thread in (waker, closer):
         thread.join(20.0)
-    assert gone.is_set()
+    assert not closer.is_alive()
     wake()  # does nothing

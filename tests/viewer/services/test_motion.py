@@ -2,36 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import pytest
 
-from tests.viewer.fakes import make_frame, make_scene
+from tests.viewer.fakes import Moving, make_frame, make_scene
 from tracer.scene.model import Camera
-from viewer.services.motion import IDLE_AFTER, Motion
+from viewer.services.motion import IDLE_AFTER
 from viewer.state.navigation import SHORTEST_FLIGHT
-from viewer.state.notices import Notices
-from viewer.state.preferences import Preferences
-from viewer.state.session import Session
 
 ELSEWHERE = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
-
-
-class Moving:
-    """A session with a camera and time that move, and a clock that is set by hand."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.now = 100.0
-        monkeypatch.setattr(time, "monotonic", lambda: self.now)
-        self.session, self.preferences, self.notices = Session(), Preferences(), Notices()
-        self.session.open(make_scene())
-        self.locked = False
-        self.motion = Motion(self.session, self.preferences, self.notices, lambda: self.locked)
-
-    def after(self, seconds: float, shown: float | None = None) -> None:
-        self.now += seconds
-        self.motion.advance(shown)
 
 
 @pytest.fixture

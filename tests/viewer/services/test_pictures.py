@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -191,10 +190,10 @@ def check(capfd: pytest.CaptureFixture[str]) -> Check:
 
 def changed(path: Path, name: str, **warmup: object) -> Path:
     """A copy of a picture whose state says something else."""
-    data = capture.read_data(path)
-    data["state"]["warmup"] |= warmup
+    carried = capture.read_carried(path)
+    carried.state["warmup"] |= warmup
     with Image.open(path) as image:
-        capture.write(path.with_name(name), np.asarray(image.convert("RGB")), json.dumps(data))
+        capture.write(path.with_name(name), np.asarray(image.convert("RGB")), carried.text())
     return path.with_name(name)
 
 
@@ -234,7 +233,7 @@ def test_modes_that_are_damaged_or_of_another_scene_are_said_to_be(desk: Desk, c
     for name, modes, why in (
         ("letters", "no base64!", "damaged"),
         ("bytes", "aGVsbG8=", "damaged"),
-        ("short", capture.read_data(path)["state"]["warmup"]["modes"][:-8], "damaged"),
+        ("short", capture.read_carried(path).state["warmup"]["modes"][:-8], "damaged"),
         ("empty", "eJwDAAAAAAE=", "not those of"),
     ):
         code, said = check(changed(path, f"{name}.png", modes=modes))
@@ -243,7 +242,7 @@ def test_modes_that_are_damaged_or_of_another_scene_are_said_to_be(desk: Desk, c
 
 def test_views_of_modes_say_how_to_save_what_can_be_made_again(desk: Desk, check: Check) -> None:
     path = saved(desk, View.OCCLUSION, "modes.png")
-    assert not capture.read_data(path)["state"]["warmup"]["modes"], "such a picture shows what comes of more than these"
+    assert not capture.read_carried(path).state["warmup"]["modes"], "such a picture shows what comes of more than these"
     code, said = check(path)
     assert code == 1 and "cannot be made again" in said and "Backspace" in said
 

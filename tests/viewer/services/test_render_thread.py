@@ -67,28 +67,29 @@ def thread() -> Iterator[Thread]:
 # --- frames ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("quick", "cut_short"), [(True, []), (False, [0.0])])
-def test_the_newest_request_wins_and_a_fine_frame_is_cut_short_for_it(thread: Thread, quick: bool, cut_short: list):
-    """A coarse frame in motion is let finish: else none would ever be seen."""
+@pytest.mark.parametrize(("quick", "method", "cut_short"), [
+    (True, "paper", []), (False, "paper", [0.0]), (True, "none", [0.0]),
+])  # fmt: skip
+def test_the_newest_request_wins_and_a_fine_frame_is_cut_short_for_it(
+    thread: Thread, quick: bool, method: str, cut_short: list[float]
+):
+    """A coarse frame in motion is let finish, else none would ever be seen, unless settings are others; and what is
+    asked for twice goes on."""
     thread.held_at(request(0.0, quick=quick))
+    thread.submit(request(0.0, quick=quick))
+    assert thread.fake.cancelled == []
     for at in (1.0, 2.0, 3.0):
-        thread.submit(request(at, quick=True))
-    if quick:
-        time.sleep(0.05)
-    else:
+        newer = request(at, quick=True)
+        thread.submit(replace(newer, settings=replace(newer.settings, width=4, method=method)))
+    if cut_short:
         until(lambda: thread.fake.cancelled)
+    else:
+        time.sleep(0.05)
     assert thread.fake.cancelled == cut_short
     thread.fake.go.set()
     thread.until(lambda traced: traced.frame.time == 3.0)
     thread.idle()
     assert [at for at, _ in thread.fake.asked] == [0.0, 3.0]
-
-
-def test_what_supersedes_what():
-    running, coarse = request(0.0), request(0.0, quick=True)
-    assert not request(0.0).supersedes(running), "the same request again"
-    assert not replace(coarse, settings=Settings(width=4, height=4)).supersedes(coarse)
-    assert replace(coarse, settings=replace(coarse.settings, method="none")).supersedes(coarse)
 
 
 def test_what_has_set_modes_is_handed_out_once_and_in_order(thread: Thread):

@@ -8,7 +8,6 @@ import os
 import threading
 import time
 import weakref
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,7 @@ import pytest
 from tests.viewer.desk import Desk
 from tests.viewer.fakes import make_frame, until
 from tracer.scene.files import stamp
-from tracer.scene.model import SceneError
+from tracer.scene.model import Scene, SceneError
 from viewer.services.capture_service import CaptureService
 from viewer.services.scene_files import FileWatch
 from viewer.services.scene_loader import Arrival, SceneLoader
@@ -27,20 +26,12 @@ from viewer.state.session import Session
 
 
 class Door:
-    """A loader with a session that it opens scenes for; `refuse` says no to every question."""
+    """A loader with a session that it opens scenes for."""
 
     def __init__(self, folder: Path) -> None:
         self.session, self.notices = Session(), Notices()
         self.preferences = Preferences(screenshot_folder=str(folder))
-        self.refuse = False
-        self.asked: list[str] = []
-        self.loader = SceneLoader(self.session, self.preferences, self.notices, self.ask)
-        self.captures = CaptureService(self.session, self.preferences, self.notices)
-
-    def ask(self, name: str, go_on: Callable[[], None]) -> None:
-        self.asked.append(name)
-        if not self.refuse:
-            go_on()
+        self.loader = SceneLoader(self.session, self.preferences, self.notices, lambda _name, go_on: go_on())
 
     def arrival(self) -> Arrival | None:
         """What comes of the load that is under way."""
@@ -48,20 +39,14 @@ class Door:
         until(lambda: came.append(self.loader.take_finished()) or came[-1] is not None or not self.loader.busy)
         return came[-1]
 
-    @property
-    def said(self) -> str:
-        return self.notices.current.text if self.notices.current is not None else ""
+    def opened(self, path: Path) -> Scene:
+        self.loader.open(path)
+        return self.arrival().renderer.scene
 
 
 @pytest.fixture
 def door(tmp_path: Path) -> Door:
     return Door(tmp_path / "pictures")
-
-
-def test_a_question_that_is_denied_opens_nothing(door: Door, tiny_scene_file: Path):
-    door.refuse = True
-    door.loader.open(tiny_scene_file)
-    assert door.asked == ["tiny.aff"] and not door.loader.busy and door.arrival() is None
 
 
 def test_a_load_that_is_overtaken_never_arrives(door: Door, tiny_scene_file: Path):
@@ -72,18 +57,14 @@ def test_a_load_that_is_overtaken_never_arrives(door: Door, tiny_scene_file: Pat
     assert door.arrival().renderer.scene.path == other
 
 
-def door_opened(door: Door, path: Path):
-    door.loader.open(path)
-    return door.arrival().renderer.scene
-
-
 def test_settings_of_the_command_line_are_those_of_what_is_opened_first(
     door: Door, tiny_scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     """Also where a saved place in it has others."""
-    door.session.open(door_opened(door, tiny_scene_file))
-    door.captures.capture(make_frame(time=1.0), np.zeros((8, 16, 3), np.uint8))
-    assert door.captures.saving.pop().join(20.0)
+    door.session.open(door.opened(tiny_scene_file))
+    captures = CaptureService(door.session, door.preferences, door.notices)
+    captures.capture(make_frame(time=1.0), np.zeros((8, 16, 3), np.uint8))
+    assert captures.saving.pop().join(20.0)
     (picture,) = (tmp_path / "pictures").iterdir()
     door.session.scene = None
     monkeypatch.setattr("viewer.services.scene_loader.warm_up", lambda progress: None)
@@ -98,7 +79,7 @@ def test_settings_of_the_command_line_are_those_of_what_is_opened_first(
 
 def test_a_cancelled_load_is_gone_at_once_though_it_cannot_stop(door: Door, tiny_scene_file: Path, monkeypatch):
     """As within a library that reads a mesh; and the scene that has waited in vain is let go."""
-    deaf, read, opened = threading.Event(), [], door_opened(door, tiny_scene_file)
+    deaf, read, opened = threading.Event(), [], door.opened(tiny_scene_file)
 
     def waits(scene, settings, progress):
         read.append(weakref.ref(scene))
@@ -112,9 +93,9 @@ def test_a_cancelled_load_is_gone_at_once_though_it_cannot_stop(door: Door, tiny
     job = door.loader.load_job
     door.loader.cancel()
     assert not door.loader.busy
-    assert door.said == "loading cancelled; the open scene stays"
+    assert door.notices.message.text == "loading cancelled; the open scene stays"
     monkeypatch.undo()
-    assert door_opened(door, tiny_scene_file).path == tiny_scene_file, "another is opened meanwhile"
+    assert door.opened(tiny_scene_file).path == tiny_scene_file, "another is opened meanwhile"
     deaf.set()
     assert job.join(20.0) and door.loader.take_finished() is None
     del job

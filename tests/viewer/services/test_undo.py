@@ -2,46 +2,36 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import pytest
 
-from tests.viewer.fakes import make_scene
+from tests.viewer.fakes import Moving
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Camera
-from viewer.services.motion import IDLE_AFTER, Motion
+from viewer.services.motion import IDLE_AFTER
 from viewer.services.undo import Undo
-from viewer.state import codec
 from viewer.state.comparison import CompareMode
 from viewer.state.draw_options import Tone
 from viewer.state.navigation import LONGEST_FLIGHT, SHORTEST_FLIGHT
-from viewer.state.notices import Notices
 from viewer.state.pixels import Zoom
-from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import View
 
 AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 
 
-class Desk:
+class Desk(Moving):
     """Everything that undo looks at, and a clock."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.now = 100.0
-        monkeypatch.setattr(time, "monotonic", lambda: self.now)
-        self.notices, self.locked = Notices(), False
-        self.session = Session(state=codec.recalled({}))
-        self.session.open(make_scene(lights=3))
-        self.motion = Motion(self.session, Preferences(), self.notices, lambda: self.locked)
+        super().__init__(monkeypatch)
         self.undo = Undo(self.session, self.motion, self.notices, lambda: self.locked)
         self.frame()
 
     def frame(self, seconds: float = 0.02) -> None:
         """One of the window's frames."""
-        self.now += seconds
-        self.motion.advance(None)
+        self.after(seconds)
         self.undo.note_changes()
 
     def rest(self) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from tracer.scene.camera import Camera
 from tracer.scene.edits import Edits
+from viewer.output.capture import carried_from_json
 from viewer.state import codec
 from viewer.state.draw_options import Curve, DrawOptions, Slice, Tone
 from viewer.state.view_state import ViewState, Warmup, WarmupFrame
@@ -62,7 +63,7 @@ def test_states_of_version_0_2_are_read() -> None:
         "style": {"shares": False, "marked": False, "outlines": True, "legend": [0.5, 1.0], "annotations": [{}]},
         "before": [[0.5, None], [1.0, CAMERA.to_json()]],
     }  # fmt: skip
-    found = codec.picture_from_json({"format": 1, "state": old, "picture": picture, "size": [64, 48]})
+    found = carried_from_json({"format": 1, "state": old, "picture": picture, "size": [64, 48]}).view_state()
     assert (found.scene, found.time, found.camera) == ("/scenes/hall.aff", 2.0, None)
     assert found.settings.method == "certified" and found.settings.accelerator == "kdtree"
     assert (found.settings.width, found.settings.height) == (64, 48)

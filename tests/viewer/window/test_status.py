@@ -24,7 +24,7 @@ def job(title: str, label: str = "", fraction: float = 0.5) -> SimpleNamespace:
 
 def idle(**changes: object) -> SimpleNamespace:
     """A controller with a scene and nothing to do, but for what is given of it, its loader and its scheduler."""
-    tracing = SimpleNamespace(activity=Activity.RESTING, becoming_finer=False, samples_shown=1, samples_wanted=4)
+    tracing = SimpleNamespace(activity=Activity.RESTING, samples_shown=1, samples_wanted=4)
     loader = SimpleNamespace(warm_up_job=None, load_job=None, method_job=None, compiles=False)
     c = SimpleNamespace(
         loader=loader, frame=None, runs=SimpleNamespace(current=None), scheduler=tracing,

@@ -16,10 +16,10 @@ from viewer.state.picking import pixel_at
 from viewer.state.views import View
 from viewer.views import words_at
 from viewer.views.base import Pixels, Words
-from viewer.views.compare import composed, difference_legend
+from viewer.views.compare import composed, difference_legend, signed_picture
 from viewer.views.legend import Legend
 from viewer.views.wipe import wipe_column
-from viewer.window.display import InWindow, PictureTexture
+from viewer.window.display import PictureTexture
 from viewer.window.panels.area import Area
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, fitted, packed
@@ -43,7 +43,7 @@ def draw_options(ui: Ui) -> DrawOptions:
     return options.with_span(c.comparing.span(view))
 
 
-def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
+def draw(ui: Ui, options: DrawOptions) -> None:
     """Bring what is to be seen besides the live picture, which is drawn with these options."""
     comparing, compared = ui.controller.comparing, ui.graphics.compared
     seen = comparing.seen
@@ -52,10 +52,10 @@ def draw(ui: Ui, options: DrawOptions, smooth: bool) -> None:
     if seen is None:
         compared.clear()
     elif seen.difference is not None:
-        compared.draw_difference(seen.difference, comparing.limit(seen.difference), options.mark_wrong)
+        wanted = seen.difference, comparing.limit(seen.difference), options.mark_wrong
+        compared.difference.update(wanted, lambda: signed_picture(*wanted))
     else:
-        of_a = replace(options, view=seen.a.view, light=seen.a.light)
-        compared.a.draw(seen.a.frame, of_a, InWindow(smooth=smooth))
+        compared.a.draw(seen.a.frame, replace(options, view=seen.a.view, light=seen.a.light))
 
 
 def filling(ui: Ui) -> PictureTexture | None:
@@ -68,13 +68,14 @@ def filling(ui: Ui) -> PictureTexture | None:
     return compared.difference if seen.difference is not None else ui.graphics.display
 
 
-def magnify(ui: Ui, options: DrawOptions, smooth: bool) -> None:
+def magnify(ui: Ui, options: DrawOptions) -> None:
     """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
-    magnifier, size, zoom = ui.graphics.magnifier, ui.picture.size, ui.controller.session.draw.zoom
+    magnifier, size, zoom = ui.graphics.magnifier, ui.picture.size, options.zoom
     if magnifier is None or min(size) < 1:
         return
     seen, compared = ui.controller.comparing.seen, ui.graphics.compared
     a = compared.a if compared is not None else None
+    smooth = options.smooth and zoom.fits
     beside = seen is not None and (seen.has_line or seen.mode is CompareMode.SIDE)
     for name, drawn in ((PICTURE, filling(ui)), (OF_A, a if beside else None)):
         picture = drawn.picture if drawn is not None else None

@@ -118,7 +118,7 @@ def doing(c: Controller) -> str:
         return f"making certificates{before}{f' ({makes} in the last picture: {count(made)})' if made else ''}"
     if c.renderer.busy or activity is Activity.TRACING:
         is_there = c.frame is not None and not c.scheduler.outdated and c.frame.camera == c.session.camera
-        return "refining the picture" if c.scheduler.becoming_finer or is_there else TRACING
+        return "refining the picture" if is_there else TRACING
     if activity is Activity.ADDING_SAMPLES:
         return f"adding samples: {c.scheduler.samples_shown} of {c.scheduler.samples_wanted}"
     return IDLE
