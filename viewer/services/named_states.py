@@ -8,12 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from viewer.state import codec
-from viewer.state.methods import ADAPTIVE, BY_MODES, CERTIFIED, NO_CULLING
+from viewer.state.methods import ADAPTIVE, BY_MODES
 from viewer.state.notices import Notices
 from viewer.state.preferences import NamedState, Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View
 
 LONGEST_NAME = 60
 
@@ -156,34 +155,12 @@ BUILT_IN = (
         "command bench takes the paper's kd-tree.)",
     ),
     BuiltIn(
-        "Every ray traced",
-        {"settings": {"method": NO_CULLING, "verify": False}},
-        "No culling: the picture that all others are compared with.",
-    ),
-    BuiltIn(
         "Quick and exact",
         {
             "settings": {"method": ADAPTIVE, "verify": False, "samples": 16},
             "pace": {"fixed_size": False, "progressive": True, "every_frame": False},
         },
         "The method auto, which culls where that is quicker, in the size of the window, refined while nothing moves.",
-    ),
-    BuiltIn(
-        "What the paper gets wrong",
-        {
-            "settings": {"method": BY_MODES, "verify": True},
-            "draw": {"view": View.DIFFERENCE.value, "mark_wrong": True},
-        },
-        "The method paper with every culled ray traced as well, and pixels with a wrong shadow marked.",
-    ),
-    BuiltIn(
-        "What certificates prove",
-        {
-            "settings": {"method": CERTIFIED, "verify": False},
-            "draw": {"view": View.CERTIFICATE.value},
-            "pace": {"keep_tracing": True},
-        },
-        "The method certified, which goes on proving while nothing moves, and the view of its certificates.",
     ),
 )  # fmt: skip
 OF_THE_MOMENT = {"spans", "zoom", "slice", "caption", "savings", "magnified"}

@@ -1,7 +1,7 @@
 """Short steps through the program: each says what to do, and ends when the user has done it.
 
 A step is an entry of `STEPS`: a text, in which {Next light} is the key of that command, and conditions that must hold
-once, one after another."""
+once, one after another.  The last has none, and stays until it is dismissed."""
 
 from __future__ import annotations
 
@@ -14,10 +14,6 @@ from viewer.services.controller import Controller
 from viewer.state.methods import BY_MODES
 from viewer.state.views import View
 
-LAST_WORD = (
-    "Next: BART's Kitchen (File > Open), methods compared along a path as in Table 1 (panel Experiment), and "
-    "docs/viewer.md, which explains all panels."
-)
 Condition = Callable[[Controller], bool]
 
 
@@ -31,14 +27,12 @@ class Step:
 
 
 class Tour:
-    """`step` is the one that is next, None while no tour is being taken; `over` says that the last one was done, until
-    that is dismissed."""
+    """`step` is the one that is next, None while no tour is being taken."""
 
     def __init__(self, controller: Controller, key: Callable[[str], str]) -> None:
         """`key` returns the key of a command as the user reads it, or else where its menu is."""
         self._c, self._key = controller, key
         self.step: Step | None = None
-        self.over = False
         self._held = 0  # of the step's conditions
 
     def text(self, step: Step) -> str:
@@ -66,15 +60,14 @@ class Tour:
 
     def update(self) -> None:
         """See whether what is next of the step is done, once per frame."""
-        if self.step is None or self._c.frame is None:
+        if self.step is None or not self.step.conditions or self._c.frame is None:
             return
         self._held += self.step.conditions[self._held](self._c)
         if self._held == len(self.step.conditions):
             self.skip()
-            self.over = self.step is None
 
     def _go_to(self, step: Step | None) -> None:
-        self.step, self.over, self._held = step, False, 0
+        self.step, self._held = step, 0
 
 
 # --- conditions ------------------------------------------------------------------------------------
@@ -164,5 +157,11 @@ STEPS = (
         "Open the panel Zoom test and press Start. The camera moves towards the surface that you clicked, and the plot "
         "shows whether culling misses a shadow that can only be seen from close up.",
         (_tests, lambda c: not _tests(c)),
+    ),
+    Step(
+        "The tour is done",
+        "Next: BART's Kitchen (File > Open), methods compared along a path as in Table 1 (panel Experiment), and "
+        "docs/viewer.md, which explains all panels.",
+        (),
     ),
 )

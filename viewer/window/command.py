@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 from viewer.services.controller import Controller
 
@@ -24,18 +25,11 @@ class Kind(Enum):
     SCENE = "scene"
 
 
-@dataclass(frozen=True)
-class Condition:
+class Condition(NamedTuple):
     """When a command can be run, and why not where it cannot."""
 
     holds: Callable[[], bool]
-    reason: str = ""
-
-    def __call__(self) -> bool:
-        return self.holds()
-
-
-ALWAYS = Condition(lambda: True)
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -54,7 +48,7 @@ class Command:
     run: Callable[[], object]
     key: str = ""
     checked: Callable[[], bool] | None = None
-    enabled: Condition = ALWAYS
+    enabled: Condition | None = None
     separated: bool = False
     repeats: bool = False
     tip: str = ""
@@ -79,7 +73,7 @@ class Command:
     @property
     def why_not(self) -> str:
         """Why it cannot be run now; "" where it can."""
-        return "" if self.enabled() else self.enabled.reason
+        return "" if self.enabled is None or self.enabled.holds() else self.enabled.reason
 
     @property
     def keys(self) -> tuple[str, ...]:

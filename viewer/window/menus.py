@@ -24,7 +24,7 @@ def button(ui: Ui, name: str, icon: str, words: str = "", columns: int = 1, widt
     the icon alone, of a `width` in ems."""
     command = next(one for one in ui.commands if one.name == name)
     tip = f"{command.tip or name}{ui.key(name)}"
-    imgui.begin_disabled(not command.enabled())
+    imgui.begin_disabled(bool(command.why_not))
     if width:
         clicked = imgui.button(f"{icon}##{name}", ImVec2(em(width), 0.0))
         tooltip(tip)
@@ -51,7 +51,7 @@ def handle_keys(ui: Ui) -> None:
         return
     for command in ui.commands:
         keys = [key for key in ui.keymap.of(command.name) if not typing or works_while_typing(key)]
-        if any(ui.keyboard.is_pressed(key, modifiers, command.repeats) for key in keys) and command.enabled():
+        if any(ui.keyboard.is_pressed(key, modifiers, command.repeats) for key in keys) and not command.why_not:
             run(ui, command)
 
 
@@ -107,7 +107,7 @@ def _menu(ui: Ui, path: str, commands: Sequence[Command]) -> None:
 
 def _menu_item(ui: Ui, command: Command) -> None:
     label = command.label if command.label == command.name else f"{command.label}###{command.name}"
-    clicked, _ = imgui.menu_item(label, ui.key_label(command.name), command.is_checked, command.enabled())
+    clicked, _ = imgui.menu_item(label, ui.key_label(command.name), command.is_checked, not command.why_not)
     if command.tip:
         tooltip(command.tip)
     if clicked:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.culling import places
@@ -12,7 +13,7 @@ from viewer.state.preferences import load_preferences
 from viewer.window.panels.status import doing
 
 KEY = imgui.Key
-FLY, CULLING, MODES, SHADOW, ZOOM = STEPS
+FLY, CULLING, MODES, SHADOW, ZOOM, DONE = STEPS
 SKIP = "//Picture/**/Skip"
 
 
@@ -55,6 +56,7 @@ def _by_hand(d: Driver) -> None:
     d.context.mouse_click(0)  # the sky
     d.frames(5)
     assert tour.step is SHADOW
+    d.settle()
     d.pick(*places(d, lit=False))
     d.wait(lambda: tour.step is ZOOM, "a shadow that was clicked", 20.0)
     chosen = next(one for one in d.c.inspector.why.reasons if one.blocker >= 0)
@@ -62,11 +64,11 @@ def _by_hand(d: Driver) -> None:
     assert words.startswith("In shadow: blocked by "), f"it says which light is blocked, and by what: {words}"
     d.c.runs.zoom_plan.steps, d.c.runs.zoom_plan.size = 3, (32, 32)
     d.choose("Run/Zoom test")
-    d.wait(lambda: tour.over, "the end of the zoom test", 120.0)
-    assert d.c.runs.zoom_test.whole and tour.step is None
+    d.wait(lambda: tour.step is DONE, "the end of the zoom test", 120.0)
+    assert d.c.runs.zoom_test.whole
     d.settle()
     d.click("//Picture/**/Close")
-    assert not tour.over and not d.has(SKIP)
+    assert tour.step is None
 
 
 def _skipped(d: Driver) -> None:
@@ -80,5 +82,5 @@ def _skipped(d: Driver) -> None:
     for step in STEPS[:-1]:
         assert tour.step is step
         d.click(SKIP)
-    d.click("//Picture/**/Finish")
-    assert tour.step is None and not tour.over
+    d.click(f"//Picture/**/{icons.ICON_FA_XMARK}##end")
+    assert tour.step is None and not d.has(SKIP)

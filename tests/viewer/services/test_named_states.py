@@ -106,5 +106,5 @@ def test_a_damaged_preset_changes_nothing_and_nothing_is_applied_while_locked(pa
         parts.presets.apply(name)
         assert parts.notices.message.error and parts.session.state == before and parts.named == []
     parts.locked = True
-    parts.presets.apply("Every ray traced")
+    parts.presets.apply("Quick and exact")
     assert parts.session.state == before

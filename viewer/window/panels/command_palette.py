@@ -132,8 +132,8 @@ class Finder:
             return not self.problem
         if item is None:
             return False
-        if not item.enabled():
-            self.problem = f"{item.label}: {item.why_not or 'cannot be done now'}"
+        if item.why_not:
+            self.problem = f"{item.label}: {item.why_not}"
             return False
         if item.value is not None:
             self.setting, self.typed, self.problem, self.fresh = item, item.value, "", True
@@ -240,7 +240,7 @@ def _row(ui: Ui, item: Command, marked: bool) -> bool:
     left, edge = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
     shown, menu = ui.key_label(item.name) or item.value or "", item.menu.replace("/", " > ")
     key_room = imgui.calc_text_size(shown).x + em(0.3)
-    clipped(item.label, None if item.enabled() else imgui.get_style_color_vec4(imgui.Col_.text_disabled))
+    clipped(item.label, None if not item.why_not else imgui.get_style_color_vec4(imgui.Col_.text_disabled))
     path_room = edge - key_room - imgui.calc_text_size(item.label).x - em(1.8)
     if menu and path_room > em(3.0):
         imgui.same_line(0.0, em(0.8))

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from viewer.services.tour import LAST_WORD, STEPS
+from viewer.services.tour import STEPS
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, em, paragraph, tooltip
 
@@ -16,7 +14,7 @@ _AGAIN = "End the tour. The menu Help starts it again."
 
 def height(ui: Ui, width: float) -> float:
     """Return how much of the room for the picture goes to the tour, whichever step is next; 0 while none is taken."""
-    if ui.tour.step is None and not ui.tour.over:
+    if ui.tour.step is None:
         return 0.0
     style, wrap = imgui.get_style(), max(width - 2.0 * imgui.get_style().window_padding.x, em(4.0))
     words = max(imgui.calc_text_size(ui.tour.text(step), False, wrap).y for step in STEPS)
@@ -25,38 +23,26 @@ def height(ui: Ui, width: float) -> float:
 
 def show(ui: Ui, width: float) -> None:
     """Show the step that is next, and what to do, in two or three lines."""
-    tour, step = ui.tour, ui.tour.step
-    size = ImVec2(width, height(ui, width) - imgui.get_style().item_spacing.y)
+    tour, step, style = ui.tour, ui.tour.step, imgui.get_style()
+    if step is None:
+        return
+    number, last = STEPS.index(step) + 1, step is STEPS[-1]
+    size = ImVec2(width, height(ui, width) - style.item_spacing.y)
     if imgui.begin_child("tour", size, int(imgui.ChildFlags_.borders)):
-        if step is None:
-            _head("The tour is done", ("Close", tour.end, ""))
-            paragraph(LAST_WORD, QUIET)
-        else:
-            begun = ui.controller.frame is not None
-            text = tour.text(step) if begun else "You can begin as soon as there is a picture."
-            number, last = STEPS.index(step) + 1, step is STEPS[-1]
-            _head(
-                f"Step {number} of {len(STEPS)}:  {step.title}",
-                ("Finish" if last else "Skip", tour.skip, _AGAIN if last else "Go on to the next step."),
-                (f"{icons.ICON_FA_XMARK}##end", tour.end, _AGAIN),
-            )
-            paragraph(text, QUIET)
+        skip, end = "Close" if last else "Skip", f"{icons.ICON_FA_XMARK}##end"
+        widths = (imgui.calc_text_size(label, True).x + 2.0 * style.frame_padding.x for label in (skip, end))
+        room = imgui.get_content_region_avail().x - sum(widths) - 2.0 * style.item_spacing.x
+        left = imgui.get_cursor_pos_x()
+        imgui.align_text_to_frame_padding()
+        clipped(step.title if last else f"Step {number} of {len(STEPS) - 1}:  {step.title}", room=room)
+        imgui.same_line(left + room)
+        if imgui.button(skip):
+            tour.skip()
+        tooltip(_AGAIN if last else "Go on to the next step.")
+        imgui.same_line()
+        if imgui.button(end):
+            tour.end()
+        tooltip(_AGAIN)
+        begun = ui.controller.frame is not None
+        paragraph(tour.text(step) if begun else "You can begin as soon as there is a picture.", QUIET)
     imgui.end_child()
-
-
-def _head(title: str, *buttons: tuple[str, Callable[[], None], str]) -> None:
-    """Show a line with a title, and buttons at its end: what each is called, does, and says of itself."""
-    style = imgui.get_style()
-    room = sum(
-        imgui.calc_text_size(label, True).x + 2.0 * style.frame_padding.x + style.item_spacing.x
-        for label, *_ in buttons
-    )
-    imgui.align_text_to_frame_padding()
-    left, width = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
-    clipped(title, room=width - room)
-    for number, (label, run, tip) in enumerate(buttons):
-        imgui.same_line(0.0 if number else left + width - room)
-        if imgui.button(label):
-            run()
-        if tip:
-            tooltip(tip)
