@@ -42,7 +42,7 @@ def certifying(d: Driver) -> None:
     """Modes are there at once whatever culls; where a view has nothing to show, a note says so and a button switches;
     a method is chosen with its additions; key C is off."""
     d.settle()
-    d.wait(lambda: d.c.loader.ready, "the kernels that make certificates")
+    d.wait(lambda: d.c.loader.warm_up_job is None, "the kernels that make certificates")
     d.fix_resolution(240, 180)
     for base in ("certified", "none"):
         d.change(method=base)
