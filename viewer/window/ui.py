@@ -100,7 +100,7 @@ class Ui:
 
     def __post_init__(self) -> None:
         self.keymap = Keymap(self.controller.preferences, {})
-        self.tour = Tour(self.controller, self.key_or_menu)
+        self.tour = Tour(self.controller, lambda label: self.show_panel(label), self.key_or_menu)
 
     def state(self, kind: type[State]) -> State:
         """The state of a panel, an object of this class for as long as the program runs."""

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from unittest.mock import patch
+
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.culling import places
 from tracer.why_in_words import Words, plain
+from viewer.services import tour as tours
 from viewer.services.tour import STEPS
 from viewer.state.preferences import load_preferences
+from viewer.state.views import View
 from viewer.window.panels.status import doing
 
 KEY = imgui.Key
 FLY, CULLING, MODES, SHADOW, ZOOM, DONE = STEPS
-SKIP = "//Picture/**/Skip"
+SHOW, SKIP = f"//Picture/**/{icons.ICON_FA_PLAY}  Show me", "//Picture/**/Skip"
 
 
 def touring(d: Driver) -> None:
@@ -22,6 +26,8 @@ def touring(d: Driver) -> None:
     assert d.ui.tour.step is FLY and not d.c.preferences.tour, "a first start begins with the tour, and only that"
     _by_hand(d)
     _skipped(d)
+    with patch.object(tours, "SECONDS", 0.3):  # nobody looks
+        _shown(d)
     d.c.settings.finish()
     assert not load_preferences()[0].tour
 
@@ -84,3 +90,24 @@ def _skipped(d: Driver) -> None:
         d.click(SKIP)
     d.click(f"//Picture/**/{icons.ICON_FA_XMARK}##end")
     assert tour.step is None and not d.has(SKIP)
+
+
+def _shown(d: Driver) -> None:
+    """*Show me* does each step, and stays in the state that it has shown."""
+    d.choose("Help/Tour")
+    d.change(method="auto")
+    camera = d.c.session.camera
+    for step in STEPS[1:]:
+        d.click(SHOW)
+        d.wait(lambda step=step: d.ui.tour.step is step, "the step that is shown", 120.0)
+        if step is CULLING:
+            assert d.c.session.camera != camera
+        elif step is MODES:
+            assert d.c.session.settings.method == "paper" and d.c.frame.statistics.shadow.dynamic_only > 0
+        elif step is SHADOW:
+            assert d.c.session.draw.view is View.SHADOW
+        elif step is ZOOM:
+            assert d.c.selection.picked is not None
+    assert all(one.seen_whole for one in d.c.runs.zoom_test.results.approaches), "else there is no limit to see"
+    assert not d.has(SHOW)
+    d.click("//Picture/**/Close")

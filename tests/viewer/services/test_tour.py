@@ -15,7 +15,7 @@ KEYS = {"Shadow culling": "Q", "Trace again": "T"}
 
 def tour_of(method: str, frame=None) -> Tour:
     c = SimpleNamespace(frame=frame, session=SimpleNamespace(settings=Settings(16, 8, method=method)), active=False)
-    return Tour(c, KEYS.__getitem__)
+    return Tour(c, lambda panel: None, KEYS.__getitem__)
 
 
 def test_culling_that_saves_nothing_yet_is_not_to_be_switched_off():

@@ -29,20 +29,23 @@ def show(ui: Ui, width: float) -> None:
     number, last = STEPS.index(step) + 1, step is STEPS[-1]
     size = ImVec2(width, height(ui, width) - style.item_spacing.y)
     if imgui.begin_child("tour", size, int(imgui.ChildFlags_.borders)):
-        skip, end = "Close" if last else "Skip", f"{icons.ICON_FA_XMARK}##end"
-        widths = (imgui.calc_text_size(label, True).x + 2.0 * style.frame_padding.x for label in (skip, end))
-        room = imgui.get_content_region_avail().x - sum(widths) - 2.0 * style.item_spacing.x
-        left = imgui.get_cursor_pos_x()
+        buttons = [
+            (f"{icons.ICON_FA_PLAY}  Show me", tour.show, "Do this step for me."),
+            ("Close" if last else "Skip", tour.skip, _AGAIN if last else "Go on to the next step."),
+            (f"{icons.ICON_FA_XMARK}##end", tour.end, _AGAIN),
+        ][last:]
+        widths = (imgui.calc_text_size(label, True).x + 2.0 * style.frame_padding.x for label, *_ in buttons)
+        left, spaces = imgui.get_cursor_pos_x(), len(buttons) * style.item_spacing.x
+        room = imgui.get_content_region_avail().x - sum(widths) - spaces
         imgui.align_text_to_frame_padding()
         clipped(step.title if last else f"Step {number} of {len(STEPS) - 1}:  {step.title}", room=room)
         imgui.same_line(left + room)
-        if imgui.button(skip):
-            tour.skip()
-        tooltip(_AGAIN if last else "Go on to the next step.")
-        imgui.same_line()
-        if imgui.button(end):
-            tour.end()
-        tooltip(_AGAIN)
+        for label, do, tip in buttons:
+            if imgui.button(label):
+                do()
+            tooltip(tip)
+            imgui.same_line()
+        imgui.new_line()
         begun = ui.controller.frame is not None
         paragraph(tour.text(step) if begun else "You can begin as soon as there is a picture.", QUIET)
     imgui.end_child()
