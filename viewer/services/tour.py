@@ -211,7 +211,7 @@ def _small_primitive(c: Controller) -> int | None:
 
 _THE_SAME = (
     "The picture looks the same, but without culling every shadow ray is traced: see the bar above the picture, "
-    "hatched while culling is off, and the row Traced in the Statistics panel."
+    "pale while culling is off, and the row Traced in the Statistics panel."
 )
 
 
