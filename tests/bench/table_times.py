@@ -51,7 +51,7 @@ CAMERA = Camera((0.6, 0.9, 2.6), (-0.2, -0.3, -0.93), angle=40.0)
 LIGHTS = [(1.6, 1.2, 0.4), (-2.0, 2.0, 1.5)]
 PARTS = 200
 SORTED = ("Number", "Pixels", "Shadow", "Occlusion", "Pixels")  # whose headers are in sight
-TYPED = ("pixels>3", "mode:full", "part-1", "number>250000 share<50", "is:unseen")
+TYPED = ("pixels>3", "shadow:full", "part-1", "number>250000 share<50", "is:unseen")
 LONGEST = 600.0  # seconds that the user may take
 
 

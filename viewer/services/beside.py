@@ -32,7 +32,7 @@ PROVING = 2.0
 """Seconds that each of these may spend on certificates, which takes fewer frames than where each is shown."""
 MOST_PROVING = round(refinement.MOST_FRAMES * refinement.SECONDS / PROVING)
 """Frames that do not count, at most: as much time for certificates as the window's own take at rest."""
-MOST = 40
+MOST_ROUNDS = 40
 """Rounds, each of one frame by every method."""
 NARROW, CLEAR = 0.01, 0.25
 """The margin of the median ratio that is small enough: in any case, and as a part of what it is away from 1."""
@@ -146,7 +146,7 @@ class Rounds:
                 one[method] = yield replace(settings, method=method)
             now = InTurn(methods, (*self.so_far.rounds, tuple(one[method] for method in methods)))
             narrow = now.tells and all(_is_narrow(now.speed(method, methods[0])) for method in methods[1:])
-            self.so_far = replace(now, settled=narrow or now.count >= MOST)
+            self.so_far = replace(now, settled=narrow or now.count >= MOST_ROUNDS)
 
     def _trace(self, renderer: Renderer, settings: Settings, cancelled: Cancel) -> FrameStatistics:
         """Trace a frame, beginning with the modes that the window has."""

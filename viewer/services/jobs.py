@@ -77,7 +77,7 @@ class Job(Generic[Result]):
         self.label, self.fraction = label, min(max(float(fraction), 0.0), 1.0)
 
     def _run(self) -> None:
-        step_back(JOB)
+        lower_priority(JOB)
         try:
             result = self._work(self._progress)
             self.result = None if self._stop.is_set() else result
@@ -90,7 +90,7 @@ class Job(Generic[Result]):
             self._wake()
 
 
-def step_back(niceness: int) -> None:
+def lower_priority(niceness: int) -> None:
     """Let the window go before this thread, and the threads it starts, where cores are short (Linux only)."""
     if sys.platform.startswith("linux"):
         with suppress(OSError):

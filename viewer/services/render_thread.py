@@ -28,7 +28,7 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
 from viewer.services.beside import Pair
-from viewer.services.jobs import TRACER, step_back
+from viewer.services.jobs import TRACER, lower_priority
 from viewer.services.queries import Function, Queries, Query
 from viewer.services.render_request import Parts, RenderRequest, Spare, Task, Traced
 from viewer.util.messages import Failure, failure
@@ -157,7 +157,7 @@ class RenderThread:
     # --- the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
-        step_back(TRACER)
+        lower_priority(TRACER)
         while (turn := self._next()) is not None:
             try:
                 turn()

@@ -233,9 +233,9 @@ class App:
     def _set_frame_rate(self) -> None:
         """Doze but when something moves: whatever comes from a thread wakes the window, and it needs the processor."""
         idling = self.params.fps_idling
-        lively = self.controller.motion.is_animating
-        by_processor = lively and self.drawn_by_processor
-        idling.enable_idling = by_processor or not lively
+        is_animating = self.controller.motion.is_animating
+        by_processor = is_animating and self.drawn_by_processor
+        idling.enable_idling = by_processor or not is_animating
         idling.fps_idle = SLOWEST_BY_PROCESSOR if by_processor else IDLE
         idling.time_active_after_last_event = 0.0 if by_processor else ACTIVE
 
