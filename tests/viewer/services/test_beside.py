@@ -16,7 +16,7 @@ from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Camera, Cancelled, Scene
-from viewer.services.beside import FIRST, MOST, STILL, Baseline, Pair, Rounds, Subject, subject_of
+from viewer.services.beside import FIRST, MOST_ROUNDS, STILL, Baseline, Pair, Rounds, Subject, subject_of
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.render_thread import RenderThread
 from viewer.state.savings import LEAST, Spread
@@ -91,7 +91,7 @@ def test_methods_take_turns_after_frames_that_do_not_count_and_stop_once_it_is_k
     assert renderer.taught == [renderer] * 2, "each begins with the modes that the window has"
     rounds = rounds_of("paper")
     step(rounds, Timed({"none": [0.1, 0.3, 0.2], "paper": [0.25, 0.1, 0.15, 0.3]}))
-    assert rounds.so_far.settled and rounds.so_far.count == MOST, "numbers that go up and down"
+    assert rounds.so_far.settled and rounds.so_far.count == MOST_ROUNDS, "numbers that go up and down"
 
 
 def test_nothing_counts_before_the_method_has_made_what_it_makes():
