@@ -161,5 +161,5 @@ def test_names_and_what_is_not_known_are_written_so_that_they_are_read_again(tmp
     write_rows(table, np.arange(7, dtype=np.int32)[::-1], tmp_path / "rows.csv")
     rows = read(tmp_path / "rows.csv")
     assert [row["Number"] for row in rows] == list("6543210") and rows[0]["Object"] == 'a, "quoted"\nname'
-    assert {row["Texture"] for row in rows} == {""} and "Saved" not in rows[0]
+    assert {row["Texture"] for row in rows} == {""} and "Untraced" not in rows[0]
     assert set(rows[0]) <= {column.title for column in COLUMNS[Level.PRIMITIVES]}
