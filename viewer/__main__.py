@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from viewer import window_module
-from viewer.cli import main as command_line
 
 if TYPE_CHECKING:
     from tracer.scene.mesh_options import MeshOptions
@@ -20,6 +19,11 @@ if TYPE_CHECKING:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line, that of the process by default; returns the exit code."""
+    try:
+        from viewer.cli import main as command_line  # takes a second or two, in which somebody may cancel
+    except KeyboardInterrupt:
+        print("shadowcull: cancelled", file=sys.stderr)
+        return 130
     return command_line.main(sys.argv[1:] if arguments is None else arguments, _open_window)
 
 

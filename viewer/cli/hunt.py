@@ -30,7 +30,7 @@ examples:
   shadowcull hunt kitchen.aff --method paper --step 10 --around 100 --radius 0.5 --seed 7
   shadowcull hunt default --method certified --around 50
   shadowcull check wrong/*.png
-  shadowcull explain kitchen.aff --frame 12 --pixel 147,125 --before '[[0, null]]' --only wrong
+  shadowcull explain kitchen.aff --frame 12 --size 256x256 --pixel 147,125 --before '[[0, null]]' --only wrong
 
 Every culled shadow ray is verified. Wrong pixels are ranked by how far their colour is from the right one,
 and of each primitive and light the worst is kept, with the fewest frames before it that make the pixel just as wrong.
