@@ -235,7 +235,7 @@ def comparison(frame: Frame, standing: Standing) -> list[Clause]:
         made, meaning = terms.made(name)
         number = count(frame.statistics.certificates)
         tip = f"{made} in the picture before: {meaning}. They save rays later; their time is none of the rays'."
-        return [_unknown(f"proving: {number} made in the last", tip)]
+        return [_unknown(f"proving: {number} made in the last picture", tip)]
     if standing.why_not:
         return [_unknown("speed not measured", standing.why_not)]
     if measured is None or name not in measured.methods:

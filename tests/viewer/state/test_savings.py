@@ -68,7 +68,7 @@ SAVED = "paper: 10.0 % of shadow rays saved, not verified, "
          "paper: 10.0 % of shadow rays saved (of the 25 % shaded), not verified, speed is measured once the picture "
          "rests"),
         (CERTIFIED, {"proves": True, "measured": in_turn("certified", 1.5, saved=340)},
-         "certified: 34.0 % of shadow rays saved, exact, proving: 0 made in the last"),
+         "certified: 34.0 % of shadow rays saved, exact, proving: 0 made in the last picture"),
         (CERTIFIED, {"measured": in_turn("certified", 1.0, saved=400)},
          "certified: 34.0 % of shadow rays saved, exact, 15 % fewer steps, as fast as none (within noise, proofs not "
          "counted)"),
