@@ -10,11 +10,13 @@ Where this departs from the text of the paper, or chooses where the text is sile
 =====  ==============================================================================================================
 §2.2   Modes and pixel counts belong to one resolution. `Renderer` keeps them for each that it renders at; a coarser one
        takes over what a finer one has just seen whole.
-§2.2   A light that moves loses its shadow modes, and every FULLY_RENDERED primitive is examined anew.
+§2.2   A light that moves loses its shadow modes, and every FULLY_RENDERED primitive is examined anew: its pixels have
+       said nothing of that light yet.
 §2.2   Only the first 31 lights have shadow modes: a word of 64 bits has room for no more.
 §2.3   A primitive at the screen's edge is PARTIALLY_OCCLUDED: it may go on beyond the edge.
 §2.3   With `symmetric`, the reference pixel's ray is tested against the current pixel's primitive as well.
-§2.3   In the first row and column there is no pixel above or to the left, and nothing is compared with it.
+§2.3   In the first row and column there is no pixel above or to the left, and nothing is compared with it. A pixel
+       that sees nothing is compared like any other.
 §2.4   Shadow modes speak of static occluders only, so that NON_SHADOW still asks the dynamic objects.
 §2.4   NON_SHADOW, too, is trusted on FULLY_RENDERED primitives only: what was hidden may be in shadow.
 §2.4   A shadow ray is due where the light is on the viewer's side of the geometric surface.
