@@ -97,13 +97,17 @@ def _check_buffers(folder: Path) -> None:
         assert found["depth"].shape == found["primitive"].shape == (128, 128)
 
 
+def _carried(number: int) -> str:
+    return capture.Carried({"scene": "room.aff", "time": float(number)}).text()
+
+
 def _exr(folder: Path, number: int) -> None:
     noise = _pixels(number).astype(np.float32)  # which nothing makes smaller
-    exr.write(folder / "frame.exr", replace(_frame(), color=noise), "{}")
+    exr.write(folder / "frame.exr", replace(_frame(), color=noise), _carried(number))
 
 
 def _small_exr(folder: Path, number: int) -> None:
-    exr.write(folder / "frame.exr", make_frame(), json.dumps({"number": number}))
+    exr.write(folder / "frame.exr", make_frame(), _carried(number))
 
 
 def _check_exr(folder: Path) -> None:
