@@ -1,4 +1,4 @@
-"""Values as JSON and back: the only place of the viewer that knows how.
+"""Values of declared types as JSON and back: states, preferences, presets, and what saved pictures carry.
 
 msgspec reads the types of dataclasses, tuples, enums and sets, and says in one line what does not fit.  What a stored
 value lacks keeps what it has in the value that it is read onto, and what it has too much is ignored, so that other
