@@ -1,7 +1,7 @@
 """The pictures of a zoom test, kept as it goes: the filmstrip of the paper's Figure 4.
 
-Each is kept as a PNG.  Memory is bounded: where they take too much, every
-second step's is given up, then every second of the rest, for all zoom factors alike.
+Each is kept as a PNG.  Memory is bounded: where they take too much, every second step's is given up, then every second
+of the rest, for all zoom factors alike.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, MATERIAL
 from tracer.geometry.intersect import quadric_normal
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.kernels import inlined, subkernel
-from tracer.shading.bounce import MIN_WEIGHT, SPLITS
+from tracer.shading.bounce import MIN_WEIGHT, SPLITS, reflected
 from tracer.shading.phong import one_highlight
 from tracer.shading.points import one_color
 from tracer.shading.shading_data import AMBIENT, DIFFUSE, EXPONENT, IOR, SHINE, SPECULAR, TRANSMISSION
@@ -91,7 +91,7 @@ def sent_on(s, d, bounce):
     sent counts 0."""
     m, n = s.material, s.normal
     mirror, through = (m[SPECULAR], m[SPECULAR + 1], m[SPECULAR + 2]), m[TRANSMISSION]
-    reflected, bent = _along(d, -TWO * dot(d, n), n), d
+    mirrored, bent = reflected(d, n), d
     if through > ZERO:
         eta = ONE / m[IOR] if s.entering else m[IOR]
         cosine = -dot(d, n)
@@ -106,7 +106,7 @@ def sent_on(s, d, bounce):
                 mirror = ZERO, ZERO, ZERO
             else:
                 through = ZERO
-    return bent, (through, through, through), reflected, mirror
+    return bent, (through, through, through), mirrored, mirror
 
 
 @inlined
