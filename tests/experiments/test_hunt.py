@@ -27,7 +27,8 @@ def world(tmp_path_factory: pytest.TempPathFactory) -> tracer.World:
 
 def search(world: tracer.World, **options) -> Search:
     times = [world.scene.frame_time(number) for number in range(0, LAST + 1, STEP)]
-    return Search(SETTINGS, times, **options)
+    plan = {"camera": None, "around": 0, "radius": 0.3, "seed": 1, "keep": 8} | options
+    return Search(SETTINGS, times, **plan)
 
 
 def result(world: tracer.World, wanted: Search, **options) -> Results:

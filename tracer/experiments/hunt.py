@@ -46,11 +46,11 @@ class Search:
 
     settings: Settings
     times: Sequence[float]
-    camera: Camera | None = None
-    around: int = 0
-    radius: float = 0.3
-    seed: int = 1
-    keep: int = 8
+    camera: Camera | None
+    around: int
+    radius: float
+    seed: int
+    keep: int
 
     @property
     def frames(self) -> int:

@@ -15,12 +15,13 @@ from tracer.scene.model import Scene
 from tracer.settings import Settings
 from tracer.text import printable
 from viewer.cli import arguments, options, pictures
-from viewer.cli.arguments import INTERRUPTED, Parser, number
+from viewer.cli.arguments import INTERRUPTED, Parser
 from viewer.cli.console import working
 from viewer.output import capture
 from viewer.services import film as films
 from viewer.services import stills
 from viewer.state.navigation import Stop
+from viewer.state.plans import FilmPlan
 from viewer.state.preferences import load_preferences
 
 EPILOG = """\
@@ -55,9 +56,7 @@ def parser() -> Parser:
     way.add_argument("--through", type=Path, nargs="+", metavar="PICTURE", help=help_)
     help_ = "fly through the scene's bookmarks, which the window keeps"
     way.add_argument("--bookmarks", action="store_true", help=help_)
-    help_ = "how long the film is (default: every frame of the path once; 2 seconds from bookmark to bookmark)"
-    add("--seconds", type=number(0.01, 86_400.0), default=0.0, metavar="S", help=help_)
-    add("--fps", type=number(1.0, 240.0), default=25.0, metavar="F", help="frames a second (default: 25)")
+    options.add_settings(parser, FilmPlan, "seconds", "fps")
     pictures.add_picture(parser)
     options.add_tracing(parser)
     options.add_settings(parser, Settings, "verify")

@@ -16,13 +16,14 @@ from tracer.scene.load import check_scene_file
 from tracer.scene.model import Cancelled, Scene
 from tracer.text import printable
 from viewer.cli import arguments, options
-from viewer.cli.arguments import INTERRUPTED, Parser, count, number
+from viewer.cli.arguments import INTERRUPTED, Parser
 from viewer.cli.console import Work, listed, print_table, working
 from viewer.output import exports
 from viewer.output.reports import findings
 from viewer.services import hunts, stills
 from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
+from viewer.state.plans import HuntPlan
 
 EPILOG = """\
 examples:
@@ -48,15 +49,9 @@ def parser() -> Parser:
     add("--method", type=arguments.method, default="paper", metavar="METHOD", help=help_)
     help_ = "the frames A to B of the path, or one (default: all)"
     add("--frames", type=arguments.frame_span, metavar="A-B", help=help_)
-    add("--step", type=count(1, 1_000_000), default=1, metavar="N", help="only every N-th of them (default: 1)")
     help_ = f"stand still, and let time pass: {options.CAMERA}"
     add("--camera", type=arguments.camera, metavar="JSON", help=help_)
-    help_ = "then N extra random views near the worst findings (default: 0)"
-    add("--around", type=count(0, 1_000_000), default=0, metavar="N", help=help_)
-    help_ = "how far these are, at most, in parts of the distance to what is wrong (default: 0.3)"
-    add("--radius", type=number(0.0, 100.0), default=0.3, metavar="R", help=help_)
-    add("--seed", type=count(0, 2**31 - 1), default=1, metavar="S", help="which of them are drawn (default: 1)")
-    add("--keep", type=count(1, 1000), default=8, metavar="K", help="how many findings, the worst (default: 8)")
+    options.add_settings(parser, HuntPlan, "step", "around", "radius", "seed", "keep", around=0)
     options.add_size(parser)
     help_ = "a folder for a figure and a JSON of each finding, and for hunt.json"
     add("-o", "--output", type=Path, metavar="DIR", help=help_)

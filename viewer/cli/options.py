@@ -207,8 +207,9 @@ def warmup_times(scene: Scene, time: float, warmup: int, work: Work) -> list[flo
 
 def add_size(parser: Parser) -> None:
     """Add the size of pictures."""
-    help_ = "width and height in pixels (default: 512x512)"
-    parser.add_argument("--size", type=size, default=(512, 512), metavar="WxH", help=help_)
+    default = (Settings.width, Settings.height)
+    help_ = "width and height in pixels (default: {}x{})".format(*default)
+    parser.add_argument("--size", type=size, default=default, metavar="WxH", help=help_)
 
 
 def add_settings(parser: argparse._ActionsContainer, holder: type, *names: str, **defaults: Any) -> None:

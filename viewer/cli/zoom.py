@@ -16,12 +16,12 @@ from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
 from viewer.cli import arguments, options
-from viewer.cli.arguments import INTERRUPTED, Parser, count, number
+from viewer.cli.arguments import INTERRUPTED, Parser, count
 from viewer.cli.console import columns_help, listed, print_table, working
 from viewer.output import exports
 from viewer.output.reports import STEPS
 from viewer.state.methods import NO_CULLING
-from viewer.state.plans import parse_factors
+from viewer.state.plans import ZoomPlan, parse_factors
 from viewer.util.messages import say
 
 WHICH = (
@@ -54,10 +54,7 @@ def parser() -> Parser:
     which.add_argument("--pixel", type=arguments.pixel, metavar="X,Y", help=help_)
     options.add_moment(parser)
     add("--camera", type=arguments.camera, metavar="JSON", help=f"where to start from: {options.CAMERA}")
-    add("--steps", type=count(1, 10_000), default=30, metavar="N", help="how many (default: 30)")
-    help_ = "each step goes to this part of the distance (default: 0.94)"
-    add("--ratio", type=number(0.001, 0.9999), default=0.94, metavar="R", help=help_)
-    add("--factors", type=parse_factors, default=(4.0, 16.0), metavar="F,...", help="zoom factors (default: 4,16)")
+    options.add_settings(parser, ZoomPlan, "steps", "ratio", "factors")
     options.add_size(parser)
     add("--json", type=Path, metavar="FILE", help="every figure of every step")
     add("--csv", type=Path, metavar="FILE", help="a line for each step")
@@ -75,7 +72,8 @@ def run(given: Namespace) -> int:
     if given.primitive is None and given.pixel is None:
         raise ValueError(WHICH)
     settings = options.tracing_settings(given)
-    zoom.settings_of_tests(settings, given.factors, given.steps, given.ratio)
+    factors = parse_factors(given.factors)
+    zoom.settings_of_tests(settings, factors, given.steps, given.ratio)
     if given.pixel is not None:
         zoom.check_pixel(given.pixel, given.size)
     wanted = exports.wanted_files(given)
@@ -90,7 +88,7 @@ def run(given: Namespace) -> int:
         frame = Renderer(scene, rays, world=world).render(time, given.camera, work.cancelled)
         primitive = zoom.primitive_at(frame, *given.pixel) if given.pixel is not None else given.primitive
         start = zoom.aim(frame, primitive)
-        test = ZoomTest(scene, settings, start, given.factors, given.steps, given.ratio)
+        test = ZoomTest(scene, settings, start, factors, given.steps, given.ratio)
         results = work.perform(test, world)
         failures = exports.write_files(results, wanted)
     print_table(listed(STEPS, happenings(results), title(results), f"wrong: {WRONG_PIXELS}", lambda row: row[0]))

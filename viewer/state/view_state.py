@@ -34,10 +34,10 @@ class Pace:
     fixed_size: bool = setting(
         False, "Fixed size", "Trace pictures of a size of their own, not of the window's.", panel="Rendering"
     )
-    width: int = setting(512, "Picture width", "Of pictures of fixed size.", low=1, high=LONGEST_FIXED_SIDE,
+    width: int = setting(Settings.width, "Picture width", "Of pictures of fixed size.", low=1, high=LONGEST_FIXED_SIDE,
                          applies=_fixed_size, unit=" px")  # fmt: skip
-    height: int = setting(512, "Picture height", "Of pictures of fixed size.", low=1, high=LONGEST_FIXED_SIDE,
-                          applies=_fixed_size, unit=" px")  # fmt: skip
+    height: int = setting(Settings.height, "Picture height", "Of pictures of fixed size.", low=1,
+                          high=LONGEST_FIXED_SIDE, applies=_fixed_size, unit=" px")  # fmt: skip
     progressive: bool = setting(
         True, "Progressive refinement",
         "Show pictures before all of their pixels are shaded, so that frames come fast.", panel="Rendering",
