@@ -107,11 +107,15 @@ _SMALLEST = 0.6  # of the size of letters: what finds no room by smaller ones is
 Measure = Callable[[str], float]
 
 
-def lay_out(figure: Figure, measure: Measure, line: float, width: float, height: float) -> Drawing:
-    """Return the figure in so much room, in lines of text so high.
+Arrangement = tuple[int, bool, float]
+"""In how many columns stages stand, whether their rules are written out, and how large letters can be."""
+
+
+def arrange(figure: Figure, measure: Measure, line: float, width: float, height: float) -> Arrangement:
+    """Return how the figure finds room, in lines of text so high.
 
     Rules are written out where they find room in letters of full size.  Else they are tips, and letters get smaller
-    until all is seen, but not so small that nobody can read them: then the figure is higher than the room."""
+    until all is seen."""
     sheet, stages, best = _Sheet(cache(measure), line), len(figure.stages), (0.0, 1)
     fewest = min(max(1, int(width / (_WIDEST * line))), stages)
     for rules in (True, False):
@@ -119,10 +123,20 @@ def lay_out(figure: Figure, measure: Measure, line: float, width: float, height:
             drawing = sheet.draw(figure, width, columns, rules)
             scale = min(1.0, width / drawing.width, height / drawing.height)
             if scale == 1.0:
-                return drawing
+                return columns, rules, scale
             best = max(best, (scale, columns))
     scale, columns = best
-    drawing = sheet.draw(figure, width / scale, columns, rules=False)
+    return columns, False, scale
+
+
+def lay_out(
+    figure: Figure, measure: Measure, line: float, width: float, height: float, arranged: Arrangement | None = None
+) -> Drawing:
+    """Return the figure in so much room, as it is `arranged` for one of the same stages, or else for itself.
+
+    Letters are not so small that nobody can read them: then the figure is higher than the room."""
+    columns, rules, scale = arranged or arrange(figure, measure, line, width, height)
+    drawing = _Sheet(cache(measure), line).draw(figure, width / scale, columns, rules)
     drawing.scale = min(1.0, width / drawing.width, max(height / drawing.height, _SMALLEST))
     return drawing
 

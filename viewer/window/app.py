@@ -40,7 +40,7 @@ TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
 Step = Callable[[str, Callable[[], object]], object]
 Runner = Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None]
-WINDOW_SIZE = (1440, 900)
+WINDOW_SIZE = (1280, 800)
 SMALLEST_SIZE = (240, 160)
 FASTEST = 60.0  # frames a second of the window's own
 # Where a processor draws the window, each frame takes time from tracing: one is drawn for each picture and each of the
@@ -276,6 +276,7 @@ class App:
     def _menus(self) -> None:
         menus.show(self.ui, [*self.ui.commands, *named_states.preset_commands(self.ui)])
         self.layout.show_menu()
+        self.layout.show_workspaces()
 
     def _ready(self) -> None:
         """The window and its GL context exist."""

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from imgui_bundle import imgui
+from imgui_bundle import hello_imgui, imgui
 
 from tracer.method import Kind, Method, additions, bases
 from tracer.scene.meshes import MESH_EXTENSIONS
@@ -21,6 +21,7 @@ from viewer.state.pixels import FIT, MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window.command import Command, Condition, scene_open
+from viewer.window.layout import WORKSPACES, Workspace
 from viewer.window.panels import rays, what_if
 from viewer.window.panels.camera import camera_commands, time_commands
 from viewer.window.panels.find import FindState
@@ -176,6 +177,11 @@ def _interface(ui: Ui) -> list[Command]:
     def fill_screen() -> None:
         ui.full_screen.wanted = not ui.full_screen.wanted
 
+    def workspace(one: Workspace, key: str) -> Command:
+        return Command(one.name, "View", partial(hello_imgui.switch_layout, one.name), key, tip=one.help,
+                       checked=lambda: hello_imgui.current_layout_name() == one.name,
+                       separated=one is WORKSPACES[0])  # fmt: skip
+
     largest = Condition(lambda: p.ui_scale < SCALES[-1], "the interface is at its largest")
     smallest = Condition(lambda: p.ui_scale > SCALES[0], "the interface is at its smallest")
     return [
@@ -187,7 +193,8 @@ def _interface(ui: Ui) -> list[Command]:
         Command("Interface at 100 %", "View", partial(size, 0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
         Command("Hide panels", "View", hide_panels, "Tab", checked=lambda: ui.panels_hidden, separated=True),
         Command("Full screen", "View", fill_screen, "F11", checked=lambda: ui.full_screen.wanted),
-        Command("Default layout", "View", lambda: ui.reset_layout()),
+        *[workspace(one, key) for one, key in zip(WORKSPACES, ("F2", "F3", "F4"))],
+        Command("Default layout", "View", lambda: ui.reset_layout(), tip="the panels of this workspace as they were"),
     ]  # fmt: skip
 
 

@@ -5,7 +5,7 @@ they were."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -29,60 +29,89 @@ from viewer.window.panels import (
     scene,
     statistics,
     status,
+    tour,
     view,
     what_if,
     zoom,
 )
 from viewer.window.ui import Ui
+from viewer.window.widgets import tooltip
 
-PICTURE = "Picture"
+PICTURE, TOUR = "Picture", "Tour"
 
-
-class Panel(NamedTuple):
-    """`space` names the part of the docking where it is at first."""
-
-    label: str
-    space: str
-    show: Callable[[Ui], None]
-
-
-# New part, the part that it is cut off from, at which side, and its share of that.
-SPACES = (
-    ("Left", "MainDockSpace", imgui.Dir.left, 0.225),
-    ("Right", "MainDockSpace", imgui.Dir.right, 0.295),
-    ("Bottom", "MainDockSpace", imgui.Dir.down, 0.30),
-    ("LeftBottom", "Left", imgui.Dir.down, 0.52),
-    ("RightBottom", "Right", imgui.Dir.down, 0.37),
-    ("RightMiddle", "Right", imgui.Dir.down, 0.52),
-)
-PANELS = {
-    panel.label: panel
-    for panel in (
-        Panel(PICTURE, "MainDockSpace", picture.show),
-        Panel("Scene", "Left", scene.show),
-        Panel("Camera", "Left", camera.show),
-        Panel("Statistics", "LeftBottom", statistics.show),
-        Panel("View", "Right", view.show),
-        Panel("Rendering", "Right", view.show_rendering),
-        Panel("Saving", "Right", saving.show),
-        Panel("Culling", "RightMiddle", culling.show),
-        Panel("Inspector", "RightBottom", inspector.show),
-        Panel("What if", "LeftBottom", what_if.show),
-        Panel("Figure 1", "Bottom", figure1.show),
-        Panel("Plots", "Bottom", plots.show),
-        Panel("Compare", "Bottom", compare.show),
-        Panel("Pixels", "Bottom", pixels.show),
-        Panel("Find", "Bottom", find.show),
-        Panel("Light buffer", "Bottom", light_buffer.show),
-        Panel("Experiment", "Bottom", experiment.show),
-        Panel("Zoom test", "Bottom", zoom.show),
-        Panel("Hunt", "Bottom", hunt.show),
-        Panel("Film", "Bottom", saving.show_film),
-        Panel("Log", "Bottom", status.show_log),
-    )
+PANELS: dict[str, Callable[[Ui], None]] = {
+    PICTURE: picture.show,
+    "View": view.show,
+    "Statistics": statistics.show,
+    "Culling": culling.show,
+    "Figure 1": figure1.show,
+    "Inspector": inspector.show,
+    "Experiment": experiment.show,
+    "Zoom test": zoom.show,
+    "Hunt": hunt.show,
+    "Plots": plots.show,
+    "Find": find.show,
+    "Compare": compare.show,
+    "Scene": scene.show,
+    "What if": what_if.show,
+    "Pixels": pixels.show,
+    "Light buffer": light_buffer.show,
+    "Rendering": view.show_rendering,
+    "Camera": camera.show,
+    "Saving": saving.show,
+    "Film": saving.show_film,
+    "Log": status.show_log,
+    TOUR: tour.show,
 }
-SIDES = tuple(label for label in PANELS if label != PICTURE)
-"""All panels around the picture."""
+"""What shows each panel, in the order of the menu and of tabs."""
+
+
+class Workspace(NamedTuple):
+    """A layout for one kind of work.
+
+    `splits` cut the window: a new part, the part that it is cut off from, at which side, and its share of that.
+    `open` says which panels are open at first, by their part; `closed` where others are when they are opened."""
+
+    name: str
+    help: str
+    splits: tuple[tuple[str, str, imgui.Dir, float], ...]
+    open: dict[str, tuple[str, ...]]
+    closed: dict[str, tuple[str, ...]]
+
+
+_WHOLE, _RIGHT, _BOTTOM = "MainDockSpace", "Right", "Bottom"
+_FOUND = ("Experiment", "Zoom test", "Hunt")
+_LOWER = ("Plots", "Compare", "Pixels", "Find", "Light buffer", "Film", "Log")
+WORKSPACES = (
+    Workspace(
+        "Explore", "room for the picture, and a column: how shadow rays are culled, what is shown, and why",
+        ((_RIGHT, _WHOLE, imgui.Dir.right, 0.235), (_BOTTOM, _WHOLE, imgui.Dir.down, 0.35),
+         (TOUR, _RIGHT, imgui.Dir.up, 0.2),
+         ("RightMiddle", _RIGHT, imgui.Dir.down, 0.66), ("RightBottom", "RightMiddle", imgui.Dir.down, 0.5)),
+        {_RIGHT: ("View", "Culling"), "RightMiddle": ("Figure 1",), "RightBottom": ("Inspector",)},
+        {_RIGHT: ("Scene", "Rendering", "Camera", "Saving"), "RightMiddle": ("Statistics",),
+         "RightBottom": ("What if",), _BOTTOM: _FOUND + _LOWER, TOUR: (TOUR,)},
+    ),
+    Workspace(
+        "Measure", "experiments, zoom tests and hunts, with plots, and statistics beside a comparison",
+        ((_RIGHT, _WHOLE, imgui.Dir.right, 0.28), (_BOTTOM, _WHOLE, imgui.Dir.down, 0.5),
+         ("RightBottom", _RIGHT, imgui.Dir.down, 0.45)),
+        {_RIGHT: ("Statistics", "Culling"), "RightBottom": ("Compare", "Plots"), _BOTTOM: _FOUND},
+        {_RIGHT: ("View", "Scene", "Rendering", "Camera", "Saving", TOUR), "RightBottom": ("Inspector", "What if"),
+         _BOTTOM: ("Figure 1", "Pixels", "Find", "Light buffer", "Film", "Log")},
+    ),
+    Workspace(
+        "Debug", "rays of a pixel, objects and primitives, pixels, edits and the log",
+        (("Left", _WHOLE, imgui.Dir.left, 0.22), (_RIGHT, _WHOLE, imgui.Dir.right, 0.36),
+         (_BOTTOM, _WHOLE, imgui.Dir.down, 0.38), ("LeftBottom", "Left", imgui.Dir.down, 0.5)),
+        {"Left": ("View", "Culling"), "LeftBottom": ("What if", "Scene"), _RIGHT: ("Inspector",),
+         _BOTTOM: ("Find", "Pixels", "Compare", "Light buffer", "Log")},
+        {"Left": ("Rendering", "Camera", "Saving", TOUR), "LeftBottom": ("Statistics",),
+         _BOTTOM: (*_FOUND, "Figure 1", "Plots", "Film")},
+    ),
+)  # fmt: skip
+SIDES = tuple(label for label in PANELS if label not in (PICTURE, TOUR))
+"""All panels around the picture that are there to be opened."""
 
 _KEY_OWNER = 0x5C011  # any number that no widget has
 
@@ -91,16 +120,10 @@ class Layout:
     """See the module.  `params` are those that the window is made with."""
 
     def __init__(self, ui: Ui, params: hello_imgui.RunnerParams) -> None:
-        self._ui, self._docking = ui, params.docking_params
+        self._ui, self._params = ui, params
         self._size = (0.0, 0.0)
         self._to_front: set[str] = set()  # panels to be focused when they are drawn next
-        # Without the cross beside the tabs, which closes all of them; and not what Hello ImGui has by default, which
-        # would give it a background whatever the style.
-        self._docking.main_dock_space_node_flags = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button)
-        self._docking.docking_splits = [
-            hello_imgui.DockingSplit(of, space, side, share) for space, of, side, share in SPACES
-        ]
-        self._docking.dockable_windows = [self._window(panel) for panel in PANELS.values()]
+        params.docking_params, *params.alternative_docking_layouts = map(self._docked, WORKSPACES)
         ui.show_panel, ui.panel_labels, ui.reset_layout = self.show, SIDES, self.reset
 
     # --- what the commands ask for ---------------------------------------------------------------
@@ -111,11 +134,13 @@ class Layout:
         self._docking.dockable_window_of_name(label).is_visible = True
         self._to_front.add(label)
 
-    def reset(self, labels: Collection[str] = tuple(PANELS)) -> None:
-        """Open these panels and no others, docked where they were at first."""
+    def reset(self) -> None:
+        """Open the panels of this workspace and no others, docked where they were at first."""
         self._ui.panels_hidden = False
+        name = hello_imgui.current_layout_name()
+        workspace = next(one for one in WORKSPACES if one.name == name)
         for window in self._docking.dockable_windows:
-            window.is_visible = window.label in labels
+            window.is_visible = _is_open(workspace, window.label)
         self._docking.layout_reset = True
 
     def show_menu(self) -> None:
@@ -126,11 +151,26 @@ class Layout:
                 _, window.is_visible = imgui.menu_item(label, "", window.is_visible, True)
             imgui.end_menu()
 
+    def show_workspaces(self) -> None:
+        """Show the workspaces at the right end of the menu bar, the one that is shown set off."""
+        widths = [imgui.calc_text_size(one.name).x for one in WORKSPACES]
+        gap, now = imgui.get_style().item_spacing.x * 2.0, hello_imgui.current_layout_name()
+        left = imgui.get_window_width() - sum(widths) - gap * len(widths)
+        imgui.set_cursor_pos_x(max(imgui.get_cursor_pos_x() + gap, left))
+        for workspace, width in zip(WORKSPACES, widths):
+            clicked, _ = imgui.selectable(workspace.name, workspace.name == now, 0, ImVec2(width, 0.0))
+            tooltip(f"Workspace: {workspace.help}{self._ui.key(workspace.name)}")
+            if clicked:
+                hello_imgui.switch_layout(workspace.name)
+            imgui.same_line(0.0, gap)
+        imgui.new_line()
+
     # --- one frame -------------------------------------------------------------------------------
 
     def update(self) -> None:
-        """Keep shares as they were, before the panels are drawn."""
+        """Keep shares as they were, and show the tour's panel while it is taken, before the panels are drawn."""
         self._keep_shares()
+        self._docking.dockable_window_of_name(TOUR).is_visible = self._ui.tour.step is not None
         node, no_tabs = _node_of(PICTURE), int(imgui.internal.DockNodeFlagsPrivate_.no_tab_bar)
         if node is not None and not node.local_flags & no_tabs:  # it is always there, and needs the room
             node.set_local_flags(node.local_flags | no_tabs)
@@ -151,35 +191,63 @@ class Layout:
 
     # --- the panels ------------------------------------------------------------------------------
 
-    def _window(self, panel: Panel) -> hello_imgui.DockableWindow:
-        window = hello_imgui.DockableWindow(panel.label, panel.space, lambda: self._draw(panel))
+    @property
+    def _docking(self) -> hello_imgui.DockingParams:
+        """The docking of the workspace that is shown."""
+        return self._params.docking_params
+
+    def _docked(self, workspace: Workspace) -> hello_imgui.DockingParams:
+        """Return a workspace as Hello ImGui has it."""
+        docking = hello_imgui.DockingParams(layout_name=workspace.name)
+        # Without the cross beside the tabs, which closes all of them; and not what Hello ImGui has by default, which
+        # would give it a background whatever the style.
+        docking.main_dock_space_node_flags = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button)
+        docking.docking_splits = [
+            hello_imgui.DockingSplit(of, space, side, share) for space, of, side, share in workspace.splits
+        ]
+        spaces = {
+            label: space for part in (workspace.open, workspace.closed) for space in part for label in part[space]
+        }
+        docking.dockable_windows = [
+            self._window(label, spaces.get(label, _WHOLE), _is_open(workspace, label)) for label in PANELS
+        ]
+        return docking
+
+    def _window(self, label: str, space: str, is_open: bool) -> hello_imgui.DockableWindow:
+        window = hello_imgui.DockableWindow(label, space, lambda: self._draw(label), is_visible_=is_open)
         window.call_begin_end = False
         return window
 
-    def _draw(self, panel: Panel) -> None:
+    def _draw(self, label: str) -> None:
         """Draw a panel, unless it is hidden."""
-        is_picture = panel.label == PICTURE
+        is_picture = label == PICTURE
         if self._ui.panels_hidden and not is_picture:
             return
         # What lies in the main window is on its background already.  Filling it once more for each panel is half of
         # all the work where a processor draws.
-        flags = int(imgui.WindowFlags_.no_background) if _in_main_window(panel.label) else 0
+        flags = int(imgui.WindowFlags_.no_background) if _in_main_window(label) else 0
         flags |= int(imgui.WindowFlags_.no_focus_on_appearing)  # so that tabs come back as they were
         if is_picture:
             scrolling = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
             flags |= int(scrolling | imgui.WindowFlags_.no_collapse)
-        if panel.label in self._to_front:
-            self._to_front.discard(panel.label)
+        if label in self._to_front:
+            self._to_front.discard(label)
             imgui.set_next_window_focus()
         # A tab in the back has no cross, nor room for one: so all are found by eye, and none is closed by mistake.
-        shown, stays = imgui.begin(panel.label, True if _in_front(panel.label) and not is_picture else None, flags)
+        shown, stays = imgui.begin(label, True if _in_front(label) and not is_picture else None, flags)
         try:
             if shown:
-                self._ui.guard.panel(f"The panel {panel.label}", lambda: panel.show(self._ui))
+                self._ui.guard.panel(f"The panel {label}", lambda: PANELS[label](self._ui))
         finally:
             imgui.end()
         if stays is False:
-            self._docking.dockable_window_of_name(panel.label).is_visible = False
+            self._docking.dockable_window_of_name(label).is_visible = False
+            if label == TOUR:
+                self._ui.tour.end()
+
+
+def _is_open(workspace: Workspace, label: str) -> bool:
+    return label == PICTURE or any(label in labels for labels in workspace.open.values())
 
 
 def _in_front(label: str) -> bool:

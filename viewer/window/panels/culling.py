@@ -16,7 +16,7 @@ from viewer.state.methods import groups, toggled, with_base
 from viewer.window import menus
 from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, em, fitted, outlined, paragraph, properties, row, tooltip
+from viewer.window.widgets import ERROR, QUIET, em, fitted, outlined, paragraph, properties, tooltip
 
 _OF_MODES = ("settings.symmetric", "settings.zoom_factor")
 _NAMES = 10.5  # ems of the names of methods; sentences begin behind them
@@ -28,12 +28,6 @@ def show(ui: Ui) -> None:
     c = ui.controller
     name = c.session.settings.method
     method = Method.parse(name)
-    with properties("method", 4.0) as shown:
-        if shown:
-            key = ui.key_label("Shadow culling")
-            switches = f"; {key} turns culling off and on" if key else ""
-            row("Method", f"which shadow rays are not traced, and what that trusts{switches}")
-            method_list(ui, "##method", name, lambda chosen: c.settings.change(method=chosen))
     paragraph(trust(c), QUIET)
 
     def note(one: Setting) -> str:

@@ -8,7 +8,7 @@ from itertools import pairwise
 from imgui_bundle import ImVec2, imgui
 
 from viewer.output.figure1 import figure_of
-from viewer.output.figure1_drawing import BOX, QUIET, STRONG, TEXT, TIME, Arrow, Box, Drawing, Words, lay_out
+from viewer.output.figure1_drawing import BOX, QUIET, STRONG, TEXT, TIME, Arrow, Box, Drawing, Words, arrange, lay_out
 from viewer.window import widgets
 from viewer.window.panels import status
 from viewer.window.style import BLUE
@@ -29,9 +29,15 @@ def show(ui: Ui) -> None:
 
     def laid_out() -> Drawing:
         # The status bar and other panels say of what picture it is.
-        return lay_out(replace(figure_of(frame), title=""), _width_of, line, width, room.y)
+        figure = replace(figure_of(frame), title="")
+        names = [(stage.heading, *(flow.name for flow in stage.flows)) for stage in figure.stages]
+        arranged = ui.cached(  # while only numbers change, it stays, and is not looked for anew
+            "arrangement of figure 1", c.session.scene, (place, names), lambda: arrange(figure, _width_of, *place)
+        )
+        return lay_out(figure, _width_of, *place, arranged)
 
-    drawing: Drawing = ui.cached("figure 1", frame, (width, room.y, line), laid_out)
+    place = line, width, room.y
+    drawing: Drawing = ui.cached("figure 1", frame, place, laid_out)
     at, scale = imgui.get_cursor_screen_pos(), drawing.scale
     size = ImVec2(max(scale * drawing.width, 1.0), max(scale * drawing.height, 1.0))
     clicked = imgui.invisible_button("figure 1", size)

@@ -1,4 +1,4 @@
-"""The legend of the view: in the picture, where it can be dragged about, or, where it is not there, in a panel."""
+"""The legend of the view: in the panel View or, where that is not in sight, in the picture, where it can be dragged."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ _MOST = 0.62  # of the picture's width, and of its height
 
 @dataclass
 class LegendState:
-    """Whether the picture shows its legend, and where the pointer holds it."""
+    """The frame of the window in which the panel showed the legend last, and where the pointer holds it in the
+    picture."""
 
-    shown: bool = False
+    in_panel: int = -2
     held: tuple[float, float] = (0.0, 0.0)
 
 
@@ -45,10 +46,16 @@ def of_picture(ui: Ui) -> Legend | None:
 
 
 def in_panel(ui: Ui) -> None:
-    """The whole legend at the cursor, where the picture does not show it."""
+    """The whole legend at the cursor."""
+    ui.state(LegendState).in_panel = imgui.get_frame_count()
     legend = of_picture(ui)
-    if legend is not None and not ui.state(LegendState).shown:
+    if legend is not None:
         draw(legend)
+
+
+def in_sight(ui: Ui) -> bool:
+    """Whether the panel shows the legend."""
+    return imgui.get_frame_count() - ui.state(LegendState).in_panel <= 1
 
 
 def draw(legend: Legend) -> None:
@@ -63,17 +70,14 @@ def draw(legend: Legend) -> None:
 
 
 def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
-    """Over the picture from `corner` to `end`: where it was put, and always inside."""
-    state = ui.state(LegendState)
-    state.shown = False
+    """Over the picture from `corner` to `end`, unless the panel shows it: where it was put, and always inside."""
     legend, options = of_picture(ui), ui.controller.session.draw
-    if legend is None or not options.legend:
+    if legend is None or not options.legend or in_sight(ui):
         return
     width, height = end.x - corner.x, end.y - corner.y
     layout = fitting(legend, _width_of, imgui.get_text_line_height(), _MOST * width, _MOST * height)
     if layout is None:
         return
-    state.shown = True
     margin = em(_MARGIN)
     least = ImVec2(corner.x + margin, corner.y + margin + imgui.get_text_line_height() + em(0.7))  # below the title
     room = ImVec2(end.x - margin - layout.width - least.x, end.y - margin - layout.height - least.y)

@@ -25,11 +25,10 @@ from viewer.window.panels import (
     sides,
     status,
     timeline,
-    tour,
+    toolbar,
     what_if,
 )
 from viewer.window.panels.area import Area, inside, pointer, size_of, write_lines
-from viewer.window.panels.legend import LegendState
 from viewer.window.panels.view import show_words_in_space
 from viewer.window.setting_rows import ALL
 from viewer.window.style import ON_PICTURE_ERROR
@@ -44,29 +43,26 @@ FASTER = 4.0  # with Shift
 
 
 def show(ui: Ui) -> None:
-    """The window's content: what culling saves, the picture under it, the tour's strip and the timeline."""
+    """The window's content: what is chosen, what culling saves, the picture and the timeline."""
     c, room = ui.controller, imgui.get_content_region_avail()
+    ui.guard.panel("The row above the picture", lambda: toolbar.show(ui, room.x))
+    room.y -= toolbar.height()
     if c.session.animated:
         room.y -= timeline.height()
-    above = savings.height(ui, ImVec2(room.x, room.y - tour.height(ui, room.x)))
+    above = savings.height(ui, room)
     if above > 0.0:
         start = imgui.get_cursor_pos()
         ui.guard.panel("What culling saves", lambda: savings.show(ui, room.x))
         imgui.set_cursor_pos(start)
         imgui.dummy(ImVec2(room.x, above - imgui.get_style().item_spacing.y))  # where nothing follows, ImGui complains
         room.y -= above
-    strip = tour.height(ui, room.x)
-    room.y -= strip
     scale = imgui.get_io().display_framebuffer_scale
     ui.picture.area = sides.area_of_b(ui, (max(0, int(room.x * scale.x)), max(0, int(room.y * scale.y))))
     top = imgui.get_cursor_pos()
     if room.x >= 1.0 and room.y >= 1.0:
         _picture(ui, room)
-    if strip:
-        imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y))
-        ui.guard.overlay("The tour", lambda: tour.show(ui, room.x), ui.tour.end)
     if c.session.animated:
-        imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y + strip))
+        imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y))
         timeline.show(ui)
 
 
@@ -168,7 +164,7 @@ def _title(ui: Ui, area: Area) -> float:
         return area.corner.y
     write_lines(lines, area.corner)
     lower = area.corner.y + size_of(lines)[1]
-    if view.needs_verify and not ui.state(LegendState).shown and verified.is_wrong(frame.statistics):
+    if view.needs_verify and not (draw.legend or legend.in_sight(ui)) and verified.is_wrong(frame.statistics):
         write_lines([verified.in_short(frame.statistics)], ImVec2(area.corner.x, lower), ON_PICTURE_ERROR)
         lower += size_of(lines)[1]
     return lower

@@ -17,20 +17,15 @@ from viewer.window import menus
 from viewer.window.panels import legend, lights
 from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, em, paragraph, properties, right, row, size_field, tooltip, tooltip_at
+from viewer.window.widgets import QUIET, WARNING, em, paragraph, properties, row, size_field, tooltip, tooltip_at
 
 
 def show(ui: Ui) -> None:
     """Show the panel View."""
-    draw, scene = ui.controller.session.draw, ui.controller.session.scene
+    draw = ui.controller.session.draw
     settings = in_panel(ui, "View") + in_panel(ui, "Tone")
     with properties("view", 5.0) as shown:
         if shown:
-            row("View", f"{draw.view.help}\nThe key of each view stands beside it in the list.")
-            _views(ui)
-            if draw.view.of_light and scene is not None and scene.lights:
-                row("Light", f"The light that the view is about{ui.key('Next light')}.")
-                lights.combo(ui, "view", draw.light, ui.controller.settings.set_light)
             if draw.view.has_slice:
                 _slice_rows(ui)
             for one in settings:
@@ -63,22 +58,6 @@ def show_rendering(ui: Ui) -> None:
                 setting_row(ui, one)
         if shown and c.session.scene is not None and c.session.scene.lights:
             lights.lamp_rows(ui)
-
-
-def _views(ui: Ui) -> None:
-    """Show all views to choose from, each with its key."""
-    chosen = ui.controller.session.draw.view
-    if not imgui.begin_combo("##view", chosen.label, int(imgui.ComboFlags_.height_largest)):
-        return
-    for view in View:
-        if imgui.selectable(f"{view.label}##{view.value}", view is chosen)[0]:
-            ui.controller.session.set_draw(view=view)
-        tooltip(view.help)
-        if view is chosen:
-            imgui.set_item_default_focus()
-        imgui.same_line()
-        right(ui.key_label(view.label), QUIET)
-    imgui.end_combo()
 
 
 def _range(ui: Ui) -> None:
