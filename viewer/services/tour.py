@@ -1,8 +1,8 @@
-"""Short steps through the program: each says what to do, and ends when the user has done it.
+"""Short steps through the paper: each says what to do, and ends when that was done and seen.
 
 A step is an entry of `STEPS`: a text, in which {Next light} is the key of that command, and its parts, one after
-another: a condition that must hold once, and what brings it about when the step is shown to the user.  The last step
-has none, and stays until it is dismissed."""
+another: a condition that must hold once, and what brings it about: for everybody where it sets the stage, else when the
+step is shown to the user.  The last step has no parts, and stays until it is dismissed."""
 
 from __future__ import annotations
 
@@ -14,41 +14,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.method import Method
 from viewer.services.controller import Controller
-from viewer.services.frame_scheduler import Activity
-from viewer.state import navigation
+from viewer.services.paper_figures import FIGURE_4, SIDE, Act, Condition, Part, open_scene, opened
 from viewer.state.methods import BY_MODES, with_base
 from viewer.state.views import View
+from viewer.util.resources import default_scene
 
-SECONDS = 2.0  # that a picture stays when it is shown
-PIXELS = 150.0  # of what a shown zoom test goes to: few enough to become many, and many enough to be seen
+SECONDS = 2.0  # that what was done can be looked at
+FAILS, EXAMINED = 20, 28
+"""Frames of the scene figure4: the shadow is missing, and after the triangle was examined anew it is there."""
 _PLACES = itertools.cycle(  # where a shadow is looked for, in parts of the picture's size: from its middle on
     sorted(itertools.product(np.arange(1, 14) / 14.0, repeat=2), key=lambda at: np.hypot(at[0] - 0.5, at[1] - 0.5))
 )
 
-Condition = Callable[[Controller], bool]
-Act = Callable[[Controller], object]
-"""Brings a condition about; called in each frame of the window until that holds."""
-
 
 @dataclass(frozen=True)
 class Step:
-    """See the module; `panel` is the one to look at."""
+    """See the module; `commands` can be run from the last one."""
 
     title: str
     text: str | Callable[[Controller], str]
-    parts: tuple[tuple[Condition, Act], ...] = ()
-    panel: str = ""
+    parts: tuple[Part, ...] = ()
+    commands: tuple[str, ...] = ()
 
 
 class Tour:
     """`step` is the one that is next, None while no tour is being taken."""
 
-    def __init__(self, controller: Controller, open_panel: Callable[[str], None], key: Callable[[str], str]) -> None:
+    def __init__(self, controller: Controller, key: Callable[[str], str]) -> None:
         """`key` returns the key of a command as the user reads it, or else where its menu is."""
-        self._c, self._open_panel, self._key = controller, open_panel, key
+        self._c, self._key = controller, key
         self.step: Step | None = None
         self._held = 0  # of the step's parts
         self._shows, self._until = False, 0.0
@@ -80,8 +76,6 @@ class Tour:
         """Do the step for the user, part by part, each of which can be looked at for a moment."""
         if self.step is not None and self.step.parts:
             self._shows = True
-            if self.step.panel:
-                self._open_panel(self.step.panel)
 
     def update(self) -> None:
         """See whether the next part of the step is done, or do it, once per frame."""
@@ -90,22 +84,18 @@ class Tour:
         if self._held == len(self.step.parts):
             self.skip()
             return
-        holds, act = self.step.parts[self._held]
-        if self._shows:
-            act(self._c)
-        if holds(self._c):
+        part = self.step.parts[self._held]
+        if self._shows or part.sets_stage:
+            part.act(self._c)
+        if part.holds(self._c):
             self._held += 1
-            self._until = time.monotonic() + SECONDS * self._shows
+            self._until = 0.0 if part.sets_stage else time.monotonic() + SECONDS
 
     def _go_to(self, step: Step | None) -> None:
         self.step, self._held, self._shows, self._until = step, 0, False, 0.0
 
 
 # --- conditions ------------------------------------------------------------------------------------
-
-
-def _flies(c: Controller) -> bool:
-    return c.motion.is_dragging and not c.session.on_path
 
 
 def _shows_all_traced(c: Controller) -> bool:
@@ -143,15 +133,22 @@ def _in_shadow(c: Controller) -> bool:
     return _shadowed(c) is not None
 
 
-def _tests(c: Controller) -> bool:
-    return c.runs.current is not None and c.runs.current is c.runs.zoom_test
+def _at_least(number: int) -> Condition:
+    """Return whether the picture shows a frame of figure4, or a later one."""
+
+    def holds(c: Controller) -> bool:
+        frame, scene = c.frame, c.session.scene
+        return (
+            scene is not None
+            and scene.path == FIGURE_4
+            and frame is not None
+            and c.session.frame_at(frame.time) >= number
+        )
+
+    return holds
 
 
 # --- what brings them about ------------------------------------------------------------------------
-
-
-def _fly(c: Controller) -> None:
-    c.motion.glide(navigation.fly(c.session.camera, 0.0, 0.0, 0.5 * c.motion.pace, c.motion.world_up))
 
 
 def _stop_culling(c: Controller) -> None:
@@ -182,84 +179,118 @@ def _click_a_shadow(c: Controller) -> None:
         c.selection.select(next(_PLACES))
 
 
-def _start_zoom_test(c: Controller) -> None:
-    """Go towards a small primitive that is fully rendered, if the picture has one: what is not has no count to grow
-    from, and what is large cannot become so many times as large."""
-    shown = c.scheduler.activity in (Activity.RESTING, Activity.ADDING_SAMPLES)
-    if not shown or c.runs.current is not None:
-        return
-    small = _small_primitive(c)
-    if small is not None:
-        c.selection.select_primitive(small)
+def _moves(c: Controller) -> bool:
+    return c.session.scene is not None and len(c.session.scene.objects) > 1
+
+
+def _is_staged(c: Controller) -> bool:
+    """Return whether figure4 is traced frame by frame, as its file says."""
+    pace, settings = c.session.state.pace, c.session.settings
+    sized = pace.fixed_size and (pace.width, pace.height) == (SIDE, SIDE) and pace.every_frame
+    return sized and (settings.method, settings.symmetric, settings.zoom_factor) == (BY_MODES, False, 4.0)
+
+
+def _stage(c: Controller) -> None:
+    """Learn the modes of figure4 from afar."""
+    c.settings.change(method=BY_MODES, symmetric=False, zoom_factor=4.0)
+    c.session.set_pace(fixed_size=True, width=SIDE, height=SIDE, every_frame=True)
+    c.session.set_draw(view=View.COLOR)
+    c.motion.follow_path(True)
+    c.session.go_to_frame(0)
+    c.reset_modes()
+    c.session.playing = True
+
+
+def _stop(c: Controller) -> None:
+    c.session.playing = False
     if c.selection.picked is None:
-        _click_a_shadow(c)
-    else:
-        c.runs.start_zoom_test()
+        c.selection.select((0.5, 0.5))
 
 
-def _small_primitive(c: Controller) -> int | None:
-    """Return the number of a static primitive, in the scene as it was read, that is fully rendered in about PIXELS."""
-    now, frame = c.session.edited, c.frame
-    if now is None or frame is None or not frame.settings.keeps_modes or Method.parse(frame.settings.method).uses_cells:
-        return None
-    whole = np.nonzero((occlusion_mode(frame.modes) == OcclusionMode.FULLY_RENDERED) & (frame.pixel_count > 0))[0]
-    whole = whole[np.argsort(np.abs(np.log(frame.pixel_count[whole] / PIXELS)), kind="stable")]
-    return next((int(now.primitives[n]) for n in whole if now.scene.object_of(int(n)) == 0), None)
+def _play(c: Controller) -> None:
+    if not c.session.playing and not _at_least(EXAMINED)(c):
+        c.motion.toggle_play()
 
 
 # --- the steps -------------------------------------------------------------------------------------
 
-_THE_SAME = (
-    "The picture looks the same, but without culling every shadow ray is traced: see the bar above the picture, "
-    "pale while culling is off, and the row Traced in the Statistics panel."
-)
+_THE_SAME = "The picture stays the same, but without culling every shadow ray is traced: see the bar above it."
 
 
 def _how_to_toggle(c: Controller) -> str:
     method = Method.parse(c.session.settings.method)
     if method.adaptive:
         return (
-            f"Choose {BY_MODES}, the published method, at the top of the Culling panel, and then press "
-            f"{{Shadow culling}} twice. {_THE_SAME} (The method {method.base} culls only where that is quicker.)"
+            f"Choose {BY_MODES}, the published method, above the picture, and then press {{Shadow culling}} twice. "
+            f"{_THE_SAME} (The method {method.base} culls only where that is quicker.)"
         )
     if method.culls and c.frame is not None and not _saves(c) and not c.active:
         return f"The method {method.base} has culled nothing here yet. Press {{Trace again}} to trace once more."
     return f"Press {{Shadow culling}} {'twice' if method.culls else 'once more to cull again'}. {_THE_SAME}"
 
 
+def _how_often(c: Controller) -> str:
+    """Say how many times as many pixels the triangle of figure4 covers as when it was last examined."""
+    frame, scene = c.frame, c.session.scene
+    if frame is None or scene is None or scene.path != FIGURE_4:
+        return ""
+    now, before = int(frame.pixel_count[0]), int(frame.highest_count[0])
+    return f"Now it covers {now:,} pixels, and {before:,} when it was examined last: {now / max(before, 1):.1f} times."
+
+
+def _rule_of_four(c: Controller) -> str:
+    return (
+        "A primitive that covers more than 4 times the pixels it had when it was examined last is examined anew "
+        f"(§2.6). Press {{Play}} to come near: the shadow appears. {_how_often(c)}"
+    )
+
+
 STEPS = (
     Step(
-        "Fly",
-        "Hold {Fly forward}, {Fly left}, {Fly back} or {Fly right} to move, and drag the picture with the mouse to "
-        "look around. {Reset camera} takes you back.",
-        ((_flies, _fly),),
+        "What shadow rays cost", _how_to_toggle,
+        (Part(_shows_all_traced, _stop_culling), Part(_shows_culling, _cull_again)),
     ),
     Step(
-        "Turn culling off and on", _how_to_toggle,
-        ((_shows_all_traced, _stop_culling), (_shows_culling, _cull_again)), "Statistics",
+        "Seen whole, or not",
+        f"Press {{{View.OCCLUSION.label}}}. Green primitives were seen whole in some picture; orange ones are partly "
+        "hidden by others. Only what was seen whole is culled (§2.3).",
+        (Part(_shows(View.OCCLUSION), _show(View.OCCLUSION)),),
     ),
     Step(
-        "See the modes",
-        f"Press {{{View.OCCLUSION.label}}}: green surfaces were fully rendered, orange ones are partly hidden. Then "
-        f"press {{{View.SHADOW.label}}}: what is in the shadow of one light, lit by it, or both. {{Next light}} "
-        f"chooses the next light, {{{View.COLOR.label}}} shows the picture again.",
-        tuple((_shows(view), _show(view)) for view in (View.OCCLUSION, View.SHADOW)), "View",
+        "What their shadow rays have met",
+        f"Press {{{View.SHADOW.label}}}: full shadow skips the ray to this light, non-shadow asks dynamic objects "
+        f"alone (§2.4). {{Next light}} shows another light, {{{View.COLOR.label}}} the picture.",
+        tuple(Part(_shows(view), _show(view)) for view in (View.SHADOW, View.COLOR)),
     ),
     Step(
-        "Click a shadow",
-        "Click a dark spot in the picture. The Inspector says in a sentence why its shadow ray is culled or traced, "
-        "and lines show the shadow rays.",
-        ((_in_shadow, _click_a_shadow),), "Inspector",
+        "Why, for one pixel",
+        "Click a dark spot in the picture. The Inspector says why its shadow ray is culled or traced, and lines show "
+        "the shadow rays.",
+        (Part(_in_shadow, _click_a_shadow),),
     ),
     Step(
-        "Run a zoom test",
-        "Open the panel Zoom test and press Start. The camera moves towards the surface that you clicked, and the plot "
-        "shows whether culling misses a shadow that can only be seen from close up.",
-        ((_tests, _start_zoom_test), (lambda c: not _tests(c), lambda c: None)), "Zoom test",
+        "Shadows that move",
+        f"Press {{{View.MOVING_SHADOW.label}}}, and {{Play}}: the shadows of moving objects fall on primitives in "
+        "non-shadow mode, and are right, as these ask dynamic objects.",
+        (Part(_moves, open_scene(default_scene()), True), Part(_shows(View.MOVING_SHADOW), _show(View.MOVING_SHADOW))),
     ),
     Step(
-        "The tour is done",
-        "Next: BART's Kitchen (File > Open), methods compared along a path as in Table 1 (panel Experiment), and "
-        "docs/viewer.md, which explains all panels.",
+        "Where the method fails",
+        "The paper's Figure 4. From afar no shadow ray of this triangle met the small ball, so its mode is "
+        f"non-shadow. Now its shadow is missing. Press {{{View.DIFFERENCE.label}}}: red pixels are wrong.",
+        (
+            opened(FIGURE_4),
+            Part(_is_staged, _stage, True),
+            Part(_at_least(FAILS), lambda c: None, True),
+            Part(lambda c: not c.session.playing, _stop, True),
+            Part(_shows(View.DIFFERENCE), _show(View.DIFFERENCE)),
+        ),
+    ),
+    Step("The rule of four", _rule_of_four, (Part(_at_least(EXAMINED), _play),)),
+    Step(
+        "What next",
+        "Fly with {Fly forward}, {Fly left}, {Fly back} and {Fly right}, and look around by dragging. Open BART's "
+        "Kitchen, repeat the paper's Table 1 and Figure 4, or let Hunt find wrong pixels in any scene.",
+        commands=("Open...", "Table 1", "Figure 4", "Documentation"),
     ),
 )  # fmt: skip

@@ -50,3 +50,9 @@ def scene_path(name: str | None) -> Path:
     if not path.suffix and not os.path.lexists(path) and (hint := did_you_mean(name, own)):
         raise OSError(f"{name}: no such file, and no scene of the program{hint}")
     return path
+
+
+def documentation(page: str) -> Path | None:
+    """Return a page of the documentation: as it was built, else as it is written; None where neither is there."""
+    built, written = _root() / "build" / "docs" / f"{page}.html", _root() / "docs" / f"{page}.md"
+    return next((path for path in (built, written) if path.is_file()), None)

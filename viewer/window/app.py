@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import threading
 import time
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -40,7 +41,7 @@ TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
 Step = Callable[[str, Callable[[], object]], object]
 Runner = Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None]
-WINDOW_SIZE = (1280, 800)
+WINDOW_SIZE, PART_OF_SCREEN = (1280, 800), 0.8
 SMALLEST_SIZE = (240, 160)
 FASTEST = 60.0  # frames a second of the window's own
 # Where a processor draws the window, each frame takes time from tracing: one is drawn for each picture and each of the
@@ -179,6 +180,7 @@ class App:
         step("Comparing", lambda: sides.read_key(ui))
         dialogs.show(ui)
         step("The tour", ui.tour.update)
+        step("A figure of the paper", ui.figures.update)
 
     def after_widgets(self) -> None:
         """Finish a frame that is drawn but not yet shown."""
@@ -244,7 +246,7 @@ class App:
     def _params(self) -> hello_imgui.RunnerParams:
         params = hello_imgui.RunnerParams()
         params.app_window_params.window_title = TITLE
-        params.app_window_params.window_geometry.size = WINDOW_SIZE
+        params.app_window_params.window_geometry.size = _first_size()
         params.app_window_params.restore_previous_geometry = True
         window = params.imgui_window_params
         window.default_imgui_window_type = hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space
@@ -312,6 +314,18 @@ class App:
 
     def _exit(self) -> None:
         self.params.app_shall_exit = True
+
+
+def _first_size() -> tuple[int, int]:
+    """Return the size of a first window: most of the screen, and never less than all panels need, if it has that."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # without a display, `run` says so
+        monitor = glfw.get_primary_monitor() if glfw.init() else None
+    if not monitor:
+        return WINDOW_SIZE
+    _, _, *room = glfw.get_monitor_workarea(monitor)
+    width, height = (max(round(PART_OF_SCREEN * side), min(least, side)) for side, least in zip(room, WINDOW_SIZE))
+    return width, height
 
 
 def _configure_imgui() -> None:

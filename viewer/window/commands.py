@@ -4,6 +4,7 @@ Bookmarks, time and the camera's own commands are in `panels.camera`, edits of t
 
 from __future__ import annotations
 
+import webbrowser
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -20,6 +21,7 @@ from viewer.state.methods import toggled, with_base
 from viewer.state.pixels import FIT, MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
+from viewer.util import resources
 from viewer.window.command import Command, Condition, scene_open
 from viewer.window.layout import WORKSPACES, Workspace
 from viewer.window.panels import rays, what_if
@@ -313,11 +315,23 @@ def _run(ui: Ui) -> list[Command]:
                 tip="search the path for the worst wrong pixels of a method"),
         Command("Film", "Run", partial(start, "Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),
+        Command("Table 1", "Run", partial(start, "Experiment", ui.figures.table_1), enabled=idle, separated=True,
+                tip="the paper's table for the open scene: 512 x 512, 10 bounces, 100 frames"),
+        Command("Figure 3", "Run", partial(start, "View", ui.figures.figure_3), enabled=idle,
+                tip="the paper's example of an occlusion that the test misses"),
+        Command("Figure 4", "Run", partial(start, "Zoom test", ui.figures.figure_4), enabled=idle,
+                tip="the paper's example of a shadow that shows only from near, and of the zoom factor"),
         Command("Stop, or clear the selection", "Run", stop, "Escape", enabled=busy, separated=True),
     ]  # fmt: skip
 
 
 def _help(ui: Ui) -> list[Command]:
+    def read(page: str) -> None:
+        file = resources.documentation(page)
+        if file is None or not webbrowser.open(file.as_uri()):
+            where = file or f"docs/{page}.md of the program's source"
+            ui.controller.notices.say(f"no web browser opened the documentation: it is in {where}")
+
     def about() -> None:
         text = f"{_ABOUT}\n\nDrawn by {ui.graphics.renderer_name}"
         ui.controller.questions.question = Question("About Shadowcull", text, (("Close", lambda: None),))
@@ -326,5 +340,7 @@ def _help(ui: Ui) -> list[Command]:
         Command("Tour", "Help", ui.tour.toggle, checked=lambda: ui.tour.step is not None),
         Command(Dialog.KEYS.value, "Help", lambda: ui.toggle(Dialog.KEYS), "F1", also="keys shortcuts",
                 checked=lambda: Dialog.KEYS in ui.dialogs),
+        Command("Documentation", "Help", partial(read, "index"), also="manual docs", tip="in the web browser"),
+        Command("Glossary", "Help", partial(read, "glossary"), tip="the words of the paper and ours"),
         Command("About Shadowcull", "Help", about),
     ]  # fmt: skip

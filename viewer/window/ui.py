@@ -13,6 +13,7 @@ from typing import Any, TypeVar, cast
 from tracer.culling.fate import Fate
 from tracer.scene.lights import named_light
 from viewer.services.controller import Controller
+from viewer.services.paper_figures import PaperFigures
 from viewer.services.tour import Tour
 from viewer.state.views import View
 from viewer.window.command import Command
@@ -94,13 +95,14 @@ class Ui:
     guard: Guard = field(init=False)
     keymap: Keymap = field(init=False)
     tour: Tour = field(init=False)
+    figures: PaperFigures = field(init=False)
     picture: Picture = field(default_factory=Picture)
     _states: dict[type, Any] = field(default_factory=dict)
     _cache: dict[str, tuple[object, object, Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.keymap = Keymap(self.controller.preferences, {})
-        self.tour = Tour(self.controller, lambda label: self.show_panel(label), self.key_or_menu)
+        self.tour, self.figures = Tour(self.controller, self.key_or_menu), PaperFigures(self.controller)
 
     def state(self, kind: type[State]) -> State:
         """The state of a panel, an object of this class for as long as the program runs."""

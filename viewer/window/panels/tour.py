@@ -6,9 +6,11 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.services.tour import STEPS
+from viewer.window import menus
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, paragraph, wide_button
 
+_ICONS = (icons.ICON_FA_FOLDER_OPEN, icons.ICON_FA_TABLE, icons.ICON_FA_MAGNIFYING_GLASS_PLUS, icons.ICON_FA_BOOK)
 _AGAIN = "End the tour. The menu Help starts it again."
 
 
@@ -22,6 +24,10 @@ def show(ui: Ui) -> None:
     begun = ui.controller.frame is not None
     paragraph(tour.text(step) if begun else "You can begin as soon as there is a picture.", QUIET)
     if last:
+        for number, name in enumerate(step.commands):
+            menus.button(ui, name, _ICONS[number], columns=2)
+            if number % 2 == 0:
+                imgui.same_line()
         if wide_button("Close", _AGAIN):
             tour.end()
         return

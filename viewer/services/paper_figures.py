@@ -1,0 +1,112 @@
+"""The paper's Table 1, Figure 3 and Figure 4 by one command each, in the scenes and sizes that show something.
+
+A figure is brought about part by part, over many frames of the window: a scene is opened, then something is selected in
+its first picture, then a run is started."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from viewer.services.controller import Controller
+from viewer.services.frame_scheduler import Activity
+from viewer.state.methods import BY_MODES
+from viewer.state.plans import ExperimentPlan, ZoomPlan
+from viewer.state.views import View
+from viewer.util.resources import embedded_scenes
+
+FIGURE_3, FIGURE_4 = (embedded_scenes()[name] for name in ("figure3", "figure4"))
+SIDE = 128
+"""Pixels of pictures of figure4, for which the scene is made: in larger ones a ray meets the small shadow from afar."""
+
+Condition = Callable[[Controller], bool]
+Act = Callable[[Controller], object]
+"""Brings a condition about; called in each frame of the window until that holds."""
+
+
+class Part(NamedTuple):
+    """A condition that must hold once, and what brings it about.
+
+    `sets_stage` tells what the tour does by itself from what it waits for."""
+
+    holds: Condition
+    act: Act
+    sets_stage: bool = False
+
+
+def is_open(path: Path) -> Condition:
+    """Return whether the picture shows a scene, and rests."""
+
+    def holds(c: Controller) -> bool:
+        scene, rests = c.session.scene, c.scheduler.activity in (Activity.RESTING, Activity.ADDING_SAMPLES)
+        return scene is not None and scene.path == path and c.loader.load_job is None and c.frame is not None and rests
+
+    return holds
+
+
+def open_scene(path: Path) -> Act:
+    """Open a scene, unless it is open or on its way."""
+
+    def act(c: Controller) -> None:
+        scene = c.session.scene
+        if (scene is None or scene.path != path) and c.loader.load_job is None:
+            c.loader.open(path)
+
+    return act
+
+
+def opened(path: Path) -> Part:
+    """Return the part that opens a scene."""
+    return Part(is_open(path), open_scene(path), True)
+
+
+class PaperFigures:
+    """`waiting` are the parts of the figure that is being brought about."""
+
+    def __init__(self, controller: Controller) -> None:
+        self._c = controller
+        self._waiting: list[Part] = []
+
+    def update(self) -> None:
+        """Bring the next part about, once in each frame of the window."""
+        if self._waiting:
+            part = self._waiting[0]
+            part.act(self._c)
+            if part.holds(self._c):
+                self._waiting.pop(0)
+
+    def _begin(self, parts: Iterable[Part]) -> None:
+        if not self._c.runs.refuses():
+            self._waiting = list(parts)
+
+    def table_1(self) -> None:
+        """Measure the open scene as Table 1 does: 512 x 512, depth 10, 100 frames of the path, the kd-tree."""
+        runs = self._c.runs
+        runs.experiment_plan = ExperimentPlan({BY_MODES}, verify=True)
+        runs.start_experiment()
+
+    def figure_3(self) -> None:
+        """Show a primitive whose occlusion the test misses: it compares with the left and the upper pixel alone."""
+
+        def show(c: Controller) -> None:
+            c.settings.change(method=BY_MODES, symmetric=False)
+            c.session.set_draw(view=View.OCCLUSION)
+
+        self._begin((opened(FIGURE_3), Part(lambda c: c.session.draw.view is View.OCCLUSION, show)))
+
+    def figure_4(self) -> None:
+        """Come near to a triangle whose shadow can be seen only from there, with zoom factors 4 and 64."""
+
+        def select(c: Controller) -> None:
+            c.session.set_pace(fixed_size=True, width=SIDE, height=SIDE)
+            c.selection.select((0.5, 0.5))
+
+        def test(c: Controller) -> None:
+            plan = ZoomPlan(factors="4, 64", size=(SIDE, SIDE))
+            c.runs.zoom_plan = replace(plan)
+            c.runs.start_zoom_test()
+
+        selected = Part(lambda c: c.selection.picked is not None, select)
+        self._begin((opened(FIGURE_4), selected, Part(lambda c: c.runs.current is not None, test)))
