@@ -112,6 +112,9 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
         lambda: c.motion.step(3),
         lambda: c.settings.change(depth=2),
         lambda: c.settings.toggle_culling(),
+        lambda: c.settings.reset(()),
+        lambda: c.presets.apply("Quick and exact"),
+        lambda: c.undo.undo(),
         lambda: c.reset_modes(),
     ):
         c.notices.message = None
