@@ -13,7 +13,7 @@ from tests.viewer.fakes import make_frame, make_scene
 from tracer.culling import modes
 from tracer.frame import Frame
 from tracer.mode_origins import NEVER
-from tracer.scene.edits import NO_EDITS, Edits
+from tracer.scene.edits import NO_EDITS
 from viewer.services.history import FrameHistory
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.session import Session
@@ -75,26 +75,6 @@ def test_the_modes_of_a_frame_that_depends_on_them_are_learnt_anew(desk: Desk) -
     assert "no longer kept" in desk.said
 
 
-def test_a_frozen_picture_knows_what_its_warmup_frames_teach_and_no_more(desk: Desk) -> None:
-    """As a find of a hunt is looked at: with the modes of these frames, bit for bit, until something moves."""
-    c = desk.c
-    c.settings.change(method="paper", samples=4)
-    desk.rest()
-    scene, settings = c.session.scene, c.session.settings
-    warmup = tuple((scene.frame_time(n), scene.camera_at(scene.frame_time(n))) for n in range(3))
-    snapshot = replace(c.session.state, time=scene.frame_time(3))
-    c.navigator.go_to(snapshot, "a find", (32, 24), warmup=warmup)
-    desk.rest()
-    own = tracer.Renderer(scene, replace(c.frame.settings, samples=1))
-    for then, camera in (*warmup, (c.session.time, c.session.camera)):
-        alone = own.render(then, camera)
-    assert np.array_equal(c.frame.color.view(np.uint32), alone.color.view(np.uint32))
-    assert np.array_equal(c.frame.modes, alone.modes) and settings.samples == 4 and c.frame.settings.samples == 1
-    c.motion.move(ELSEWHERE)
-    desk.rest()
-    assert c.frame.settings.samples == 4, "having moved, it gets its samples"
-
-
 def test_a_mode_names_the_frames_that_taught_it(desk: Desk) -> None:
     """Against the modes as each frame left them."""
     c = desk.c
@@ -105,7 +85,6 @@ def test_a_mode_names_the_frames_that_taught_it(desk: Desk) -> None:
     desk.rest()
     for number in (0, 4, 9):
         c.session.go_to_frame(number)
-        desk.until(lambda number=number: c.frame is not None and c.frame.time == c.session.time)
         desk.rest()
     c.motion.move(ELSEWHERE)
     desk.rest()
@@ -139,19 +118,13 @@ def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
     desk.rest()
     without_ball = NO_EDITS.with_primitive(c.selection.at((0.5, 0.45)).primitive, False)
 
-    def edit(edits: Edits) -> None:
-        c.editing.change(edits)
-        desk.until(lambda: not c.editing.under_way)
-        desk.rest()
-
     whole, number = c.frame.color.copy(), c.history.frames - 1
-    edit(without_ball)
+    desk.edit(without_ball)
     hidden, other = c.frame.color.copy(), c.history.frames - 1
     assert not np.array_equal(whole, hidden)
     for to, picture, edits in ((number, whole, NO_EDITS), (other, hidden, without_ball)):
         record = c.history.records[to]
         c.navigator.go_to(record.state, "a picture", record.size, (0.5, 0.45))
-        desk.until(lambda: not c.editing.under_way)
         desk.rest()
         assert np.array_equal(c.frame.color, picture) and c.session.edits == edits
         here = c.selection.at((0.5, 0.45))
