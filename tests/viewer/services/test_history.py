@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-import tracer
 from tests.viewer.desk import ELSEWHERE, Desk
-from tests.viewer.fakes import make_frame, make_scene
+from tests.viewer.fakes import Clock, make_frame, make_scene
 from tracer.culling import modes
 from tracer.frame import Frame
 from tracer.mode_origins import NEVER
@@ -81,6 +78,7 @@ def test_a_mode_names_the_frames_that_taught_it(desk: Desk) -> None:
     c.settings.change(method="paper", depth=2)
     desk.rest()
     before = c.history.frames
+    desk.came.clear()
     c.reset_modes()
     desk.rest()
     for number in (0, 4, 9):
@@ -88,27 +86,20 @@ def test_a_mode_names_the_frames_that_taught_it(desk: Desk) -> None:
         desk.rest()
     c.motion.move(ELSEWHERE)
     desk.rest()
-    learnt = {number: c.history.records[number].state for number in range(before, c.history.frames)}
-    assert len(learnt) >= 5
+    assert len(desk.came) == c.history.frames - before >= 5
     c.selection.select((0.5, 0.75))
-    picked = c.selection.picked
-    assert picked is not None and picked.primitive >= 0
-    taught = c.history.origins_of(c.frame, picked.primitive)
-    assert taught is not None
-    scene = c.session.scene
-    again = tracer.Renderer(scene, world=tracer.World(scene))
+    primitive = c.selection.picked.primitive
+    taught = c.history.origins_of(c.frame, primitive)
     first: dict[tuple[int, bool], int] = {}
-    for n, state in learnt.items():
-        again.settings = replace(state.settings, verify=False, samples=1)
-        word = again.render(state.time, state.camera or scene.camera_at(state.time)).modes[picked.primitive]
+    for number, frame in enumerate(desk.came, before):
         for light in range(2):
             for lit, bit in ((False, modes.FULL_SHADOW), (True, modes.NON_SHADOW)):
-                if int(modes.shadow_mode(word, light)) & bit:
-                    first.setdefault((light, lit), n)
+                if int(modes.shadow_mode(frame.modes[primitive], light)) & bit:
+                    first.setdefault((light, lit), number)
     assert first
     for light, lesson in enumerate(taught.lights):
-        for lit, n in ((False, lesson.blocked), (True, lesson.lit)):
-            assert first.get((light, lit), NEVER) == n
+        for lit, number in ((False, lesson.blocked), (True, lesson.lit)):
+            assert first.get((light, lit), NEVER) == number
 
 
 def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
@@ -145,17 +136,16 @@ def took(history: FrameHistory, seconds: float = 0.0, parts: tuple[float, ...] =
         history.take([], Traced(request, frame, s), 0.01)
 
 
-def test_so_many_frames_come_in_a_second_and_each_counts_once() -> None:
-    now = 5.0
-    history = FrameHistory(Session(make_scene()), clock=lambda: now)
+def test_so_many_frames_come_in_a_second_and_each_counts_once(clock: Clock) -> None:
+    history = FrameHistory(Session(make_scene()))
     for apart, pause in ((0.04, 0.0), (0.1, 0.0), (4.0, 7.0)):
         for _ in range(40):
-            now += apart
-            took(history, now, (0.2, 0.5, 1.0))
+            clock.now += apart
+            took(history, clock.now, (0.2, 0.5, 1.0))
         assert history.frames_per_second == pytest.approx(1.0 / apart), "what came long before does not count"
-        now += pause
+        clock.now += pause
     assert history.frames == 120 and history.frames_per_second == pytest.approx(0.25)
-    now += 2.0
+    clock.now += 2.0
     assert history.frames_per_second is None, "nothing comes any more"
     history.clear()
     took(history)

@@ -13,7 +13,7 @@ from viewer.services.controller import Controller
 from viewer.services.motion import IDLE_AFTER
 from viewer.state.comparison import CompareMode
 from viewer.state.draw_options import Tone
-from viewer.state.navigation import LONGEST_FLIGHT, SHORTEST_FLIGHT
+from viewer.state.navigation import LONGEST_FLIGHT
 from viewer.state.pixels import Zoom
 from viewer.state.session import Session
 from viewer.state.views import View
@@ -104,26 +104,6 @@ def test_a_drag_is_one_step_whatever_it_passes_and_none_if_it_comes_back(
     assert desk.undo.undoes == name
     desk.undo.undo()
     assert desk.depth == 10 and desk.undo.undoes == ""
-
-
-def test_a_flight_is_one_step_and_glides_back(desk: Desk):
-    home = desk.session.camera
-    for x in range(1, 9):
-        desk.motion.move(replace(AWAY, position=(float(x), 0.0, 0.0)))
-        desk.frame(0.1)
-    far = desk.session.camera
-    desk.rest()
-    assert desk.undo.undoes == "camera" and desk.session.state.camera == far
-    desk.undo.undo()
-    assert desk.session.on_path and desk.session.camera == home and desk.undo.undoes == ""
-    desk.undo.redo()
-    desk.frame(0.5 * SHORTEST_FLIGHT)
-    assert desk.session.camera not in (home, far)
-    desk.rest()
-    assert desk.session.camera == far and desk.undo.redoes == "" and desk.undo.undoes == "camera"
-    desk.undo.undo()
-    desk.rest()
-    assert desk.undo.undoes == "", "the way back is no step"
 
 
 def test_a_view_chosen_in_flight_is_a_step_of_its_own_and_a_step_is_undone_while_it_goes_on(desk: Desk):
