@@ -78,7 +78,7 @@ class Settings:
     )  # fmt: skip
     lamp_radius: float | None = setting(
         None, "Lamp radius",
-        "Make every point light and sphere a sphere of this radius, in the scene's units; 0 makes them points.",
+        "Make every point light and sphere a lamp of this radius, in the scene's units, with soft shadows; 0: points.",
         low=0.0, unset="scene", option="--lamp-radius", panel="Lamps", remembered=False,
     )  # fmt: skip
     lamp_samples: int | None = setting(

@@ -78,14 +78,14 @@ def _file(ui: Ui) -> list[Command]:
     stands = Condition(lambda: loader.load_job is None and up() is not None,
                        "no model is in a studio, or one is being loaded")  # fmt: skip
     return [
-        Command("Open...", "File", lambda: ui.open(Dialog.OPEN_FILE), "Ctrl+O"),
+        Command("Open...", "File", lambda: ui.open(Dialog.OPEN_FILE), "Ctrl+O", also="scene bart kitchen robot museum"),
         Command("Reload", "File", loader.reload, "F5", enabled=scene_open(c)),
         setting_command(ui, "watch_scene", "File"),
         Command("Studio", "File", toggle_studio, checked=in_studio, separated=True,
                 tip="a floor, three lamps and an upright view for a mesh that brings neither camera nor lights"),
         Command("Turn the model", "File", turn, "Ctrl+U", enabled=stands,
                 tip="another axis points up: y, z, x, -y, -z, -x in turn"),
-        Command("Save picture", "File", partial(want, CaptureKind.PICTURE), "F12", separated=True,
+        Command("Save picture", "File", partial(want, CaptureKind.PICTURE), "F12", separated=True, also="screenshot",
                 tip="the picture alone"),
         Command("Save picture with panels", "File", partial(want, CaptureKind.WINDOW), "Shift+F12",
                 tip="the whole window"),
@@ -126,7 +126,7 @@ def _view(ui: Ui) -> list[Command]:
 
     def show(view: View) -> Command:
         return Command(view.label, "View", lambda: c.session.set_draw(view=view), view.key, also=view.declared.also,
-                       checked=lambda: c.session.draw.view is view)  # fmt: skip
+                       tip=view.help, checked=lambda: c.session.draw.view is view)  # fmt: skip
 
     def another(step: int) -> None:
         c.session.set_draw(view=views[(views.index(c.session.draw.view) + step) % len(views)])
@@ -153,7 +153,8 @@ def _view(ui: Ui) -> list[Command]:
         setting_command(ui, "draw.outlines", "View", "B"),
         setting_command(ui, "draw.mark_wrong", "View", "M"),
         setting_command(ui, "draw.shares", "View", "U"),
-        Command("Rays of the clicked pixel", "View", partial(rays.show_rays, ui), "X", separated=True),
+        Command("Rays of the clicked pixel", "View", partial(rays.show_rays, ui), "X", separated=True, also="why",
+                tip="what became of each of its rays, and why, in the Inspector"),
         Command("Find objects and primitives", "View", find, "Ctrl+F",
                 tip="a table of all, with modes, pixels, rays saved and wrong answers"),
         setting_command(ui, "draw.rays", "View", "I"),
@@ -244,7 +245,7 @@ def _compare(ui: Ui) -> list[Command]:
         Command("Clear A", "Compare", comparing.forget, enabled=kept),
         Command("Two methods live", "Compare", comparing.toggle_methods, "Shift+C", enabled=there,
                 checked=lambda: bool(comparing.second_method),
-                tip="trace each frame by a second method as well, with modes and counters of its own"),
+                tip="trace each frame by a second method as well: which is faster, and what each saves"),
         Command("Next compare mode", "Compare", comparing.next_mode, "Shift+Z", enabled=there, separated=True),
         *map(by, CompareMode),
         Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not comparing.state.on,
@@ -275,7 +276,7 @@ def _culling(ui: Ui) -> list[Command]:
         *map(base, bases()),
         *map(addition, additions()),
         Command("Shadow culling", "Culling", c.settings.toggle_culling, "C", checked=lambda: method().culls,
-                separated=True),
+                separated=True, tip="off, every shadow ray is traced; on again, by the method that was chosen"),
         setting_command(ui, "settings.symmetric", "Culling", "Y"),
         setting_command(ui, "settings.verify", "Culling", "V"),
         Command("Reset modes", "Culling", c.reset_modes, "Backspace", separated=True,
@@ -309,11 +310,13 @@ def _run(ui: Ui) -> list[Command]:
         "nothing is running, and nothing is selected",
     )
     return [
-        Command("Experiment", "Run", partial(start, "Experiment", runs.start_experiment), enabled=idle),
-        Command("Zoom test", "Run", partial(start, "Zoom test", runs.start_zoom_test), enabled=idle),
-        Command("Hunt", "Run", partial(start, "Hunt", c.hunts.start), enabled=idle,
+        Command("Start experiment", "Run", partial(start, "Experiment", runs.start_experiment), enabled=idle,
+                tip="methods compared along the path: faster or not, and how much is saved"),
+        Command("Start zoom test", "Run", partial(start, "Zoom test", runs.start_zoom_test), enabled=idle,
+                tip="towards the clicked primitive: is a shadow missing that shows only from near?"),
+        Command("Start hunt", "Run", partial(start, "Hunt", c.hunts.start), enabled=idle,
                 tip="search the path for the worst wrong pixels of a method"),
-        Command("Film", "Run", partial(start, "Film"), enabled=idle,
+        Command("Film...", "Run", partial(start, "Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),
         Command("Table 1", "Run", partial(start, "Experiment", ui.figures.table_1), enabled=idle, separated=True,
                 tip="the paper's table for the open scene: 512 x 512, 10 bounces, 100 frames"),

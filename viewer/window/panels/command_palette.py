@@ -40,12 +40,13 @@ _MISTYPED, _ALIKE = -1000.0, 75.0  # to which is added how alike the words are, 
 # --- what is meant -----------------------------------------------------------------------------------
 
 
-def match(typed: str, label: str, also: str = "") -> float | None:
-    """How well a label fits what was typed; words may also be found in `also`, for less.  None if one is in neither.
+def match(typed: str, label: str, also: str = "", tip: str = "") -> float | None:
+    """How well a label fits what was typed; words may also be found in `also` and in `tip`.  None if one is in none.
 
     Words count as they stand (100), by their beginnings (80), as initials of the label's words (60), anywhere in it
-    (50), in `also` (30), or, much less, mistyped; a shorter label before a longer one."""
-    label, also, words = label.lower(), also.lower(), typed.lower().split()
+    (50), in `also` (30), at the beginning of a word of `tip` (10), or, much less, mistyped; a shorter label before a
+    longer one."""
+    label, also, tip, words = label.lower(), also.lower(), f" {tip.lower()}", typed.lower().split()
     starts = [i for i, letter in enumerate(label) if letter.isalnum() and (i == 0 or not label[i - 1].isalnum())]
     initials, score = "".join(label[i] for i in starts), -0.1 * len(label) + 25.0 * (" ".join(words) == label)
     for word in words:
@@ -59,6 +60,8 @@ def match(typed: str, label: str, also: str = "") -> float | None:
             score += 50.0 - 0.05 * label.find(word)
         elif word in also:
             score += 30.0
+        elif f" {word}" in tip:
+            score += 10.0
         elif len(word) > 3 and (alike := fuzz.partial_ratio(word, label, score_cutoff=_ALIKE)):
             score += _MISTYPED + alike
         else:
@@ -73,7 +76,7 @@ def find(typed: str, items: Sequence[Command], used: Sequence[str]) -> list[Comm
         return sorted(items, key=lambda item: rank.get(item.name, len(rank)))
     scored = []
     for number, item in enumerate(items):
-        score = match(typed, item.label, f"{item.name} {item.menu} {item.kind.value} {item.also}")
+        score = match(typed, item.label, f"{item.name} {item.menu} {item.kind.value} {item.also}", item.tip)
         if score is not None:
             score -= _OTHER_KINDS if item.kind is not Kind.COMMAND else 0.0
             score += RECENT_BONUS / (1.0 + rank[item.name]) if item.name in rank else 0.0
