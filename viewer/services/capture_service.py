@@ -47,8 +47,10 @@ class CaptureService:
             self.saving.remove(job)
             if job.failure is not None:
                 self._notices.report(job.failure)
+            elif isinstance(job.result, Path):
+                self._notices.say(f"saved {job.result}", file=job.result)
             elif job.result is not None:
-                self._notices.say(f"saved {job.result}" if isinstance(job.result, Path) else job.result)
+                self._notices.say(job.result)
 
     def write(self, save: Callable[[], Path]) -> Job[Path]:
         """Let `save` write a file, whose path it returns, on a thread of its own."""

@@ -184,7 +184,9 @@ class Runs:
         if run.error is not None:
             self._notices.report(failure(run.error, f"the {run.name} failed"))
         elif run.whole:
-            self._notices.say(f"{run.name} done: {several(frames, 'frame')} in {duration(run.seconds)}{where}")
+            self._notices.say(
+                f"{run.name} done: {several(frames, 'frame')} in {duration(run.seconds)}{where}", file=run.output
+            )
         else:
             kept = "" if run.results is None else f"; what was done is kept{where}"
             self._notices.say(f"{run.name} stopped after {done} of {frames} frames{kept}")

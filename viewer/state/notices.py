@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from enum import Enum
+from pathlib import Path
 
 from viewer.util.messages import Failure, in_one_line
 
@@ -30,7 +31,8 @@ class Level(Enum):
 
 @dataclass
 class Entry:
-    """One line, how often it was said, and when last; `details` may be many lines, such as a traceback.
+    """One line, how often it was said, and when last; `details` may be many lines, such as a traceback, and `file` is
+    one that was written.
 
     `unread` says that it is an error or a fault that nobody has seen in the log."""
 
@@ -40,6 +42,7 @@ class Entry:
     count: int = 0
     at: datetime = datetime.min
     unread: bool = False
+    file: Path | None = None
 
     @property
     def error(self) -> bool:
@@ -63,10 +66,12 @@ class Notices:
         self._entries: deque[Entry] = deque(maxlen=MOST_ENTRIES)
         self.message: Entry | None = None
 
-    def say(self, text: str, error: bool = False, details: str = "") -> None:
+    def say(self, text: str, error: bool = False, details: str = "", file: Path | None = None) -> None:
         """Show one line in the status bar: a notice for some seconds, an error until the next line.  The log keeps
-        both."""
-        self.message = self._add(Level.ERROR if error else Level.NOTICE, in_one_line(text), details)
+        both.  `file` can be opened from there."""
+        entry = self._add(Level.ERROR if error else Level.NOTICE, in_one_line(text), details)
+        entry.file = file
+        self.message = entry
 
     def report(self, failed: Failure) -> None:
         """Report a failure: in the status bar if such a thing may happen, else as an internal error."""

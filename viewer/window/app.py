@@ -34,7 +34,7 @@ from viewer.window.gl_window import NO_OPENGL, closing_by_signals
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
-from viewer.window.panels import dialogs, named_states, picture, sides, status
+from viewer.window.panels import dialogs, named_states, picture, scene, sides, status
 from viewer.window.ui import CaptureKind, Graphics, Ui
 
 TITLE = "Shadowcull"
@@ -276,7 +276,7 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(self.ui, [*self.ui.commands, *named_states.preset_commands(self.ui)])
+        menus.show(self.ui, [*scene.commands(self.ui), *self.ui.commands, *named_states.preset_commands(self.ui)])
         self.layout.show_menu()
         self.layout.show_workspaces()
 

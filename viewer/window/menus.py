@@ -82,11 +82,11 @@ def show(ui: Ui, commands: Sequence[Command]) -> None:
     """Show all menus of the menu bar, made of these commands."""
     for name in MENUS:
         if imgui.begin_menu(name):
-            _menu(ui, name, commands)
+            show_menu(ui, name, commands)
             imgui.end_menu()
 
 
-def _menu(ui: Ui, path: str, commands: Sequence[Command]) -> None:
+def show_menu(ui: Ui, path: str, commands: Sequence[Command]) -> None:
     """Show the commands of a menu, and the menus within it where the first of their commands stands."""
     inner: list[str] = []
     first = True
@@ -101,7 +101,7 @@ def _menu(ui: Ui, path: str, commands: Sequence[Command]) -> None:
         elif begins:
             inner.append(command.menu)
             if imgui.begin_menu(command.menu.removeprefix(f"{path}/")):
-                _menu(ui, command.menu, commands)
+                show_menu(ui, command.menu, commands)
                 imgui.end_menu()
 
 

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from rapidfuzz import fuzz
 
 from viewer.state.preferences import RECENT_COMMANDS
-from viewer.util.resources import embedded_scenes
 from viewer.window import setting_rows
 from viewer.window.command import Command, Kind
 from viewer.window.menus import ANY_POPUP, run
+from viewer.window.panels import scene
 from viewer.window.panels.named_states import KEYED_BOOKMARKS, preset_commands
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import ERROR, QUIET, clipped, em, fitted, paragraph, tooltip
@@ -266,15 +265,11 @@ def items(ui: Ui) -> list[Command]:
 
 def _others(ui: Ui) -> Iterator[Command]:
     """Return presets, panels, bookmarks and scenes."""
-    c, own = ui.controller, embedded_scenes()
+    c = ui.controller
     yield from preset_commands(ui)
     for label in ui.panel_labels:
         yield Command(f"panel {label}", "Panels", partial(ui.show_panel, label), title=f"Panel {label}", also="open")
     for number, mark in list(enumerate(c.bookmarks.all))[KEYED_BOOKMARKS:]:  # the others are in the menu
         go = partial(c.go_to_bookmark, number)
         yield Command(f"bookmark {number}", "go there", go, title=mark.name, kind=Kind.BOOKMARK)
-    scenes = {path: (name, "comes with Shadowcull") for name, path in own.items()}
-    recent = {path: (path.name, str(path.parent)) for path in map(Path, c.preferences.recent)}
-    for path, (name, place) in (recent | scenes).items():
-        open_ = partial(c.loader.open, path)
-        yield Command(f"scene {path}", place, open_, title=name, kind=Kind.SCENE, also="open recent")
+    yield from scene.commands(ui)

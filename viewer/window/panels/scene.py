@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from imgui_bundle import imgui
@@ -9,6 +10,8 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.fit import lamps_in, overview
 from viewer.util.resources import embedded_scenes
+from viewer.window import menus
+from viewer.window.command import Command, Kind
 from viewer.window.panels import lights
 from viewer.window.ui import Dialog, Ui
 from viewer.window.widgets import (
@@ -19,7 +22,6 @@ from viewer.window.widgets import (
     heading,
     paragraph,
     properties,
-    tooltip,
     value,
     wide_button,
 )
@@ -31,9 +33,11 @@ def show(ui: Ui) -> None:
     if wide_button(f"{icons.ICON_FA_FOLDER_OPEN}  Open...", f"or drop a file on the window{ui.key('Open...')}", 2):
         ui.open(Dialog.OPEN_FILE)
     imgui.same_line()
-    if wide_button(f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Recent"):
-        imgui.open_popup("recent")
-    _recent(ui)
+    if wide_button(f"{icons.ICON_FA_CUBES}  Scenes", "those that come with the program, and recent ones"):
+        imgui.open_popup("scenes")
+    if imgui.begin_popup("scenes"):
+        menus.show_menu(ui, "File/Open scene", commands(ui))
+        imgui.end_popup()
     if c.session.scene is None:
         paragraph("No scene is open.", QUIET)
         return
@@ -42,21 +46,17 @@ def show(ui: Ui) -> None:
     _warnings(ui)
 
 
-def _recent(ui: Ui) -> None:
-    """The scenes that come with the program, and those that were open last."""
-    if not imgui.begin_popup("recent"):
-        return
-    loader, embedded = ui.controller.loader, embedded_scenes()
-    for name, path in embedded.items():
-        if imgui.menu_item(f"{name}##embedded", "comes with Shadowcull", False, True)[0]:
-            loader.open(path)
-    imgui.separator()
-    for text in ui.controller.preferences.recent:
-        if Path(text) not in embedded.values():
-            if imgui.menu_item(f"{Path(text).name}##{text}", "", False, True)[0]:
-                loader.open(Path(text))
-            tooltip(text)
-    imgui.end_popup()
+def commands(ui: Ui) -> list[Command]:
+    """Return what opens the scenes that come with the program, and those that were open last."""
+    loader, own = ui.controller.loader, embedded_scenes()
+    recent = [path for path in map(Path, ui.controller.preferences.recent) if path not in own.values()]
+    scenes = [(name, path, "comes with Shadowcull") for name, path in own.items()]
+    scenes += [(path.name, path, str(path.parent)) for path in recent]
+    return [
+        Command(f"scene {path}", "File/Open scene", partial(loader.open, path), title=name, kind=Kind.SCENE, tip=where,
+                separated=bool(recent) and path == recent[0])
+        for name, path, where in scenes
+    ]  # fmt: skip
 
 
 def _facts(ui: Ui) -> None:

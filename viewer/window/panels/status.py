@@ -3,6 +3,8 @@ failed."""
 
 from __future__ import annotations
 
+import webbrowser
+
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
@@ -14,6 +16,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, WARNING, clipped, count, em, paragraph, tooltip
 
 IDLE, TRACING = "idle", "tracing"
+_OPEN = f"{icons.ICON_FA_ARROW_UP_RIGHT_FROM_SQUARE} Open"
 _ICONS = {
     Level.NOTICE: (icons.ICON_FA_CIRCLE_INFO, QUIET),
     Level.ERROR: (icons.ICON_FA_CIRCLE_EXCLAMATION, WARNING),
@@ -39,11 +42,13 @@ def show(ui: Ui) -> None:
         right, width = "", 0.0
     if message is not None:
         said = f"{_ICONS[message.level][0]}  {message.text}{_times(message)}"
-        clipped(said, ERROR if message.error else None, room - width)
+        button = imgui.calc_text_size(_OPEN).x + em(1.5) if message.file is not None else 0.0
+        clipped(said, ERROR if message.error else None, room - width - button)
         if message.level is Level.FAULT:
             tooltip("Internal error. Nothing was lost; the log has the details, which help to fix it.")
         if message.error and imgui.is_item_clicked():
             c.notices.message = None
+        _open_button(ui, message)
     else:
         text = doing(c)
         clipped(text if text != IDLE else f"{text}   {_hints(ui)}", QUIET, room - width)
@@ -170,6 +175,7 @@ def _entry(ui: Ui, entry: Entry) -> None:
     tooltip(entry.level.value)
     imgui.same_line(em(5.8))
     paragraph(entry.text + _times(entry))
+    _open_button(ui, entry)
     if not entry.details:
         return
     imgui.indent(em(5.8))
@@ -198,6 +204,16 @@ def instead_of_part(ui: Ui, name: str, entry: Entry) -> None:
         _copy_button(ui, entry)
     if again:
         ui.guard.again(name)
+
+
+def _open_button(ui: Ui, entry: Entry) -> None:
+    """Offer to open the file that was written, in the program that the desktop has for it."""
+    if entry.file is None:
+        return
+    imgui.same_line()
+    if imgui.small_button(_OPEN) and not webbrowser.open(entry.file.absolute().as_uri()):
+        ui.controller.notices.say(f"the desktop has no program that opens {entry.file.name}", error=True)
+    tooltip(str(entry.file))
 
 
 def _times(entry: Entry) -> str:
