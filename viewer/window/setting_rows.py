@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
@@ -14,7 +14,7 @@ from viewer.state.preferences import Preferences
 from viewer.state.view_state import ViewState
 from viewer.window.command import Command, Condition, Kind
 from viewer.window.ui import Ui
-from viewer.window.widgets import checkbox, row, same_line_for, size_field, tooltip
+from viewer.window.widgets import checkbox, properties, row, same_line_for, size_field, tooltip
 
 LONGEST_SLIDER = 200.0
 """The range past which a number is typed, and has no slider."""
@@ -34,18 +34,41 @@ def in_panel(ui: Ui, panel: str) -> list[Setting]:
     return [one for one in ALL.values() if one.panel == panel and (not one.within or state.applies(one))]
 
 
+def panel_rows(
+    ui: Ui,
+    panel: str,
+    names: float,
+    own: Mapping[str, Callable[[Ui, Setting], None]] = {},
+    above: Callable[[], None] = lambda: None,
+    below: Callable[[], None] = lambda: None,
+    note: Callable[[Setting], str] = lambda one: "",
+) -> None:
+    """Show all settings that are declared for a panel and do something as things are: rows of those that have a value,
+    with room for names of so many ems, and below these ticks beside each other.
+
+    `own` has rows of another kind, by the setting's path; `above` and `below` show further rows; `note` is added to
+    what is said of a setting."""
+    settings = in_panel(ui, panel)
+    ticks = [one for one in settings if one.kind is bool and one.path not in own]
+    with properties(panel, names) as shown:
+        if shown:
+            above()
+            for one in settings:
+                if one.path in own:
+                    own[one.path](ui, one)
+                elif one not in ticks:
+                    setting_row(ui, one, note(one))
+            below()
+    for number, one in enumerate(ticks):
+        if number:
+            same_line_for(one.label)
+        setting_switch(ui, one, note(one))
+
+
 def setting_switch(ui: Ui, one: Setting, note: str = "") -> None:
     """Show a tick of a setting that is on or off."""
     tip = f"{one.help}{ui.key(one.label)}{note}"
     checkbox(one.label, value_of(ui, one), lambda on: ui.controller.settings.set(one, on), tip)
-
-
-def setting_switches(ui: Ui, some: Sequence[Setting], note: Callable[[Setting], str] = lambda one: "") -> None:
-    """Show ticks beside each other, as many as a line has room for."""
-    for place, one in enumerate(some):
-        if place:
-            same_line_for(one.label)
-        setting_switch(ui, one, note(one))
 
 
 def setting_row(ui: Ui, one: Setting, note: str = "", room: float = 0.0) -> None:

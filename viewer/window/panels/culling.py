@@ -14,7 +14,7 @@ from viewer.services.controller import Controller
 from viewer.state import verified
 from viewer.state.methods import groups, toggled, with_base
 from viewer.window import menus
-from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
+from viewer.window.setting_rows import panel_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, outlined, paragraph, properties, row, tooltip
 
@@ -41,16 +41,10 @@ def show(ui: Ui) -> None:
             return f"\n{name} does not cull by modes: it changes those kept for the views alone."
         return ""
 
-    settings = in_panel(ui, "Culling")
-    setting_switches(ui, [one for one in settings if one.kind is bool and one.within == ("settings",)], note)
-    with properties("culling", 8.2 if method.has_certificates else 6.5) as shown:
-        for one in settings if shown else ():
-            if one.kind is not bool:
-                setting_row(ui, one, note(one))
+    panel_rows(ui, "Culling", 8.2 if method.has_certificates else 6.5, note=note)
     menus.button(ui, "Reset modes", icons.ICON_FA_ERASER, columns=2)
     imgui.same_line()
     menus.button(ui, "Trace again", icons.ICON_FA_ROTATE_RIGHT)
-    setting_switch(ui, ALL["pace.keep_tracing"])
     said = wrong_answers(c)
     if said is not None:  # at the end, where it moves nothing
         paragraph(*said)

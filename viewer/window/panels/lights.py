@@ -14,7 +14,7 @@ from imgui_bundle import imgui
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.scene.lights import Light, as_lamps, number_of
 from tracer.scene.model import Scene
-from viewer.window.setting_rows import ALL
+from tracer.setting import Setting
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, paragraph, row, tooltip
 
@@ -34,12 +34,11 @@ class LightFilters:
     texts: dict[str, str] = field(default_factory=dict)
 
 
-def lamp_rows(ui: Ui) -> None:
-    """Rows of settings: what lamps point lights are made, and how many samples these have."""
+def lamp_radius(ui: Ui, one: Setting) -> None:
+    """Show the row of the radius: a slider from points on, as far as the scene is large."""
     c = ui.controller
     s, size = c.session.settings, diagonal(c.info.get("bounds"))
-    radius, samples = ALL["settings.lamp_radius"], ALL["settings.lamp_samples"]
-    row(radius.label, radius.help + _RADIUS)
+    row(one.label, one.help + _RADIUS)
     imgui.set_next_item_width(-imgui.get_frame_height() - em(0.3))
     shown = "%.7g" if s.lamp_radius else ("points" if s.lamp_radius == 0.0 else _SCENE_SAYS)
     smallest, flags = _SMALLEST * size, int(imgui.SliderFlags_.logarithmic)
@@ -52,7 +51,13 @@ def lamp_rows(ui: Ui) -> None:
         c.settings.change(lamp_radius=None)
     imgui.end_disabled()
     tooltip("lights as the scene says")
-    row(samples.label, samples.help + _SAMPLES)
+
+
+def lamp_samples(ui: Ui, one: Setting) -> None:
+    """Show the row of the samples: numbers that are worth choosing, where there is a lamp."""
+    c = ui.controller
+    s = c.session.settings
+    row(one.label, one.help + _SAMPLES)
     imgui.begin_disabled(c.scheduler.lamps.wanted == 1 and not c.scheduler.lamps.any)
     if imgui.begin_combo("##lamp-samples", str(s.lamp_samples or _SCENE_SAYS)):
         for number in (None, 1, 4, 16, 64, 256):
