@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 from imgui_bundle import ImVec2, imgui
 
+from viewer.state.palette import DARK
 from viewer.views import legend_of
-from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, Layout, Legend, fitting, lay_out
+from viewer.views.legend import BACKDROP_OPACITY, Layout, Legend, fitting, lay_out
 from viewer.window.panels import sides
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, tooltip_at
@@ -107,7 +108,7 @@ def _drag(ui: Ui, at: ImVec2, least: ImVec2, room: ImVec2) -> None:
 def draw_layout(draw: imgui.ImDrawList, layout: Layout, at: ImVec2) -> None:
     """Draw a legend as it is laid out."""
     end = ImVec2(at.x + layout.width, at.y + layout.height)
-    draw.add_rect_filled(at, end, packed(BACKDROP, BACKDROP_OPACITY), em(0.3))
+    draw.add_rect_filled(at, end, packed(DARK, BACKDROP_OPACITY), em(0.3))
     for box in layout.boxes:
         start = ImVec2(at.x + box.x, at.y + box.y)
         draw.add_rect_filled(start, ImVec2(start.x + box.width, start.y + box.height), packed(box.color))

@@ -11,7 +11,7 @@ from tracer.frame import Frame
 from tracer.method import Method
 from viewer.state.comparison import CompareMode, Side
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import LESS, MORE, Color
+from viewer.state.palette import DARK, HELD, LESS, LIGHT, MORE, Color
 from viewer.state.picking import pixel_at
 from viewer.state.views import View
 from viewer.views import words_at
@@ -30,7 +30,6 @@ GAP = 0.3
 """Ems between pictures side by side."""
 _REACH = 0.45  # ems to either side of the line where it can be taken hold of
 _LEAST = 3.0  # ems of room for a name beside the line
-_DARK, _LIGHT, _HELD = (0.05, 0.06, 0.08), (0.95, 0.96, 0.97), (0.42, 0.70, 0.96)
 
 
 # --- on the GPU --------------------------------------------------------------------------------------
@@ -243,17 +242,17 @@ def _label(at: ImVec2, text: str, color: Color | None, room: float, ends_there: 
     width = imgui.calc_text_size(text).x + square + 3.0 * pad
     at = ImVec2(at.x - width if ends_there else at.x, at.y)
     draw = imgui.get_window_draw_list()
-    draw.add_rect_filled(at, ImVec2(at.x + width, at.y + line + 2.0 * pad), packed(_DARK, 0.94), em(0.3))
+    draw.add_rect_filled(at, ImVec2(at.x + width, at.y + line + 2.0 * pad), packed(DARK, 0.94), em(0.3))
     x, y = at.x + 1.5 * pad, at.y + pad + 0.18 * line
     if color is not None:
         draw.add_rect_filled(ImVec2(x, y), ImVec2(x + 0.7 * line, y + 0.7 * line), packed(color), em(0.1))
-    draw.add_text(ImVec2(x + square, at.y + pad), packed(_LIGHT), text)
+    draw.add_text(ImVec2(x + square, at.y + pad), packed(LIGHT), text)
 
 
 def _line(ui: Ui, area: Area, top: float, names: tuple[str, str], colors: tuple[Color | None, Color | None]) -> None:
     """The line, with a disc on it that has an arrow to either side, and what lies left and right of it."""
     draw, x, y = imgui.get_window_draw_list(), _line_at(ui, area), (area.corner.y + area.end.y) / 2.0
-    dark, bright = packed(_DARK, 0.72), packed(_HELD if ui.state(WipeState).held else _LIGHT)
+    dark, bright = packed(DARK, 0.72), packed(HELD if ui.state(WipeState).held else LIGHT)
     half, radius, arrow, apart = max(1.0, em(0.05)), em(0.8), em(0.28), em(0.7)
     draw.push_clip_rect(area.corner, area.end, True)
     for wide, color in ((2.0 * half, dark), (half, bright)):
