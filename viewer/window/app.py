@@ -17,6 +17,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import moderngl
 from imgui_bundle import glfw_utils, hello_imgui, imgui, immapp
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
@@ -29,12 +30,13 @@ from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.messages import failure
 from viewer.util.resources import default_scene
 from viewer.window import commands, graphics, layout, menus, style
+from viewer.window.display import Graphics
 from viewer.window.gl_window import NO_OPENGL, closing_by_signals
 from viewer.window.guard import Guard
 from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
 from viewer.window.panels import dialogs, named_states, picture, sides, status
-from viewer.window.ui import CaptureKind, Graphics, Ui
+from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
@@ -165,7 +167,7 @@ class App:
         advance(self.controller, self._room_for_picture(), step)
         step("The script's function", self._call_script)
         step("Drawing the picture", lambda: graphics.draw(ui))
-        step("Drawing recorded pictures", lambda: graphics.draw_recorded(ui))
+        step("Drawing recorded pictures", ui.graphics.textures.update)
         step("Saving the picture", self._capture_picture)
         self._set_frame_rate()
 
@@ -225,7 +227,7 @@ class App:
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
 
     def _capture_window(self) -> None:
-        if self._capture_this_frame and self.ui.graphics.display is not None:
+        if self._capture_this_frame:
             self._capture_this_frame = False
             size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
             self.controller.captures.capture(self.controller.frame, self.ui.graphics.display.read_window(*size))
@@ -280,7 +282,7 @@ class App:
     def _ready(self) -> None:
         """The window and its GL context exist."""
         self.was_open = True
-        graphics.make(self.ui)
+        self.ui.graphics = Graphics(moderngl.create_context())
         self.drawn_by_processor = any(name in self.ui.graphics.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
             self.params.fps_idling.fps_max = FASTEST_BY_PROCESSOR
@@ -307,7 +309,7 @@ class App:
 
     def _leave(self) -> None:
         self.controller.wake.connect(None)  # threads may still be at work when the window is gone
-        self.ui.graphics = Graphics()  # all of it goes with the context
+        del self.ui.graphics  # all of it goes with the context
 
     def _exit(self) -> None:
         self.params.app_shall_exit = True

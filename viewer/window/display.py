@@ -140,18 +140,6 @@ class Display(PictureTexture):
         self.frame = None
 
 
-class Compared:
-    """What a comparison needs on the GPU beside the live picture; nothing of it stays when the comparison ends."""
-
-    def __init__(self, context: moderngl.Context) -> None:
-        self.a, self.difference = Display(context), PictureTexture(context)
-
-    def clear(self) -> None:
-        """Let all of it go."""
-        self.a.clear()
-        self.difference.clear()
-
-
 class Recorded(Protocol):
     """A picture that is kept, (h, w, 3) uint8, and the same so many pixels high at most."""
 
@@ -233,6 +221,17 @@ class Magnifier:
         """Let a copy go, if there is one."""
         self._targets.pop(name, None)
         self._shown.pop(name, None)
+
+
+class Graphics:
+    """What lives as long as the window's GL context: the newest frame as it is drawn, A and what B differs by while
+    they are compared, recorded pictures, and what enlarges them."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        context.gc_mode = "context_gc"  # what nobody refers to is freed where `draw` says so, with the context current
+        self.renderer_name: str = context.info["GL_RENDERER"]
+        self.display, self.a, self.difference = Display(context), Display(context), PictureTexture(context)
+        self.textures, self.magnifier = TextureCache(context), Magnifier(context)
 
 
 def _selected_border(frame: Frame, window: InWindow, part_of: NDArray[np.int32] | None) -> NDArray[np.bool_]:

@@ -44,57 +44,51 @@ def draw_options(ui: Ui) -> DrawOptions:
 
 def draw(ui: Ui, options: DrawOptions) -> None:
     """Bring what is to be seen besides the live picture, which is drawn with these options."""
-    comparing, compared = ui.controller.comparing, ui.graphics.compared
-    seen = comparing.seen
-    if compared is None:
-        return
+    seen, gl = ui.controller.comparing.seen, ui.graphics
     if seen is None:
-        compared.clear()
+        gl.a.clear()
+        gl.difference.clear()
     elif seen.difference is not None:
-        wanted = seen.difference, comparing.limit(seen.difference), options.mark_wrong
-        compared.difference.update(wanted, lambda: signed_picture(*wanted))
+        wanted = seen.difference, ui.controller.comparing.limit(seen.difference), options.mark_wrong
+        gl.difference.update(wanted, lambda: signed_picture(*wanted))
     else:
-        compared.a.draw(seen.a.frame, replace(options, view=seen.a.view, light=seen.a.light))
+        gl.a.draw(seen.a.frame, replace(options, view=seen.a.view, light=seen.a.light))
 
 
-def filling(ui: Ui) -> PictureTexture | None:
+def filling(ui: Ui) -> PictureTexture:
     """Return what fills the picture: B, or A, or their difference; A's part of a wipe is drawn over it."""
-    seen, compared = ui.controller.comparing.seen, ui.graphics.compared
-    if seen is None or compared is None:
-        return ui.graphics.display
-    if seen.shows_a:
-        return compared.a
-    return compared.difference if seen.difference is not None else ui.graphics.display
+    seen, gl = ui.controller.comparing.seen, ui.graphics
+    if seen is not None and seen.shows_a:
+        return gl.a
+    return gl.difference if seen is not None and seen.difference is not None else gl.display
 
 
 def magnify(ui: Ui, options: DrawOptions) -> None:
     """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
-    magnifier, size, zoom = ui.graphics.magnifier, ui.picture.size, options.zoom
-    if magnifier is None or min(size) < 1:
+    seen, gl, size, zoom = ui.controller.comparing.seen, ui.graphics, ui.picture.size, options.zoom
+    if min(size) < 1:
         return
-    seen, compared = ui.controller.comparing.seen, ui.graphics.compared
-    a = compared.a if compared is not None else None
     smooth = options.smooth and zoom.fits
     beside = seen is not None and (seen.has_line or seen.mode is CompareMode.SIDE)
-    for name, drawn in ((PICTURE, filling(ui)), (OF_A, a if beside else None)):
+    for name, drawn in ((PICTURE, filling(ui)), (OF_A, gl.a if beside else None)):
         picture = drawn.picture if drawn is not None else None
-        view = seen.a.view if seen is not None and drawn is a else options.view
-        blended = smooth and view.shows_clipped and (compared is None or drawn is not compared.difference)
+        view = seen.a.view if seen is not None and drawn is gl.a else options.view
+        blended = smooth and view.shows_clipped and drawn is not gl.difference
         enlarged = picture is not None and (size[0] > picture.size[0] or not zoom.fits)
         if drawn is not None and enlarged and not blended:
-            magnifier.draw(name, picture, drawn.version, zoom, size)
+            gl.magnifier.draw(name, picture, drawn.version, zoom, size)
         else:
-            magnifier.drop(name)
+            gl.magnifier.drop(name)
 
 
 def composed_picture(ui: Ui, b: Pixels) -> Pixels:
     """Return the picture to save: B as it was drawn, and what is compared with it."""
-    seen, compared = ui.controller.comparing.seen, ui.graphics.compared
-    if seen is None or compared is None:
+    seen = ui.controller.comparing.seen
+    if seen is None:
         return b
     if seen.difference is not None:
-        return compared.difference.read()
-    return composed(compared.a.read(), b, seen.mode, ui.controller.session.draw.wipe, seen.shows_a)
+        return ui.graphics.difference.read()
+    return composed(ui.graphics.a.read(), b, seen.mode, ui.controller.session.draw.wipe, seen.shows_a)
 
 
 # --- in words ----------------------------------------------------------------------------------------
@@ -166,8 +160,7 @@ def draw_picture(ui: Ui, name: str, texture: int, area: Area, right: float = 1.0
         return
     at = ImVec2(area.corner.x + (right - left) / (end - left) * area.size.x, area.end.y)
     start, stop = ImVec2(left, top), ImVec2(right, bottom)
-    magnifier = ui.graphics.magnifier
-    crisp = magnifier.texture_of(name, texture, area.zoom, ui.picture.size) if magnifier is not None else None
+    crisp = ui.graphics.magnifier.texture_of(name, texture, area.zoom, ui.picture.size)
     if crisp is not None:
         texture, start, stop = crisp, ImVec2(0.0, 0.0), ImVec2((right - left) / (end - left), 1.0)
     imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), area.corner, at, start, stop)
@@ -175,7 +168,7 @@ def draw_picture(ui: Ui, name: str, texture: int, area: Area, right: float = 1.0
 
 def draw_a(ui: Ui, area: Area, right: float = 1.0) -> None:
     """Draw A, up to a column, if it is there."""
-    texture = ui.graphics.compared.a.texture_id if ui.graphics.compared is not None else None
+    texture = ui.graphics.a.texture_id
     if texture is not None:
         draw_picture(ui, OF_A, texture, area, right)
 
