@@ -14,7 +14,7 @@ from viewer.state.preferences import Preferences
 from viewer.state.view_state import ViewState
 from viewer.window.command import Command, Condition, Kind
 from viewer.window.ui import Ui
-from viewer.window.widgets import checkbox, properties, row, same_line_for, size_field, tooltip
+from viewer.window.widgets import checkbox, one_of_list, properties, row, same_line_for, size_field
 
 LONGEST_SLIDER = 200.0
 """The range past which a number is typed, and has no slider."""
@@ -109,17 +109,8 @@ def _value(ui: Ui, one: Setting, now: Any) -> Any:
 
 def _choice(one: Setting, now: Any) -> Any:
     """A list; returns what is chosen now."""
-    chosen = now
-    if imgui.begin_combo(f"##{one.name}", one.text(now)):
-        for choice, meaning in one.choices.items():
-            if imgui.selectable(one.text(choice), choice == now)[0]:
-                chosen = choice
-            if meaning:
-                tooltip(meaning)
-        imgui.end_combo()
-    elif one.choices[now]:
-        tooltip(one.choices[now])
-    return chosen
+    choices = ((choice, one.text(choice), meaning) for choice, meaning in one.choices.items())
+    return one_of_list(f"##{one.name}", one.text(now), choices, now, one.choices[now])
 
 
 def _number(one: Setting, now: Any) -> Any:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from typing import TypeVar
 
 from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
@@ -16,6 +17,7 @@ from viewer.window.style import GOOD as GOOD
 from viewer.window.style import QUIET as QUIET
 from viewer.window.style import WARNING as WARNING
 
+T = TypeVar("T")
 _PALE = 0.85  # least channel of colours that need a border on a light panel
 _LABELS = 0.45  # of a panel's width, at most, is for the names of what is in it
 SIZES = ((128, 128), (256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
@@ -146,6 +148,44 @@ def tooltip_at(text: str) -> None:
         imgui.text_unformatted(text)
         imgui.pop_text_wrap_pos()
         imgui.end_tooltip()
+
+
+def seen_rows(number: int, height: float = -1.0, wanted: int | None = None) -> Iterator[int]:
+    """Yield those of so many rows that are seen, each so high, and the one that is to be scrolled to."""
+    clipper = imgui.ListClipper()
+    clipper.begin(number, height)
+    if wanted is not None:
+        clipper.include_item_by_index(wanted)
+    while clipper.step():
+        yield from range(clipper.display_start, clipper.display_end)
+    clipper.end()
+
+
+def one_of(choices: Iterable[tuple[T, str, str]], now: T) -> T:
+    """Show a button for each value, with its label and tip, as many in a line as there is room for; returns the one
+    that is set."""
+    for number, (choice, label, tip) in enumerate(choices):
+        if number:
+            same_line_for(label.partition("##")[0])
+        if imgui.radio_button(label, choice == now):
+            now = choice
+        if tip:
+            tooltip(tip)
+    return now
+
+
+def one_of_list(name: str, shown: str, choices: Iterable[tuple[T, str, str]], now: T, tip: str = "") -> T:
+    """Show a list to be opened, of values with their labels and tips; returns the one that is chosen."""
+    if imgui.begin_combo(name, shown):
+        for choice, label, meaning in choices:
+            if imgui.selectable(label, choice == now)[0]:
+                now = choice
+            if meaning:
+                tooltip(meaning)
+        imgui.end_combo()
+    elif tip:
+        tooltip(tip)
+    return now
 
 
 @contextmanager

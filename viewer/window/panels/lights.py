@@ -16,7 +16,7 @@ from tracer.scene.lights import Light, as_lamps, number_of
 from tracer.scene.model import Scene
 from tracer.setting import Setting
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, count, em, paragraph, row, tooltip
+from viewer.window.widgets import QUIET, count, em, one_of_list, paragraph, row, seen_rows, swatch, tooltip
 
 FEW = 8
 """Lights that are listed without a field to find them."""
@@ -59,12 +59,11 @@ def lamp_samples(ui: Ui, one: Setting) -> None:
     s = c.session.settings
     row(one.label, one.help + _SAMPLES)
     imgui.begin_disabled(c.scheduler.lamps.wanted == 1 and not c.scheduler.lamps.any)
-    if imgui.begin_combo("##lamp-samples", str(s.lamp_samples or _SCENE_SAYS)):
-        for number in (None, 1, 4, 16, 64, 256):
-            if imgui.selectable(str(number or _SCENE_SAYS), s.lamp_samples == number)[0]:
-                c.settings.change(lamp_samples=number)
-        imgui.end_combo()
+    choices = [(number, str(number or _SCENE_SAYS), "") for number in (None, 1, 4, 16, 64, 256)]
+    chosen = one_of_list("##lamp-samples", str(s.lamp_samples or _SCENE_SAYS), choices, s.lamp_samples)
     imgui.end_disabled()
+    if chosen != s.lamp_samples:
+        c.settings.change(lamp_samples=chosen)
 
 
 def diagonal(bounds: Sequence[Sequence[float]] | None) -> float:
@@ -108,12 +107,8 @@ def _list(ui: Ui, place: str, most: int, chosen: int | None, choose: Callable[[i
 def rows(numbers: Sequence[int], most: int, height: float, row: Callable[[int], None]) -> None:
     """Show rows of lights, each so high, of which only those are drawn that are seen: up to `most` at once."""
     if imgui.begin_child("lights", (0.0, min(max(len(numbers), 1), most) * height + 2.0)):
-        clipper = imgui.ListClipper()
-        clipper.begin(len(numbers), height)
-        while clipper.step():
-            for k in range(clipper.display_start, clipper.display_end):
-                row(numbers[k])
-        clipper.end()
+        for place in seen_rows(len(numbers), height):
+            row(numbers[place])
     imgui.end_child()
 
 
@@ -121,12 +116,8 @@ def _row(ui: Ui, index: int, chosen: bool) -> bool:
     scene, s = ui.controller.session.scene, ui.controller.session.settings
     assert scene is not None
     (light,) = as_lamps((scene.lights[index],), s.lamp_radius, s.lamp_samples)
-    strongest, side = max(*light.color, 1e-9), imgui.get_text_line_height()
-    red, green, blue = (channel / strongest for channel in light.color)
-    imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.0)  # white ones are seen on white
-    imgui.color_button(f"##light{index}", (red, green, blue, 1.0), int(imgui.ColorEditFlags_.no_tooltip), (side, side))
-    imgui.pop_style_var()
-    imgui.same_line()
+    red, green, blue = (channel / max(*light.color, 1e-9) for channel in light.color)
+    swatch((red, green, blue))
     remarks = [] if light.kind == "point" else [f"{light.kind}, {light.samples}"]
     remarks += ["moves"] if light.track else []
     remarks += ["not culled"] if index >= MAX_CULLED_LIGHTS else []

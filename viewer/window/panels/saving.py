@@ -10,10 +10,10 @@ from viewer.output.capture import TEMPLATE_HELP
 from viewer.services.film import Films
 from viewer.services.runs import duration
 from viewer.window import menus
-from viewer.window.panels.runs import either, frames_row, start_or_progress
+from viewer.window.panels.runs import frames_row, start_or_progress
 from viewer.window.setting_rows import panel_rows, plan_rows
 from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import QUIET, WARNING, begin_modal, em, paragraph, properties, row, tooltip
+from viewer.window.widgets import QUIET, WARNING, begin_modal, em, one_of, paragraph, properties, row, tooltip
 
 TITLE = Dialog.SAVE_AS.value
 
@@ -83,11 +83,12 @@ def _way(ui: Ui, films: Films) -> None:
         if not shown:
             return
         row("Along", "The frames of the animation, or a flight through the bookmarks at an even speed.")
-        plan.through_bookmarks = either("path", f"bookmarks ({marks})###bookmarks", plan.through_bookmarks)
+        ways = (False, "path", ""), (True, f"bookmarks ({marks})###bookmarks", "")
+        plan.through_bookmarks = one_of(ways, plan.through_bookmarks)
         if not plan.through_bookmarks:
             frames_row(ui, plan, "First and last frame of the animation.")
             row("Camera", "The scene's own camera, or the one in the picture now, which stays where it is.")
-            plan.from_here = either("own", "as here", plan.from_here)
+            plan.from_here = one_of(((False, "own", ""), (True, "as here", "")), plan.from_here)
         plan_rows(ui, plan, "seconds", "fps")
 
 

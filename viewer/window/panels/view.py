@@ -19,7 +19,7 @@ from viewer.window import menus
 from viewer.window.panels import legend, lights
 from viewer.window.setting_rows import ALL, panel_rows, setting_row
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, em, paragraph, right, row, size_field, tooltip, tooltip_at
+from viewer.window.widgets import QUIET, WARNING, em, one_of, paragraph, right, row, size_field, tooltip, tooltip_at
 
 
 def show(ui: Ui) -> None:
@@ -121,11 +121,9 @@ def _slice_rows(ui: Ui) -> None:
     session, frame = ui.controller.session, ui.controller.frame
     cut = session.draw.slice
     row("Slice", "The axis that the slice goes across.")
-    for axis, name in enumerate(AXES):
-        if axis:
-            imgui.same_line(0.0, em(0.6))
-        if imgui.radio_button(f"{name}##slice", cut.axis == axis):
-            session.set_draw(slice=cut._replace(axis=axis))
+    axis = one_of(((number, f"{name}##slice", "") for number, name in enumerate(AXES)), cut.axis)
+    if axis != cut.axis:
+        session.set_draw(slice=cut._replace(axis=axis))
     layers = view_of(session.draw.view).layers(frame, cut.axis) if frame is not None else 0
     if layers:
         row("Layer", "Where along the axis it is. Ctrl+click to type a number.")
