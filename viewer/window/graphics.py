@@ -53,8 +53,7 @@ def capture(ui: Ui) -> None:
     if ready:
         ui.capture_wanted = ui.capture_view = None
         options, window = sides.draw_options(ui), in_window(ui)  # without what is selected
-        display.draw(c.frame, options, window)
-        pixels = display.read() if display.shows(options, window) else None
+        pixels = display.read() if display.draw(c.frame, options, window) else None
         compared = pixels is not None and c.comparing.seen is not None
         if pixels is not None and compared:
             pixels = sides.composed_picture(ui, pixels)

@@ -93,6 +93,10 @@ def right(text: str, color: ImVec4 | None = None) -> None:
     clipped(text, color)
 
 
+def width_of(text: str) -> float:
+    return float(imgui.calc_text_size(text).x)
+
+
 def fitted(text: str, room: float) -> str:
     """The text, or as much of it as there is room for, with an ellipsis."""
     if imgui.calc_text_size(text).x <= room + 0.5:
@@ -117,7 +121,7 @@ def same_line_for(label: str) -> None:
 def clipped(text: str, color: ImVec4 | None = None, room: float | None = None) -> None:
     """One line of text that ends in an ellipsis where there is no room, with all of it as a tooltip."""
     shown = fitted(text, imgui.get_content_region_avail().x if room is None else room)
-    _text(shown, color)
+    write(shown, color)
     if shown != text:
         tooltip(text)
 
@@ -125,11 +129,12 @@ def clipped(text: str, color: ImVec4 | None = None, room: float | None = None) -
 def paragraph(text: str, color: ImVec4 | None = None) -> None:
     """Text that wraps at the panel's edge."""
     imgui.push_text_wrap_pos(0.0)
-    _text(text, color)
+    write(text, color)
     imgui.pop_text_wrap_pos()
 
 
-def _text(text: str, color: ImVec4 | None) -> None:
+def write(text: str, color: ImVec4 | None = None) -> None:
+    """A line of text, whatever room there is."""
     imgui.push_style_color(imgui.Col_.text, color or imgui.get_style_color_vec4(imgui.Col_.text))
     imgui.text_unformatted(text)
     imgui.pop_style_color()

@@ -16,7 +16,7 @@ from viewer.state.row_filter import HELP, HINT
 from viewer.state.scene_rows import COLUMNS, Column, Level
 from viewer.util.numbers import several
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, count, em, one_of, paragraph, seen_rows, swatch, tooltip
+from viewer.window.widgets import ERROR, QUIET, count, em, one_of, paragraph, right, seen_rows, swatch, tooltip
 
 _FIELD, _NUMBER = 12.0, 4.2  # ems of width: of the filter at least, and of a number
 _COLORS = {
@@ -239,12 +239,9 @@ def _eye(table: SceneTable, row: int, hidden: bool) -> None:
 def _cell(listing: Listing, column: Column, row: int) -> None:
     text, values = listing.table.cell(column.name, row), listing.table.columns.get(column.name)
     if column.numeric:
-        room = imgui.get_content_region_avail().x - imgui.calc_text_size(text).x
-        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(0.0, room))
-        if column.name == "wrong" and text not in ("0", "-"):
-            imgui.text_colored(ERROR, text)
-            return
-    elif column.name in _COLORS and values is not None:
+        right(text, ERROR if column.name == "wrong" and text not in ("0", "-") else None)
+        return
+    if column.name in _COLORS and values is not None:
         color = _COLORS[column.name].get(int(values.numbers[row]))
         if color is not None:
             swatch(color)

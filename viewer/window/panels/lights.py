@@ -6,7 +6,7 @@ A scene may have thousands: a list draws the rows that are seen, and finds light
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from imgui_bundle import imgui
@@ -93,22 +93,18 @@ def combo(
 def _list(ui: Ui, place: str, most: int, chosen: int | None, choose: Callable[[int], None]) -> bool:
     """The lights that are found, so many rows of them at once; whether one was clicked."""
     clicked = False
-
-    def row(number: int) -> None:
-        nonlocal clicked
+    for number in rows(found(ui, place), most, imgui.get_text_line_height_with_spacing()):
         if _row(ui, number, chosen == number):
             choose(number)
             clicked = True
-
-    rows(found(ui, place), most, imgui.get_text_line_height_with_spacing(), row)
     return clicked
 
 
-def rows(numbers: Sequence[int], most: int, height: float, row: Callable[[int], None]) -> None:
-    """Show rows of lights, each so high, of which only those are drawn that are seen: up to `most` at once."""
+def rows(numbers: Sequence[int], most: int, height: float) -> Iterator[int]:
+    """Yield the lights whose rows are to be drawn, each so high: those that are seen, up to `most` at once."""
     if imgui.begin_child("lights", (0.0, min(max(len(numbers), 1), most) * height + 2.0)):
         for place in seen_rows(len(numbers), height):
-            row(numbers[place])
+            yield numbers[place]
     imgui.end_child()
 
 

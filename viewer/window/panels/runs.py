@@ -79,12 +79,12 @@ def show_run(
             _export_buttons(ui, run)
 
     if run is None or run.results is None:
-        _arrange(controls, lambda: paragraph(why, QUIET), ())
+        arrange(controls, lambda: paragraph(why, QUIET), ())
     else:
-        _arrange(controls, lambda: _heading(ui, run), parts)
+        arrange(controls, lambda: _heading(ui, run), parts)
 
 
-def _arrange(controls: Callable[[], None], heading: Callable[[], None], parts: Sequence[Part]) -> None:
+def arrange(controls: Callable[[], None], heading: Callable[[], None], parts: Sequence[Part]) -> None:
     """Show controls, and beside them parts below a heading: next to each other, or as tabs where there is no room for
     that.
 

@@ -141,12 +141,10 @@ def _lights(ui: Ui, edited: Edited) -> None:
     numbers = lights.found(ui, "what if", original)
     places = original.light_positions(ui.controller.session.time)
 
-    def row(number: int) -> None:
+    for number in lights.rows(numbers, _ROWS, imgui.get_frame_height_with_spacing()):
         imgui.push_id(number)
         _light(ui, edited, number, places[number].tolist())
         imgui.pop_id()
-
-    lights.rows(numbers, _ROWS, imgui.get_frame_height_with_spacing(), row)
     paragraph("Drag a light in the picture, or type where it is.", QUIET)
 
 
