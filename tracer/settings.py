@@ -79,12 +79,12 @@ class Settings:
     lamp_radius: float | None = setting(
         None, "Lamp radius",
         "Make every point light and sphere a sphere of this radius, in the scene's units; 0 makes them points.",
-        low=0.0, unset="scene", option="--lamp-radius", panel="Rendering", remembered=False,
+        low=0.0, unset="scene", option="--lamp-radius", panel="Lamps", remembered=False,
     )  # fmt: skip
     lamp_samples: int | None = setting(
         None, "Lamp samples",
         "Points from which each lamp shines; a point that became a sphere has 16 unless this says more or fewer.",
-        low=1, high=MAX_SAMPLES, unset="scene", option="--lamp-samples", panel="Rendering",
+        low=1, high=MAX_SAMPLES, unset="scene", option="--lamp-samples", panel="Lamps",
     )  # fmt: skip
     threads: int = setting(
         0, "Threads", "Threads that work at once, 0 for one on each core: the picture and the counters stay the same.",

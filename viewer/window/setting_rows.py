@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -28,10 +28,10 @@ def value_of(ui: Ui, one: Setting) -> Any:
     return one.get(c.session.state if one.within else c.preferences)
 
 
-def in_panel(ui: Ui, panel: str) -> list[Setting]:
-    """List the settings of a panel that do something as things are."""
+def in_panel(ui: Ui, *panels: str) -> list[Setting]:
+    """List the settings of a panel, or of several, that do something as things are."""
     state = ui.controller.session.state
-    return [one for one in ALL.values() if one.panel == panel and (not one.within or state.applies(one))]
+    return [one for one in ALL.values() if one.panel in panels and (not one.within or state.applies(one))]
 
 
 def panel_rows(
@@ -42,13 +42,15 @@ def panel_rows(
     above: Callable[[], None] = lambda: None,
     below: Callable[[], None] = lambda: None,
     note: Callable[[Setting], str] = lambda one: "",
+    also: Sequence[str] = (),
 ) -> None:
-    """Show all settings that are declared for a panel and do something as things are: rows of those that have a value,
-    with room for names of so many ems, and below these ticks beside each other.
+    """Show all settings that are declared for a panel, or as of others that it stands for `also`, and do something as
+    things are: rows of those that have a value, with room for names of so many ems, and below these ticks beside each
+    other.
 
     `own` has rows of another kind, by the setting's path; `above` and `below` show further rows; `note` is added to
     what is said of a setting."""
-    settings = in_panel(ui, panel)
+    settings = in_panel(ui, panel, *also)
     ticks = [one for one in settings if one.kind is bool and one.path not in own]
     with properties(panel, names) as shown:
         if shown:

@@ -33,7 +33,7 @@ def show(ui: Ui) -> None:
 def show_rendering(ui: Ui) -> None:
     """Show the panel Rendering."""
     lamps = {"settings.lamp_radius": lights.lamp_radius, "settings.lamp_samples": lights.lamp_samples}
-    panel_rows(ui, "Rendering", 6.4, {"pace.fixed_size": _fixed_size, **lamps})
+    panel_rows(ui, "Rendering", 6.4, {"pace.fixed_size": _fixed_size, **lamps}, also=("Lamps",))
 
 
 def _fixed_size(ui: Ui, one: Setting) -> None:
