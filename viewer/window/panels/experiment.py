@@ -59,7 +59,7 @@ def _methods(ui: Ui, plan: ExperimentPlan) -> None:
     if not opened:
         return
 
-    def tick(label: str, methods: set[str]) -> None:
+    def add_or_remove(label: str, methods: set[str]) -> None:
         there = bool(methods) and methods <= {REFERENCE, *plan.methods}
         with outlined():
             if imgui.checkbox(label, there)[0]:
@@ -67,12 +67,12 @@ def _methods(ui: Ui, plan: ExperimentPlan) -> None:
 
     def base(kind: Kind) -> None:
         imgui.begin_disabled(kind.name == REFERENCE)
-        tick(kind.name, {kind.name})
+        add_or_remove(kind.name, {kind.name})
         imgui.end_disabled()
 
     def addition(kind: Kind) -> None:
         bases = [method for method in plan.methods if "+" not in method and method != kind.name]
-        tick(f"+{kind.name}", {f"{base}+{kind.name}" for base in bases})
+        add_or_remove(f"+{kind.name}", {f"{base}+{kind.name}" for base in bases})
 
     kinds_of_methods(ui, groups(), base)
     kinds_of_methods(ui, [("And each of these with", additions())], addition)
