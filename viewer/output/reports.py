@@ -15,7 +15,8 @@ from tracer.experiments.zoom import Change, Step
 from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
 from tracer.text import printable, saved
-from viewer.util.numbers import memory
+from viewer.state.methods import BY_MODES
+from viewer.util.numbers import memory, saved_in_words
 
 T = TypeVar("T")
 
@@ -77,6 +78,60 @@ def table_1(results: experiment.Results) -> list[Column[Row]]:
     """Return the columns that mean anything: wrong answers are counted only where frames were verified, and then rays
     that are culled are traced as well, which takes time."""
     return [column for column in TABLE_1 if column is not (SPEED_UP if results.settings.get("verify") else WRONG)]
+
+
+LEVEL = 0.03
+"""Part of 1 by which times may differ that are called as fast as each other."""
+
+
+def verdicts(results: experiment.Results) -> list[str]:
+    """Say in a sentence for each method what it saves, whether it is right, and whether it is faster."""
+    verified = bool(results.settings.get("verify"))
+    rows = {row.method: row for row in experiment.table(results)}
+    paper = rows.get(BY_MODES)
+    said = []
+    for row in rows.values():
+        if row.method == REFERENCE:
+            continue
+        steps = saved_in_words(row.average_steps).replace(" saved", " of the traversal steps of shadow rays saved")
+        if paper is not None and row is not paper and 0.0 < paper.average_steps < 0.5 * row.average_steps:
+            steps += f", {row.average_steps / paper.average_steps:.1f} times as many as by {BY_MODES}"
+        right = f", {row.wrong:,} wrong answer{'s' * (row.wrong != 1)}" if row.wrong else ", no wrong answer"
+        low, high = row.speed_up - row.speed_up_spread, row.speed_up + row.speed_up_spread
+        if low > 1.0 or high < 1.0:
+            speed = f", {'faster' if low > 1.0 else 'slower'} than {REFERENCE}: {row.speed_up:.2f} times its speed"
+        elif max(abs(low - 1.0), abs(high - 1.0)) <= LEVEL:
+            speed = f", as fast as {REFERENCE} within {LEVEL:.0%}"
+        else:
+            speed = f", too few frames to say whether faster than {REFERENCE}"
+        said.append(f"{row.method}: {steps}{right if verified else speed}.")
+    return said
+
+
+@dataclass(frozen=True)
+class Published:
+    """A row of the paper's Table 1: parts of 1 saved on average and at most, and extra tests per pixel."""
+
+    scene: str
+    steps: float
+    most_steps: float
+    tests: float
+    most_tests: float
+    extra: float
+
+
+PUBLISHED = (
+    Published("Kitchen", 0.198, 0.595, 0.245, 0.598, 0.173),
+    Published("Robot", 0.074, 0.195, 0.095, 0.296, 0.149),
+)
+
+
+def published_in_words(paper: Published) -> str:
+    """Return a row of the paper's table in a sentence."""
+    return (
+        f"The paper, {paper.scene}: {saved(paper.steps)} of the steps saved ({saved(paper.most_steps)} at most), "
+        f"{saved(paper.tests)} of the tests ({saved(paper.most_tests)}), {paper.extra:.3f} extra tests per pixel."
+    )
 
 
 PREPARING = 0.05

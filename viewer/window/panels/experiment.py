@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui, implot
 from tracer.experiments import experiment
 from tracer.experiments.experiment import REFERENCE, Experiment, Results, Row
 from tracer.method import Kind, additions, in_order
-from viewer.output.reports import METHOD, caveats, table_1
+from viewer.output.reports import METHOD, PUBLISHED, caveats, published_in_words, table_1, verdicts
 from viewer.state.methods import groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
@@ -21,6 +21,7 @@ from viewer.window.widgets import ERROR, QUIET, in_window_style, outlined, parag
 
 _PLOT, _TABLE = 16.0, 30.0  # ems of width; the table's first columns are what methods are compared by
 _FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
+_MOST_BELOW = 1.0  # of what is above zero: how much of what is below is seen
 
 
 def show(ui: Ui) -> None:
@@ -81,9 +82,13 @@ def _methods(ui: Ui, plan: ExperimentPlan) -> None:
 
 def _table(ui: Ui, run: Experiment, results: Results) -> None:
     """The paper's Table 1: a line for each method."""
-    rows: list[Row] = ui.cached("table 1", results, 0, lambda: experiment.table(results))
+    rows: list[Row] = ui.cached("table 1", results, len(results.frames), lambda: experiment.table(results))
+    for sentence in ui.cached("verdicts", results, len(results.frames), lambda: verdicts(results)):
+        paragraph(in_window_style(sentence))
     said = in_window_style("; ".join(caveats(results, in_window=True)))
     paragraph(f"{said[:1].upper()}{said[1:]}.", QUIET)
+    for paper in PUBLISHED:
+        paragraph(in_window_style(published_in_words(paper)), QUIET)
     results_table("table 1", [METHOD, *table_1(results)], rows)
 
 
@@ -95,7 +100,8 @@ def _plot(ui: Ui, run: Experiment, results: Results) -> None:
     frames = np.array(results.frames, np.float64)
     values = [curve for curves in savings.values() for curve in curves]
     top = max([float(curve.max()) for curve in values], default=0.0)
-    bottom = min([float(curve.min()) for curve in values], default=0.0)
+    # So that one method that does many times the work does not flatten all others.
+    bottom = max(min([float(curve.min()) for curve in values], default=0.0), -_MOST_BELOW * max(top, _LEAST_TOP))
     implot.setup_axes("", "", AXIS, AXIS)
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
     implot.setup_axis_format(implot.ImAxis_.y1, "%.4g %%")

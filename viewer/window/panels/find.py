@@ -86,13 +86,12 @@ def _filter(ui: Ui, table: SceneTable) -> None:
         imgui.set_keyboard_focus_here()
         state.focus = False
     hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  {HINT}"
-    changed, text = imgui.input_text_with_hint(f"##filter{table.level.value}", hint, table.order.text)
-    if changed:
+    flags = int(imgui.InputTextFlags_.enter_returns_true)
+    entered, text = imgui.input_text_with_hint(f"##filter{table.level.value}", hint, table.order.text, flags)
+    if text != table.order.text:
         table.filter(text)
         state.enters = False
-    entered = imgui.is_key_down(imgui.Key.enter) or imgui.is_key_down(imgui.Key.keypad_enter)
-    if imgui.is_item_deactivated() and entered:
-        state.enters = True
+    state.enters = state.enters or bool(entered)
     tooltip(HELP)
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from tracer.inspect.path_records import AWAY, TRACED, RayTree
 from viewer.output.ray_rows import SUBSET_HELP, RayFilter, RayKey, RayRow, RayRows, RaySubset, totals, unfolded
+from viewer.state.picking import Pick
 from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels import lights
 from viewer.window.panels.area import SHADE, Pen
@@ -31,8 +32,8 @@ _LIGHT = 14.0  # ems of width, at most, for the name of a light
 @dataclass
 class RaysState:
     """The tree of a pixel's rays: which shadow rays are `shown`, the keys of the rows that are folded otherwise than at
-    first and of the `selected` one, the row that the pointer is on, for how many frames it is to `unfold`, and the
-    window's frame in which it was `drawn` last."""
+    first and of the `selected` one, the row that the pointer is on, for how many frames it is to `unfold`, the
+    window's frame in which it was `drawn` last, and whose rays these are."""
 
     shown: RayFilter = field(default_factory=RayFilter)
     toggled: frozenset[RayKey] = frozenset()
@@ -40,6 +41,7 @@ class RaysState:
     pointed: RayRow | None = None
     unfold: int = 0
     drawn: int = -2
+    of: Pick | None = None
 
     def is_open(self, row: RayRow) -> bool:
         """Whether what is below a row is seen: at first, what is below rays on their way."""
@@ -54,7 +56,9 @@ def show_rays(ui: Ui) -> None:
 
 def section(ui: Ui) -> None:
     """A part of the panel that folds; rays are listed, and drawn in the picture, where it is open."""
-    state, tree = ui.state(RaysState), ui.controller.inspector.tree
+    state, tree, picked = ui.state(RaysState), ui.controller.inspector.tree, ui.controller.selection.picked
+    if picked is not state.of:  # what was left out of another pixel's rays may be what one clicked for
+        state.of, state.shown = picked, RayFilter()
     imgui.dummy(ImVec2(0.0, em(0.15)))
     if state.unfold:
         imgui.set_next_item_open(True)
