@@ -6,6 +6,7 @@ there fails within seconds, with its name.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -182,7 +183,8 @@ class Driver:
             return np.asarray(image)
 
     def places(self, here: np.ndarray, reach: int = 2) -> list[tuple[float, float]]:
-        """Where pixels (h, w) lie on the picture that are `here`, with the like around them, as no hand is steady."""
+        """Where pixels (h, w) lie on the picture that are `here`, with the like around them, as no hand is steady; first
+        those nearest to its middle."""
         frame = self.c.frame
         inside = here.copy()
         for shift in (-reach, reach):
@@ -190,7 +192,8 @@ class Driver:
                 same = np.roll(frame.primitive, shift, axis) == frame.primitive
                 inside &= np.roll(here, shift, axis) & same
         inside[:reach], inside[-reach:], inside[:, :reach], inside[:, -reach:] = False, False, False, False
-        return [((x + 0.5) / frame.width, (y + 0.5) / frame.height) for y, x in np.argwhere(inside).tolist()]
+        found = [((x + 0.5) / frame.width, (y + 0.5) / frame.height) for y, x in np.argwhere(inside).tolist()]
+        return sorted(found, key=lambda place: math.dist(place, (0.5, 0.5)))
 
     def window(self) -> np.ndarray:
         """All of the window as it is drawn next."""

@@ -207,5 +207,4 @@ def lit_place(d: Driver, lit: bool) -> tuple[float, float]:
     frame = renderer.render(d.c.frame.time, d.c.frame.camera)
     here = (frame.primitive >= 0) & (frame.primitive < d.c.session.scene.triangle_count)
     here &= (frame.lit == frame.due).all(-1) if lit else (frame.due & ~frame.lit).any(-1)
-    found = d.places(here, reach=4)
-    return found[len(found) // 2]
+    return d.places(here, reach=4)[0]

@@ -60,8 +60,7 @@ def lamps(d: Driver) -> None:
     d.press("J", "L")
     assert np.abs(d.shown().astype(int) - shown).max() > 50, "another light"
     d.press("Shift+L")
-    places = d.places(between, reach=0)
-    d.c.selection.select(places[len(places) // 2])
+    d.c.selection.select(d.places(between, reach=1)[0])
     d.wait(lambda: d.c.inspector.why is not None, "an answer about the penumbra", 20.0)
     (x, y), light = d.c.selection.pixel, d.c.session.draw.light
     one = d.c.inspector.why.reasons[light]

@@ -17,11 +17,24 @@ from viewer.window.ui import Dialog
 
 
 def panels(d: Driver) -> None:
-    """Every panel, dialog and menu is shown once, as a new user would open them.  The cross closes one panel of several
-    behind each other's tabs, and the default layout brings all back."""
+    """The cross closes one panel of several behind each other's tabs, and the default layout brings all back.  Every
+    panel, dialog and menu is shown once, as a new user would open them."""
+    docking = d.app.params.docking_params
+    closed = lambda: [w.label for w in docking.dockable_windows if not w.is_visible]  # noqa: E731
+    d.show_panel("Camera")
+    d.context.window_close("//Camera")
+    d.frames(3)
+    assert closed() == ["Camera"]
+    for label in ("Scene", "View", "Plots", "Log"):
+        docking.dockable_window_of_name(label).is_visible = False
+    d.choose("View/Default layout")
+    assert not closed()
+    docked = d.panel("Scene").dock_node
+    assert docked is not None and d.panel("Camera").dock_id == docked.id_
+
     d.press("B")
     for label in ("Camera", "Rendering", "Saving", "Scene", "View", "Experiment", "Zoom test", "Plots"):
-        d.app.params.docking_params.focus_dockable_window(label)
+        docking.focus_dockable_window(label)
         d.frames(3)
     d.press("F1")
     assert Dialog.KEYS in d.ui.dialogs
@@ -42,19 +55,6 @@ def panels(d: Driver) -> None:
     d.press("K")
     d.wait(lambda: d.c.history.frames >= traced + 3, "frames at idle")
     d.press("K")
-
-    docking = d.app.params.docking_params
-    closed = lambda: [w.label for w in docking.dockable_windows if not w.is_visible]  # noqa: E731
-    d.show_panel("Camera")
-    d.context.window_close("//Camera")
-    d.frames(3)
-    assert closed() == ["Camera"]
-    for label in ("Scene", "View", "Plots", "Log"):
-        docking.dockable_window_of_name(label).is_visible = False
-    d.choose("View/Default layout")
-    assert not closed()
-    docked = d.panel("Scene").dock_node
-    assert docked is not None and d.panel("Camera").dock_id == docked.id_
 
 
 def looks(d: Driver) -> None:

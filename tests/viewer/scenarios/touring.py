@@ -55,7 +55,7 @@ def _by_hand(d: Driver) -> None:
     assert tour.step is SHADOW
     d.pick(0.02, 0.1).settle()  # the sky
     assert tour.step is SHADOW
-    d.pick(*lit_place(d, lit=False))
+    d.press("N").pick(*lit_place(d, lit=False))  # the legend might lie over it
     d.wait(lambda: tour.step is ZOOM, "a shadow that was clicked", 20.0)
     chosen = next(one for one in d.c.inspector.why.reasons if one.blocker >= 0)
     words = plain(Words(d.c.session.scene, d.c.inspector.why).answer(chosen))

@@ -26,8 +26,8 @@ def what_if(d: Driver) -> None:
     assert c.comparing.seen is None
 
     # What was clicked, hidden.
-    places, shown = d.places(c.frame.primitive >= 0), c.session.scene.primitive_count
-    d.pick(*places[len(places) * 2 // 3]).settle()
+    shown = c.session.scene.primitive_count
+    d.pick(*d.places(c.frame.primitive >= 0)[0]).settle()
     d.click("//What if/**/Hide primitive").settle()
     assert c.session.edits.hidden_primitives and c.session.scene.primitive_count < shown
     assert c.selection.picked is None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -102,8 +101,8 @@ def _rays(d: Driver) -> None:
     assert not rays.are_listed(d.ui), "they are folded at first"
     d.press("X")
     assert c.inspector.tree is None, "nothing is clicked"
-    traced, places = c.history.frames, d.places(c.frame.primitive >= 0)
-    d.pick(*places[len(places) // 2])
+    traced = c.history.frames
+    d.pick(*d.places(c.frame.primitive >= 0)[0])
     d.wait(lambda: c.inspector.tree is not None, "the rays of the clicked pixel", 20.0)
     tree = c.inspector.tree
     assert c.history.frames == traced, "asking has traced a frame"
@@ -174,7 +173,7 @@ def _by_something(one: Reason) -> bool:
 
 def _click(d: Driver, here: np.ndarray, wanted: Callable[[Reason], bool]) -> Reason:
     """Click a pixel of those that are `here` that has such a reason, and return the first."""
-    near = sorted(d.places(here), key=lambda place: math.dist(place, (0.5, 0.5)))
+    near = d.places(here)
     for place in near[:: max(1, len(near) // 20)]:
         d.c.selection.clear()
         d.pick(*place)
