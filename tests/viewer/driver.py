@@ -183,8 +183,8 @@ class Driver:
             return np.asarray(image)
 
     def places(self, here: np.ndarray, reach: int = 2) -> list[tuple[float, float]]:
-        """Where pixels (h, w) lie on the picture that are `here`, with the like around them, as no hand is steady; first
-        those nearest to its middle."""
+        """Where pixels (h, w) lie on the picture that are `here`, with the like around them, as no hand is steady: from
+        its middle on."""
         frame = self.c.frame
         inside = here.copy()
         for shift in (-reach, reach):

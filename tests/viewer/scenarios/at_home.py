@@ -60,7 +60,7 @@ def _undo(d: Driver) -> None:
     d.hold("D", 0.1)
     d.drag(d.on_picture(0.7, 0.4), (60.0, 10.0)).settle()  # beside the legend, which can be dragged as well
     shading = d.c.session.draw.shading
-    d.drag(d.middle("//View/view/##shading"), (40.0, 0.0))
+    d.drag(d.middle("//View/**/##shading"), (40.0, 0.0))
     assert d.c.session.draw.shading != shading and d.c.undo.undoes.startswith("shading")
     d.choose("Edit/###Undo")
     assert d.c.session.draw.shading == shading, "a drag is one step"

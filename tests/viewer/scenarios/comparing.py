@@ -50,7 +50,7 @@ def comparing(d: Driver) -> None:
                 d.show_panel(panel)
                 check_fit(d, f"{panel}, comparing")
     with d.held("Z"):
-        assert comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.compared.a
+        assert comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.a
         assert np.array_equal(d.saved("held.png"), a)
     assert not comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.display
     _line(d, a, b)
@@ -60,7 +60,7 @@ def comparing(d: Driver) -> None:
     assert np.abs(d.saved("toned.png").astype(int) - expected).max() <= 1, "both have the tone"
     d.c.session.set_draw(tone=Tone())
     d.press("9").settle()
-    assert not comparing.state.on and d.ui.graphics.compared.a.texture_id is None, "one line at a time"
+    assert not comparing.state.on and d.ui.graphics.a.texture_id is None, "one line at a time"
     d.press("1")
     d.fix_resolution(80, 60)
     d.settle()
@@ -135,4 +135,4 @@ def _two_methods(d: Driver) -> None:
     d.wait(moved, "frames by both while time goes on", 60.0)
     d.press("Space").settle().press("Shift+C").settle()
     assert not comparing.state.on and d.c.traced.second is None
-    assert d.ui.graphics.compared.a.texture_id is None, "what is not seen takes no memory"
+    assert d.ui.graphics.a.texture_id is None, "what is not seen takes no memory"

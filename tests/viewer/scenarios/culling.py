@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from tests.viewer.desk import place_of
 from tests.viewer.drawn import units_in
 from tests.viewer.driver import Driver
 from tracer.geometry.accelerators import BVH8
 from tracer.method import additions, bases
-from tracer.renderer import Renderer
 from viewer.state.views import View
 from viewer.views.tree import LAYERS
 from viewer.views.voxels import voxels_seen
@@ -135,7 +135,7 @@ def _tree(d: Driver) -> None:
     assert (d.c.frame.primitive < 0).all() and d.c.scheduler.drawn_view is View.TREE
     assert d.c.frame.statistics.built.primitives == 3, "what was built stays"
     d.c.motion.move(home)
-    d.show_panel("Rendering").click("//Rendering/quality/##accelerator").click(f"//##Combo_00/{BVH8}").settle()
+    d.show_panel("Rendering").click("//Rendering/**/##accelerator").click(f"//##Combo_00/{BVH8}").settle()
     assert d.c.frame.settings.accelerator == BVH8 and d.c.frame.statistics.built is None
     assert np.array_equal(d.c.frame.primitive, lazy.primitive)
 
@@ -156,7 +156,7 @@ def explaining(d: Driver) -> None:
     """What the pointer is on, or was clicked, is explained beside the window's own frames; a key hides the lines."""
     inspector, traced = d.c.inspector, d.c.history.frames
     assert inspector.why is None
-    shadow, lit = (lit_place(d, lit) for lit in (False, True))
+    shadow, lit = (place_of(d.c, lit) for lit in (False, True))
 
     def answered(blocked: bool) -> None:
         d.wait(lambda: inspector.why is not None and _is_blocked(d) == blocked, "an answer about a pixel", 20.0)
@@ -199,12 +199,3 @@ def explaining(d: Driver) -> None:
 def _is_blocked(d: Driver) -> bool:
     """Whether something blocks a light at the pixel that is explained."""
     return any(one.blocker >= 0 for one in d.c.inspector.why.reasons)
-
-
-def lit_place(d: Driver, lit: bool) -> tuple[float, float]:
-    """Where a pixel of the square lies that a light which is due reaches, or does not, and so its neighbours."""
-    renderer = Renderer(d.c.session.scene, replace(d.c.frame.settings, method="none", record_lights=True))
-    frame = renderer.render(d.c.frame.time, d.c.frame.camera)
-    here = (frame.primitive >= 0) & (frame.primitive < d.c.session.scene.triangle_count)
-    here &= (frame.lit == frame.due).all(-1) if lit else (frame.due & ~frame.lit).any(-1)
-    return d.places(here, reach=4)[0]

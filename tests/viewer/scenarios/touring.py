@@ -6,9 +6,9 @@ from unittest.mock import patch
 
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tests.viewer.desk import place_of
 from tests.viewer.driver import Driver
-from tests.viewer.scenarios.culling import lit_place
-from tracer.why_in_words import Words, plain
+from tracer.inspect.why_in_words import Words, plain
 from viewer.services import tour as tours
 from viewer.services.tour import STEPS
 from viewer.state.preferences import load_preferences
@@ -55,7 +55,7 @@ def _by_hand(d: Driver) -> None:
     assert tour.step is SHADOW
     d.pick(0.02, 0.1).settle()  # the sky
     assert tour.step is SHADOW
-    d.press("N").pick(*lit_place(d, lit=False))  # the legend might lie over it
+    d.press("N").pick(*place_of(d.c, lit=False))  # the legend might lie over it
     d.wait(lambda: tour.step is ZOOM, "a shadow that was clicked", 20.0)
     chosen = next(one for one in d.c.inspector.why.reasons if one.blocker >= 0)
     words = plain(Words(d.c.session.scene, d.c.inspector.why).answer(chosen))

@@ -12,8 +12,8 @@ from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from tracer.reasons import Reason, Rule, Why
-from tracer.why_in_words import Words, plain
+from tracer.inspect.reasons import Reason, Rule, Why
+from tracer.inspect.why_in_words import Words, plain
 from viewer.output.ray_rows import RaySubset
 from viewer.state import navigation
 from viewer.window.panels import rays
