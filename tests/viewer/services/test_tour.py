@@ -9,13 +9,13 @@ from tests.viewer.fakes import make_frame
 from tracer.frame import Settings
 from viewer.services.tour import STEPS, Tour
 
-CULLING = next(step for step in STEPS if step.title == "Turn culling off and on")
+CULLING = STEPS[0]
 KEYS = {"Shadow culling": "Q", "Trace again": "T"}
 
 
 def tour_of(method: str, frame=None) -> Tour:
     c = SimpleNamespace(frame=frame, session=SimpleNamespace(settings=Settings(16, 8, method=method)), active=False)
-    return Tour(c, lambda panel: None, KEYS.__getitem__)
+    return Tour(c, KEYS.__getitem__)
 
 
 def test_culling_that_saves_nothing_yet_is_not_to_be_switched_off():
