@@ -39,10 +39,10 @@ def known(desk: Desk) -> Listing:
     def there() -> bool:
         listing = table.listing
         work = listing is not None and listing.table.columns["saved"] is not None
-        return work and not table.busy and listing.order == table.order and not desk.c.active
+        return work and not table.busy and listing.order == table.order
 
     desk.rest()
-    desk.until(there, ticks=2)
+    desk.until(there)
     return table.listing
 
 
