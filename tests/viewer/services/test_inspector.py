@@ -9,8 +9,8 @@ import pytest
 
 from tests.viewer.desk import Desk, place_of
 from tracer.culling.fate import Fate
-from tracer.inspect.explanation import explain
-from tracer.inspect.path_records import RayTree
+from tracer.inspect.path_records import AWAY, RayTree
+from tracer.inspect.ray_tree import unculled_shadow_rays
 from tracer.inspect.reasons import Reason, Rule, Why
 from tracer.inspect.why_in_words import Link
 from tracer.scene.edits import NO_EDITS
@@ -58,11 +58,12 @@ def test_reasons_say_what_the_frame_did(desk: PixelDesk):
     desk.c.settings.change(method="paper")
     desk.rest()
     desk.c.selection.select(desk.shadow)
-    answer, truth = desk.answered(), explain(desk.c.renderer._renderer, desk.c.frame, *desk.c.selection.pixel)
+    answer, asked = desk.answered(), (desk.c.frame, *desk.c.selection.pixel)
+    truth = unculled_shadow_rays(desk.c.renderer._renderer, *asked)
     assert answer.tree is desk.c.inspector.tree and (answer.tree.x, answer.tree.y) == desk.c.selection.pixel
-    assert [one.lit for one in answer.reasons] == [one.reached for one in truth] and wrong_beyond(answer) == 0
-    assert [one.fate is not Fate.FACES_AWAY for one in answer.reasons] == [one.due for one in truth]
-    assert [one.blocker for one in answer.reasons] == [-1 if one.blocker is None else one.blocker for one in truth]
+    assert [one.lit for one in answer.reasons] == truth.lit.tolist() and wrong_beyond(answer) == 0
+    assert [one.fate is Fate.FACES_AWAY for one in answer.reasons] == (truth.verdict == AWAY).tolist()
+    assert [one.blocker for one in answer.reasons] == truth.blocker.tolist()
 
 
 def test_nothing_is_proven_by_a_method_that_is_not_chosen_any_more(desk: PixelDesk):
