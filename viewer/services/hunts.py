@@ -14,11 +14,10 @@ from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.model import Scene
 from viewer.output import commands, exports
 from viewer.output.comparison import Comparison, Crop
-from viewer.services.history import FrameNavigator
+from viewer.services.frame_navigator import FrameNavigator
 from viewer.services.runs import Runs
 from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
-from viewer.state.notices import Notices
 from viewer.state.pixels import around
 from viewer.state.plans import HuntPlan
 from viewer.state.session import Session
@@ -90,8 +89,8 @@ class Hunts:
     """`plan` is what to search next, `hunt` the last hunt: under way, done or stopped; `chosen` is the counterexample
     that is looked at, by its place in the list."""
 
-    def __init__(self, session: Session, runs: Runs, navigator: FrameNavigator, notices: Notices) -> None:
-        self._session, self._runs, self._navigator, self._notices = session, runs, navigator, notices
+    def __init__(self, session: Session, runs: Runs, navigator: FrameNavigator) -> None:
+        self._session, self._runs, self._navigator = session, runs, navigator
         self.plan = HuntPlan()
         self.hunt: Hunt | None = None
         self.chosen: int | None = None
@@ -117,23 +116,13 @@ class Hunts:
 
         self._runs.start(make)
 
-    def find(self, number: int) -> Counterexample | None:
-        """Return a counterexample by its place in the list, if its scene is still open; else one line is said."""
-        hunt, found = self.hunt, self.found
-        if hunt is None or found is None or not 0 <= number < len(found.finds) or self._runs.refuses():
-            return None
-        if not hunt.is_of(self._session.scene):
-            self._notices.say(f"this was found {hunt.made_in(self._session.scene)}")
-            return None
-        return found.finds[number]
-
     def go(self, number: int) -> None:
         """Fly to a counterexample: forget all modes, trace the frames that taught it, and select its pixel, enlarged.
         The picture stays as it was found, with one sample a pixel, until something moves."""
-        find, hunt, scene = self.find(number), self.hunt, self._session.scene
-        if find is None or hunt is None or scene is None:
+        hunt, found, scene = self.hunt, self.found, self._session.scene
+        if hunt is None or found is None or scene is None or not self._runs.allows(hunt):
             return
-        self.chosen = number
+        self.chosen, find = number, found.finds[number]
         settings, size = hunt.settings, (hunt.settings.width, hunt.settings.height)
         wanted = replace(settings, samples=self._session.settings.samples)
         state = replace(

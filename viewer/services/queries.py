@@ -10,12 +10,15 @@ future asks again about the frame that is shown by then.  What a function raises
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from concurrent.futures import Future
-from typing import Any, NamedTuple
+from concurrent.futures import Future, InvalidStateError
+from contextlib import suppress
+from typing import Any, NamedTuple, TypeVar
 
 from tracer.frame import Frame
+from tracer.scene.model import Cancelled
 from viewer.util.messages import one_line
 
+T = TypeVar("T")
 Function = Callable[..., Any]
 """Called with the renderer, the frame, the arguments, and `cancelled()`, which says that nobody waits any more."""
 Ask = Callable[..., Future[Any]]
@@ -29,6 +32,19 @@ class Query(NamedTuple):
     frame: Frame
     arguments: tuple[Hashable, ...]
     future: Future[Any]
+
+
+def fulfil(future: Future[T], work: Callable[[], T]) -> Exception | None:
+    """Give a future the result of some work, and return what went wrong with that; Cancelled cancels the future."""
+    with suppress(InvalidStateError):  # it was cancelled meanwhile
+        try:
+            future.set_result(work())
+        except Cancelled:
+            future.cancel()
+        except Exception as problem:
+            future.set_exception(problem)
+            return problem
+    return None
 
 
 class Queries:

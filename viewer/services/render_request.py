@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import closing
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
@@ -12,11 +13,14 @@ from tracer.scene.model import Camera
 from tracer.settings import RECORDS
 from tracer.statistics import FrameStatistics
 
+T = TypeVar("T")
+REFINEMENT_SECONDS = 0.4
+"""That a frame that refines another may spend on certificates: the picture is there already, and a movement ends it."""
 Warmup = tuple[tuple[float, Camera], ...]
 """Frames by time and camera."""
 Parts = Generator[tuple[Frame, Frame | None], None, None]
 """Frames of a picture, each with the same by a second method, if any."""
-Task = Callable[[Renderer, Callable[[], bool]], None]
+Task = Callable[[Renderer, Callable[[], bool]], T]
 """Long work with the renderer's world.  It ends soon after what it is given, `cancelled()`, turns true."""
 Spare = Callable[[Renderer, Callable[[], bool]], bool]
 """A step of work for when nothing else is wanted, which leaves the renderer itself as it is.  It takes no longer than a
@@ -29,24 +33,37 @@ class RenderRequest:
     """What to trace: a picture, with so many samples a pixel in the end.
 
     `second` is the method that traces the same once more, if any, after each part of the picture.
-    `divisor` is how much coarser than the window it is; `serial` tells requests apart that are otherwise alike;
-    `refinement_seconds` is how long, at least, certificates may be made for it where nobody waits for the picture.  How
-    the picture comes about does not tell requests apart: `parts` of it, in sixteenths, around a `focus`, and that a
-    `quick` one is not cut short before some of it has been shown.  With `warmup` frames, all modes are forgotten and
-    these are traced before it."""
+    `divisor` is how much coarser than the window it is; `serial` tells requests apart that are otherwise alike; it
+    `refines` where the picture is there already, and nobody waits for its certificates.  How the picture comes about
+    does not tell requests apart: `parts` of it, in sixteenths, around a `focus`, and that a `quick` one is not cut
+    short before some of it has been shown.  With `warmup` frames, all modes are forgotten and these are traced before
+    it."""
 
     time: float
     camera: Camera
     settings: Settings
     divisor: int = 1
     serial: int = 0
-    refinement_seconds: float = 0.0
+    refines: bool = False
     samples: int = 1
     second: str = ""
     parts: tuple[float, ...] = field(default=(16,), compare=False)
     quick: bool = field(default=False, compare=False)
     focus: tuple[float, float] | None = field(default=None, compare=False)
     warmup: Warmup | None = None
+
+    @property
+    def traced_settings(self) -> Settings:
+        """The settings it is traced by."""
+        seconds = max(self.settings.certificate_seconds, REFINEMENT_SECONDS if self.refines else 0.0)
+        return replace(self.settings, certificate_seconds=seconds, patient=self.refines)
+
+    def frames_before(self, renderer: Renderer, cancel: Callable[[], bool]) -> Iterator[Traced]:
+        """Trace the frames that set its modes, and yield them."""
+        for moment, camera in self.warmup or ():
+            renderer.settings = replace(self.traced_settings, verify=False)
+            frame = renderer.render(moment, camera, cancel)
+            yield Traced(RenderRequest(moment, camera, frame.settings), frame, frame.statistics)
 
     def refine(self, renderer: Renderer, cancel: Callable[[], bool]) -> Parts:
         """Yield its parts and samples, each of them a frame, by the renderer's settings."""
@@ -100,6 +117,11 @@ class Traced:
     def whole(self) -> bool:
         """Whether all of its pixels have been shaded."""
         return self.frame.statistics.part >= 1.0
+
+    @property
+    def complete(self) -> bool:
+        """Whether it is whole, in the resolution of a picture at rest."""
+        return self.whole and self.request.divisor == 1
 
     @property
     def full_size(self) -> tuple[int, int]:

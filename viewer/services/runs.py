@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -18,11 +17,11 @@ from tracer.experiments import experiment, hunt, zoom
 from tracer.experiments.experiment import Experiment
 from tracer.experiments.filmstrip import Filmstrip
 from tracer.experiments.runner import STARTING, Run
-from tracer.experiments.zoom import Step, ZoomTest
+from tracer.experiments.zoom import ZoomTest
 from tracer.frame import Frame
 from tracer.method import in_order
 from tracer.renderer import Renderer
-from tracer.scene.model import Camera, Scene
+from tracer.scene.model import Scene
 from tracer.settings import Settings
 from viewer.output import exports
 from viewer.services.capture_service import CaptureService
@@ -104,7 +103,7 @@ class Runs:
         self,
         session: Session,
         selection: Selection,
-        perform: Callable[[Task], None],
+        perform: Callable[[Task[None]], object],
         preferences: Preferences,
         notices: Notices,
         files: CaptureService,
@@ -130,6 +129,15 @@ class Runs:
         self._notices.say(f"the {self.current.name} is still under way; stop it first")
         return True
 
+    def allows(self, run: Run) -> bool:
+        """Return whether one may go to what a run has shown: none is under way, and its scene is open; else says so."""
+        if self.refuses():
+            return False
+        found = run.is_of(self._session.scene)
+        if not found:
+            self._notices.say(f"the {run.name} was made {run.made_in(self._session.scene)}")
+        return found
+
     def start(self, make: Callable[[Scene], Run]) -> bool:
         """Begin what `make` returns for the open scene; says why where that cannot be, as where it raises an error."""
         scene = self._session.scene
@@ -147,9 +155,8 @@ class Runs:
                 return False
 
             def work(renderer: Renderer, cancelled: Callable[[], bool]) -> None:
-                with suppress(Exception):  # the run keeps it
-                    for _ in run.each(getattr(renderer, "world", None), cancelled, self._wake):
-                        pass
+                for _ in run.each(getattr(renderer, "world", None), cancelled, self._wake):  # it keeps what it raises
+                    pass
 
             run.watches = True
             self.current = run
@@ -224,19 +231,6 @@ class Runs:
             return self.zoom_test
 
         self.start(make)
-
-    def go_to(self, step: Step) -> Camera | None:
-        """Set the time of the zoom test, and return the camera of one of its steps; None, and one line, where that
-        cannot be."""
-        test, session = self.zoom_test, self._session
-        if test is None or test.results is None or self.refuses():
-            return None
-        if not test.is_of(session.scene):
-            self._notices.say(f"this test was made {test.made_in(session.scene)}")
-            return None
-        session.playing = False
-        session.change(time=test.results.time)
-        return step.camera
 
     # --- results as files -------------------------------------------------------------------------
 

@@ -187,7 +187,7 @@ class SceneTable:
         if not self.visible or now is None or self._job is not None:
             return
         light, last = self._session.draw.light, self._source
-        if traced is not None and traced.whole and traced.request.divisor == 1:
+        if traced is not None and traced.complete:
             same = last is not None and last.now is now and last.light == light
             # Further samples of a picture count nothing.
             if last is None or not same or not (self.pointed_at or is_same_picture(last.frame, traced.frame)):

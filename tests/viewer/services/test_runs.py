@@ -208,7 +208,7 @@ def test_a_run_that_is_overtaken_by_another_scene_ends_and_keeps_what_it_has(des
     assert run.done and run.error is None and 2 < len(run.results.frames) < 5000
     assert desk.c.session.scene.path.name == "figure4.aff"
     desk.c.navigator.go_to_experiment(run, 3)
-    assert "this was measured in tiny.aff; open that scene again" in desk.said
+    assert "the experiment was made in tiny.aff; open that scene again" in desk.said
 
 
 def test_what_cannot_be_written_is_one_line(desk: Desk, tmp_path: Path) -> None:
