@@ -12,7 +12,7 @@ from dataclasses import replace
 from enum import Enum
 
 from tracer.frame import Frame
-from tracer.one_light import with_light
+from tracer.inspect.one_light import with_light
 from tracer.renderer import Renderer
 from viewer.services.frame_budget import AT_ONCE, FrameBudget, Plan, divided
 from viewer.services.frame_inputs import FrameInputs
