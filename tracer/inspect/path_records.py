@@ -23,30 +23,6 @@ VERDICTS = tuple(Verdict)
 NUMBER_OF = {verdict: number for number, verdict in enumerate(VERDICTS)}
 AWAY, TRACED = NUMBER_OF[Verdict.AWAY], NUMBER_OF[Verdict.TRACED]
 
-FATES: dict[Verdict, Fate] = {
-    Verdict.AWAY: Fate.FACES_AWAY,
-    Verdict.PASSED_OVER: Fate.CULLED,
-    Verdict.FULL_SHADOW: Fate.CULLED,
-    Verdict.NON_SHADOW: Fate.CULLED,
-    Verdict.CERTIFIED_FULL: Fate.CULLED,
-    Verdict.CERTIFIED_LIT: Fate.CULLED,
-    Verdict.CANDIDATES: Fate.CANDIDATES,
-    Verdict.BEAM: Fate.CULLED,
-    Verdict.CACHED: Fate.CACHED,
-    Verdict.BUFFER_LIT: Fate.CULLED,
-    Verdict.BUFFER_FULL: Fate.CULLED,
-    Verdict.BUFFER_TESTED: Fate.CANDIDATES,
-    Verdict.VOXEL_LIT: Fate.CULLED,
-    Verdict.VOXEL_FULL: Fate.CULLED,
-    Verdict.VOXEL_WALK: Fate.CANDIDATES,
-    Verdict.CELL_LIT: Fate.CULLED,
-    Verdict.CELL_FULL: Fate.CULLED,
-    Verdict.CELL_TESTED: Fate.CANDIDATES,
-    Verdict.ANSWERED: Fate.CULLED,
-    Verdict.TRACED: Fate.TRACED,
-}
-"""What becomes of a ray that each verdict answers, if dynamic objects need not be asked as well."""
-
 
 class RayKind(Enum):
     """What sent a ray."""
@@ -118,8 +94,8 @@ class ShadowRays:
         """What became of a ray, by what answered it; why it was traced is not told."""
         verdict = VERDICTS[self.verdict[place]]
         # Light buffers count what they have tested as dynamic only where that is what remains.
-        asks_dynamic = FATES[verdict] is Fate.CULLED or verdict is Verdict.BUFFER_TESTED
-        return Fate.DYNAMIC_ONLY if asks_dynamic and self.of_static[place] else FATES[verdict]
+        asks_dynamic = verdict.fate is Fate.CULLED or verdict is Verdict.BUFFER_TESTED
+        return Fate.DYNAMIC_ONLY if asks_dynamic and self.of_static[place] else verdict.fate
 
     @cached_property
     def counts(self) -> Counter[Verdict]:

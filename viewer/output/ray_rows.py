@@ -17,35 +17,12 @@ from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
 from tracer.inspect.path_records import AWAY, TRACED, VERDICTS, RayTree, ShadowRays
-from tracer.inspect.reasons import MEANING, WHY_TRACED
+from tracer.inspect.reasons import WHY_TRACED
 from tracer.inspect.why_in_words import primitive_in_words
 from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
 from viewer.state.palette import WRONG, Color
 from viewer.util.numbers import count, several
-
-SAID: dict[Verdict, str] = {
-    Verdict.AWAY: "surface faces away",
-    Verdict.PASSED_OVER: "light hidden from the region",
-    Verdict.FULL_SHADOW: "culled by FULL_SHADOW",
-    Verdict.NON_SHADOW: "dynamic only by NON_SHADOW",
-    Verdict.CERTIFIED_FULL: "culled by certificate full",
-    Verdict.CERTIFIED_LIT: "dynamic only by certificate lit",
-    Verdict.CANDIDATES: "candidates only",
-    Verdict.BEAM: "culled by a beam",
-    Verdict.CACHED: "cached occluder",
-    Verdict.BUFFER_LIT: "light buffer: nothing in front",
-    Verdict.BUFFER_FULL: "light buffer: behind what covers the cell",
-    Verdict.BUFFER_TESTED: "light buffer: candidates only",
-    Verdict.VOXEL_LIT: "lit voxel",
-    Verdict.VOXEL_FULL: "full voxel",
-    Verdict.VOXEL_WALK: "walk through voxels",
-    Verdict.CELL_LIT: "lit cell",
-    Verdict.CELL_FULL: "light hidden from the cell",
-    Verdict.CELL_TESTED: "blockers of the cell only",
-    Verdict.ANSWERED: "culled",
-    Verdict.TRACED: "traced",
-}
 
 
 class RaySubset(StrEnum):
@@ -189,7 +166,7 @@ class RayRows:
             text, tip = self._summary(s, places), ""
         else:
             what, by = "samples" if one_light else "rays", outcomes[0][2]
-            text, tip = f"{count(len(places))} {what} {self._fate(s, places, by)}", MEANING[VERDICTS[s.verdict[first]]]
+            text, tip = f"{count(len(places))} {what} {self._fate(s, places, by)}", VERDICTS[s.verdict[first]].meaning
         folds = len(places) > 1 and not (one_light and (s.verdict[places] == AWAY).all())
         below = partial(self._shadows, ray, s, places, key) if folds else None
         return RayRow(key, f"{name}: {text}" if name else text, tip, color_of(s, places), ray, places, below)
@@ -210,7 +187,8 @@ class RayRows:
     def _fate(self, s: ShadowRays, places: Places, by: str = "") -> str:
         """What became of a shadow ray in words, or of several with the same fate, `by` the object that blocks them."""
         place, alike = int(places[0]), len(places) > 1
-        verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
+        verdict = VERDICTS[s.verdict[place]]
+        text = verdict.in_words
         if not verdict.due:
             return text
         shared = f"blocked by {by}" if by else "in shadow"
@@ -226,7 +204,7 @@ class RayRows:
 
     def _tip(self, s: ShadowRays, place: int) -> str:
         verdict = VERDICTS[s.verdict[place]]
-        parts = [WHY_TRACED.get(s.known.get(place, ""), MEANING[verdict])]
+        parts = [WHY_TRACED.get(s.known.get(place, ""), verdict.meaning)]
         if place in s.told:
             parts.append(s.told[place])
         if place in s.named:
@@ -248,7 +226,7 @@ class RayRows:
         for number in np.unique(s.verdict[places]):
             same = places[s.verdict[places] == number]
             lit = int(s.lit[same].sum())
-            parts.append(f"{count(len(same))} {SAID[VERDICTS[number]]}" + (f" ({count(lit)} lit)" if lit else ""))
+            parts.append(f"{count(len(same))} {VERDICTS[number].in_words}" + (f" ({count(lit)} lit)" if lit else ""))
         return ", ".join(parts)
 
     def _name(self, primitive: int) -> str:
@@ -273,5 +251,5 @@ def unfolded(rows: list[RayRow], is_open: Callable[[RayRow], bool], level: int =
 def totals(tree: RayTree) -> str:
     """All shadow rays of the tree in a line."""
     paths = f"{count(len(tree.rays))} {'ray' if len(tree.rays) == 1 else 'rays'}"
-    said = ", ".join(f"{count(number)} {SAID[verdict]}" for verdict, number in tree.counts.items() if verdict.due)
+    said = ", ".join(f"{count(number)} {verdict.in_words}" for verdict, number in tree.counts.items() if verdict.due)
     return f"{paths} and {count(tree.due)} shadow rays that are due" + (f": {said}" if said else "")
