@@ -73,8 +73,7 @@ def show(ui: Ui) -> None:
 def _picture(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
     c.selection.hovered = None
-    filling = sides.filling(ui)
-    texture = filling.texture_id if filling is not None else None
+    texture = sides.filling(ui).texture_id
     if c.traced is None:
         if texture is not None and c.reloaded:  # what was shown before stays until there is news: it would flash
             left, top, size = _fitted(ui.picture.shape, room)
