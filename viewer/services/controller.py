@@ -23,7 +23,6 @@ from viewer.services.frame_inputs import FrameInputs
 from viewer.services.frame_navigator import FrameNavigator
 from viewer.services.frame_scheduler import Activity, FrameScheduler
 from viewer.services.history import FrameHistory
-from viewer.services.hunts import Hunts
 from viewer.services.inspector import Inspector, Selection
 from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
@@ -71,7 +70,7 @@ class Controller:
         self.undo = undo = Undo(session, motion, notices, runs.refuses)
         self.presets = Presets(session, preferences, notices, settings.save, runs.refuses, undo.begin_step)
         self.inspector = Inspector(selection, renderer.query)
-        self.navigator = navigator = FrameNavigator(
+        self.navigator = FrameNavigator(
             session, self.history, scheduler, runs, undo, selection, notices, self.restore, self.reset_modes
         )
         self.editing = editing = Editing(
@@ -84,7 +83,6 @@ class Controller:
             session, preferences, scheduler, self.history, loader, runs, captures, notices
         )
         self.films = Films(session, preferences, runs, pictures, bookmarks)
-        self.hunts = Hunts(session, runs, navigator)
         self.reloaded = False
         self.info: dict[str, Any] = {}
         self.drawn_seconds = 0.0

@@ -11,6 +11,7 @@ from dataclasses import replace
 from tracer.method import Method
 from tracer.scene.model import Camera
 from viewer.output.commands import BUILT
+from viewer.output.comparison import Crop
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.history import KEPT_FRAMES, FrameHistory
 from viewer.services.inspector import Selection
@@ -18,14 +19,14 @@ from viewer.services.render_request import Traced, Warmup
 from viewer.services.runs import Experiment, Runs
 from viewer.services.undo import Undo
 from viewer.state.notices import Notices
-from viewer.state.pixels import Point, Zoom
+from viewer.state.pixels import Point, Zoom, around
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
 
 
 class FrameNavigator:
-    """Goes back to frames of the history, to those of an experiment, and to other states."""
+    """Goes back to frames of the history, to those of an experiment or a hunt, and to other states."""
 
     def __init__(
         self,
@@ -68,6 +69,21 @@ class FrameNavigator:
         name = f"frame {number} of the experiment"
         self.go_to(state, name, (settings.width, settings.height))
         self._notices.say(f"{name}, by {run.shown}")
+
+    def go_to_find(self, number: int) -> None:
+        """Fly to a counterexample of the hunt: forget all modes, trace the frames that taught it, and select its pixel,
+        enlarged.  The picture stays as it was found, with one sample a pixel, until something moves."""
+        runs, scene = self._runs, self._session.scene
+        if scene is None or runs.hunt is None or runs.hunt.results is None or not runs.allows(runs.hunt):
+            return
+        runs.chosen_find, find, settings = number, runs.hunt.results.finds[number], runs.hunt.settings
+        size = settings.width, settings.height
+        settings = replace(settings, samples=self._session.settings.samples)
+        state = replace(self._session.state, time=find.time, camera=find.seen_camera, settings=settings)
+        point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
+        warmup = tuple((one.time, one.camera or scene.camera_at(one.time)) for one in find.before)
+        zoom = around(*point, size[0] / Crop.around((find.x, find.y), size).width)
+        self.go_to(state.with_draw(light=find.light), f"counterexample {number + 1}", size, point, zoom, warmup)
 
     def go_to(
         self,

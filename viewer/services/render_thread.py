@@ -8,8 +8,8 @@ settings, a picture that has been shown), but the first part of one is let finis
 moves, the next request comes before the last picture is ready, and cancelling each would show none at all.
 
 An experiment is a `Task`: it has the thread, and with it the scene's world, to itself until it is
-done; the newest request of that time waits for its end.  A query (`viewer.services.queries`) takes a moment: it is
-answered between two frames, while the world still stands as it did in the frame that it is about.  `Spare` work is done
+done; the newest request of that time waits for its end.  A query (`render_request.py`) takes a moment: it is answered
+between two frames, while the world still stands as it did in the frame that it is about.  `Spare` work is done
 a step at a time while nothing else is wanted, and anything that is wanted ends a step.
 """
 
@@ -29,8 +29,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
 from viewer.services.beside import Pair
 from viewer.services.jobs import TRACER, lower_priority
-from viewer.services.queries import Function, Queries, Query, fulfil
-from viewer.services.render_request import Parts, RenderRequest, Spare, T, Task, Traced
+from viewer.services.render_request import Function, Parts, Queries, Query, RenderRequest, Spare, Task, Traced, fulfil
 from viewer.util.messages import Failure, failure
 
 QUERY_SECONDS = 0.25
@@ -85,12 +84,12 @@ class RenderThread:
                 self._cancel = self._cancel or request.supersedes(self._running, self._shown)
             self._changed.notify_all()
 
-    def perform(self, task: Task[T]) -> Future[T]:
+    def perform(self, task: Task[Any]) -> Future[Any]:
         """Do this instead of frames, from now on until it is done; what is under way is cut short, or dropped.
 
         The task gets the renderer that is in use now; what it raises is in the future.  Raises RuntimeError if none
         is."""
-        future: Future[T] = Future()
+        future: Future[Any] = Future()
         with self._changed:
             if self._renderer is None:
                 raise RuntimeError("there is no scene to work on")
@@ -99,7 +98,7 @@ class RenderThread:
         return future
 
     def query(self, function: Function, frame: Frame, *arguments: Hashable) -> Future[Any]:
-        """Return the future of `function(renderer, frame, *arguments, cancelled)` (see `viewer.services.queries`)."""
+        """Return the future of `function(renderer, frame, *arguments, cancelled)` (see `render_request.py`)."""
         with self._changed:
             future = self._queries.ask(function, frame, arguments)
             self._changed.notify_all()
@@ -207,7 +206,7 @@ class RenderThread:
         renderer.reset_modes()
         self._fresh, self._pair = True, None
 
-    def _perform(self, renderer: Renderer, task: Task[T], future: Future[T], reset: bool) -> None:
+    def _perform(self, renderer: Renderer, task: Task[Any], future: Future[Any], reset: bool) -> None:
         if reset:
             self._forget(renderer)
         fulfil(future, lambda: task(renderer, lambda: self._cancel))

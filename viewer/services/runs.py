@@ -16,6 +16,7 @@ from pathlib import Path
 from tracer.experiments import experiment, hunt, zoom
 from tracer.experiments.experiment import Experiment
 from tracer.experiments.filmstrip import Filmstrip
+from tracer.experiments.hunt import Hunt, Search
 from tracer.experiments.runner import STARTING, Run
 from tracer.experiments.zoom import ZoomTest
 from tracer.frame import Frame
@@ -27,9 +28,10 @@ from viewer.output import exports
 from viewer.services.capture_service import CaptureService
 from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Task, Traced
+from viewer.state import navigation
 from viewer.state.methods import BY_MODES, CERTIFIED
 from viewer.state.notices import Notices
-from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
+from viewer.state.plans import ExperimentPlan, HuntPlan, ZoomPlan, parse_factors
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import Record, View
@@ -97,7 +99,8 @@ def duration(seconds: float) -> str:
 
 
 class Runs:
-    """`experiment` and `zoom_test` are the last of their kind: under way, done or stopped; `current` is under way."""
+    """`experiment`, `zoom_test` and `hunt` are the last of their kind: under way, done or stopped; `current` is under
+    way.  `chosen_find` is the counterexample of the hunt that is looked at, by its place in the list."""
 
     def __init__(
         self,
@@ -115,9 +118,11 @@ class Runs:
         self._session, self._selection, self._perform = session, selection, perform
         self._preferences, self._notices, self._files, self._wake = preferences, notices, files, wake
         self.experiment_plan = ExperimentPlan({BY_MODES, CERTIFIED})
-        self.zoom_plan = ZoomPlan()
+        self.zoom_plan, self.hunt_plan = ZoomPlan(), HuntPlan()
         self.experiment: Experiment | None = None
         self.zoom_test: RecordedZoomTest | None = None
+        self.hunt: Hunt | None = None
+        self.chosen_find: int | None = None
         self.current: Run | None = None
 
     # --- start and stop ---------------------------------------------------------------------------
@@ -196,7 +201,7 @@ class Runs:
             kept = "" if run.results is None else f"; what was done is kept{where}"
             self._notices.say(f"{run.name} stopped after {done} of {frames} frames{kept}")
 
-    # --- experiments and zoom tests ---------------------------------------------------------------
+    # --- experiments, zoom tests and hunts -----------------------------------------------------------
 
     def start_experiment(self) -> None:
         """Measure what `experiment_plan` says, over the open scene's path."""
@@ -229,6 +234,22 @@ class Runs:
             start, factors = zoom.aim(frame, selected.primitive), parse_factors(plan.factors)
             self.zoom_test = RecordedZoomTest(scene, settings, start, factors, plan.steps, plan.ratio)
             return self.zoom_test
+
+        self.start(make)
+
+    def start_hunt(self) -> None:
+        """Search for wrong pixels as `hunt_plan` says, with the settings that are chosen now."""
+
+        def make(scene: Scene) -> Run:
+            plan = self.hunt_plan
+            times = [take.time for take in navigation.along_path(scene, *plan.frames(scene))][:: plan.step]
+            settings = replace(
+                self._session.settings, method=plan.method, width=plan.size[0], height=plan.size[1], samples=1,
+                certificate_seconds=math.inf, verify=True,
+            ).validated()  # fmt: skip
+            search = Search(settings, times, None, plan.around, plan.radius, plan.seed, plan.keep)
+            self.hunt, self.chosen_find = Hunt(scene, search), None
+            return self.hunt
 
         self.start(make)
 

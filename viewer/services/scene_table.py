@@ -22,8 +22,7 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.editing import Editing
 from viewer.services.inspector import Selection
 from viewer.services.jobs import Job
-from viewer.services.queries import is_same_picture
-from viewer.services.render_request import Traced
+from viewer.services.render_request import Traced, is_same_picture
 from viewer.state.notices import Notices
 from viewer.state.parts import parts_of
 from viewer.state.preferences import Preferences

@@ -69,17 +69,17 @@ def test_a_step_can_be_gone_to_in_its_own_scene_while_nothing_runs(figure4: Desk
 def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(tmp_path: Path, tiny_scene_file: Path) -> None:
     desk = Desk(write_marbles(tmp_path), tmp_path / "pictures")
     c = desk.c
-    c.hunts.plan.size = (96, 96)
+    c.runs.hunt_plan.size = (96, 96)
     c.settings.change(depth=2)
-    c.hunts.start()
-    desk.until(lambda: c.hunts.found is not None and c.hunts.found.finds)
-    c.hunts.go(0)
+    c.runs.start_hunt()
+    desk.until(lambda: c.runs.hunt.results is not None and c.runs.hunt.results.finds)
+    c.navigator.go_to_find(0)
     assert "the hunt is still under way" in desk.said
     c.runs.stop()
     desk.run_to_its_end()
-    assert c.hunts.found.finds and not c.hunts.hunt.whole
-    find, before = c.hunts.found.finds[-1], c.session.state
-    c.hunts.go(len(c.hunts.found.finds) - 1)
+    assert c.runs.hunt.results.finds and not c.runs.hunt.whole
+    find, before = c.runs.hunt.results.finds[-1], c.session.state
+    c.navigator.go_to_find(len(c.runs.hunt.results.finds) - 1)
     desk.run_to_its_end()
     assert tuple(c.frame.color[find.y, find.x].tolist()) == find.color
     assert tuple(c.frame.reference[find.y, find.x].tolist()) == find.reference
@@ -87,6 +87,6 @@ def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(tmp_path: Pa
     desk.rest()
     assert c.session.state == before
     desk.open(tiny_scene_file)
-    c.hunts.go(0)
+    c.navigator.go_to_find(0)
     assert "open that scene again" in desk.said and c.session.camera == c.session.scene.camera
     assert c.close()
