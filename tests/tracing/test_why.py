@@ -168,11 +168,6 @@ def test_of_a_lamps_rays_that_which_asked_most_is_in_the_view_of_fates(scene_fil
         assert {Fate.CULLED, Fate.DYNAMIC_ONLY} <= met
 
 
-def test_each_verdict_says_what_becomes_of_a_ray():
-    assert not {Fate.NONE, Fate.DYNAMIC_ONLY} & {verdict.fate for verdict in Verdict}
-    assert [one for one in Verdict if not one.culled] == [Verdict.AWAY, Verdict.TRACED]
-
-
 def expected(word: np.unsignedinteger, light: int) -> Fate:
     """What the paper's method does by a word of modes, as §2.4 has it."""
     occlusion, shadow = OcclusionMode(int(occlusion_mode(word))), ShadowMode(int(shadow_mode(word, light)))

@@ -10,7 +10,7 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode
 from tracer.culling.verdicts import Verdict
 from tracer.inspect.occluded_by import OccludedBy, Reference
 from tracer.inspect.path_records import RayTree
-from tracer.inspect.ray_reasons import unused
+from tracer.inspect.ray_tree import unused
 
 
 class Rule(Enum):
@@ -53,6 +53,34 @@ SECTIONS = {
 }
 """What the paper's sections say."""
 
+MEANING: dict[Verdict, str] = {
+    Verdict.AWAY: "The light is behind the surface, so that no shadow ray is due.",
+    Verdict.PASSED_OVER: "The light is proven to be hidden from all that is near the point.",
+    Verdict.FULL_SHADOW: "The primitive is fully rendered, and every shadow ray from it to this light was blocked.",
+    Verdict.NON_SHADOW: "The primitive is fully rendered, and nothing static blocked any shadow ray from it to this "
+    "light: only objects that move are tested.",
+    Verdict.CERTIFIED_FULL: "The whole cell is proven to be in the shadow of what does not move now.",
+    Verdict.CERTIFIED_LIT: "Nothing static is between the whole cell and the light: only objects that move are tested.",
+    Verdict.CANDIDATES: "Only a few primitives can block the light here: these are tested, and objects that move.",
+    Verdict.BEAM: "What is between the lamp and neighbouring points was asked about all of its samples at once.",
+    Verdict.CACHED: "The primitive that blocked a ray there before was tested first, and blocks this one too.",
+    Verdict.BUFFER_LIT: "Nothing that the light sees in this direction is nearer to it than the point.",
+    Verdict.BUFFER_FULL: "The point is behind a triangle that hides all of a cell of the light's cube.",
+    Verdict.BUFFER_TESTED: "Only a few primitives are in the point's cell of the light's cube: these are tested.",
+    Verdict.VOXEL_LIT: "Nothing static is between the light and any point of the voxel: only objects that move "
+    "are tested.",
+    Verdict.VOXEL_FULL: "One triangle hides the light from all of the voxel.",
+    Verdict.VOXEL_WALK: "Of the point's voxel nothing is known: the ray walked on towards the light, from voxel to "
+    "voxel.",
+    Verdict.CELL_LIT: "The point's cell knows of nothing that blocks the light: only objects that move are tested.",
+    Verdict.CELL_FULL: "The point's cell knows the light to be hidden from all of it.",
+    Verdict.CELL_TESTED: "The point's cell knows what may block the light: these primitives are tested, and objects "
+    "that move.",
+    Verdict.ANSWERED: "The method knew the answer.",
+    Verdict.TRACED: "Nothing was known: the ray was traced through the scene.",
+}
+"""What each verdict means."""
+
 _PROVEN = {
     "full": "the light is hidden from the whole cell",
     "lit": "nothing static is in the way",
@@ -84,7 +112,7 @@ WHY_TRACED: dict[str, str] = {
         for state, known in _PROVEN.items()
     },
 }
-"""What tracing says where something was known all the same (`ShadowRays.known`)."""
+"""What tracing says where something was known all the same (`CullReason.known`)."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.inspect.occluded_by import OccludedBy, Pixel, Reference
-from tracer.inspect.reasons import WHY_TRACED, Coverage, Reason, Rule, TaughtBy, Why
+from tracer.inspect.reasons import MEANING, WHY_TRACED, Coverage, Reason, Rule, TaughtBy, Why
 from tracer.method import Method
 from tracer.scene.model import CONE, Scene
 
@@ -221,7 +221,7 @@ class Words:
 
     def _known(self, reason: Reason) -> Sentence:
         assert reason.verdict is not None
-        meaning = reason.verdict.meaning
+        meaning = MEANING[reason.verdict]
         culled = reason.fate is Fate.CULLED
         said: list[str | Link] = [f"Culled: {meaning[0].lower()}{meaning[1:]}" if culled else meaning]
         if reason.fate is Fate.DYNAMIC_ONLY and reason.dynamic_objects and _MOVING not in meaning:

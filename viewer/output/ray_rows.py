@@ -17,12 +17,35 @@ from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
 from tracer.inspect.path_records import AWAY, TRACED, VERDICTS, RayTree, ShadowRays
-from tracer.inspect.reasons import WHY_TRACED
+from tracer.inspect.reasons import MEANING, WHY_TRACED
 from tracer.inspect.why_in_words import primitive_in_words
 from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
 from viewer.state.palette import WRONG, Color
 from viewer.util.numbers import count, several
+
+SAID: dict[Verdict, str] = {
+    Verdict.AWAY: "surface faces away",
+    Verdict.PASSED_OVER: "light hidden from the region",
+    Verdict.FULL_SHADOW: "culled by FULL_SHADOW",
+    Verdict.NON_SHADOW: "dynamic only by NON_SHADOW",
+    Verdict.CERTIFIED_FULL: "culled by certificate full",
+    Verdict.CERTIFIED_LIT: "dynamic only by certificate lit",
+    Verdict.CANDIDATES: "candidates only",
+    Verdict.BEAM: "culled by a beam",
+    Verdict.CACHED: "cached occluder",
+    Verdict.BUFFER_LIT: "light buffer: nothing in front",
+    Verdict.BUFFER_FULL: "light buffer: behind what covers the cell",
+    Verdict.BUFFER_TESTED: "light buffer: candidates only",
+    Verdict.VOXEL_LIT: "lit voxel",
+    Verdict.VOXEL_FULL: "full voxel",
+    Verdict.VOXEL_WALK: "walk through voxels",
+    Verdict.CELL_LIT: "lit cell",
+    Verdict.CELL_FULL: "light hidden from the cell",
+    Verdict.CELL_TESTED: "blockers of the cell only",
+    Verdict.ANSWERED: "culled",
+    Verdict.TRACED: "traced",
+}
 
 
 class RaySubset(StrEnum):
@@ -166,7 +189,7 @@ class RayRows:
             text, tip = self._summary(s, places), ""
         else:
             what, by = "samples" if one_light else "rays", outcomes[0][2]
-            text, tip = f"{count(len(places))} {what} {self._fate(s, places, by)}", VERDICTS[s.verdict[first]].meaning
+            text, tip = f"{count(len(places))} {what} {self._fate(s, places, by)}", MEANING[VERDICTS[s.verdict[first]]]
         folds = len(places) > 1 and not (one_light and (s.verdict[places] == AWAY).all())
         below = partial(self._shadows, ray, s, places, key) if folds else None
         return RayRow(key, f"{name}: {text}" if name else text, tip, color_of(s, places), ray, places, below)
@@ -178,7 +201,7 @@ class RayRows:
         for place in places.tolist():
             blocked = one and s.verdict[place] != AWAY and not s.lit[place] and s.blocker[place] >= 0
             by = self._scene.name_of(int(s.blocker[place])) if blocked else ""
-            outcome = int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place]), s.known.get(place, "")
+            outcome = int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place]), s.reason(place).known
             outcomes.setdefault(outcome, []).append(place)
         return outcomes
 
@@ -187,12 +210,11 @@ class RayRows:
     def _fate(self, s: ShadowRays, places: Places, by: str = "") -> str:
         """What became of a shadow ray in words, or of several with the same fate, `by` the object that blocks them."""
         place, alike = int(places[0]), len(places) > 1
-        verdict = VERDICTS[s.verdict[place]]
-        text = verdict.in_words
+        verdict, text = VERDICTS[s.verdict[place]], SAID[VERDICTS[s.verdict[place]]]
         if not verdict.due:
             return text
         shared = f"blocked by {by}" if by else "in shadow"
-        text += f" ({s.known[place]})" if place in s.known else ""
+        text += f" ({known})" if (known := s.reason(place).known) else ""
         text += ", lit" if s.lit[place] else f", {shared if alike else self._blocked(s, place)}"
         text += " (wrong)" if s.wrong[place] else ""
         if verdict is Verdict.TRACED:
@@ -203,13 +225,13 @@ class RayRows:
         return f"blocked by {self._name(int(s.blocker[place]))}" if s.blocker[place] >= 0 else "in shadow by its mode"
 
     def _tip(self, s: ShadowRays, place: int) -> str:
-        verdict = VERDICTS[s.verdict[place]]
-        parts = [WHY_TRACED.get(s.known.get(place, ""), verdict.meaning)]
-        if place in s.told:
-            parts.append(s.told[place])
-        if place in s.named:
-            names = [self._name(number) for number in s.named[place][:MOST_NAMED]]
-            more = len(s.named[place]) - len(names)
+        verdict, reason = VERDICTS[s.verdict[place]], s.reason(place)
+        parts = [WHY_TRACED.get(reason.known, MEANING[verdict])]
+        if reason.told:
+            parts.append(reason.told)
+        if reason.named:
+            names = [self._name(number) for number in reason.named[:MOST_NAMED]]
+            more = len(reason.named) - len(names)
             parts.append("Named: " + ", ".join(names) + (f" and {more} more." if more else "."))
         if s.asked_moving[place]:
             parts.append(f"Testing dynamic objects took {s.steps[place]} steps and {s.tests[place]} tests.")
@@ -226,7 +248,7 @@ class RayRows:
         for number in np.unique(s.verdict[places]):
             same = places[s.verdict[places] == number]
             lit = int(s.lit[same].sum())
-            parts.append(f"{count(len(same))} {VERDICTS[number].in_words}" + (f" ({count(lit)} lit)" if lit else ""))
+            parts.append(f"{count(len(same))} {SAID[VERDICTS[number]]}" + (f" ({count(lit)} lit)" if lit else ""))
         return ", ".join(parts)
 
     def _name(self, primitive: int) -> str:
@@ -251,5 +273,5 @@ def unfolded(rows: list[RayRow], is_open: Callable[[RayRow], bool], level: int =
 def totals(tree: RayTree) -> str:
     """All shadow rays of the tree in a line."""
     paths = f"{count(len(tree.rays))} {'ray' if len(tree.rays) == 1 else 'rays'}"
-    said = ", ".join(f"{count(number)} {verdict.in_words}" for verdict, number in tree.counts.items() if verdict.due)
+    said = ", ".join(f"{count(number)} {SAID[verdict]}" for verdict, number in tree.counts.items() if verdict.due)
     return f"{paths} and {count(tree.due)} shadow rays that are due" + (f": {said}" if said else "")
