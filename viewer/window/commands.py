@@ -290,7 +290,7 @@ def _run(ui: Ui) -> list[Command]:
                 tip="methods compared along the path: faster or not, and how much is saved"),
         Command("Start zoom test", "Run", partial(start, "Zoom test", runs.start_zoom_test), enabled=idle,
                 tip="towards the clicked primitive: is a shadow missing that shows only from near?"),
-        Command("Start hunt", "Run", partial(start, "Hunt", c.hunts.start), enabled=idle,
+        Command("Start hunt", "Run", partial(start, "Hunt", c.runs.start_hunt), enabled=idle,
                 tip="search the path for the worst wrong pixels of a method"),
         Command("Film...", "Run", partial(start, "Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),

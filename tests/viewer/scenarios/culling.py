@@ -50,7 +50,7 @@ def culling(d: Driver) -> None:
     d.certify()
     _use(d, View.CERTIFICATE, "certified")
     d.choose("Culling/Method certified")
-    d.click("//Culling/method/##method")
+    d.click("//Picture/##method")
     names = [*(kind.name for kind in bases()), *(f"+{kind.name}" for kind in additions("certified"))]
     assert all(d.has(f"//##Combo_00/{name}") for name in names), "all are listed"
     d.click("//##Combo_00/+cache").press("Escape").settle()
