@@ -67,7 +67,7 @@ class Controller:
         self.motion = motion = Motion(session, preferences, notices, runs.refuses)
         self.comparing = Comparing(session, scheduler, notices)
         self.bookmarks = bookmarks = Bookmarks(session, preferences, notices, settings.save)
-        self.undo = undo = Undo(session, motion, notices, runs.refuses)
+        self.undo = undo = Undo(session, motion, notices, runs.refuses, self.reset_modes)
         self.presets = Presets(session, preferences, notices, settings.save, runs.refuses, undo.begin_step)
         self.inspector = Inspector(selection, renderer.query)
         self.navigator = FrameNavigator(

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from tracer.method import Method
 from tracer.scene.model import Camera
 from viewer.output.commands import BUILT
 from viewer.output.comparison import Crop
@@ -55,7 +54,7 @@ class FrameNavigator:
             return
         self.go_to(record.state, f"picture {number}", record.size)
         said = ": the same picture, bit for bit" if record.size == self._scheduler.inputs.full_size else ""
-        said = ": modes are learnt anew" if self._depends_on_modes else said
+        said = ": modes are learnt anew" if self._session.state.depends_on_modes else said
         said = f", though {BUILT}" if record.state.draw.view is View.TREE else said
         self._notices.say(f"{self.name_of(number)}, again{said}")
 
@@ -105,7 +104,7 @@ class FrameNavigator:
         if zoom is not None:
             self._session.set_draw(zoom=zoom)
         self._selection.clear()
-        if warmup is not None or self._depends_on_modes:
+        if warmup is not None or self._session.state.depends_on_modes:
             self._reset_modes()
         if warmup is not None:
             if size != self._scheduler.inputs.full_size:
@@ -132,8 +131,3 @@ class FrameNavigator:
         if record is None or not session.animated:
             return f"picture {number}"
         return f"picture {number}, frame {session.frame_at(record.state.time)} of the path"
-
-    @property
-    def _depends_on_modes(self) -> bool:
-        """Whether the picture depends on what was seen before it."""
-        return not Method.parse(self._session.settings.method).exact or self._session.draw.view.of_modes

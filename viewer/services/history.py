@@ -5,8 +5,9 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Hashable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,6 +98,8 @@ class FrameHistory:
     def clear(self) -> None:
         """Begin anew: another scene is open."""
         self.frames = 0
+        self._question: tuple[Any, Future[Origins | None] | None] = None, None  # whose origins were asked for last
+        self._known: tuple[Any, Origins | None] = None, None  # whose are known, and what they are
         self.records: dict[int, FrameRecord] = {}
         self._came: deque[float] = deque()  # when the newest frames came
         self._request: RenderRequest | None = None
@@ -205,12 +208,21 @@ class FrameHistory:
         self._lights[key] = lights
         self._worker.submit(origins.add, number, frame.modes, moved)
 
-    def origins_of(self, frame: Frame, unit: int) -> Origins | None:
-        """Return which frames set what a frame knows of a unit; None where that is not known."""
+    def origins_of(self, frame: Frame, unit: int, wait: bool = False) -> Origins | None:
+        """Return which frames set what a frame knows of a unit; None where that is not known, or, unless one is to
+        `wait`, not yet."""
         origins = self._origins.get(self._shown) if self._shown is not None else None
         if origins is None or self._shown is None or self._shown[2] != has_modes_of_cells(frame):
             return None
-        return self._worker.submit(origins.of, unit).result()
+        (asked, answer), now = self._question, (self._shown, unit, self.frames)
+        if answer is not None and answer.done():
+            self._known = asked[:2], answer.result()
+        if answer is None or (asked != now and answer.done()) or wait:
+            answer = self._worker.submit(origins.of, unit)
+            self._question = now, answer
+        if wait:
+            self._known = now[:2], answer.result()
+        return self._known[1] if self._known[0] == now[:2] else None
 
     def repeats_of(self, frame: Frame) -> int | None:
         """Return how often this very frame was traced since modes were forgotten, before it; None where others were as

@@ -32,9 +32,13 @@ class Step:
 class Undo:
     """See the module.  `held` is to be set while the user holds something, as in a drag."""
 
-    def __init__(self, session: Session, motion: Motion, notices: Notices, locked: Callable[[], bool]) -> None:
+    def __init__(
+        self, session: Session, motion: Motion, notices: Notices, locked: Callable[[], bool],
+        reset_modes: Callable[[], None] = lambda: None,
+    ) -> None:  # fmt: skip
         """Nothing is brought back while `locked()`, which says so itself."""
         self._session, self._motion, self._notices, self._locked = session, motion, notices, locked
+        self._reset_modes = reset_modes
         self.held = False
         self.clear()
 
@@ -124,7 +128,10 @@ class Undo:
             self._motion.glide(wanted.camera, start)
         self._at = to
         self._keep_up()
-        self._notices.say(f"{way}ne: {done.name}")
+        anew = done.with_time and session.state.depends_on_modes
+        if anew:  # else those of where one went would stay, as of the frames that led to a wrong pixel
+            self._reset_modes()
+        self._notices.say(f"{way}ne: {done.name}{': modes are learnt anew' if anew else ''}")
 
     def _add(self, step: Step) -> None:
         self._steps = [*self._steps[: self._at + 1], step][-MOST_STEPS - 1 :]

@@ -125,6 +125,11 @@ class ViewState:
         """Return it with other settings of tracing."""
         return replace(self, settings=replace(self.settings, **settings))
 
+    @property
+    def depends_on_modes(self) -> bool:
+        """Whether its picture depends on what was seen before it."""
+        return not Method.parse(self.settings.method).exact or self.draw.view.of_modes
+
     def on_machine_of(self, other: ViewState) -> ViewState:
         """Return it with the settings of another that belong to its machine: threads, tree, size."""
         state = self

@@ -52,7 +52,7 @@ def _from_the_inspector(d: Driver) -> None:
     d.show_panel("Inspector").press("RightArrow").settle().pick()
     picked = c.selection.picked
     assert picked is not None
-    taught = c.history.origins_of(c.frame, picked.primitive)
+    taught = c.history.origins_of(c.frame, picked.primitive, wait=True)
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
     then = c.history.records[lesson.lit].state
     d.scroll_down("Inspector")

@@ -80,7 +80,7 @@ def _taught(d: Driver) -> None:
     one = _click(d, _of(d, FULLY, ShadowMode.PARTIAL_SHADOW), lambda one: one.rule is Rule.PARTIAL_SHADOW)
     d.c.settings.set_light(one.light)
     d.frames(3)
-    number = max(d.c.history.origins_of(d.c.frame, d.c.selection.picked.primitive).lights[one.light])
+    number = max(d.c.history.origins_of(d.c.frame, d.c.selection.picked.primitive, wait=True).lights[one.light])
     assert d.has(f"//Inspector/reason/picture {number}##0")
     d.press("X")
     d.wait(lambda: rays.rows(d.ui), "the rays", 20.0)

@@ -89,7 +89,7 @@ def test_a_mode_names_the_frames_that_taught_it(desk: Desk) -> None:
     assert len(desk.came) == c.history.frames - before >= 5
     c.selection.select((0.5, 0.75))
     primitive = c.selection.picked.primitive
-    taught = c.history.origins_of(c.frame, primitive)
+    taught = c.history.origins_of(c.frame, primitive, wait=True)
     first: dict[tuple[int, bool], int] = {}
     for number, frame in enumerate(desk.came, before):
         for light in range(2):
