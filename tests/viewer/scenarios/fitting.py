@@ -17,6 +17,7 @@ _VERTEX = np.dtype([("at", np.float32, 2), ("uv", np.float32, 2), ("color", np.u
 
 def fitting(d: Driver) -> None:
     """No text is cut off at the edge of what it lies in, and no widget lies over another, at any size."""
+    d.settle()
     d.context.mouse_move_to_pos(d.picture_centre())
     d.context.mouse_click(0)
     d.settle()
