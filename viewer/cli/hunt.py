@@ -9,6 +9,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from tracer.experiments import hunt
+from tracer.experiments.camera_path import along_path
 from tracer.experiments.hunt import Hunt, Search
 from tracer.experiments.titles import title
 from tracer.geometry.world import World
@@ -21,7 +22,6 @@ from viewer.cli.console import Work, listed, print_table, working
 from viewer.output import exports
 from viewer.output.reports import findings
 from viewer.services import hunts, stills
-from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
 
 EPILOG = """\
@@ -73,7 +73,7 @@ def run(given: Namespace) -> int:
     with working() as work:
         scene = options.read_scene(given.path, given, work)
         first, last = given.frames or (0, scene.frames - 1)
-        times = [take.time for take in navigation.along_path(scene, first, last)][:: given.step]
+        times = [take.time for take in along_path(scene, first, last)][:: given.step]
         search = Search(settings, times, given.camera, given.around, given.radius, given.seed, given.keep)
         if given.output is not None:
             hunts.check_folder(given.output)

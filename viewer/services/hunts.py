@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from tracer.experiments import counterexample, hunt
+from tracer.experiments.camera_path import along_path
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.hunt import Hunt, Search
 from tracer.frame import Settings
@@ -16,7 +17,6 @@ from viewer.output import commands, exports
 from viewer.output.comparison import Comparison, Crop
 from viewer.services.history import FrameNavigator
 from viewer.services.runs import Runs
-from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
 from viewer.state.notices import Notices
 from viewer.state.pixels import around
@@ -106,7 +106,7 @@ class Hunts:
 
         def make(scene: Scene) -> Hunt:
             plan = self.plan
-            times = [take.time for take in navigation.along_path(scene, *plan.frames(scene))][:: plan.step]
+            times = [take.time for take in along_path(scene, *plan.frames(scene))][:: plan.step]
             settings = replace(
                 self._session.settings, method=plan.method, width=plan.size[0], height=plan.size[1], samples=1,
                 certificate_seconds=float("inf"), verify=True,
