@@ -59,7 +59,7 @@ class Frame:
         What became of the shadow rays from the primary hit to a light, as it is recorded (`fate`, `moving_shadow`), 0
         where that is not known; with `record_fates`, for methods that do not cluster lights.
     only_light : int
-        The light that they are of, which alone has a column, or None for all (`tracer.one_light`).
+        The light that they are of, which alone has a column, or None for all (`tracer.inspect.one_light`).
     shaded : (h, w) bool
         The pixels that have been shaded, of which `asked` and `reached` are known; None if these are all.
     reference : (h, w, 3) float32

@@ -399,7 +399,7 @@ class FrameInProgress:
                 statistics=replace(whole.statistics, wrong=self._wrong()),
             )
 
-    # --- what became of one pixel's rays (`tracer.ray_tree`, `tracer.why`) ------------------------------
+    # --- what became of one pixel's rays (`tracer.inspect`) ----------------------------------------------
 
     def has_shaded(self, x: int, y: int) -> bool:
         """Whether a pixel has been shaded by now."""

@@ -13,7 +13,7 @@ from tests.marbles import LAST, STEP, write_marbles
 from tracer.experiments import counterexample, hunt, warmup_frames
 from tracer.experiments.counterexample import AROUND, PATH
 from tracer.experiments.hunt import Results, Search
-from tracer.ray_tree import ray_tree
+from tracer.inspect.ray_tree import ray_tree
 from viewer.services.hunts import crop_of
 
 SETTINGS = tracer.Settings(width=96, height=96, depth=2, method="paper", threads=1)

@@ -21,8 +21,8 @@ from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.certified.invalidate import copy_kept
 from tracer.culling.certified.store import CertificateStore
 from tracer.culling.rest import changes
-from tracer.explanation import explain
 from tracer.geometry.rays import ray_batch
+from tracer.inspect.explanation import explain
 from tracer.scene.animation import Animation
 from tracer.scene.model import Cancelled
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tracer.explanation import NO_CERTIFICATE, explain, outline
 from tracer.frame import Settings
+from tracer.inspect.explanation import NO_CERTIFICATE, explain, outline
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 

@@ -12,8 +12,8 @@ from tests.tracing.same import assert_same
 from tests.tracing.shades import BEHIND, floor, going, kite, roof
 from tests.tracing.worlds import random_corners, scene
 from tracer.culling.modes import FULLY_RENDERED, ShadowMode
-from tracer.explanation import explain
-from tracer.one_light import with_light
+from tracer.inspect.explanation import explain
+from tracer.inspect.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
 from tracer.scene.lights import Light

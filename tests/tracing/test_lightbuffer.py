@@ -21,7 +21,7 @@ from tracer.culling.lightbuffer.shapes import BLOCKED, COUNT, FIRST, LIT, WIDTH_
 from tracer.culling.lightbuffer.tell import Said, cell_of, full_depths, list_lengths, tell
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Verdict
-from tracer.ray_tree import ray_tree
+from tracer.inspect.ray_tree import ray_tree
 from tracer.scene.animation import Animation
 from tracer.scene.model import Cancelled
 

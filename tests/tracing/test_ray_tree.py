@@ -13,17 +13,17 @@ from tests.tracing.brute import meet_all, primitives_there
 from tests.tracing.glassy import SCENE
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Verdict
-from tracer.explanation import explain
 from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch
+from tracer.inspect.explanation import explain
+from tracer.inspect.path_records import TRACED, RayKind, RayTree
+from tracer.inspect.ray_reasons import unused
+from tracer.inspect.ray_tree import ray_tree
+from tracer.inspect.reasons import WHY_TRACED
 from tracer.methods.payoff import Payoff, Plan
-from tracer.ray_reasons import unused
-from tracer.ray_tree import ray_tree
-from tracer.reasons import WHY_TRACED
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Cancelled
-from tracer.told_rays import TRACED, RayKind, RayTree
 
 WIDTH, HEIGHT = 16, 12
 METHODS = ("none", "paper", "cells", "certified", "paper+cache", "auto")

@@ -19,10 +19,10 @@ from tracer.culling.regions.grid import boxes_of, make_grid, region_at
 from tracer.culling.regions.light_tree import LEAVES, build_light_tree
 from tracer.culling.regions.store import RegionStore
 from tracer.culling.shadow_testing import LIGHT_MARGIN
-from tracer.explanation import explain
 from tracer.geometry.layout import triangle_rows
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
+from tracer.inspect.explanation import explain
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet

@@ -17,10 +17,10 @@ from tracer.culling.verdicts import Verdict
 from tracer.culling.voxels.grid import voxel_at
 from tracer.culling.voxels.tell import Stop, index_of
 from tracer.geometry.world import World
-from tracer.ray_tree import ray_tree
+from tracer.inspect.path_records import VERDICTS
+from tracer.inspect.ray_tree import ray_tree
 from tracer.scene.lamps import LampTable
 from tracer.scene.lights import Light
-from tracer.told_rays import VERDICTS
 
 
 def test_the_walk_that_is_told_ends_as_the_ray_does():

@@ -23,15 +23,15 @@ from tracer.culling.fate import FATE, Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
 from tracer.culling.verdicts import Verdict
 from tracer.frame import Frame, Settings
-from tracer.occluded_by import OccludedBy, Reference, Seen, occluded_by
-from tracer.ray_tree import ray_tree
-from tracer.reasons import Coverage, Reason, Rule, TaughtBy, Why
+from tracer.inspect.occluded_by import OccludedBy, Reference, Seen, occluded_by
+from tracer.inspect.path_records import FATES
+from tracer.inspect.ray_tree import ray_tree
+from tracer.inspect.reasons import Coverage, Reason, Rule, TaughtBy, Why
+from tracer.inspect.why import why
+from tracer.inspect.why_in_words import Link, Words, named, plain
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Camera
-from tracer.told_rays import FATES
-from tracer.why import why
-from tracer.why_in_words import Link, Words, named, plain
 
 ASSETS = Path("assets/scenes")
 FULLY, PARTLY, INIT, DYNAMIC = (

@@ -9,10 +9,10 @@ import numpy as np
 
 from tracer.experiments import warmup_frames
 from tracer.experiments.warmup_frames import WarmupFrame
+from tracer.inspect.path_records import VERDICTS, RayTree
+from tracer.inspect.why_in_words import primitive_in_words
 from tracer.scene.lights import named_light
 from tracer.scene.model import Camera, Scene
-from tracer.told_rays import VERDICTS, RayTree
-from tracer.why_in_words import primitive_in_words
 
 PATH, AROUND = "path", "around"
 """Where a counterexample is: on the path that was searched, or beside it."""

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
-from tracer.reasons import MEANING, WHY_TRACED
+from tracer.inspect.path_records import AWAY, TRACED, VERDICTS, RayTree, ShadowRays
+from tracer.inspect.reasons import MEANING, WHY_TRACED
+from tracer.inspect.why_in_words import primitive_in_words
 from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
-from tracer.told_rays import AWAY, TRACED, VERDICTS, RayTree, ShadowRays
-from tracer.why_in_words import primitive_in_words
 from viewer.state.palette import WRONG, Color
 from viewer.util.numbers import count, several
 

@@ -13,8 +13,8 @@ from enum import Enum
 
 from tracer.experiments.runner import Run
 from tracer.frame import Frame, Settings
+from tracer.inspect.one_light import with_light
 from tracer.method import Method
-from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Scene
 from viewer.services import refinement

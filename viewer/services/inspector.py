@@ -12,12 +12,12 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from tracer.frame import Frame
+from tracer.inspect.path_records import RayTree
+from tracer.inspect.reasons import TaughtBy, Why
+from tracer.inspect.why import why
 from tracer.mode_origins import NEVER, Origins
-from tracer.reasons import TaughtBy, Why
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
-from tracer.told_rays import RayTree
-from tracer.why import why
 from viewer.services.queries import Ask, Newest
 from viewer.services.render_request import Traced
 from viewer.state.picking import Pick, pick, pick_part, pick_primitive, pixel_of, same_place

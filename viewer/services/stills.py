@@ -21,8 +21,8 @@ from tracer.culling.modes import word_type
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
 from tracer.geometry.world import World
+from tracer.inspect.one_light import with_light
 from tracer.method import Method
-from tracer.one_light import with_light
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.version import program_version

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from tracer.reasons import WHY_NOT_CULLED
+from tracer.inspect.reasons import WHY_NOT_CULLED
 from viewer.state import terms
 
 Color = tuple[float, float, float]

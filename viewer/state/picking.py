@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
+from tracer.inspect.why_in_words import kind_of
 from tracer.scene.deformation import deformed
 from tracer.scene.edits import Edited
 from tracer.scene.model import CONE, Camera, Quadrics, Scene
-from tracer.why_in_words import kind_of
 from viewer.state.navigation import Vector, ray
 from viewer.state.parts import parts_of
 from viewer.state.pixels import pixel_at

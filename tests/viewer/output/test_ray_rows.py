@@ -9,11 +9,11 @@ import pytest
 
 from tests.commands import ROOM
 from tracer.frame import Settings
-from tracer.ray_tree import ray_tree
+from tracer.inspect.path_records import AWAY, TRACED, RayTree
+from tracer.inspect.ray_tree import ray_tree
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
-from tracer.told_rays import AWAY, TRACED, RayTree
 from viewer.output.ray_rows import MOST_LIGHTS, RayFilter, RayRow, RayRows, RaySubset, totals, unfolded
 from viewer.window.panels.rays import MOST_DRAWN, Part, ray_lines
 

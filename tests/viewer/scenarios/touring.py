@@ -9,7 +9,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.culling import places
-from tracer.why_in_words import Words, plain
+from tracer.inspect.why_in_words import Words, plain
 from viewer.services import tour as tours
 from viewer.services.tour import STEPS
 from viewer.state.preferences import load_preferences

@@ -13,8 +13,8 @@ from tests.viewer.scenarios.fitting import check_fit
 from tests.viewer.scenarios.rays import lines_drawn
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from tracer.reasons import Reason, Rule, Why
-from tracer.why_in_words import Words, plain
+from tracer.inspect.reasons import Reason, Rule, Why
+from tracer.inspect.why_in_words import Words, plain
 from viewer.state import navigation
 from viewer.window.panels import rays
 

@@ -12,11 +12,11 @@ import pytest
 
 from tests.viewer.desk import Desk
 from tracer.culling.fate import Fate
-from tracer.explanation import explain
-from tracer.reasons import Reason, Rule, Why
+from tracer.inspect.explanation import explain
+from tracer.inspect.path_records import RayTree
+from tracer.inspect.reasons import Reason, Rule, Why
+from tracer.inspect.why_in_words import Link
 from tracer.renderer import Renderer
-from tracer.told_rays import RayTree
-from tracer.why_in_words import Link
 from viewer.output.ray_rows import RayFilter
 from viewer.services import inspector as module
 from viewer.state import navigation

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from tracer.reasons import SECTIONS
-from tracer.why_in_words import Link, Sentence
+from tracer.inspect.reasons import SECTIONS
+from tracer.inspect.why_in_words import Link, Sentence
 from viewer.state.pixels import Point
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, fitted, tooltip

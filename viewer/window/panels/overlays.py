@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from tracer.culling.fate import Fate
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
-from tracer.reasons import Why
+from tracer.inspect.reasons import Why
 from viewer.state.methods import missing, with_base
 from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
 from viewer.state.picking import outline_of, points_of, primitive_points

@@ -14,7 +14,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.told_rays import AWAY, TRACED, RayTree
+from tracer.inspect.path_records import AWAY, TRACED, RayTree
 from viewer.output.ray_rows import SUBSET_HELP, RayFilter, RayKey, RayRow, RayRows, RaySubset, totals, unfolded
 from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels import lights

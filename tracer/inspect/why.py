@@ -1,8 +1,8 @@
 """Why is a pixel's shadow ray culled, or traced?  One reason for each light, and one sentence that names the rule.
 
-A reason is found in what the frame really did with the ray (`tracer.ray_tree`), and in the modes as shadow testing read
-them: as the frame before had left them, not as this frame leaves them.  Where a picture is shaded in part so far, it is
-what these modes say.  `tracer.reasons` is the model, and `tracer.why_in_words` makes sentences of it.
+A reason is found in what the frame really did with the ray (`ray_tree`), and in the modes as shadow testing read them:
+as the frame before had left them, not as this frame leaves them.  Where a picture is shaded in part so far, it is what
+these modes say.  `reasons` is the model, and `why_in_words` makes sentences of it.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from tracer.culling.modes import (
     shadow_mode,
 )
 from tracer.culling.verdicts import Verdict
-from tracer.explanation import Explanation, explain
+from tracer.inspect.explanation import Explanation, explain
+from tracer.inspect.occluded_by import Seen, occluded_by, references
+from tracer.inspect.path_records import VERDICTS, ShadowRays
+from tracer.inspect.ray_tree import Cancel, ray_tree
+from tracer.inspect.reasons import Coverage, Reason, Rule, Why
 from tracer.method import Method
-from tracer.occluded_by import Seen, occluded_by, references
-from tracer.ray_tree import Cancel, ray_tree
-from tracer.reasons import Coverage, Reason, Rule, Why
-from tracer.told_rays import VERDICTS, ShadowRays
 
 if TYPE_CHECKING:
     from tracer.frame import Frame

@@ -1,4 +1,4 @@
-"""Why shadow rays are culled, or traced: the reasons that `tracer.why` finds, and what the words of them stand for."""
+"""Why shadow rays are culled, or traced: the reasons that `why` finds, and what the words of them stand for."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from enum import Enum
 from tracer.culling.fate import Fate
 from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode
 from tracer.culling.verdicts import Verdict
-from tracer.occluded_by import OccludedBy, Reference
-from tracer.ray_reasons import unused
-from tracer.told_rays import RayTree
+from tracer.inspect.occluded_by import OccludedBy, Reference
+from tracer.inspect.path_records import RayTree
+from tracer.inspect.ray_reasons import unused
 
 
 class Rule(Enum):

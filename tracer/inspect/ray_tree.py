@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING
 from tracer.geometry.rays import MISS, ray_batch
+from tracer.inspect.path_records import AWAY, NUMBER_OF, TRACED, PathRay, RayKind, RayTree, ShadowRays
+from tracer.inspect.ray_reasons import end_of, known_of, primitive_of, reasons_of
+from tracer.inspect.secondary_rays import SentRay, sent_rays
 from tracer.methods.watching import ANSWERED, DUE, LIT, SETTLED, Seen, Watchers
-from tracer.ray_reasons import end_of, known_of, primitive_of, reasons_of
 from tracer.scene.model import Cancelled
-from tracer.sent_rays import SentRay, sent_rays
 from tracer.shading import points, wave
-from tracer.told_rays import AWAY, NUMBER_OF, TRACED, PathRay, RayKind, RayTree, ShadowRays
 
 if TYPE_CHECKING:
     from tracer.frame import Frame

@@ -1,4 +1,4 @@
-"""The reasons of `tracer.why` as sentences, whose links lead to what is named."""
+"""The reasons of `tracer.inspect.why` as sentences, whose links lead to what is named."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.inspect.occluded_by import OccludedBy, Pixel, Reference
+from tracer.inspect.reasons import MEANING, WHY_TRACED, Coverage, Reason, Rule, TaughtBy, Why
 from tracer.method import Method
-from tracer.occluded_by import OccludedBy, Pixel, Reference
-from tracer.reasons import MEANING, WHY_TRACED, Coverage, Reason, Rule, TaughtBy, Why
 from tracer.scene.model import CONE, Scene
 
 MOST_NAMED = 3  # primitives of an answer that are named

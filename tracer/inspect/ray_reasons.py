@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.cells import units_of
 from tracer.culling.verdicts import Answered, Because, Verdict
-from tracer.explanation import NO_CERTIFICATE
+from tracer.inspect.explanation import NO_CERTIFICATE
 from tracer.method import Method
 from tracer.methods.watching import ANSWERED, LIT, Seen
 from tracer.scene.arrays import Float32

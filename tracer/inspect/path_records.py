@@ -1,4 +1,4 @@
-"""A pixel's rays as they are told: the model of `tracer.ray_tree`."""
+"""A pixel's rays as they are told: the model of `tracer.inspect.ray_tree`."""
 
 from __future__ import annotations
 
