@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.viewer.desk import Desk
-from tests.viewer.fakes import TINY_SCENE
+from tests.viewer.fakes import TINY_SCENE, Clock, make_scene
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
 from viewer.util.resources import embedded_scenes
@@ -44,6 +44,22 @@ def figure4(tmp_path: Path) -> Iterator[Desk]:
     desk = Desk(embedded_scenes()["figure4"], tmp_path / "pictures")
     yield desk
     assert desk.c.close()
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    clock = Clock()
+    monkeypatch.setattr("time.monotonic", lambda: clock.now)
+    return clock
+
+
+@pytest.fixture
+def c() -> Iterator[Controller]:
+    """A controller with the scene of numbers open, of which nothing is traced."""
+    c = Controller(Preferences())
+    c.session.open(make_scene())
+    yield c
+    assert c.close()
 
 
 @pytest.fixture

@@ -166,11 +166,9 @@ def _is_narrow(speed: Spread) -> bool:
 class Baseline:
     """Measures what is shown; `why_not` says why nothing can be measured of it."""
 
-    def __init__(
-        self, in_spare_time: Callable[[Spare | None], None], clock: Callable[[], float] = time.monotonic
-    ) -> None:
+    def __init__(self, in_spare_time: Callable[[Spare | None], None]) -> None:
         """`in_spare_time` has rounds measured by the render thread, until it is given others or None."""
-        self._in_spare_time, self._clock = in_spare_time, clock
+        self._in_spare_time = in_spare_time
         self._known: dict[Subject, Rounds] = {}  # of the picture that is shown, by whichever methods
         self._shown: Subject | None = None
         self._at_work: Rounds | None = None
@@ -204,7 +202,7 @@ class Baseline:
             self._still_since = None
             self._work_on(None)
             return
-        now = self._clock()
+        now = time.monotonic()
         self._still_since = now if self._still_since is None else self._still_since
         if now - self._still_since >= STILL:
             self._work_on(self._shown)

@@ -101,8 +101,8 @@ class FrameHistory:
     """The `records` of the last frames by their numbers, the newest last, and the origins of the modes; `frames` counts
     all that there were."""
 
-    def __init__(self, session: Session, clock: Callable[[], float] = time.monotonic) -> None:
-        self._session, self._clock = session, clock
+    def __init__(self, session: Session) -> None:
+        self._session = session
         # Origins look at all units of each frame, for which the window need not wait.
         self._worker = ThreadPoolExecutor(1, "shadowcull mode origins")
         self.clear()
@@ -162,7 +162,7 @@ class FrameHistory:
             return None
         first, last = self._came[0], self._came[-1]
         apart = (last - first) / (len(self._came) - 1)
-        return 1.0 / apart if apart > 0.0 and self._clock() - last <= max(RATE_SECONDS, 2.0 * apart) else None
+        return 1.0 / apart if apart > 0.0 and time.monotonic() - last <= max(RATE_SECONDS, 2.0 * apart) else None
 
     def take(self, learnt: Sequence[Traced], newest: Traced | None, drawn_seconds: float) -> None:
         """Take up the frames that have set modes since the last time, in their order, and the newest that is shown,
@@ -179,7 +179,7 @@ class FrameHistory:
         again, self._request, frame = traced.request is self._request, traced.request, traced.frame
         if not again:
             self.frames += 1
-            now = self._clock()
+            now = time.monotonic()
             self._came.append(now)
             while len(self._came) > 2 and self._came[0] < now - RATE_SECONDS:
                 self._came.popleft()

@@ -86,12 +86,6 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.
     assert [p.name for p in tmp_path.iterdir() if p.suffix != ".lock"] == [prefs.SETTINGS_FILE]
 
 
-def test_the_environment_names_another_folder(own_settings: Path):
-    assert prefs.config_folder() == own_settings
-    assert save_preferences(Preferences()) is None
-    assert (own_settings / prefs.SETTINGS_FILE).exists()
-
-
 def test_recent_scenes_are_few_and_newest_first():
     mine = Preferences()
     for i in range(20):
