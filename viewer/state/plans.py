@@ -39,7 +39,8 @@ class ZoomPlan:
 
     factors: str = setting(
         "4, 16", "Factors",
-        "Zoom factors to compare: a primitive is examined anew once it covers this many times its highest pixel count.",
+        "Zoom factors to compare: a primitive is examined anew once it covers this many times the pixels of its last "
+        "examination.",
     )  # fmt: skip
     steps: int = setting(30, "Steps", "Steps towards the primitive.", low=1, high=1000)
     ratio: float = setting(

@@ -14,7 +14,7 @@ from tests.commands import ROOM, complaint, run
 from tracer.culling.fate import Fate
 from viewer.cli.console import Work
 from viewer.output import capture
-from viewer.state.palette import FATE_COLORS
+from viewer.state.palette import FATES
 
 SIZE = ("--size", "64x48", "--threads", 1)
 
@@ -78,7 +78,7 @@ def test_what_culling_saves_stands_above_the_picture_and_comes_back(
     height = len(plain)
     assert np.array_equal(both[-height:], plain) and np.array_equal(counted[-height:], plain)
     if method == "paper":  # with none it is dim
-        bar = np.round(255.0 * np.array(FATE_COLORS[Fate.TRACED]))
+        bar = np.round(255.0 * np.array(FATES[Fate.TRACED].color))
         assert (both[:-height] == bar).all(-1).any(), "no part of the bar is seen"
     code, lines = verdict(capfd, "savings.png", "counted.png")
     assert code == 0 and all("true" in line for line in lines), lines

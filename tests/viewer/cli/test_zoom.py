@@ -39,7 +39,7 @@ def test_figure_4_in_tables_and_files(tmp_path: Path, capfd: pytest.CaptureFixtu
     assert len(rows) == 2 * (STILL_FRAMES + 20)
     assert [int(row["wrong_of_primitive"]) for row in rows] == wrong[0] + wrong[1]
     assert rows[anew + 1]["shadow_0"] == "PARTIAL_SHADOW"
-    assert rows[anew + 1]["changes"] == "init → fully rendered; light 0: non shadow → partial shadow"
+    assert rows[anew + 1]["changes"] == "init → fully rendered; light 0: non-shadow → partial shadow"
 
     lines = out.splitlines()
     assert any(f" {anew} │" in line and " init " in line for line in lines)

@@ -16,7 +16,7 @@ from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
 from viewer import views
 from viewer.state.draw_options import Slice
-from viewer.state.palette import BACKGROUND, BENEATH, FATE_NAMES, GREY, color_map
+from viewer.state.palette import BACKGROUND, BENEATH, FATES, GREY, color_map
 from viewer.state.views import View
 from viewer.util.numbers import percent
 from viewer.views import colorize
@@ -46,7 +46,7 @@ def classes_of(f: Frame, view: View, light: int) -> dict[str, NDArray[np.bool_]]
         return {mode.name.lower().replace("_", " "): occlusion == mode for mode in OcclusionMode}
     if view is View.SHADOW:
         culls = {f"{name}{after}": (shadow == mode) & ~moves & (whole == sure)
-                 for mode, name in ((1, "full shadow"), (2, "non shadow"))
+                 for mode, name in ((1, "full shadow"), (2, "non-shadow"))
                  for sure, after in ((True, ""), (False, ", untrusted"))}  # fmt: skip
         return culls | {"init": (shadow == 0) & ~moves, "partial shadow": (shadow == 3) & ~moves, "dynamic": moves}
     if view is View.CERTIFICATE:
@@ -54,7 +54,7 @@ def classes_of(f: Frame, view: View, light: int) -> dict[str, NDArray[np.bool_]]
         names = enumerate(("none", "full", "lit", "candidates"))
         return {name: (proven == number) & ~moves for number, name in names} | {"dynamic": moves}
     if view is View.FATE:
-        return {FATE_NAMES[fate]: f.fate(light) == fate for fate in Fate}
+        return {one.name: f.fate(light) == fate for fate, one in FATES.items()}
     if view is View.MOVING_SHADOW:
         dark, asked = f.moving_shadow(light), f.fate(light) == Fate.DYNAMIC_ONLY
         lit = asked & ~dark & ~moves
