@@ -34,6 +34,7 @@ from viewer.state.plans import FilmPlan
 from viewer.state.preferences import NamedState, Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
+from viewer.state.views import Record
 from viewer.util.files import check_writable, whole_file
 
 VIDEO = ".mp4"
@@ -118,7 +119,7 @@ class FilmRun(FileRun):
     ) -> None:
         self.takes, self.state, self.folder, self.video, self.fps = takes, state, folder, video, fps
         self.view, self.remark = state.draw.view, ""
-        self.verifies = state.settings.verify or self.view.needs_verify
+        self.verifies = state.settings.verify or self.view.records is Record.VERIFY
         super().__init__(scene, len(takes))
         self.output = video or folder
 

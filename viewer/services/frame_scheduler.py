@@ -25,7 +25,7 @@ from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.view_state import ViewState
-from viewer.state.views import View, can_draw, records_fates, records_lights
+from viewer.state.views import Record, View, can_draw, recording
 from viewer.views import view_of
 
 
@@ -105,7 +105,7 @@ class FrameScheduler:
         if frame is None or self.inputs.run is not None or draw.light >= frame.lights:
             return
         lacks = not (frame.settings.record_lights or can_draw(frame, draw.view, draw.light))
-        if lacks and draw.view.needs_lights and draw.view.of_light:
+        if lacks and draw.view.records is Record.LIGHTS and draw.view.of_light:
             answer = self._thread.query(_with_light, frame, draw.light)
             if answer.done() and not answer.cancelled() and answer.exception() is None and self.traced is not None:
                 found: Frame = answer.result()  # with as many samples, or fewer: the light is the same
@@ -242,13 +242,13 @@ class FrameScheduler:
         chosen, view = now.state.settings, now.state.draw.view
         lights = len(now.scene.lights) if now.scene is not None else 0
         method = self._until_ready(chosen.method)
+        recorded = recording(view, width * height, lights)
+        recorded["verify"] |= chosen.verify
+        recorded["record_work"] |= now.counting
         return replace(
             chosen,
+            **recorded,
             method=method,
-            verify=chosen.verify or view.needs_verify,
-            record_work=view.needs_work or now.counting,
-            record_lights=records_lights(view, width * height, lights),
-            record_fates=records_fates(view, width * height, lights),
             modes=not Method.parse(method).clusters,  # which would look at single lights for these alone
             certificate_seconds=now.state.pace.certificate_share * self._frame_seconds,
         )
@@ -362,10 +362,10 @@ class FrameScheduler:
         if draw.view is view:
             return title
         settings = self.settings
-        comes = settings.record_fates if draw.view.needs_fates else draw.view.records is not None
+        comes = settings.record_fates if draw.view.records is Record.FATES else draw.view.records is not None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
             return f"{draw.view.label}: not available here, {view.label.lower()} shown"
-        return f"{draw.view.label}: {'verifying' if draw.view.needs_verify else 'counting'} ..."
+        return f"{draw.view.label}: {'verifying' if draw.view.records is Record.VERIFY else 'counting'} ..."
 
 
 def _with_light(renderer: Renderer, frame: Frame, light: int, _cancelled: Callable[[], bool]) -> Frame:

@@ -76,7 +76,7 @@ def missing_in(run: Run, view: View) -> str:
     if isinstance(run, FileRun) and run.view is None:
         return "is traced beside it"
     drawn = isinstance(run, FileRun) and run.view is view
-    if view.records is None or drawn or (view.needs_verify and run.verifies):
+    if view.records is None or drawn or (view.records is Record.VERIFY and run.verifies):
         return ""
     return _NOT_RECORDED[view.records]
 

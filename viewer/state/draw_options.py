@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tracer.setting import setting, setting_of, settings_of
 from viewer.state.palette import BENEATH
 from viewer.state.pixels import FIT, Zoom
-from viewer.state.views import View
+from viewer.state.views import Record, View
 
 # Hable's filmic curve, "Uncharted 2: HDR Lighting" (GDC 2010): shoulder, linear strength and angle, toe strength,
 # numerator and denominator.
@@ -50,15 +50,15 @@ class Tone:
 
     exposure: float = setting(
         0.0, "Exposure", "Make colours brighter or darker by so many stops, each of which doubles them.",
-        low=-16.0, high=16.0, slider=(-6.0, 6.0), unit=" EV", option="--exposure", panel="Tone",
+        low=-16.0, high=16.0, slider=(-6.0, 6.0), unit=" EV", option="--exposure", panel="View",
         applies=_in_pictures, remembered=False,
     )  # fmt: skip
     white: float = setting(
         1.0, "White", "The colour, once exposed, that becomes white.", low=0.01, high=1000.0, log=True,
-        option="--white", panel="Tone", applies=_in_pictures, remembered=False,
+        option="--white", panel="View", applies=_in_pictures, remembered=False,
     )  # fmt: skip
     curve: Curve = setting(
-        Curve.NONE, "Tone curve", "How colours up to white become those of the screen.", option="--tone", panel="Tone",
+        Curve.NONE, "Tone curve", "How colours up to white become those of the screen.", option="--tone", panel="View",
         applies=_in_pictures, remembered=False,
     )  # fmt: skip
 
@@ -185,12 +185,12 @@ class DrawOptions:
     shares: bool = setting(
         False, "Shares of rays",
         "Show the share of the shadow rays due, or of the rays traced without culling, instead of counts.",
-        panel="View", applies=in_views(lambda view: view.needs_work),
+        panel="View", applies=in_views(lambda view: view.records is Record.WORK),
     )  # fmt: skip
     mark_wrong: bool = setting(
         True, "Mark wrong pixels",
         "Draw rings around pixels with wrong shadow answers in Difference and Wipe, by which a lone one is found.",
-        option="--no-marks", panel="View", applies=in_views(lambda view: view.needs_verify),
+        option="--no-marks", panel="View", applies=in_views(lambda view: view.records is Record.VERIFY),
     )  # fmt: skip
     clipping: bool = setting(
         False, "Mark clipped pixels",
@@ -213,7 +213,7 @@ class DrawOptions:
     @property
     def has_span(self) -> bool:
         """Whether the view is of numbers that run from one to another; shares run from none to all."""
-        return self.view.has_range and not (self.view.needs_work and self.shares)
+        return self.view.has_range and not (self.view.records is Record.WORK and self.shares)
 
     @property
     def span(self) -> Span | None:

@@ -17,7 +17,7 @@ from tracer.frame import Frame
 from viewer import views
 from viewer.state.draw_options import Slice
 from viewer.state.palette import BACKGROUND, BENEATH, FATES, GREY, color_map
-from viewer.state.views import View
+from viewer.state.views import Record, View
 from viewer.util.numbers import percent
 from viewer.views import colorize
 from viewer.views.paint import CELL_LINE, FAINT_LINE
@@ -122,7 +122,7 @@ def test_colours_are_clamped_and_otherwise_untouched(frame: Frame) -> None:
     np.testing.assert_array_equal(picture(frame), np.round(np.clip(frame.color, 0, 1) * 255).astype(np.uint8))
 
 
-@pytest.mark.parametrize("view", [v for v in View if v is not View.COLOR and not v.needs_verify])
+@pytest.mark.parametrize("view", [v for v in View if v is not View.COLOR and v.records is not Record.VERIFY])
 def test_what_is_missed_has_the_background(frame: Frame, view: View) -> None:
     missed = frame.primitive < 0
     if view.has_slice:  # it is seen before the background, too
@@ -207,7 +207,7 @@ def test_the_window_shows_the_same_and_what_is_selected(frame: Frame, view: View
         here, version = colorize(frame, how), display.version
         assert np.array_equal(display.read(), here)
         display.draw(frame, replace(how, legend=True))
-        assert display.version == version and display.shows(how), "nothing of the pixels has changed"
+        assert display.draw(frame, how) and display.version == version, "nothing of the pixels has changed"
         chosen = int(frame.primitive[40, 50])
         display.draw(frame, how, InWindow(selected=chosen))
         inside = np.pad(frame.primitive == chosen, 1, mode="edge")

@@ -16,6 +16,7 @@ from tracer.scene.edits import Edited
 from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
 from viewer.state.comparison import CompareMode
+from viewer.state.palette import HELD
 from viewer.state.picking import same_place
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.view_state import one_by_one
@@ -40,7 +41,7 @@ from viewer.window.widgets import (
 _ROWS = 12  # of the list of lights that are seen at once
 _MOST_MARKS = 64  # of lights: more would hide the picture
 _REACH = 0.7  # ems from a mark's middle at which it can be taken hold of
-_ON, _HELD, _OFF = ImVec4(1.0, 0.93, 0.45, 1.0), ImVec4(0.42, 0.70, 0.96, 1.0), ImVec4(0.62, 0.65, 0.70, 1.0)
+_ON, _HELD, _OFF = ImVec4(1.0, 0.93, 0.45, 1.0), ImVec4(*HELD, 1.0), ImVec4(0.62, 0.65, 0.70, 1.0)
 _DIGITS = 6  # of a place to which a light is brought
 _STATIC = "It stays where it is at this moment, and counts as static: its primitives carry modes."
 _CAN_MOVE = "It stays where it is, but counts as dynamic: it carries no modes, and its shadow rays are always traced."
@@ -140,12 +141,10 @@ def _lights(ui: Ui, edited: Edited) -> None:
     numbers = lights.found(ui, "what if", original)
     places = original.light_positions(ui.controller.session.time)
 
-    def row(number: int) -> None:
+    for number in lights.rows(numbers, _ROWS, imgui.get_frame_height_with_spacing()):
         imgui.push_id(number)
         _light(ui, edited, number, places[number].tolist())
         imgui.pop_id()
-
-    lights.rows(numbers, _ROWS, imgui.get_frame_height_with_spacing(), row)
     paragraph("Drag a light in the picture, or type where it is.", QUIET)
 
 
