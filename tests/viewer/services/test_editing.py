@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -26,12 +26,10 @@ SCENE = TINY_SCENE.replace("s 0 0.8 0 0.8", CARS)
 
 
 @pytest.fixture
-def desk(tmp_path: Path) -> Iterator[Desk]:
+def desk(desk_at: Callable[[Path], Desk], tmp_path: Path) -> Desk:
     path = tmp_path / "parts.aff"
     path.write_text(SCENE)
-    found = Desk(path, tmp_path)
-    yield found
-    assert found.c.close()
+    return desk_at(path)
 
 
 def fresh(desk: Desk) -> np.ndarray:

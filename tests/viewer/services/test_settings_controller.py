@@ -13,7 +13,6 @@ from viewer.services.controller import Controller
 from viewer.services.settings_controller import SAVED_EVERY
 from viewer.state import codec
 from viewer.state.preferences import Preferences
-from viewer.util.files import file_lock
 
 
 def test_a_setting_is_changed_unless_it_is_no_good_and_reset(c: Controller):
@@ -75,15 +74,6 @@ def test_a_change_that_rests_is_saved_and_other_windows_changes_stay(clock: Cloc
         saved_soon(clock, c, other)
         read = json.loads(saved.read_text())
         assert (read["theme"], read["state"]["settings"]["depth"]) == ("light", 3)
-
-
-def test_no_window_waits_while_another_saves(own_settings: Path, c: Controller):
-    own_settings.mkdir(exist_ok=True)
-    with file_lock(own_settings / "settings.json", 0.0):
-        c.settings.save()
-        assert not c.settings._writing.done(), "it waits for the other on a thread of its own"
-    c.settings.finish()
-    assert (own_settings / "settings.json").exists()
 
 
 def test_preferences_that_cannot_be_saved_are_said_once(clock: Clock, own_settings: Path, c: Controller):
