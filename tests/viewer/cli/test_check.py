@@ -69,7 +69,7 @@ def test_what_culling_saves_stands_above_the_picture_and_comes_back(run: Run, me
     code, lines = verdict(run, "savings.png", "counted.png")
     assert code == 0 and all("true" in line for line in lines), lines
     for name, shown in (("savings.png", True), ("plain.png", False)):
-        words = run("render", name, "--print-command")[1]
+        words = run.ok("render", name, "--print-command")
         assert (said in words) == shown == ("--savings" in words)
 
 
