@@ -42,7 +42,7 @@ from viewer.state import navigation
 from viewer.state.scene_rows import Level
 from viewer.util.messages import say
 from viewer.util.screen import has_display, no_display_reason
-from viewer.window import app as viewer_app
+from viewer.window import gl_window
 from viewer.window.app import FASTEST, FASTEST_BY_PROCESSOR, App
 from viewer.window.panels import find
 from viewer.window.panels.find import FindState
@@ -230,7 +230,7 @@ class User:
 
 def measure(triangles: int, size: tuple[int, int], clicks: int) -> dict[str, Any]:
     """What the window took; RuntimeError where the user could not do something."""
-    viewer_app.WINDOW_SIZE = size
+    gl_window.WINDOW_SIZE = size
     made = half_a_million(triangles)
     app = App(None, scene=made)
     app.ui.tour.end()

@@ -61,11 +61,7 @@ class Watch:
     def after(self) -> None:
         self.frames[self.state].append((time.perf_counter() - self._began, time.thread_time() - self._worked))
         self._saw("window")
-        if (
-            self.c.traced is not None
-            and self.app.ui.graphics.display is not None
-            and self.app.ui.graphics.display.texture_id is not None
-        ):
+        if self.c.traced is not None and self.app.ui.graphics.display.texture_id is not None:
             self._saw("first picture")
             if self.c.traced.request.divisor == 1 and self.c.traced.whole:
                 self._saw("full picture")

@@ -1,14 +1,14 @@
-"""What the viewer's tests share: a scene of numbers, frames of it, and a renderer that traces nothing."""
+"""What the viewer's tests share: settings of their own, a clock, controllers, and desks where something is traced."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.viewer.desk import Desk
-from tests.viewer.fakes import TINY_SCENE
+from tests.viewer.fakes import TINY_SCENE, Clock, make_scene
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
 from viewer.util.resources import embedded_scenes
@@ -33,17 +33,43 @@ def tiny_scene_file(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def desk(tiny_scene_file: Path, tmp_path: Path) -> Iterator[Desk]:
-    desk = Desk(tiny_scene_file, tmp_path / "pictures")
-    yield desk
-    assert desk.c.close()
+def desk_at(tmp_path: Path) -> Iterator[Callable[[Path], Desk]]:
+    """Opens the scene of a file at a desk."""
+    desks: list[Desk] = []
+
+    def at(path: Path) -> Desk:
+        desks.append(Desk(path, tmp_path / "pictures"))
+        return desks[-1]
+
+    yield at
+    for desk in desks:
+        assert desk.c.close()
 
 
 @pytest.fixture
-def figure4(tmp_path: Path) -> Iterator[Desk]:
-    desk = Desk(embedded_scenes()["figure4"], tmp_path / "pictures")
-    yield desk
-    assert desk.c.close()
+def desk(desk_at: Callable[[Path], Desk], tiny_scene_file: Path) -> Desk:
+    return desk_at(tiny_scene_file)
+
+
+@pytest.fixture
+def figure4(desk_at: Callable[[Path], Desk]) -> Desk:
+    return desk_at(embedded_scenes()["figure4"])
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    clock = Clock()
+    monkeypatch.setattr("time.monotonic", lambda: clock.now)
+    return clock
+
+
+@pytest.fixture
+def c() -> Iterator[Controller]:
+    """A controller with the scene of numbers open, of which nothing is traced."""
+    c = Controller(Preferences())
+    c.session.open(make_scene())
+    yield c
+    assert c.close()
 
 
 @pytest.fixture

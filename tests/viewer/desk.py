@@ -1,4 +1,4 @@
-"""A controller at work without a window, as far as runs go."""
+"""A controller at work without a window."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from tracer.frame import Frame
 from tracer.renderer import Renderer
+from tracer.scene.edits import Edits
 from tracer.scene.load import load_scene, scene_info
 from tracer.scene.model import Camera
 from viewer.services.controller import Controller
@@ -50,22 +51,24 @@ class Desk:
             self.came.append(self.c.frame)
         time.sleep(0.001)
 
-    def until(self, happens: Callable[[], object]) -> None:
-        end = time.monotonic() + 60.0
-        while not happens():
+    def until(self, happens: Callable[[], object], ticks: int = 1) -> None:
+        """Go on until it happens, and has for so many ticks."""
+        end, held = time.monotonic() + 60.0, 0
+        while held < ticks:
+            held = held + 1 if happens() else 0
             assert time.monotonic() < end, f"waited in vain; the status says {self.c.notices.message}"
-            self.tick()
+            if held < ticks:
+                self.tick()
 
     def rest(self) -> None:
-        quiet = 0
+        """Go on until all is loaded, edited, traced with all its samples, and written."""
+        c = self.c
+        self.until(lambda: not (c.active or c.editing.under_way) and c.scheduler.activity is Activity.RESTING, ticks=11)
 
-        def rested() -> bool:
-            nonlocal quiet
-            rests = not self.c.active and self.c.scheduler.activity is Activity.RESTING  # all samples have come
-            quiet = quiet + 1 if rests else 0
-            return quiet > 10
-
-        self.until(rested)
+    def edit(self, edits: Edits) -> None:
+        """Have the scene edited, and wait for the picture of it."""
+        self.c.editing.change(edits)
+        self.rest()
 
     def run_to_its_end(self) -> None:
         self.until(lambda: self.runs.current is None)
@@ -75,6 +78,19 @@ class Desk:
     def said(self) -> str:
         assert self.c.notices.message is not None
         return self.c.notices.message.text
+
+
+def place_of(c: Controller, lit: bool, near: int = 4) -> tuple[float, float]:
+    """A pixel of the square that all lights which are due reach, or not all of them, and so those `near` it."""
+    renderer = Renderer(c.session.scene, replace(c.frame.settings, method="none", record_lights=True))
+    frame = renderer.render(c.frame.time, c.frame.camera)
+    here = (frame.primitive >= 0) & (frame.primitive < c.session.scene.triangle_count)
+    here &= (frame.lit == frame.due).all(-1) if lit else (frame.due & ~frame.lit).any(-1)
+    inner = here.copy()
+    for shift in (-near, near):
+        inner &= np.roll(here, shift, 0) & np.roll(here, shift, 1)
+    y, x = np.argwhere(inner)[inner.sum() // 2]
+    return (x + 0.5) / frame.width, (y + 0.5) / frame.height
 
 
 def is_the_same_picture(one: Frame, other: Frame) -> bool:

@@ -9,7 +9,6 @@ from pathlib import Path
 from threading import Event
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
 from tracer.culling.fate import CACHED, CANDIDATES, CULLED, DYNAMIC_ONLY, FACES_AWAY, MOVING_SHADOW, TRACED
@@ -30,11 +29,6 @@ from tracer.scene.model import (
     empty_quadrics,
 )
 from tracer.statistics import BuiltPart, CutCounts, FrameStatistics, WrongCounts
-from viewer.services.motion import Motion
-from viewer.state import codec
-from viewer.state.notices import Notices
-from viewer.state.preferences import Preferences
-from viewer.state.session import Session
 
 TINY_SCENE = """
 b 0.3 0.4 0.5
@@ -318,17 +312,7 @@ class FakeRenderer:
         return make_frame(self.settings, time, camera)
 
 
-class Moving:
-    """A session whose camera and time move, and a clock that is set by hand."""
+class Clock:
+    """What time it is for the whole program, set by hand."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.now, self.locked = 100.0, False
-        monkeypatch.setattr(time, "monotonic", lambda: self.now)
-        self.session, self.preferences, self.notices = Session(state=codec.recalled({})), Preferences(), Notices()
-        self.session.open(make_scene())
-        self.motion = Motion(self.session, self.preferences, self.notices, lambda: self.locked)
-
-    def after(self, seconds: float, shown: float | None = None) -> None:
-        """So many seconds later, with a whole picture of some time."""
-        self.now += seconds
-        self.motion.advance(shown)
+    now = 100.0

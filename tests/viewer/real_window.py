@@ -27,7 +27,7 @@ from tests.viewer.driver import PATIENCE, Driver
 from tests.viewer.scenarios import SCENARIOS
 from tests.viewer.scenarios.starting import first_start
 from viewer.services import refinement
-from viewer.window import app as viewer_app
+from viewer.window import gl_window
 from viewer.window.app import App
 
 # There what culling saves is told above the picture, for which methods are timed after each picture.
@@ -37,7 +37,7 @@ DOZING = ("explaining",)  # there the window rests when nothing moves: what thre
 
 def run(name: str, size: list[int], scene: str, folder: str) -> int:
     """The exit code of the window that the scenario was played in."""
-    viewer_app.WINDOW_SIZE = tuple(size)
+    gl_window.WINDOW_SIZE = tuple(size)
     app = App(Path(scene))
     if name != "touring":
         app.ui.tour.end()  # it comes by itself on the first start

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from tracer.frame import Frame
-from viewer.state.palette import FATE_COLORS, Color, hex_color, label_color
+from viewer.state.palette import DARK, FATE_COLORS, LIGHT, Color, hex_color, label_color
 from viewer.state.savings import WOULD_OPACITY, bar_of, counters, in_words, places
-from viewer.views.legend import BACKDROP, BACKDROP_OPACITY, TEXT, Legend, fitting, wrapped
+from viewer.views.legend import BACKDROP_OPACITY, Legend, fitting, wrapped
 
 # The least size of letters in pixels, and how many lines of them the picture's shorter side holds.
 OF_LEGEND, OF_STRIP = (11, 42), (12, 36)
@@ -53,15 +53,15 @@ def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None
     bar, size = bar_of(frame), _letter_size(pixels, *OF_STRIP)
     height, margin, pad = round(1.35 * size) if bar else 0, round(0.6 * size), round(0.35 * size)
     words = ", ".join(filter(None, (in_words(counters(frame)), comparison)))
-    strip = _strip(pixels, words, BACKDROP, TEXT, height)
+    strip = _strip(pixels, words, DARK, LIGHT, height)
     draw, letters, bottom = ImageDraw.Draw(strip), font(size), strip.height - margin
     for part, left, right in places(bar, margin, strip.width - margin):
         if right > left:
             color, there = FATE_COLORS[part.fate], WOULD_OPACITY if part.would else 1.0
-            drawn = np.multiply(there, color) + np.multiply(1.0 - there, BACKDROP)
+            drawn = np.multiply(there, color) + np.multiply(1.0 - there, DARK)
             draw.rectangle((left, bottom - height, right - 1, bottom - 1), in_bytes((drawn[0], drawn[1], drawn[2])))
             text = part.label(letters.getlength, right - left - 2 * pad)
-            said = TEXT if part.would else label_color(color)
+            said = LIGHT if part.would else label_color(color)
             draw.text((left + pad, bottom - height + round(0.1 * size)), text, in_bytes(said), letters)
     return np.concatenate([np.asarray(strip), pixels])
 
@@ -93,7 +93,7 @@ def with_legend(pixels: NDArray[np.uint8], legend: Legend, place: tuple[float, f
     top = round(margin + place[1] * (room[1] - layout.height))
     area = Image.fromarray(pixels)
     box = (left, top, left + round(layout.width), top + round(layout.height))
-    backdrop = Image.new("RGB", (box[2] - left, box[3] - top), in_bytes(BACKDROP))
+    backdrop = Image.new("RGB", (box[2] - left, box[3] - top), in_bytes(DARK))
     area.paste(Image.blend(area.crop(box), backdrop, BACKDROP_OPACITY), box)
     draw = ImageDraw.Draw(area)
     for one in layout.boxes:

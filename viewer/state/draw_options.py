@@ -50,15 +50,15 @@ class Tone:
 
     exposure: float = setting(
         0.0, "Exposure", "Make colours brighter or darker by so many stops, each of which doubles them.",
-        low=-16.0, high=16.0, slider=(-6.0, 6.0), unit=" EV", option="--exposure", panel="Tone",
+        low=-16.0, high=16.0, slider=(-6.0, 6.0), unit=" EV", option="--exposure", panel="View",
         applies=_in_pictures, remembered=False,
     )  # fmt: skip
     white: float = setting(
         1.0, "White", "The colour, once exposed, that becomes white.", low=0.01, high=1000.0, log=True,
-        option="--white", panel="Tone", applies=_in_pictures, remembered=False,
+        option="--white", panel="View", applies=_in_pictures, remembered=False,
     )  # fmt: skip
     curve: Curve = setting(
-        Curve.NONE, "Tone curve", "How colours up to white become those of the screen.", option="--tone", panel="Tone",
+        Curve.NONE, "Tone curve", "How colours up to white become those of the screen.", option="--tone", panel="View",
         applies=_in_pictures, remembered=False,
     )  # fmt: skip
 

@@ -25,6 +25,10 @@ def hex_color(code: str) -> Color:
 
 
 BACKGROUND = hex_color("16181D")
+DARK, LIGHT = (0.05, 0.06, 0.08), (0.93, 0.94, 0.96)
+"""The ground of words that stand on a picture, and the words."""
+HELD = (0.42, 0.70, 0.96)
+"""What the pointer holds there."""
 GREY = hex_color("5C616C")
 UNKNOWN = hex_color("868C97")
 """What is not known of a pixel yet."""
@@ -111,7 +115,7 @@ FATE_WOULD: dict[Fate, str] = {
 def label_color(color: Color) -> Color:
     """Of words that stand on this colour: dark on bright ones, else light."""
     red, green, blue = color
-    return (0.96, 0.97, 0.98) if 0.3 * red + 0.6 * green + 0.1 * blue < 0.45 else (0.05, 0.06, 0.08)
+    return (0.96, 0.97, 0.98) if 0.3 * red + 0.6 * green + 0.1 * blue < 0.45 else DARK
 
 
 def fate_palette(shown: Fate | None = None) -> list[Color]:

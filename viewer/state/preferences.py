@@ -74,8 +74,9 @@ class Preferences:
         False, "Savings in saved pictures", "Say above them what culling saves.", panel="Saving"
     )
     pixel_values: bool = setting(
-        True, "Values in pixels", "Write each pixel's value into it, and draw a grid, where pixels are large enough."
-    )
+        True, "Values in pixels", "Write each pixel's value into it, and draw a grid, where pixels are large enough.",
+        panel="Pixels",
+    )  # fmt: skip
     screenshot_folder: str = setting("", "Folder", "Where pictures and results are saved.",
                                      unset="shadowcull, in your folder of pictures", panel="Saving")  # fmt: skip
     screenshot_template: str = setting(DEFAULT_TEMPLATE, "Name", "The template of the file's name.", panel="Saving")

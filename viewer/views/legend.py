@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from viewer.state.palette import Color, color_map, signed_map
+from viewer.state.palette import LIGHT, Color, color_map, signed_map
 
 
 class NoteKind(Enum):
@@ -84,9 +84,7 @@ Measure = Callable[[str], float]
 NOTE_WIDTH = 15.0
 """Lines' heights: how wide notes are, where nothing else is wider."""
 
-BACKDROP: Color = (0.05, 0.06, 0.08)
 BACKDROP_OPACITY = 0.82
-TEXT: Color = (0.93, 0.94, 0.96)
 QUIET: Color = (0.68, 0.71, 0.76)
 NOTES: dict[NoteKind, Color] = {
     NoteKind.PLAIN: QUIET,
@@ -102,7 +100,7 @@ class Words:
     x: float
     y: float
     text: str
-    color: Color = TEXT
+    color: Color = LIGHT
 
 
 @dataclass(frozen=True)
@@ -195,7 +193,7 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
             words.append(Words(pad + indent, y, row.name))
         else:
             words.append(Words(pad, y, row.name, QUIET))
-        words += values(row.values, QUIET if row.quiet else TEXT)
+        words += values(row.values, QUIET if row.quiet else LIGHT)
         if row.meaning:
             tips.append((y, y + step, row.meaning))
         y += step

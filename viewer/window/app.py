@@ -17,6 +17,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import moderngl
 from imgui_bundle import glfw_utils, hello_imgui, imgui, immapp
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
@@ -29,18 +30,17 @@ from viewer.state.preferences import config_folder, load_preferences
 from viewer.util.messages import failure
 from viewer.util.resources import default_scene
 from viewer.window import commands, graphics, layout, menus, style
-from viewer.window.gl_window import NO_OPENGL, closing_by_signals
+from viewer.window.display import Graphics
+from viewer.window.gl_window import NO_OPENGL, closing_by_signals, window_params
 from viewer.window.guard import Guard
-from viewer.window.guard import configure as configure_recovery
 from viewer.window.layout import Layout
 from viewer.window.panels import dialogs, named_states, picture, sides, status
-from viewer.window.ui import CaptureKind, Graphics, Ui
+from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
 OnFrame = Callable[[Frame], bool | None]
 Step = Callable[[str, Callable[[], object]], object]
 Runner = Callable[[hello_imgui.RunnerParams, immapp.AddOnsParams], None]
-WINDOW_SIZE = (1440, 900)
 SMALLEST_SIZE = (240, 160)
 FASTEST = 60.0  # frames a second of the window's own
 # Where a processor draws the window, each frame takes time from tracing: one is drawn for each picture and each of the
@@ -107,7 +107,6 @@ class App:
         self.ui.exit = lambda: self.controller.questions.before_quitting(lambda: self._exit())
         self._on_frame = on_frame
         self._told: Frame | None = None  # what the script has seen
-        self.layout_file = layout.ready_file(config_folder())
         self.params = self._params()
         self.layout = Layout(self.ui, self.params)
         self._frame_began = time.perf_counter()
@@ -165,7 +164,7 @@ class App:
         advance(self.controller, self._room_for_picture(), step)
         step("The script's function", self._call_script)
         step("Drawing the picture", lambda: graphics.draw(ui))
-        step("Drawing recorded pictures", lambda: graphics.draw_recorded(ui))
+        step("Drawing recorded pictures", ui.graphics.textures.update)
         step("Saving the picture", self._capture_picture)
         self._set_frame_rate()
 
@@ -225,7 +224,7 @@ class App:
             self._capture_this_frame = True  # when it is drawn, from here on, with all that was asked for before
 
     def _capture_window(self) -> None:
-        if self._capture_this_frame and self.ui.graphics.display is not None:
+        if self._capture_this_frame:
             self._capture_this_frame = False
             size = glfw.get_framebuffer_size(glfw_utils.glfw_window_hello_imgui())
             self.controller.captures.capture(self.controller.frame, self.ui.graphics.display.read_window(*size))
@@ -242,27 +241,10 @@ class App:
     # --- the window ------------------------------------------------------------------------------
 
     def _params(self) -> hello_imgui.RunnerParams:
-        params = hello_imgui.RunnerParams()
-        params.app_window_params.window_title = TITLE
-        params.app_window_params.window_geometry.size = WINDOW_SIZE
-        params.app_window_params.restore_previous_geometry = True
-        window = params.imgui_window_params
-        window.default_imgui_window_type = hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space
-        window.show_menu_bar = window.show_status_bar = True
-        window.show_menu_app = window.show_menu_view = window.show_status_fps = False
-        window.remember_theme = window.remember_status_bar_settings = False
-        window.background_color = style.BACKGROUND
-        params.renderer_backend_options.open_gl_options = hello_imgui.OpenGlOptions(
-            glsl_version="330", major_version=3, minor_version=3, use_core_profile=True, use_forward_compat=True,
-            anti_aliasing_samples=0,  # text and widgets are smooth by themselves
-        )  # fmt: skip
-        params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
-        params.ini_filename = str(self.layout_file)
-        params.fps_idling.fps_idle = IDLE
+        params = window_params(TITLE, layout.ready_file(config_folder()))
+        params.imgui_window_params.background_color = style.BACKGROUND
         params.fps_idling.fps_max = FASTEST
-        params.fps_idling.time_active_after_last_event = ACTIVE
         call = params.callbacks
-        call.setup_imgui_config = _configure_imgui
         call.load_additional_fonts = style.load_fonts
         call.post_init = self._ready
         call.show_menus = lambda: self.ui.guard.panel("The menus", self._menus)
@@ -280,7 +262,7 @@ class App:
     def _ready(self) -> None:
         """The window and its GL context exist."""
         self.was_open = True
-        graphics.make(self.ui)
+        self.ui.graphics = Graphics(moderngl.create_context())
         self.drawn_by_processor = any(name in self.ui.graphics.renderer_name.lower() for name in DRAWN_BY_PROCESSOR)
         if self.drawn_by_processor:
             self.params.fps_idling.fps_max = FASTEST_BY_PROCESSOR
@@ -307,16 +289,7 @@ class App:
 
     def _leave(self) -> None:
         self.controller.wake.connect(None)  # threads may still be at work when the window is gone
-        self.ui.graphics = Graphics()  # all of it goes with the context
+        del self.ui.graphics  # all of it goes with the context
 
     def _exit(self) -> None:
         self.params.app_shall_exit = True
-
-
-def _configure_imgui() -> None:
-    hello_imgui.imgui_default_settings.setup_default_imgui_config()
-    io = imgui.get_io()
-    # Arrows, space and escape are commands here; they must not move a focus from button to button.
-    io.config_flags &= ~int(imgui.ConfigFlags_.nav_enable_keyboard)
-    io.config_windows_move_from_title_bar_only = True
-    configure_recovery()

@@ -1,6 +1,7 @@
 """Every action, once: the menus, the list of keys, the palette and the handling of keys are all made from this list.
 
-Bookmarks, time and the camera's own commands are in `panels.camera`, edits of the scene in `panels.what_if`."""
+Commands of the camera, bookmarks and time are in `panels.camera`, of comparing in `panels.compare`, of edits in
+`panels.what_if`."""
 
 from __future__ import annotations
 
@@ -14,7 +15,6 @@ from tracer.method import Kind, Method, additions, bases
 from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
 from viewer.services.questions import Question
-from viewer.state.comparison import CompareMode
 from viewer.state.draw_options import NEUTRAL, brighter
 from viewer.state.methods import toggled, with_base
 from viewer.state.pixels import FIT, MOST, STEP
@@ -23,6 +23,7 @@ from viewer.state.views import View
 from viewer.window.command import Command, Condition, scene_open
 from viewer.window.panels import rays, what_if
 from viewer.window.panels.camera import camera_commands, time_commands
+from viewer.window.panels.compare import compare_commands
 from viewer.window.panels.find import FindState
 from viewer.window.panels.pixels import zoom_by
 from viewer.window.panels.view import step_slice
@@ -38,7 +39,8 @@ Nah, Lee, Park and Han, A Shadow Culling Algorithm for Interactive Ray Tracing."
 
 def build(ui: Ui) -> list[Command]:
     """Return all commands, in the order of the menus."""
-    menus = (_file, _edit, _view, _interface, _picture, _compare, camera_commands, time_commands, _culling, _run, _help)
+    menus = (_file, _edit, _view, _interface, _picture, compare_commands, camera_commands, time_commands, _culling,
+             _run, _help)  # fmt: skip
     return [command for menu in menus for command in menu(ui)]
 
 
@@ -217,32 +219,6 @@ def _picture(ui: Ui) -> list[Command]:
     ]  # fmt: skip
 
 
-def _compare(ui: Ui) -> list[Command]:
-    comparing = ui.controller.comparing
-    there = Condition(lambda: comparing.b is not None, "there is no picture yet")
-    kept = Condition(lambda: comparing.kept is not None, "nothing is kept as A")
-
-    def keep() -> None:
-        comparing.keep()
-        ui.offer_panel("Compare")
-
-    def by(mode: CompareMode) -> Command:
-        return Command(mode.command, "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.help,
-                       checked=lambda: comparing.state.on and comparing.state.mode is mode)  # fmt: skip
-
-    return [
-        Command("Keep as A", "Compare", keep, "Ctrl+A", enabled=there),
-        Command("Clear A", "Compare", comparing.forget, enabled=kept),
-        Command("Two methods live", "Compare", comparing.toggle_methods, "Shift+C", enabled=there,
-                checked=lambda: bool(comparing.second_method),
-                tip="trace each frame by a second method as well, with modes and counters of its own"),
-        Command("Next compare mode", "Compare", comparing.next_mode, "Shift+Z", enabled=there, separated=True),
-        *map(by, CompareMode),
-        Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not comparing.state.on,
-                separated=True),
-    ]  # fmt: skip
-
-
 def _culling(ui: Ui) -> list[Command]:
     """The methods, and what they have learnt."""
     c = ui.controller
@@ -302,7 +278,7 @@ def _run(ui: Ui) -> list[Command]:
     return [
         Command("Experiment", "Run", partial(start, "Experiment", runs.start_experiment), enabled=idle),
         Command("Zoom test", "Run", partial(start, "Zoom test", runs.start_zoom_test), enabled=idle),
-        Command("Hunt", "Run", partial(start, "Hunt", c.hunts.start), enabled=idle,
+        Command("Hunt", "Run", partial(start, "Hunt", c.runs.start_hunt), enabled=idle,
                 tip="search the path for the worst wrong pixels of a method"),
         Command("Film", "Run", partial(start, "Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),

@@ -60,16 +60,16 @@ class PictureTexture:
         """Name of the GL texture, None while there is none; row 0 is the top."""
         return self.picture.glo if self.picture is not None else None
 
-    def update(self, wanted: object, draw: Callable[[], Pixels]) -> None:
-        """Bring what `draw` returns to the GPU, unless what is `wanted` is there already.
+    def update(self, wanted: object, draw: Callable[[], Pixels]) -> bool:
+        """Bring what `draw` returns to the GPU, unless what is `wanted` is there already; returns whether it is now.
 
         What failed is not tried again, and the texture keeps what it showed, until something else is wanted.  Raises
         what `draw` does, and DisplayError for what is too much for the GPU."""
-        if wanted in (self._drawn, self._failed):
-            return
-        self._failed = wanted
-        self.write(draw())
-        self._drawn, self._failed = wanted, None
+        if wanted not in (self._drawn, self._failed):
+            self._failed = wanted
+            self.write(draw())
+            self._drawn, self._failed = wanted, None
+        return wanted == self._drawn
 
     def write(self, pixels: Pixels) -> None:
         """Bring a picture (h, w, 3) to the GPU.  Raises DisplayError for what is too much for it."""
@@ -102,21 +102,15 @@ class Display(PictureTexture):
 
     def __init__(self, context: moderngl.Context) -> None:
         super().__init__(context)
-        self.frame: Frame | None = None
         self.part_of: NDArray[np.int32] | None = None
         """(primitives,) the part of the scene that each primitive belongs to, needed while one is selected."""
 
-    @property
-    def size(self) -> tuple[int, int]:
-        return (self.frame.width, self.frame.height) if self.frame is not None else (0, 0)
-
-    def draw(self, frame: Frame | None, draw: DrawOptions, window: InWindow = PLAIN) -> None:
-        """Draw a frame, unless it is there already; without one, what was drawn stays.
+    def draw(self, frame: Frame | None, draw: DrawOptions, window: InWindow = PLAIN) -> bool:
+        """Draw a frame, unless it is there already, and return whether it is now; without one, what was drawn stays.
 
         Raises ValueError where the frame has nothing for the view, and DisplayError."""
-        self.frame = frame
         if frame is None:
-            return
+            return False
 
         def colored() -> Pixels:
             pixels = colorize(frame, draw, window.fate)
@@ -124,32 +118,12 @@ class Display(PictureTexture):
                 pixels[_selected_border(frame, window, self.part_of)] = 255
             return pixels
 
-        self.update((frame, draw.of_pixels(), window), colored)  # frames are equal only where they are the same
-
-    def shows(self, draw: DrawOptions, window: InWindow = PLAIN) -> bool:
-        """Return whether the frame is drawn like this."""
-        return self._drawn == (self.frame, draw.of_pixels(), window)
+        return self.update((frame, draw.of_pixels(), window), colored)  # frames are equal only where they are the same
 
     def read_window(self, width: int, height: int) -> Pixels:
         """Return all of the window as it was just drawn, (height, width, 3) uint8, row 0 at the top."""
         data = self.context.screen.read(viewport=(0, 0, width, height), components=3, alignment=1)
         return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 3)[::-1])
-
-    def clear(self) -> None:
-        super().clear()
-        self.frame = None
-
-
-class Compared:
-    """What a comparison needs on the GPU beside the live picture; nothing of it stays when the comparison ends."""
-
-    def __init__(self, context: moderngl.Context) -> None:
-        self.a, self.difference = Display(context), PictureTexture(context)
-
-    def clear(self) -> None:
-        """Let all of it go."""
-        self.a.clear()
-        self.difference.clear()
 
 
 class Recorded(Protocol):
@@ -233,6 +207,17 @@ class Magnifier:
         """Let a copy go, if there is one."""
         self._targets.pop(name, None)
         self._shown.pop(name, None)
+
+
+class Graphics:
+    """What lives as long as the window's GL context: the newest frame as it is drawn, A and what B differs by while
+    they are compared, recorded pictures, and what enlarges them."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        context.gc_mode = "context_gc"  # what nobody refers to is freed where `draw` says so, with the context current
+        self.renderer_name: str = context.info["GL_RENDERER"]
+        self.display, self.a, self.difference = Display(context), Display(context), PictureTexture(context)
+        self.textures, self.magnifier = TextureCache(context), Magnifier(context)
 
 
 def _selected_border(frame: Frame, window: InWindow, part_of: NDArray[np.int32] | None) -> NDArray[np.bool_]:

@@ -1,4 +1,4 @@
-"""The window itself: whether its display has OpenGL, the whole screen, and the signals that close it."""
+"""The window itself: what it is made with, the whole screen, and the signals that close it."""
 
 from __future__ import annotations
 
@@ -6,16 +6,51 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
-from imgui_bundle import glfw_utils
+from imgui_bundle import glfw_utils, hello_imgui, imgui
 
 import glfw  # after imgui_bundle, which brings the library that both must share  # isort: skip
 
+from viewer.window.guard import configure as configure_recovery
+
 NO_OPENGL = "cannot open a window: this display has no OpenGL 3.3; without one, use: shadowcull render SCENE -o out.png"
 _SIGNALS = ("SIGTERM", "SIGHUP", "SIGINT")
+WINDOW_SIZE = (1440, 900)
 Rect = tuple[int, int, int, int]
 """Left, top, width, height."""
+
+
+def window_params(title: str, layout_file: Path) -> hello_imgui.RunnerParams:
+    """Return what the window is made with: OpenGL 3.3, a menu bar, a status bar, and panels that are docked between
+    them as a file keeps them."""
+    params = hello_imgui.RunnerParams()
+    params.app_window_params.window_title = title
+    params.app_window_params.window_geometry.size = WINDOW_SIZE
+    params.app_window_params.restore_previous_geometry = True
+    window = params.imgui_window_params
+    window.default_imgui_window_type = hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space
+    window.show_menu_bar = window.show_status_bar = True
+    window.show_menu_app = window.show_menu_view = window.show_status_fps = False
+    window.remember_theme = window.remember_status_bar_settings = False
+    params.renderer_backend_options.open_gl_options = hello_imgui.OpenGlOptions(
+        glsl_version="330", major_version=3, minor_version=3, use_core_profile=True, use_forward_compat=True,
+        anti_aliasing_samples=0,  # text and widgets are smooth by themselves
+    )  # fmt: skip
+    params.callbacks.setup_imgui_config = _configure_imgui
+    params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
+    params.ini_filename = str(layout_file)
+    return params
+
+
+def _configure_imgui() -> None:
+    hello_imgui.imgui_default_settings.setup_default_imgui_config()
+    io = imgui.get_io()
+    # Arrows, space and escape are commands here; they must not move a focus from button to button.
+    io.config_flags &= ~int(imgui.ConfigFlags_.nav_enable_keyboard)
+    io.config_windows_move_from_title_bar_only = True
+    configure_recovery()
 
 
 class FullScreen:

@@ -1,10 +1,8 @@
-"""What lives as long as the window's GL context: the picture on the GPU, and what is drawn of it."""
+"""The newest frame on the GPU: drawn when anything about it has changed, and saved when that was asked for."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-
-import moderngl
 
 from viewer.services.controller import Controller
 from viewer.services.frame_scheduler import Activity
@@ -13,25 +11,14 @@ from viewer.state.methods import missing
 from viewer.state.parts import parts_of
 from viewer.state.savings import Tone, comparison, in_words
 from viewer.state.views import View
-from viewer.window.display import Compared, Display, InWindow, Magnifier, TextureCache
+from viewer.window.display import InWindow
 from viewer.window.panels import legend, savings, sides
 from viewer.window.ui import CaptureKind, Ui
-
-
-def make(ui: Ui) -> None:
-    """Make all that a new context needs."""
-    context, gl = moderngl.create_context(), ui.graphics
-    context.gc_mode = "context_gc"  # what nobody refers to is freed where `draw` says so, with the context current
-    gl.display, gl.textures = Display(context), TextureCache(context)
-    gl.compared, gl.magnifier = Compared(context), Magnifier(context)
-    gl.renderer_name = context.info["GL_RENDERER"]
 
 
 def draw(ui: Ui) -> None:
     """Bring a new frame to the GPU, and draw the view if anything about it has changed."""
     display, c = ui.graphics.display, ui.controller
-    if display is None:
-        return
     display.context.gc()
     picked, now = c.selection.picked, c.session.edited
     if picked is not None and picked.part is not None and now is not None:
@@ -44,12 +31,6 @@ def draw(ui: Ui) -> None:
     sides.magnify(ui, options)
 
 
-def draw_recorded(ui: Ui) -> None:
-    """Bring recorded pictures that are to be seen to the GPU."""
-    if ui.graphics.textures is not None:
-        ui.graphics.textures.update()
-
-
 def in_window(ui: Ui) -> InWindow:
     """Return what the window adds to the picture, but for what is selected."""
     return InWindow(fate=ui.fate_shown if ui.controller.scheduler.drawn_view is View.FATE else None)
@@ -57,23 +38,22 @@ def in_window(ui: Ui) -> InWindow:
 
 def capture(ui: Ui) -> None:
     """Save the picture, or copy it, if that was asked for and it has come; where it will not come, say why."""
-    c, wanted = ui.controller, ui.capture_wanted
+    c, wanted, display = ui.controller, ui.capture_wanted, ui.graphics.display
     if wanted not in (CaptureKind.PICTURE, CaptureKind.CLIPBOARD):
-        ui.graphics.capture_view = None
+        ui.capture_view = None
         return
-    view = ui.graphics.capture_view = ui.graphics.capture_view or c.session.draw.view
+    view = ui.capture_view = ui.capture_view or c.session.draw.view
     why = _why_none(c) if view is c.session.draw.view else "another view was chosen before it came"
     if why:
-        ui.capture_wanted = ui.graphics.capture_view = None
+        ui.capture_wanted = ui.capture_view = None
         c.notices.say(f"no picture of the view {view.label}: {why}", error=True)
         return
     shown = c.scheduler.drawn_view is c.session.draw.view
     ready = shown and not c.scheduler.becoming_finer  # else the picture is saved when it has come
-    if ui.graphics.display is not None and ready:
-        ui.capture_wanted = ui.graphics.capture_view = None
+    if ready:
+        ui.capture_wanted = ui.capture_view = None
         options, window = sides.draw_options(ui), in_window(ui)  # without what is selected
-        ui.graphics.display.draw(c.frame, options, window)
-        pixels = ui.graphics.display.read() if ui.graphics.display.shows(options, window) else None
+        pixels = display.read() if display.draw(c.frame, options, window) else None
         compared = pixels is not None and c.comparing.seen is not None
         if pixels is not None and compared:
             pixels = sides.composed_picture(ui, pixels)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -14,7 +14,7 @@ from viewer.state.preferences import Preferences
 from viewer.state.view_state import ViewState
 from viewer.window.command import Command, Condition, Kind
 from viewer.window.ui import Ui
-from viewer.window.widgets import checkbox, row, same_line_for, size_field, tooltip
+from viewer.window.widgets import checkbox, one_of_list, properties, row, same_line_for, size_field
 
 LONGEST_SLIDER = 200.0
 """The range past which a number is typed, and has no slider."""
@@ -28,24 +28,49 @@ def value_of(ui: Ui, one: Setting) -> Any:
     return one.get(c.session.state if one.within else c.preferences)
 
 
-def in_panel(ui: Ui, panel: str) -> list[Setting]:
-    """List the settings of a panel that do something as things are."""
+def in_panel(ui: Ui, *panels: str) -> list[Setting]:
+    """List the settings of a panel, or of several, that do something as things are."""
     state = ui.controller.session.state
-    return [one for one in ALL.values() if one.panel == panel and (not one.within or state.applies(one))]
+    return [one for one in ALL.values() if one.panel in panels and (not one.within or state.applies(one))]
+
+
+def panel_rows(
+    ui: Ui,
+    panel: str,
+    names: float,
+    own: Mapping[str, Callable[[Ui, Setting], None]] = {},
+    above: Callable[[], None] = lambda: None,
+    below: Callable[[], None] = lambda: None,
+    note: Callable[[Setting], str] = lambda one: "",
+    also: Sequence[str] = (),
+) -> None:
+    """Show all settings that are declared for a panel, or as of others that it stands for `also`, and do something as
+    things are: rows of those that have a value, with room for names of so many ems, and below these ticks beside each
+    other.
+
+    `own` has rows of another kind, by the setting's path; `above` and `below` show further rows; `note` is added to
+    what is said of a setting."""
+    settings = in_panel(ui, panel, *also)
+    ticks = [one for one in settings if one.kind is bool and one.path not in own]
+    with properties(panel, names) as shown:
+        if shown:
+            above()
+            for one in settings:
+                if one.path in own:
+                    own[one.path](ui, one)
+                elif one not in ticks:
+                    setting_row(ui, one, note(one))
+            below()
+    for number, one in enumerate(ticks):
+        if number:
+            same_line_for(one.label)
+        setting_switch(ui, one, note(one))
 
 
 def setting_switch(ui: Ui, one: Setting, note: str = "") -> None:
     """Show a tick of a setting that is on or off."""
     tip = f"{one.help}{ui.key(one.label)}{note}"
     checkbox(one.label, value_of(ui, one), lambda on: ui.controller.settings.set(one, on), tip)
-
-
-def setting_switches(ui: Ui, some: Sequence[Setting], note: Callable[[Setting], str] = lambda one: "") -> None:
-    """Show ticks beside each other, as many as a line has room for."""
-    for place, one in enumerate(some):
-        if place:
-            same_line_for(one.label)
-        setting_switch(ui, one, note(one))
 
 
 def setting_row(ui: Ui, one: Setting, note: str = "", room: float = 0.0) -> None:
@@ -86,17 +111,8 @@ def _value(ui: Ui, one: Setting, now: Any) -> Any:
 
 def _choice(one: Setting, now: Any) -> Any:
     """A list; returns what is chosen now."""
-    chosen = now
-    if imgui.begin_combo(f"##{one.name}", one.text(now)):
-        for choice, meaning in one.choices.items():
-            if imgui.selectable(one.text(choice), choice == now)[0]:
-                chosen = choice
-            if meaning:
-                tooltip(meaning)
-        imgui.end_combo()
-    elif one.choices[now]:
-        tooltip(one.choices[now])
-    return chosen
+    choices = ((choice, one.text(choice), meaning) for choice, meaning in one.choices.items())
+    return one_of_list(f"##{one.name}", one.text(now), choices, now, one.choices[now])
 
 
 def _number(one: Setting, now: Any) -> Any:

@@ -16,7 +16,7 @@ from viewer.services.controller import Controller
 from viewer.services.tour import Tour
 from viewer.state.views import View
 from viewer.window.command import Command
-from viewer.window.display import Compared, Display, Magnifier, TextureCache
+from viewer.window.display import Graphics
 from viewer.window.gl_window import FullScreen
 from viewer.window.guard import Guard
 from viewer.window.keyboard import Keyboard, Keymap, is_key
@@ -57,38 +57,27 @@ class Picture:
     dragged: bool = False
 
 
-@dataclass
-class Graphics:
-    """What lives as long as the window's GL context, and is None without one.  `capture_view` is the view that a
-    picture is wanted of."""
-
-    renderer_name: str = ""
-    display: Display | None = None
-    textures: TextureCache | None = None
-    compared: Compared | None = None
-    magnifier: Magnifier | None = None
-    capture_view: View | None = None
-
-
 State = TypeVar("State")
 
 
 @dataclass(slots=True)
 class Ui:
-    """See the module.  `dialogs` are those that are open, the newest last, `fate_shown` is the fate of shadow rays
-    whose pixels are to stand out."""
+    """See the module.  `capture_view` is the view that a picture is wanted of, `dialogs` are those that are open, the
+    newest last, `fate_shown` is the fate of shadow rays whose pixels are to stand out; there are `graphics` as long as
+    the window has a GL context."""
 
     controller: Controller
     commands: list[Command] = field(default_factory=list)
     panels_hidden: bool = False
     full_screen: FullScreen = field(default_factory=FullScreen)
     capture_wanted: CaptureKind | None = None
+    capture_view: View | None = None
     dialogs: list[Dialog] = field(default_factory=list)
     keyboard: Keyboard = field(default_factory=Keyboard)
     fate_shown: Fate | None = None
     exit: Callable[[], None] = lambda: None
     reset_layout: Callable[[], None] = lambda: None
-    graphics: Graphics = field(default_factory=Graphics)
+    graphics: Graphics = field(init=False)
     show_panel: Callable[[str], Any] = lambda label: None
     panel_labels: tuple[str, ...] = ()
     guard: Guard = field(init=False)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from typing import TypeVar
 
 from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.util.numbers import count as count
-from viewer.util.numbers import percent as percent
 from viewer.window.style import ERROR as ERROR
-from viewer.window.style import GOOD as GOOD
 from viewer.window.style import QUIET as QUIET
 from viewer.window.style import WARNING as WARNING
 
+T = TypeVar("T")
 _PALE = 0.85  # least channel of colours that need a border on a light panel
 _LABELS = 0.45  # of a panel's width, at most, is for the names of what is in it
 SIZES = ((128, 128), (256, 256), (512, 512), (800, 600), (1024, 1024), (1280, 720), (1920, 1080))
@@ -91,6 +91,10 @@ def right(text: str, color: ImVec4 | None = None) -> None:
     clipped(text, color)
 
 
+def width_of(text: str) -> float:
+    return float(imgui.calc_text_size(text).x)
+
+
 def fitted(text: str, room: float) -> str:
     """The text, or as much of it as there is room for, with an ellipsis."""
     if imgui.calc_text_size(text).x <= room + 0.5:
@@ -115,7 +119,7 @@ def same_line_for(label: str) -> None:
 def clipped(text: str, color: ImVec4 | None = None, room: float | None = None) -> None:
     """One line of text that ends in an ellipsis where there is no room, with all of it as a tooltip."""
     shown = fitted(text, imgui.get_content_region_avail().x if room is None else room)
-    _text(shown, color)
+    write(shown, color)
     if shown != text:
         tooltip(text)
 
@@ -123,11 +127,12 @@ def clipped(text: str, color: ImVec4 | None = None, room: float | None = None) -
 def paragraph(text: str, color: ImVec4 | None = None) -> None:
     """Text that wraps at the panel's edge."""
     imgui.push_text_wrap_pos(0.0)
-    _text(text, color)
+    write(text, color)
     imgui.pop_text_wrap_pos()
 
 
-def _text(text: str, color: ImVec4 | None) -> None:
+def write(text: str, color: ImVec4 | None = None) -> None:
+    """A line of text, whatever room there is."""
     imgui.push_style_color(imgui.Col_.text, color or imgui.get_style_color_vec4(imgui.Col_.text))
     imgui.text_unformatted(text)
     imgui.pop_style_color()
@@ -146,6 +151,44 @@ def tooltip_at(text: str) -> None:
         imgui.text_unformatted(text)
         imgui.pop_text_wrap_pos()
         imgui.end_tooltip()
+
+
+def seen_rows(number: int, height: float = -1.0, wanted: int | None = None) -> Iterator[int]:
+    """Yield those of so many rows that are seen, each so high, and the one that is to be scrolled to."""
+    clipper = imgui.ListClipper()
+    clipper.begin(number, height)
+    if wanted is not None:
+        clipper.include_item_by_index(wanted)
+    while clipper.step():
+        yield from range(clipper.display_start, clipper.display_end)
+    clipper.end()
+
+
+def one_of(choices: Iterable[tuple[T, str, str]], now: T) -> T:
+    """Show a button for each value, with its label and tip, as many in a line as there is room for; returns the one
+    that is set."""
+    for number, (choice, label, tip) in enumerate(choices):
+        if number:
+            same_line_for(label.partition("##")[0])
+        if imgui.radio_button(label, choice == now):
+            now = choice
+        if tip:
+            tooltip(tip)
+    return now
+
+
+def one_of_list(name: str, shown: str, choices: Iterable[tuple[T, str, str]], now: T, tip: str = "") -> T:
+    """Show a list to be opened, of values with their labels and tips; returns the one that is chosen."""
+    if imgui.begin_combo(name, shown):
+        for choice, label, meaning in choices:
+            if imgui.selectable(label, choice == now)[0]:
+                now = choice
+            if meaning:
+                tooltip(meaning)
+        imgui.end_combo()
+    elif tip:
+        tooltip(tip)
+    return now
 
 
 @contextmanager

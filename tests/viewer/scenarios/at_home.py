@@ -68,7 +68,7 @@ def _undo(d: Driver) -> None:
     x, y = d.picture_centre()
     d.drag((x + 120.0, y - 60.0), (60.0, 10.0))  # beside the legend, which can be dragged as well
     d.settle()
-    (left, top, right, bottom), shading = d.place("//View/view/##shading"), d.c.session.draw.shading
+    (left, top, right, bottom), shading = d.place("//View/**/##shading"), d.c.session.draw.shading
     d.drag((0.5 * (left + right), 0.5 * (top + bottom)), (40.0, 0.0))
     assert d.c.session.draw.shading != shading and d.c.undo.undoes.startswith("shading")
     d.choose("Edit/###Undo")

@@ -58,7 +58,7 @@ def comparing(d: Driver) -> None:
                 check_fit(d, f"{panel}, comparing")
     d.context.key_down(KEY.z)
     d.frames(3)
-    assert comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.compared.a
+    assert comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.a
     assert np.array_equal(_saved(d, "held.png"), a)
     d.context.key_up(KEY.z)
     d.frames(3)
@@ -72,7 +72,7 @@ def comparing(d: Driver) -> None:
     d.c.session.set_draw(tone=Tone())
     d.press(KEY._9)
     d.settle()
-    assert not comparing.state.on and d.ui.graphics.compared.a.texture_id is None, "one line at a time"
+    assert not comparing.state.on and d.ui.graphics.a.texture_id is None, "one line at a time"
     d.press(KEY._1)
     d.c.session.set_pace(width=80, height=60)
     d.settle()
@@ -166,6 +166,6 @@ def _two_methods(d: Driver) -> None:
     d.settle()
     d.press(int(KEY.c) | SHIFT)
     d.settle()
-    assert not comparing.state.on and d.c.traced.second is None and d.ui.graphics.compared.a.texture_id is None, (
+    assert not comparing.state.on and d.c.traced.second is None and d.ui.graphics.a.texture_id is None, (
         "what is not seen takes no memory"
     )

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 from imgui_bundle import imgui
 
+from tests.viewer.desk import place_of
 from tests.viewer.drawn import units_in
 from tests.viewer.driver import Driver
 from tracer.method import additions, bases
-from tracer.renderer import Renderer
 from viewer.state.views import View
 from viewer.views.tree import LAYERS
 from viewer.views.voxels import voxels_seen
@@ -167,7 +167,7 @@ def explaining(d: Driver) -> None:
     d.settle()
     inspector, traced = d.c.inspector, d.c.history.frames
     assert inspector.why is None
-    shadow, lit = (places(d, lit) for lit in (False, True))
+    shadow, lit = (place_of(d.c, lit) for lit in (False, True))
 
     def answered(blocked: bool) -> None:
         d.wait(lambda: inspector.why is not None and _is_blocked(d) == blocked, "an answer about a pixel", 20.0)
@@ -216,16 +216,3 @@ def _is_blocked(d: Driver) -> bool:
 def _lines_drawn(d: Driver) -> int:
     """How much is drawn over the picture, in corners of triangles."""
     return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()
-
-
-def places(d: Driver, lit: bool) -> tuple[float, float]:
-    """A pixel of the square, on the picture, that a light which is due reaches, or does not, and so its neighbours."""
-    renderer = Renderer(d.c.session.scene, replace(d.c.frame.settings, method="none", record_lights=True))
-    frame = renderer.render(d.c.frame.time, d.c.frame.camera)
-    here = (frame.primitive >= 0) & (frame.primitive < d.c.session.scene.triangle_count)
-    here &= (frame.lit == frame.due).all(-1) if lit else (frame.due & ~frame.lit).any(-1)
-    inner = here.copy()
-    for shift in (-4, 4):
-        inner &= np.roll(here, shift, 0) & np.roll(here, shift, 1)
-    y, x = np.argwhere(inner)[inner.sum() // 2]
-    return (x + 0.5) / frame.width, (y + 0.5) / frame.height

@@ -57,7 +57,7 @@ def failing(d: Driver) -> None:
         assert "120 x 90 is too large for this GPU" in notices.newest_fault.text
     d.c.session.set_pace(fixed_size=False)
     d.settle()
-    assert display.size == (d.c.frame.width, d.c.frame.height)
+    assert display.picture.size == (d.c.frame.width, d.c.frame.height)
     notices.mark_read()
 
     # Panels, with tables, children and plots open: one says what is wrong with it, and is shown again when told to.

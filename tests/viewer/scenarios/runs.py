@@ -31,7 +31,9 @@ def experimenting(d: Driver) -> None:
     for _ in range(3):
         before = run.traced
         d.wait(lambda: run.is_shown and run.traced > before + 3, "frames of the experiment")  # noqa: B023
-        assert (d.c.frame.width, d.c.frame.height) == (64, 48) == d.ui.graphics.display.size, "they are not the picture"
+        assert (d.c.frame.width, d.c.frame.height) == (64, 48) == d.ui.graphics.display.picture.size, (
+            "they are not the picture"
+        )
     d.hold(KEY.w, 0.1)
     assert d.c.session.camera == home and "stop it first" in d.said
     d.press(KEY.c)

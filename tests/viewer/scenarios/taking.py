@@ -67,9 +67,9 @@ def _nothing_to_save(d: Driver) -> None:
     d.settle()
     d.see(View.COLOR)
     assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1, "one that comes is waited for"
-    d.ui.capture_wanted, d.ui.graphics.capture_view = CaptureKind.PICTURE, View.DIFFERENCE
+    d.ui.capture_wanted, d.ui.capture_view = CaptureKind.PICTURE, View.DIFFERENCE
     d.frames(3)
-    assert d.ui.capture_wanted is d.ui.graphics.capture_view is None and "another view was chosen" in d.said
+    assert d.ui.capture_wanted is d.ui.capture_view is None and "another view was chosen" in d.said
     assert len(list((d.folder / "pictures").iterdir())) == len(before) + 1
 
 

@@ -7,8 +7,8 @@ from unittest.mock import patch
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tests.viewer.desk import place_of
 from tests.viewer.driver import Driver
-from tests.viewer.scenarios.culling import places
 from tracer.inspect.why_in_words import Words, plain
 from viewer.services import tour as tours
 from viewer.services.tour import STEPS
@@ -63,7 +63,7 @@ def _by_hand(d: Driver) -> None:
     d.frames(5)
     assert tour.step is SHADOW
     d.settle()
-    d.pick(*places(d, lit=False))
+    d.pick(*place_of(d.c, lit=False))
     d.wait(lambda: tour.step is ZOOM, "a shadow that was clicked", 20.0)
     chosen = next(one for one in d.c.inspector.why.reasons if one.blocker >= 0)
     words = plain(Words(d.c.session.scene, d.c.inspector.why).answer(chosen))

@@ -15,7 +15,7 @@ def trees(d: Driver) -> None:
     fast = d.c.frame
     assert fast.statistics.built is None and not d.c.history.values("built").any()
     d.show_panel("Rendering")
-    d.click("//Rendering/quality/##accelerator")
+    d.click("//Rendering/Rendering/##accelerator")
     d.click(f"//##Combo_00/{LAZY}")
     d.wait(lambda: d.c.frame.settings.accelerator == LAZY, "a picture by the other tree")
     d.settle()

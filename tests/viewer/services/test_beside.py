@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,14 +10,13 @@ import pytest
 
 from tests.commands import ROOM
 from tests.tracing.same import assert_same
-from tests.viewer.fakes import PATIENCE, FakeRenderer, make_frame, until
+from tests.viewer.fakes import Clock, FakeRenderer, make_frame
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from tracer.scene.model import Camera, Cancelled, Scene
+from tracer.scene.model import Camera, Scene
 from viewer.services.beside import FIRST, MOST_ROUNDS, STILL, Baseline, Pair, Rounds, Subject, subject_of
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.services.render_thread import RenderThread
 from viewer.state.savings import LEAST, Spread
 
 CAMERA = Camera((0.0, 1.0, 4.0), (0.0, -0.25, -1.0))
@@ -119,11 +117,11 @@ def test_none_keeps_no_modes_and_nobody_records_or_verifies():
 
 
 class Spare:
-    """A baseline, the clock that it reads, and what it has given the thread to do in spare time."""
+    """A baseline, and what it has given the thread to do in spare time."""
 
-    def __init__(self) -> None:
-        self.now, self.works = 0.0, list[Rounds | None]()
-        self.baseline = Baseline(lambda step: self.works.append(step and step.__self__), lambda: self.now)
+    def __init__(self, clock: Clock) -> None:
+        self.clock, self.works = clock, list[Rounds | None]()
+        self.baseline = Baseline(lambda step: self.works.append(step and step.__self__))
 
     def see(self, newest: Traced, moving: bool = False, busy: bool = False) -> Rounds | None:
         """Show a picture for one of the window's frames; returns what the thread does then."""
@@ -133,12 +131,17 @@ class Spare:
     def rest(self, newest: Traced) -> Rounds | None:
         """Show a picture for long."""
         self.see(newest)
-        self.now += 2.0 * STILL
+        self.clock.now += 2.0 * STILL
         return self.see(newest)
 
 
-def test_it_begins_at_rest_stops_at_once_and_keeps_what_is_known_of_a_picture():
-    spare, paper = Spare(), traced("paper")
+@pytest.fixture
+def spare(clock: Clock) -> Spare:
+    return Spare(clock)
+
+
+def test_it_begins_at_rest_stops_at_once_and_keeps_what_is_known_of_a_picture(spare: Spare):
+    paper = traced("paper")
     baseline, renderer = spare.baseline, Timed({name: [0.1] for name in ("none", "paper", "certified")})
     assert spare.see(paper) is None and baseline.measured is None
     first = spare.rest(paper)
@@ -160,13 +163,12 @@ def test_it_begins_at_rest_stops_at_once_and_keeps_what_is_known_of_a_picture():
     assert spare.works[-1] is None and baseline.measured is None
 
 
-def test_no_tree_is_built_for_a_figure():
-    spare = Spare()
+def test_no_tree_is_built_for_a_figure(spare: Spare):
     assert spare.rest(traced(accelerator="kdtree-lazy")) is None and "built" in spare.baseline.why_not
 
 
-def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
-    spare, renderer = Spare(), Timed({}, failing=MemoryError())
+def test_what_fails_is_said_and_not_tried_again_for_the_same_picture(spare: Spare):
+    renderer = Timed({}, failing=MemoryError())
     begun = spare.rest(traced())
     with pytest.raises(MemoryError):
         begun.step(renderer, never)
@@ -177,48 +179,6 @@ def test_what_fails_is_said_and_not_tried_again_for_the_same_picture():
         assert "out of memory" in spare.baseline.why_not
     assert [work for work in spare.works if work is not None] == [begun]
     assert spare.rest(traced(at=2.0)) is not None and not spare.baseline.why_not, "another picture is tried"
-
-
-class Work:
-    """Steps that last until they are cancelled."""
-
-    def __init__(self) -> None:
-        self.begun = self.ended = 0
-
-    def step(self, renderer, cancelled) -> bool:
-        self.begun += 1
-        while not cancelled():
-            time.sleep(0.001)
-        self.ended += 1
-        raise Cancelled()
-
-
-def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back():
-    thread, renderer, work, came = RenderThread(), FakeRenderer(), Work(), []
-
-    def is_there(at: float) -> bool:
-        came.extend(filter(None, [thread.take()]))
-        return bool(came) and came[-1].frame.time == at
-
-    thread.use(renderer)
-    thread.in_spare_time(work.step)
-    for number, at in enumerate((1.0, 2.0)):
-        assert work.begun == number, "not before a picture is there"
-        thread.submit(RenderRequest(at, CAMERA, SIZE))
-        until(lambda at=at: is_there(at))
-        until(lambda number=number: work.begun == number + 1)
-        assert not thread.busy and len(renderer.turns) == number, "put back after a step"
-
-    def column(renderer, frame, cancelled) -> float:
-        return frame.time
-
-    assert thread.query(column, came[-1].frame).result(PATIENCE) == 2.0
-    until(lambda: work.begun == 3)
-    thread.in_spare_time(None)
-    until(lambda: work.ended == 3 and len(renderer.turns) == 3)
-    thread.in_spare_time(work.step)
-    until(lambda: work.begun == 4)
-    assert thread.close(PATIENCE), "the thread hangs"
 
 
 def flyer(folder: Path) -> Scene:
@@ -241,14 +201,6 @@ def test_a_renderer_beside_knows_the_modes_and_leaves_them_alone(tmp_path):
     ((none, paper),) = rounds.so_far.rounds
     assert paper.shadow.saved == known.statistics.shadow.saved > 0
     assert none.shadow.rays > paper.shadow.rays and none.occlusion_tests == 0
-    window.settings = replace(settings, width=24, height=16)
-    window.render(1.0)
-    window.settings = settings
-    for method, histories in (("none", 0), ("paper+rest", 1)):
-        beside = window.beside()
-        beside.settings = replace(settings, method=method)
-        beside.take_modes(window)
-        assert len(beside.state.histories) == histories, "no modes of other sizes, and none where none are kept"
     after, expected = window.render(1.0), alone.render(1.0)
     assert np.array_equal(after.modes, expected.modes) and after.statistics.shadow == expected.statistics.shadow
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +15,9 @@ from tests.commands import run
 from tests.viewer.desk import Desk
 from tests.viewer.fakes import TINY_SCENE
 from tracer.renderer import Renderer
-from tracer.scene.edits import Edits
+from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.things import things
+from tracer.settings import Settings
 
 CARS = """x ball { s 0 0.8 0 0.8 }
 x car { s 1.6 0.4 0.5 0.4 }
@@ -25,32 +26,17 @@ SCENE = TINY_SCENE.replace("s 0 0.8 0 0.8", CARS)
 
 
 @pytest.fixture
-def desk(tmp_path: Path) -> Iterator[Desk]:
+def desk(desk_at: Callable[[Path], Desk], tmp_path: Path) -> Desk:
     path = tmp_path / "parts.aff"
     path.write_text(SCENE)
-    found = Desk(path, tmp_path)
-    yield found
-    assert found.c.close()
+    return desk_at(path)
 
 
-def edit(desk: Desk, what: str, *values: object) -> None:
-    """Make an edit, by the name of what makes it of those there are, and wait for the picture of it."""
-    editing = desk.c.editing
-    editing.change(getattr(editing.now, what)(*values))
-    until_edited(desk)
-
-
-def until_edited(desk: Desk) -> None:
-    desk.until(lambda: not desk.c.editing.under_way)
-    desk.rest()
-
-
-def fresh(desk: Desk, method: str = "none") -> np.ndarray:
+def fresh(desk: Desk) -> np.ndarray:
     """The picture of what is shown, by a renderer that knows nothing."""
     c = desk.c
-    settings = c.frame.settings
-    made = Renderer(c.session.scene, settings.__class__(settings.width, settings.height, method=method))
-    return made.render(c.session.time, c.session.camera).color
+    renderer = Renderer(c.session.scene, Settings(c.frame.width, c.frame.height, method="none"))
+    return renderer.render(c.session.time, c.session.camera).color
 
 
 def test_edits_of_all_kinds_are_shown_and_undone(desk: Desk):
@@ -68,15 +54,15 @@ def test_edits_of_all_kinds_are_shown_and_undone(desk: Desk):
         "primitive 0 hidden": ("with_primitive", 0, False),
     }
     pictures = []
-    for name, change in steps.items():
+    for name, (change, *values) in steps.items():
         pictures.append(c.frame.color.copy())
-        edit(desk, *change)
+        desk.edit(getattr(c.editing.now, change)(*values))
         assert c.undo.undoes == name
         assert np.array_equal(c.frame.color, fresh(desk)), name
     assert [len(c.session.scene.objects), len(c.session.scene.lights)] == [2, 1]
     for picture in reversed(pictures):
         c.undo.undo()
-        until_edited(desk)
+        desk.rest()
         assert np.array_equal(c.frame.color, picture)
     assert c.session.scene is original and np.array_equal(c.frame.color, before) and not c.session.edits
     assert c.undo.undoes == "method certified", "edits make no steps but their own"
@@ -85,14 +71,14 @@ def test_edits_of_all_kinds_are_shown_and_undone(desk: Desk):
 def test_the_modes_of_all_edited_scenes_are_forgotten(desk: Desk, monkeypatch: pytest.MonkeyPatch):
     c, original, resets = desk.c, desk.c.renderer._renderer, []
     monkeypatch.setattr(original, "reset_modes", lambda: resets.append(c.session.edits))
-    edit(desk, "with_thing", "ball", False)
+    desk.edit(c.editing.now.with_thing("ball", False))
     hidden = c.renderer._renderer
     c.reset_modes()
     desk.rest()
     assert hidden is not original and not resets
-    edit(desk, "with_thing", "ball", True)
+    desk.edit(c.editing.now.with_thing("ball", True))
     assert c.renderer._renderer is original and len(resets) == 1
-    edit(desk, "with_thing", "ball", False)
+    desk.edit(c.editing.now.with_thing("ball", False))
     assert c.renderer._renderer is not hidden and len(resets) == 1
 
 
@@ -124,12 +110,11 @@ def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
     c.editing.change(Edits(hidden=frozenset({"ball"})))
     desk.tick()
     c.editing.clear()  # it is being hidden nevertheless
-    for start in (c.runs.start_experiment, c.hunts.start, c.films.start, c.runs.start_zoom_test):
+    for start in (c.runs.start_experiment, c.runs.start_hunt, c.films.start, c.runs.start_zoom_test):
         c.notices.message = None
         start()
         assert desk.said == said and c.runs.current is None
-    assert c.runs.experiment is None and c.hunts.hunt is None and c.films.film is None
-    desk.until(lambda: not c.editing.under_way)
+    assert c.runs.experiment is None and c.runs.hunt is None and c.films.film is None
     desk.rest()
     c.runs.start_experiment()
     run = c.runs.current
@@ -139,12 +124,11 @@ def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
 
 def test_edits_stay_when_the_scene_is_read_again_as_far_as_it_has_their_targets(desk: Desk):
     c = desk.c
-    edit(desk, "with_thing", "ball", False)
-    edit(desk, "with_light", 1, False)
+    desk.edit(c.editing.now.with_thing("ball", False))
+    desk.edit(c.editing.now.with_light(1, False))
     path = Path(c.session.scene.path)
     path.write_text(SCENE.replace("x ball", "x globe"))
     c.loader.reload()
-    desk.until(lambda: c.loader.load_job is None and not c.editing.under_way)
     desk.rest()
     assert c.session.edits == Edits(lights_off=frozenset({1}))
     assert np.array_equal(c.frame.color, fresh(desk))
@@ -155,11 +139,11 @@ def test_the_command_makes_the_edited_picture_again(
 ):
     c = desk.c
     c.settings.change(method="certified")
-    edit(desk, "with_light", 0, False)
-    edit(desk, "with_light_at", 1, (-1.1, 4.7, 1e-6))
-    edit(desk, "with_static", "car", c.session.time)
-    edit(desk, "with_primitive", 0, False)
-    edit(desk, "with_moving", "ball", True)
+    desk.edit(c.editing.now.with_light(0, False))
+    desk.edit(c.editing.now.with_light_at(1, (-1.1, 4.7, 1e-6)))
+    desk.edit(c.editing.now.with_static("car", c.session.time))
+    desk.edit(c.editing.now.with_primitive(0, False))
+    desk.edit(c.editing.now.with_moving("ball", True))
     words = shlex.split(c.pictures.command())
     assert words[0] == "shadowcull" and "--without-light=0" in words
     monkeypatch.chdir(tmp_path)
@@ -169,55 +153,7 @@ def test_the_command_makes_the_edited_picture_again(
     # The picture remembers its edits.
     assert run(capfd, "check", made)[0] == 0
     here = c.session.edits
-    c.editing.clear()
-    until_edited(desk)
+    desk.edit(NO_EDITS)
     c.loader.open(made.absolute())
-    desk.until(lambda: c.session.edits == here and not c.editing.under_way)
     desk.rest()
-    assert np.array_equal(np.asarray(Image.open(made)), c.frame.pixels)
-
-
-@pytest.mark.parametrize(
-    ("option", "said"),
-    [
-        ("--without-light=7", "the scene's lights are 0 to 1"),
-        ("--hide=sofa", "no object of this name; there is parts, ball, car"),
-        ("--hide-primitive=99", "the primitives 0 to"),
-        ("--make-static=ball=1", "no moving object of this name; there is car"),
-        ("--make-static=car", "give them like train=2.5"),
-        ("--make-moving=car", "no static object of this name"),
-        ("--move-light=0", "give them like 2=1.5,3,-0.5"),
-        ("--move-light=0=1.1e9,0,5", "a place within 1e+09 of the origin"),
-        ("--move-light=0=nan,0,5", "a place within 1e+09 of the origin"),
-    ],
-)
-def test_edits_of_what_is_not_there_are_one_line(
-    option: str, said: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-):
-    path = tmp_path / "parts.aff"
-    path.write_text(SCENE)
-    code, _, err = run(capfd, "render", path, "-o", tmp_path / "out.png", option)
-    lines = err.strip().splitlines()
-    assert code != 0 and said in lines[-1] and not (tmp_path / "out.png").exists()
-
-
-def test_an_answer_that_fails_stops_nothing_and_a_frame_that_fails_stops_what_plays(
-    desk: Desk, monkeypatch: pytest.MonkeyPatch
-):
-    c = desk.c
-    c.session.playing = True
-    desk.until(lambda: len(desk.came) > 2)
-
-    def fail(*_: object, **__: object) -> None:
-        raise MemoryError("made to fail")
-
-    with monkeypatch.context() as patched:
-        patched.setattr("viewer.services.inspector.why", fail)
-        c.selection.select((0.5, 0.5))
-        desk.until(lambda: c.notices.message is not None and "made to fail" in desk.said)
-    count = len(desk.came)
-    desk.until(lambda: len(desk.came) > count + 2)
-    assert c.session.playing
-    monkeypatch.setattr(c.renderer._renderer, "refine", fail)
-    desk.until(lambda: not c.session.playing)
-    assert "frame not traced" in desk.said and "made to fail" in desk.said
+    assert c.session.edits == here and np.array_equal(np.asarray(Image.open(made)), c.frame.pixels)

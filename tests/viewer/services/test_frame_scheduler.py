@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from threading import Event, Thread
 from types import SimpleNamespace
@@ -13,31 +14,37 @@ from tests.viewer.fakes import make_frame, make_scene
 from tracer.culling.mode_changes import ModeChanges
 from tracer.frame import Settings
 from tracer.scene.lights import Light
-from tracer.scene.model import Camera, Scene
+from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
-from viewer.services.frame_scheduler import Activity, FrameInputs, FrameScheduler
+from viewer.services.frame_inputs import FrameInputs
+from viewer.services.frame_scheduler import Activity, FrameScheduler
 from viewer.services.jobs import Wake
-from viewer.services.refinement import MOST_FRAMES, MOST_LEARNING, Refinement
+from viewer.services.refinement import MOST_FRAMES, MOST_LEARNING
 from viewer.services.render_request import RenderRequest, Traced
+from viewer.state import views
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import MOST_RECORDED, View
+from viewer.state.views import View
 
 SIZE = (16, 8)
 
 
 class Renders:
-    """A render thread that traces at once what it is asked for, with its lamps as they were asked for."""
+    """A render thread that traces at once what it is asked for, with its lamps as they were asked for; its next frames
+    make so many `certificates`, and change modes so."""
 
     busy = False
 
     def __init__(self) -> None:
         self.asked: list[RenderRequest] = []
+        self.certificates, self.changes = iter(()), iter(())
         self._made: Traced | None = None
 
     def submit(self, request: RenderRequest) -> None:
         self.asked.append(request)
         frame = make_frame(replace(request.settings, samples=request.samples))
+        frame.statistics.certificates = next(self.certificates, 0)
+        frame.statistics.mode_changes = next(self.changes, None)
         self._made = Traced(request, frame, FrameStatistics())
 
     def take(self) -> Traced | None:
@@ -69,6 +76,11 @@ class Window:
     def rest(self, frames: int = 12, **inputs: Any) -> list[tuple[int | None, int]]:
         """Samples of lamps, and of pixels, that are asked for meanwhile."""
         return [(one.settings.lamp_samples, one.samples) for one in self.asked_for(frames, **inputs)]
+
+    def frames(self, certificates: Iterable[int] = (), changes: Iterable[ModeChanges] = ()) -> int:
+        """How many are asked for until all is known, where they make so many certificates, and change modes so."""
+        self.renders.certificates, self.renders.changes = iter(certificates), iter(changes)
+        return len(self.asked_for(2 * MOST_FRAMES))
 
     def see(self, view: View) -> list[RenderRequest]:
         self.session.set_draw(view=view)
@@ -120,7 +132,7 @@ def test_the_next_frame_of_a_film_waits_until_this_one_can_be_asked_about():
 def test_until_certificates_can_be_made_pictures_come_without(ready: bool, method: str, traced: str):
     window = Window(method=method)
     window.request(ready=ready)
-    assert window.scheduler.settings.method == traced
+    assert window.scheduler.inputs.settings.method == traced
 
 
 def test_at_rest_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_for_twice():
@@ -153,15 +165,15 @@ def test_points_have_one_sample_and_whole_pictures_all_of_them():
     assert set(window.rest(3, moving=True)) == {(None, 2)}
 
 
-def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it():
+def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it(monkeypatch: pytest.MonkeyPatch):
     window = Window(lamp_radius=0.5, lamp_samples=16)
     window.rest()
     window.session.set_draw(view=View.PENUMBRA)
     assert window.rest() == [(16, 2)] and window.renders.asked[-1].settings.record_lights
     window.session.set_draw(view=View.COLOR)
     assert window.rest() == [], "there is more than the picture needs"
-    many = make_scene(lights=3)
-    window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
+    monkeypatch.setattr(views, "MOST_RECORDED", 128)
+    window = Window()
     for view, title in (
         (View.PENUMBRA, "Penumbra: counting ..."),
         (View.LIGHTS, "Lights due: not available here, colour shown"),
@@ -176,25 +188,21 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
 def test_between_steps_it_is_known_that_more_is_to_come():
     """Whatever the thread is at: it may be between two pictures."""
     window = Window(lamp_radius=0.5, lamp_samples=64)
-    scheduler, seen = window.scheduler, []
-    assert scheduler.activity is Activity.RESTING
+    scheduler, activities = window.scheduler, []
     for _ in range(12):
         window.request()
-        seen.append((scheduler.lamp_samples_shown, scheduler.activity))
+        activities.append(scheduler.activity)
         scheduler.take()
-    coming = (Activity.TRACING, Activity.SAMPLING_LAMPS, Activity.TRACING)
-    assert seen[:3] == list(zip((0, 4, 64), coming, strict=True)), "the last knows more"
-    assert seen[-1] == (64, Activity.RESTING)
-    window.session.set_settings(lamp_samples=256)
-    window.request()
-    assert scheduler.activity is Activity.SAMPLING_LAMPS
-    scheduler.give_up()
-    assert scheduler.activity is Activity.RESTING, "a failure ends it"
-    window.move()
-    window.request()
-    assert scheduler.activity is Activity.TRACING
-    scheduler.give_up()
-    assert scheduler.activity is Activity.RESTING, "it has failed"
+    assert activities[:4] == [Activity.TRACING, Activity.SAMPLING_LAMPS, Activity.TRACING, Activity.RESTING]
+    for change, activity in (
+        (lambda: window.session.set_settings(lamp_samples=256), Activity.SAMPLING_LAMPS),
+        (window.move, Activity.TRACING),
+    ):
+        change()
+        window.request()
+        assert scheduler.activity is activity
+        scheduler.give_up()
+        assert scheduler.activity is Activity.RESTING, "a failure ends it"
 
 
 # --- what views need ---------------------------------------------------------------------------------
@@ -242,68 +250,43 @@ def test_the_users_own_setting_counts_in_every_view():
 
 # --- further frames that know more -------------------------------------------------------------------
 
-HERE, ELSEWHERE = (Camera((x, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)) for x in (0.0, 1.0))
-
-
-def frames(
-    refinement: Refinement,
-    made: list[int],
-    camera: Camera = HERE,
-    view: View = View.COLOR,
-    changes: list[ModeChanges] | None = None,
-    **settings: Any,
-) -> int:
-    """How many frames of a view are traced, the k-th of which makes so many certificates, or changes modes so."""
-    for k, certificates in enumerate(made):
-        request = RenderRequest(0.0, camera, Settings(8, 8, **settings), 1, k)
-        changed = changes[k] if changes is not None else None
-
-        def follows(part: float) -> bool:
-            statistics = FrameStatistics(certificates=certificates, part=part, mode_changes=changed)  # noqa: B023
-            frame: Any = SimpleNamespace(statistics=statistics, width=8, height=8)
-            return refinement.wants_another(Traced(request, frame, statistics), view, False)  # noqa: B023
-
-        assert not follows(0.25), "not whole yet"
-        if not follows(1.0):
-            return k + 1
-        assert not follows(1.0), "once for each frame"
-    return len(made)
-
 
 @pytest.mark.parametrize(
     ("method", "made", "expected"),
     [
-        ("none", [0] * 20, 2),
-        ("paper", [0] * 20, 2),
-        ("certified", [0] * 20, 2),
-        ("certified", [9, 9, 9, 0, 0, 0], 4),
+        ("none", [], 2),
+        ("paper", [], 2),
+        ("certified", [], 2),
+        ("certified", [9, 9, 9], 4),
         ("auto", [9] * 20, 2),
         ("certified+cache", [9] * 2 * MOST_FRAMES, 1 + MOST_FRAMES),
     ],
 )
 def test_frames_follow_as_long_as_they_know_more(method: str, made: list[int], expected: int):
-    refinement = Refinement()
-    assert frames(refinement, made, method=method) == expected
-    assert frames(refinement, made, method=method) == 1, "nothing is refined twice"
-    assert frames(refinement, made, ELSEWHERE, method=method) == expected, "another view"
-    refinement.forget()
-    assert frames(refinement, made, ELSEWHERE, method=method) == expected, "what was known is lost"
+    window = Window(method=method, samples=1)
+    assert window.frames(made) == expected
+    assert window.frames(made) == 0, "nothing is refined twice"
+    window.move()
+    assert window.frames(made) == expected, "another view"
+    window.scheduler.forget_modes()
+    assert window.frames(made) >= expected - 1, "what was known is lost"
 
 
 def test_frames_follow_until_modes_no_longer_change():
     """As where many primitives are examined anew: one frame says so, one learns, and one shows what that saves."""
     learning = [ModeChanges(fully_rendered=9), ModeChanges(examined_anew=3), ModeChanges(fully_rendered=3)]
-    settled, refinement = [ModeChanges()] * 20, Refinement()
-    assert frames(refinement, [0] * 20, changes=learning + settled, method="paper") == 4
-    always = [ModeChanges(full_shadow=1)] * 20
-    assert frames(refinement, [0] * 20, ELSEWHERE, changes=always, method="paper") == MOST_LEARNING + 1
+    window = Window(method="paper", samples=1)
+    assert window.frames(changes=[*learning, ModeChanges()]) == 4
+    window.move()
+    assert window.frames(changes=[ModeChanges(full_shadow=1)] * 20) == MOST_LEARNING + 1
 
 
 def test_the_view_of_certificates_asks_for_more_of_them():
-    refinement = Refinement()
-    assert frames(refinement, [9] * 20, method="auto") == 2
-    assert frames(refinement, [9] * 5 + [0] * 3, view=View.CERTIFICATE, method="auto") == 6
-    assert frames(refinement, [0] * 5, view=View.CERTIFICATE, method="paper") == 2
+    for method, more in (("auto", 6), ("paper", 0)):
+        window = Window(method=method, samples=1)
+        assert window.frames([9] * 20) == 2
+        window.session.set_draw(view=View.CERTIFICATE)
+        assert window.frames([9] * 5) == more
 
 
 # --- waking the window -------------------------------------------------------------------------------

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-import tracer
 from tests.viewer.desk import ELSEWHERE, Desk
-from tests.viewer.fakes import make_frame, make_scene
+from tests.viewer.fakes import Clock, make_frame, make_scene
 from tracer.culling import modes
 from tracer.frame import Frame
 from tracer.mode_origins import NEVER
-from tracer.scene.edits import NO_EDITS, Edits
+from tracer.scene.edits import NO_EDITS
 from viewer.services.history import FrameHistory
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.session import Session
@@ -75,61 +72,34 @@ def test_the_modes_of_a_frame_that_depends_on_them_are_learnt_anew(desk: Desk) -
     assert "no longer kept" in desk.said
 
 
-def test_a_frozen_picture_knows_what_its_warmup_frames_teach_and_no_more(desk: Desk) -> None:
-    """As a find of a hunt is looked at: with the modes of these frames, bit for bit, until something moves."""
-    c = desk.c
-    c.settings.change(method="paper", samples=4)
-    desk.rest()
-    scene, settings = c.session.scene, c.session.settings
-    warmup = tuple((scene.frame_time(n), scene.camera_at(scene.frame_time(n))) for n in range(3))
-    snapshot = replace(c.session.state, time=scene.frame_time(3))
-    c.navigator.go_to(snapshot, "a find", (32, 24), warmup=warmup)
-    desk.rest()
-    own = tracer.Renderer(scene, replace(c.frame.settings, samples=1))
-    for then, camera in (*warmup, (c.session.time, c.session.camera)):
-        alone = own.render(then, camera)
-    assert np.array_equal(c.frame.color.view(np.uint32), alone.color.view(np.uint32))
-    assert np.array_equal(c.frame.modes, alone.modes) and settings.samples == 4 and c.frame.settings.samples == 1
-    c.motion.move(ELSEWHERE)
-    desk.rest()
-    assert c.frame.settings.samples == 4, "having moved, it gets its samples"
-
-
 def test_a_mode_names_the_frames_that_taught_it(desk: Desk) -> None:
     """Against the modes as each frame left them."""
     c = desk.c
     c.settings.change(method="paper", depth=2)
     desk.rest()
     before = c.history.frames
+    desk.came.clear()
     c.reset_modes()
     desk.rest()
     for number in (0, 4, 9):
         c.session.go_to_frame(number)
-        desk.until(lambda number=number: c.frame is not None and c.frame.time == c.session.time)
         desk.rest()
     c.motion.move(ELSEWHERE)
     desk.rest()
-    learnt = {number: c.history.records[number].state for number in range(before, c.history.frames)}
-    assert len(learnt) >= 5
+    assert len(desk.came) == c.history.frames - before >= 5
     c.selection.select((0.5, 0.75))
-    picked = c.selection.picked
-    assert picked is not None and picked.primitive >= 0
-    taught = c.history.origins_of(c.frame, picked.primitive)
-    assert taught is not None
-    scene = c.session.scene
-    again = tracer.Renderer(scene, world=tracer.World(scene))
+    primitive = c.selection.picked.primitive
+    taught = c.history.origins_of(c.frame, primitive)
     first: dict[tuple[int, bool], int] = {}
-    for n, state in learnt.items():
-        again.settings = replace(state.settings, verify=False, samples=1)
-        word = again.render(state.time, state.camera or scene.camera_at(state.time)).modes[picked.primitive]
+    for number, frame in enumerate(desk.came, before):
         for light in range(2):
             for lit, bit in ((False, modes.FULL_SHADOW), (True, modes.NON_SHADOW)):
-                if int(modes.shadow_mode(word, light)) & bit:
-                    first.setdefault((light, lit), n)
+                if int(modes.shadow_mode(frame.modes[primitive], light)) & bit:
+                    first.setdefault((light, lit), number)
     assert first
     for light, lesson in enumerate(taught.lights):
-        for lit, n in ((False, lesson.blocked), (True, lesson.lit)):
-            assert first.get((light, lit), NEVER) == n
+        for lit, number in ((False, lesson.blocked), (True, lesson.lit)):
+            assert first.get((light, lit), NEVER) == number
 
 
 def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
@@ -139,19 +109,13 @@ def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
     desk.rest()
     without_ball = NO_EDITS.with_primitive(c.selection.at((0.5, 0.45)).primitive, False)
 
-    def edit(edits: Edits) -> None:
-        c.editing.change(edits)
-        desk.until(lambda: not c.editing.under_way)
-        desk.rest()
-
     whole, number = c.frame.color.copy(), c.history.frames - 1
-    edit(without_ball)
+    desk.edit(without_ball)
     hidden, other = c.frame.color.copy(), c.history.frames - 1
     assert not np.array_equal(whole, hidden)
     for to, picture, edits in ((number, whole, NO_EDITS), (other, hidden, without_ball)):
         record = c.history.records[to]
         c.navigator.go_to(record.state, "a picture", record.size, (0.5, 0.45))
-        desk.until(lambda: not c.editing.under_way)
         desk.rest()
         assert np.array_equal(c.frame.color, picture) and c.session.edits == edits
         here = c.selection.at((0.5, 0.45))
@@ -172,17 +136,16 @@ def took(history: FrameHistory, seconds: float = 0.0, parts: tuple[float, ...] =
         history.take([], Traced(request, frame, s), 0.01)
 
 
-def test_so_many_frames_come_in_a_second_and_each_counts_once() -> None:
-    now = 5.0
-    history = FrameHistory(Session(make_scene()), clock=lambda: now)
+def test_so_many_frames_come_in_a_second_and_each_counts_once(clock: Clock) -> None:
+    history = FrameHistory(Session(make_scene()))
     for apart, pause in ((0.04, 0.0), (0.1, 0.0), (4.0, 7.0)):
         for _ in range(40):
-            now += apart
-            took(history, now, (0.2, 0.5, 1.0))
+            clock.now += apart
+            took(history, clock.now, (0.2, 0.5, 1.0))
         assert history.frames_per_second == pytest.approx(1.0 / apart), "what came long before does not count"
-        now += pause
+        clock.now += pause
     assert history.frames == 120 and history.frames_per_second == pytest.approx(0.25)
-    now += 2.0
+    clock.now += 2.0
     assert history.frames_per_second is None, "nothing comes any more"
     history.clear()
     took(history)

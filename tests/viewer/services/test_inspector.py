@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import cast
 
-import numpy as np
 import pytest
 
-from tests.viewer.desk import Desk
+from tests.viewer.desk import Desk, place_of
 from tracer.culling.fate import Fate
-from tracer.inspect.explanation import explain
-from tracer.inspect.path_records import RayTree
+from tracer.inspect.path_records import AWAY, RayTree
+from tracer.inspect.ray_tree import unculled_shadow_rays
 from tracer.inspect.reasons import Reason, Rule, Why
 from tracer.inspect.why_in_words import Link
-from tracer.renderer import Renderer
+from tracer.scene.edits import NO_EDITS
 from viewer.output.ray_rows import RayFilter
 from viewer.services import inspector as module
 from viewer.state import navigation
@@ -27,27 +24,15 @@ from viewer.window.ui import Ui
 
 
 class PixelDesk(Desk):
-    """A desk that knows a pixel in shadow and one that is lit."""
+    """A desk that knows a pixel in shadow."""
 
     def __init__(self, path: Path, folder: Path) -> None:
         super().__init__(path, folder)
-        self.renderer = cast(Renderer, self.c.renderer._renderer)
-        self.shadow, self.lit = self._place(False), self._place(True)
-
-    def until(self, happens: Callable[[], object], ticks: int = 5) -> None:
-        """Tick until it happens, and has for some ticks."""
-        held = 0
-
-        def holds() -> bool:
-            nonlocal held
-            held = held + 1 if happens() else 0
-            return held >= ticks
-
-        super().until(holds)
+        self.shadow = place_of(self.c, lit=False, near=2)
 
     def answered(self) -> Why:
         """The reasons for the picture that is shown."""
-        self.until(lambda: self.why is not None and self.why.tree.frame.primitive is self.c.frame.primitive)
+        self.until(lambda: self.why is not None and self.why.tree.frame.primitive is self.c.frame.primitive, ticks=5)
         return self.why
 
     @property
@@ -56,16 +41,6 @@ class PixelDesk(Desk):
 
     def turn(self, by: float) -> None:
         self.c.motion.move(navigation.look(self.c.session.camera, by, 0.0, self.c.motion.world_up))
-
-    def _place(self, lit: bool) -> tuple[float, float]:
-        """Where the square is seen and lit by all lights, or not by one."""
-        settings = replace(self.c.frame.settings, method="none", record_lights=True)
-        frame = Renderer(self.renderer.scene, settings).render()
-        here = (frame.primitive >= 0) & (frame.primitive < 2)
-        here &= frame.lit.all(-1) if lit else (frame.due & ~frame.lit).any(-1)
-        here &= np.roll(here, 2, 0) & np.roll(here, -2, 0) & np.roll(here, 2, 1) & np.roll(here, -2, 1)
-        y, x = np.argwhere(here)[here.sum() // 2]
-        return (x + 0.5) / frame.width, (y + 0.5) / frame.height
 
 
 @pytest.fixture
@@ -79,54 +54,22 @@ def blocked(answer: Why) -> bool:
     return any(one.blocker >= 0 for one in answer.reasons)
 
 
-def test_the_pointer_is_followed_and_nothing_is_traced_for_it(desk: PixelDesk):
-    assert desk.why is None
-    traced, selection = desk.c.history.frames, desk.c.selection
-    selection.hovered = desk.shadow
-    answer, frame = desk.answered(), desk.c.frame
-    assert (answer.x, answer.y) == (int(desk.shadow[0] * frame.width), int(desk.shadow[1] * frame.height))
-    assert blocked(answer)
-    selection.hovered = desk.lit
-    desk.until(lambda: not blocked(desk.why))
-    selection.hovered = (0.5, 0.01)  # background
-    desk.until(lambda: desk.why is None)
-    selection.hovered = desk.lit
-    desk.answered()
-    selection.hovered = None
-    desk.until(lambda: desk.why is None)
-    assert desk.c.history.frames == traced
-
-
 def test_reasons_say_what_the_frame_did(desk: PixelDesk):
     desk.c.settings.change(method="paper")
-    desk.until(lambda: not desk.c.active)
+    desk.rest()
     desk.c.selection.select(desk.shadow)
-    answer, truth = desk.answered(), explain(desk.renderer, desk.c.frame, *desk.c.selection.pixel)
+    answer, asked = desk.answered(), (desk.c.frame, *desk.c.selection.pixel)
+    truth = unculled_shadow_rays(desk.c.renderer._renderer, *asked)
     assert answer.tree is desk.c.inspector.tree and (answer.tree.x, answer.tree.y) == desk.c.selection.pixel
-    assert [one.lit for one in answer.reasons] == [one.reached for one in truth] and wrong_beyond(answer) == 0
-    assert [one.fate is not Fate.FACES_AWAY for one in answer.reasons] == [one.due for one in truth]
-    assert [one.blocker for one in answer.reasons] == [-1 if one.blocker is None else one.blocker for one in truth]
-    desk.c.selection.clear()
-    desk.until(lambda: desk.why is None)
-
-
-def test_another_time_is_another_answer_and_nothing_is_said_of_what_is_out_of_view(desk: PixelDesk):
-    desk.c.selection.select(desk.shadow)
-    first = desk.answered()
-    desk.c.motion.step(3)
-    desk.until(lambda: not desk.c.active and desk.c.frame.time > first.tree.frame.time)
-    assert desk.answered().tree.frame.time == desk.c.frame.time
-    desk.turn(2.5)
-    desk.until(lambda: not desk.c.active and desk.why is desk.c.inspector.tree is None)
-    desk.turn(-2.5)
-    desk.until(lambda: not desk.c.active)
-    assert blocked(desk.answered())
+    assert [one.lit for one in answer.reasons] == truth.lit.tolist() and wrong_beyond(answer) == 0
+    assert [one.fate is Fate.FACES_AWAY for one in answer.reasons] == (truth.verdict == AWAY).tolist()
+    assert [one.blocker for one in answer.reasons] == truth.blocker.tolist()
 
 
 def test_nothing_is_proven_by_a_method_that_is_not_chosen_any_more(desk: PixelDesk):
     """Certificates that are no longer followed may be untrue by now."""
     desk.c.settings.change(method="certified")
-    desk.until(lambda: not desk.c.active, ticks=20)
+    desk.rest()
     desk.c.selection.select(desk.shadow)
     old = desk.answered()
     assert {one.method for one in old.reasons} == {"certified"}
@@ -142,7 +85,7 @@ def test_a_run_has_the_world_to_itself(desk: PixelDesk):
     desk.c.runs.start_experiment()
     desk.until(lambda: desk.why is None)
     desk.c.runs.stop()
-    desk.until(lambda: desk.c.runs.current is None and not desk.c.active)
+    desk.run_to_its_end()
     assert blocked(desk.answered())
 
 
@@ -153,12 +96,12 @@ def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: PixelDesk):
     answer, first, ui = desk.answered(), desk.c.frame, Ui(desk.c)
     neighbour = Link("the right neighbour", pixel=(answer.x + 1, answer.y))
     desk.turn(0.02)
-    desk.until(lambda: desk.c.frame is not first, ticks=1)
+    desk.until(lambda: desk.c.frame is not first)
     before = selection.picked
     assert desk.why is answer and not desk.c.inspector.names_pixels_of(desk.c.frame)
     go_to(ui, neighbour)
     assert selection.picked is before, "it would be another pixel"
-    desk.until(lambda: not desk.c.active)
+    desk.rest()
     desk.answered()
     go_to(ui, neighbour)
     assert (selection.picked.x, selection.picked.y) == neighbour.pixel
@@ -172,49 +115,62 @@ def test_lights_are_summed_up_by_the_samples_that_arrive():
     )
 
 
-def test_an_answer_that_fails_is_one_line_and_a_failed_edit_leaves_answers(
+def test_a_failed_answer_stops_nothing_a_failed_edit_leaves_answers_and_a_failed_frame_stops_what_plays(
     desk: PixelDesk, monkeypatch: pytest.MonkeyPatch
 ):
-    def fail(*_: object) -> None:
+    def fail(*_: object, **__: object) -> None:
         raise ValueError("made to fail")
 
     with monkeypatch.context() as patched:
         patched.setattr(module, "why", fail)
+        desk.c.session.playing = True
         desk.c.selection.select(desk.shadow)
         desk.until(lambda: desk.c.inspector.problem == "made to fail")
         assert unanswered(Ui(desk.c)) == "No answer: made to fail."
+        desk.until(lambda: desk.c.notices.message is not None and "made to fail" in desk.said)
+        count = len(desk.came)
+        desk.until(lambda: len(desk.came) > count + 2)
+        assert desk.c.session.playing
+        desk.c.session.playing = False
         desk.c.selection.clear()
         desk.tick()
         patched.setattr("viewer.services.editing.edited", fail)
-        desk.c.editing.change(desk.c.editing.now.with_light(0, False))
-        desk.until(lambda: desk.c.notices.message is not None and "made to fail" in desk.said)
-        desk.until(lambda: not desk.c.editing.under_way)
+        desk.c.notices.message = None
+        desk.edit(NO_EDITS.with_light(0, False))
+        assert "made to fail" in desk.said and not desk.c.session.edits
     desk.c.selection.select(desk.shadow)
     assert blocked(desk.answered())
+    desk.c.session.playing = True
+    monkeypatch.setattr(desk.c.renderer._renderer, "refine", fail)
+    desk.until(lambda: not desk.c.session.playing)
+    assert "frame not traced" in desk.said and "made to fail" in desk.said
 
 
-def test_rays_follow_the_camera_and_an_edit_of_the_scene(desk: PixelDesk):
-    """The picture before an edit and the one after are of the same time, camera and settings."""
+def test_rays_follow_the_time_the_camera_and_an_edit_of_the_scene(desk: PixelDesk):
+    """The picture before an edit and the one after are of the same time, camera and settings; of what is out of view
+    nothing is said."""
     c = desk.c
 
-    def tree(before: RayTree | None = None) -> RayTree:
-        def newest() -> bool:
-            found = c.inspector.tree
-            return found not in (None, before) and found.frame.primitive is c.frame.primitive and not c.active
-
-        desk.until(newest)
+    def tree() -> RayTree:
+        desk.rest()
+        desk.answered()
         return c.inspector.tree
 
     def lines_of(one: RayTree) -> int:
         return len(ray_lines(one.frame, one, RayFilter()))
 
     c.selection.select(desk.shadow)
+    c.motion.step(3)
     first = tree()
-    desk.turn(0.02)
-    moved = tree(first)
+    assert first.frame.time == c.frame.time > 0.0
+    desk.turn(2.5)
+    desk.rest()
+    assert desk.why is c.inspector.tree is None
+    desk.turn(-2.48)
+    moved = tree()
     assert (moved.x, moved.y) == c.selection.pixel != (first.x, first.y)
-    c.editing.change(c.editing.now.with_light(0, False))
-    edited = tree(moved)
+    c.editing.change(NO_EDITS.with_light(0, False))
+    edited = tree()
     assert lines_of(edited) < lines_of(moved), "a light less shines on it"
     c.undo.undo()
-    assert lines_of(tree(edited)) == lines_of(moved)
+    assert lines_of(tree()) == lines_of(moved)

@@ -6,42 +6,41 @@ from dataclasses import replace
 
 import pytest
 
-from tests.viewer.fakes import Moving, make_frame, make_scene
+from tests.viewer.fakes import Clock, make_frame, make_scene
 from tracer.scene.model import Camera
+from viewer.services.controller import Controller
 from viewer.services.motion import IDLE_AFTER
 from viewer.state.navigation import SHORTEST_FLIGHT
 
 ELSEWHERE = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 
 
-@pytest.fixture
-def moving(monkeypatch: pytest.MonkeyPatch) -> Moving:
-    return Moving(monkeypatch)
-
-
-def test_a_glide_ends_where_it_goes_and_a_hand_ends_it(moving: Moving):
-    start = moving.session.camera
+def test_a_glide_ends_where_it_goes_and_a_hand_ends_it(clock: Clock, c: Controller):
+    start = c.session.camera
     for halt in (False, True):
-        moving.session.change(camera=start)
-        moving.motion.glide(ELSEWHERE)
-        moving.after(0.5 * SHORTEST_FLIGHT)
-        assert moving.session.camera not in (start, ELSEWHERE) and moving.motion.under_way
+        c.session.change(camera=start)
+        c.motion.glide(ELSEWHERE)
+        clock.now += 0.5 * SHORTEST_FLIGHT
+        c.move()
+        assert c.session.camera not in (start, ELSEWHERE) and c.motion.under_way
         if halt:
-            moving.motion.move(start)
-            moving.now += IDLE_AFTER
-            assert not moving.motion.under_way, "a hand that moves the camera is motion for a moment"
-        moving.after(3600.0)  # though the window slept on the way
-        assert moving.session.camera == (start if halt else ELSEWHERE)
+            c.motion.move(start)
+            clock.now += IDLE_AFTER
+            assert not c.motion.under_way, "a hand that moves the camera is motion for a moment"
+        clock.now += 3600.0  # though the window slept on the way
+        c.move()
+        assert c.session.camera == (start if halt else ELSEWHERE)
 
 
-def test_time_is_played_as_it_passes_or_frame_by_frame(moving: Moving):
-    session, motion = moving.session, moving.motion
-    moving.preferences.playback_rate = 2.0
+def test_time_is_played_as_it_passes_or_frame_by_frame(clock: Clock, c: Controller):
+    session, motion = c.session, c.motion
+    c.preferences.playback_rate = 2.0
     motion.toggle_play()
-    moving.after(0.1)
+    clock.now += 0.1
+    c.move()
     assert session.time == pytest.approx(0.2) and motion.under_way
     session.go_to_frame(0)
-    moving.session.set_pace(every_frame=True)
+    session.set_pace(every_frame=True)
     motion.advance(None)
     assert session.frame == 0 and motion.is_animating and not motion.under_way, "this frame has not been traced yet"
     motion.advance(session.time)
@@ -54,23 +53,11 @@ def test_time_is_played_as_it_passes_or_frame_by_frame(moving: Moving):
     session.open(make_scene(frames=1))
     session.playing = False
     motion.toggle_play()
-    assert moving.notices.current.text == "this scene has no animation" and not session.playing
+    assert c.notices.current.text == "this scene has no animation" and not session.playing
 
 
-def test_nothing_moves_while_it_is_locked(moving: Moving):
-    session, before = moving.session, (moving.session.camera, moving.session.time)
-    moving.locked = True
-    moving.motion.move(ELSEWHERE)
-    moving.motion.glide(ELSEWHERE)
-    moving.motion.follow_path(False)
-    moving.motion.step(1)
-    moving.motion.toggle_play()
-    moving.motion.advance(None)
-    assert (session.camera, session.time) == before and session.on_path and not session.playing
-
-
-def test_the_pace_is_that_of_the_first_frame_until_another_scene(moving: Moving):
-    motion, frame = moving.motion, make_frame()
+def test_the_pace_is_that_of_the_first_frame_until_another_scene(c: Controller):
+    motion, frame = c.motion, make_frame()
     motion.enter(((-80.0, -80.0, -80.0), (80.0, 80.0, 80.0)))
     wide = motion.pace
     motion.look_around(frame)

@@ -2,109 +2,96 @@
 
 from __future__ import annotations
 
+from contextlib import closing
+
 import pytest
 
 from tests.viewer.fakes import make_scene
 from tracer.scene.model import Camera
-from viewer.services.named_states import BUILT_IN, Bookmarks, NamedStates, Presets
-from viewer.state import codec
-from viewer.state.notices import Notices
-from viewer.state.preferences import NamedState, Preferences, load_preferences, save_preferences
-from viewer.state.session import Session
+from viewer.services.controller import Controller
+from viewer.services.named_states import BUILT_IN, NamedStates
+from viewer.state.preferences import NamedState, Preferences, load_preferences
 from viewer.state.views import View
 
 AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 
 
-class Parts:
-    def __init__(self) -> None:
-        self.preferences, self.notices = Preferences(), Notices()
-        self.session = Session(state=codec.recalled({}))
-        self.session.open(make_scene(lights=3))
-        self.locked, self.named = False, []
-        write = lambda: save_preferences(self.preferences)  # noqa: E731
-        held = self.session, self.preferences, self.notices, write
-        self.marks, self.presets = Bookmarks(*held), Presets(*held, lambda: self.locked, self.named.append)
-
-
-@pytest.fixture
-def parts(own_settings) -> Parts:
-    return Parts()
-
-
-@pytest.mark.parametrize("kind", ["marks", "presets"])
-def test_names_are_unique_and_they_and_their_order_can_be_changed(parts: Parts, kind: str):
-    states: NamedStates = getattr(parts, kind)
+@pytest.mark.parametrize("kind", ["bookmarks", "presets"])
+def test_names_are_unique_and_they_and_their_order_can_be_changed(c: Controller, kind: str):
+    states: NamedStates = getattr(c, kind)
     for name in ("one", "  two \n words ", "three"):
         assert states.save(name)
-    parts.session.set_settings(depth=1)
-    assert states.save("one") and parts.notices.message.text == f"{states.kind} replaced: one"
+    c.session.set_settings(depth=1)
+    assert states.save("one") and c.notices.message.text == f"{states.kind} replaced: one"
     assert [one.name for one in states.all] == ["one", "two words", "three"]
     assert [one.state["settings"]["depth"] for one in states.all] == [1, 10, 10]
     for taken in ("three", " "):
         states.rename(0, taken)
-        assert states.all[0].name == "one" and parts.notices.message.error
+        assert states.all[0].name == "one" and c.notices.message.error
     states.rename(0, "four")
     states.rename(1, "two words")
     states.move(2, 0)
     states.delete(1)
-    assert [one.name for one in load_preferences()[0].presets or states.all] == ["three", "two words"]
+    c.settings.finish()
+    stored = load_preferences()[0]
+    kept = stored.presets or next(iter(stored.bookmarks.values()))
+    assert [one.name for one in kept] == ["three", "two words"]
 
 
-def test_a_bookmark_brings_back_the_place_and_not_the_settings(parts: Parts):
+def test_a_bookmark_brings_back_the_place_and_not_the_settings(c: Controller):
     for _ in range(2):
-        parts.marks.add()
-    assert [mark.name for mark in parts.marks.all] == ["frame 0", "frame 0 (2)"]
-    parts.session.change(camera=AWAY, time=3.0)
-    parts.session.set_draw(view=View.DEPTH)
-    parts.marks.save("here")
-    parts.session.change(camera=None, time=0.0)
-    parts.session.set_draw(view=View.COLOR, outlines=True)
-    parts.session.set_settings(depth=2)
-    found = parts.marks.find(2)
+        c.bookmarks.add()
+    assert [mark.name for mark in c.bookmarks.all] == ["frame 0", "frame 0 (2)"]
+    c.session.change(camera=AWAY, time=3.0)
+    c.session.set_draw(view=View.DEPTH)
+    c.bookmarks.save("here")
+    c.session.change(camera=None, time=0.0)
+    c.session.set_draw(view=View.COLOR, outlines=True)
+    c.session.set_settings(depth=2)
+    found = c.bookmarks.find(2)
     assert (found.camera, found.time, found.draw.view) == (AWAY, 3.0, View.DEPTH)
     assert found.settings.depth == 2 and found.draw.outlines
-    parts.marks.all[2].state = {"time": "noon"}
-    assert parts.marks.find(2) is None and parts.notices.current.text.startswith("this bookmark is damaged")
-    parts.session.open(make_scene(path="other.aff"))
-    assert parts.marks.all == []
+    c.bookmarks.all[2].state = {"time": "noon"}
+    assert c.bookmarks.find(2) is None and c.notices.current.text.startswith("this bookmark is damaged")
+    c.session.open(make_scene(path="other.aff"))
+    assert c.bookmarks.all == []
 
 
-def test_all_presets_can_be_applied_and_as_in_the_paper_is_what_the_paper_says(parts: Parts):
+def test_all_presets_can_be_applied_and_as_in_the_paper_is_what_the_paper_says(c: Controller):
     for preset in BUILT_IN:
-        parts.presets.apply(preset.name)
-        assert not parts.notices.message.error
-        assert not parts.presets.save(preset.name) and "comes with the program" in parts.notices.message.text
-    parts.named.clear()
-    parts.session.set_settings(method="certified", symmetric=True, zoom_factor=9.0, depth=2, lamp_radius=0.5)
-    parts.session.set_draw(view=View.DEPTH)
-    parts.presets.apply("As in the paper")
-    s, pace = parts.session.settings, parts.session.state.pace
+        c.presets.apply(preset.name)
+        assert not c.notices.message.error
+        assert not c.presets.save(preset.name) and "comes with the program" in c.notices.message.text
+    c.undo.note_changes()
+    c.session.set_settings(method="certified", symmetric=True, zoom_factor=9.0, depth=2, lamp_radius=0.5)
+    c.session.set_draw(view=View.DEPTH)
+    c.presets.apply("As in the paper")
+    s, pace = c.session.settings, c.session.state.pace
     assert (s.method, s.symmetric, s.zoom_factor, s.depth, s.samples) == ("paper", False, 4.0, 10, 1)
     assert s.lamp_radius == 0.0, "point lights"
     assert (pace.fixed_size, pace.width, pace.height, pace.progressive) == (True, 512, 512, False)
     assert pace.every_frame, "frame-to-frame coherence is that of one frame and the next"
-    assert parts.session.draw.view is View.DEPTH, "it says nothing of the view"
-    assert parts.named == ["preset As in the paper"] and parts.notices.message.text.endswith("As in the paper")
+    assert c.session.draw.view is View.DEPTH, "it says nothing of the view"
+    assert c.notices.message.text.endswith("As in the paper")
+    c.undo.note_changes()
+    assert c.undo.undoes == "preset As in the paper"
 
 
-def test_a_preset_is_applied_again_by_another_window(parts: Parts):
-    parts.session.set_settings(method="paper+rest", depth=4, lamp_samples=64)
-    parts.session.set_draw(view=View.PENUMBRA, outlines=True)
-    assert parts.presets.save("soft shadows")
-    other = Parts()
-    other.preferences.presets = load_preferences()[0].presets
-    other.presets.apply("soft shadows")
-    assert other.session.state == parts.session.state
+def test_a_preset_is_applied_again_by_another_window(c: Controller):
+    c.session.set_settings(method="paper+rest", depth=4, lamp_samples=64)
+    c.session.set_draw(view=View.PENUMBRA, outlines=True)
+    assert c.presets.save("soft shadows")
+    c.settings.finish()
+    with closing(Controller(Preferences(presets=load_preferences()[0].presets))) as other:
+        other.session.open(make_scene())
+        other.presets.apply("soft shadows")
+        assert other.session.state == c.session.state
 
 
-def test_a_damaged_preset_changes_nothing_and_nothing_is_applied_while_locked(parts: Parts):
-    parts.preferences.presets = [NamedState("odd", {"settings": {"method": "fast"}}), NamedState("empty", {})]
-    before = parts.session.state
+def test_a_damaged_preset_changes_nothing(c: Controller):
+    c.preferences.presets = [NamedState("odd", {"settings": {"method": "fast"}}), NamedState("empty", {})]
+    before = c.session.state
     for name in ("odd", "empty", "none such"):
-        parts.notices.message = None
-        parts.presets.apply(name)
-        assert parts.notices.message.error and parts.session.state == before and parts.named == []
-    parts.locked = True
-    parts.presets.apply("Quick and exact")
-    assert parts.session.state == before
+        c.notices.message = None
+        c.presets.apply(name)
+        assert c.notices.message.error and c.session.state == before

@@ -16,7 +16,6 @@ from tracer.scene.model import Camera, Cancelled
 from viewer.services import render_thread
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.services.render_thread import RenderThread
-from viewer.util.messages import Failure
 
 
 def request(at: float, **kinds: Any) -> RenderRequest:
@@ -154,18 +153,6 @@ def test_a_task_has_the_thread_to_itself_and_the_newest_request_waits(thread: Th
     thread.idle()
 
 
-def test_closing_cuts_a_trace_short(thread: Thread):
-    thread.use(None)
-    thread.submit(request(0.0))
-    assert not thread.busy, "nothing is traced without a scene"
-    thread.use(thread.fake)
-    thread.held_at(request(0.0))
-    assert thread.close(PATIENCE), "it hangs"
-    assert thread.fake.cancelled == [0.0]
-    thread.submit(request(1.0))
-    assert not thread.busy
-
-
 def test_a_picture_becomes_whole_and_gets_samples_as_long_as_nothing_else_is_wanted(thread: Thread):
     thread.submit(request(1.0, parts=(4, 8, 16), samples=3))
     last = thread.until(lambda traced: traced.frame.settings.samples == 3)
@@ -198,10 +185,6 @@ def column(renderer, frame, x, cancelled):
 
 def row(renderer, frame, y, cancelled):
     return y
-
-
-def failing(renderer, frame, cancelled):
-    raise ValueError("no such light")
 
 
 def test_the_same_query_has_the_same_future_however_many_samples_come(thread: Thread):
@@ -243,14 +226,6 @@ def test_what_is_shown_can_be_asked_about_though_a_later_frame_has_failed(thread
     assert len(thread.fake.turns) == turns + 1, "the world was put back for it"
 
 
-def test_an_error_is_in_the_future_and_told_in_one_line_but_is_no_failed_frame(thread: Thread):
-    assert isinstance(thread.query(failing, thread.shown(1.0)).exception(PATIENCE), ValueError)
-    told: list[tuple[list[Failure], bool]] = []
-    until(lambda: told.append(thread.take_problems()) or told[-1][0])
-    assert [one.text for one in told[-1][0]] == ["no answer: no such light"] and not told[-1][1]
-    thread.shown(3.0)
-
-
 def test_a_query_that_takes_long_gives_way_to_a_picture_and_to_a_newer_query(thread: Thread, monkeypatch):
     monkeypatch.setattr(render_thread, "QUERY_SECONDS", 0.01)
     begun = [Event(), Event()]
@@ -286,3 +261,27 @@ def test_a_picture_is_asked_about_before_its_next_sample(thread: Thread):
     answer = thread.query(lambda renderer, frame, cancelled: len(renderer.asked), frame)
     asked.set()
     assert answer.result(PATIENCE) == 4
+
+
+def test_spare_work_gives_way_to_anything_and_the_world_is_put_back(thread: Thread):
+    begun, ended = [], []
+
+    def work(renderer, cancelled) -> bool:
+        begun.append(renderer)
+        while not cancelled():
+            time.sleep(0.001)
+        ended.append(renderer)
+        raise Cancelled()
+
+    thread.in_spare_time(work)
+    for number, at in enumerate((1.0, 2.0)):
+        assert len(begun) == number, "not before a picture is there"
+        frame = thread.shown(at)
+        until(lambda number=number: len(begun) == number + 1)
+        assert not thread.busy and len(thread.fake.turns) == number, "put back after a step"
+    assert thread.query(row, frame, 1).result(PATIENCE) == 1
+    until(lambda: len(begun) == 3)
+    thread.in_spare_time(None)
+    until(lambda: len(ended) == len(thread.fake.turns) == 3)
+    thread.in_spare_time(work)
+    until(lambda: len(begun) == 4)

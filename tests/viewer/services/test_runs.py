@@ -46,7 +46,7 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
     assert same_figures(run.results, expected)
     assert len(experiment.table(run.results)) == 2
     desk.runs.export(run, ".json")
-    desk.until(lambda: not desk.c.captures.busy)
+    desk.rest()
     (file,) = desk.c.preferences.picture_folder.glob("*.json")
     kept = json.loads(file.read_text())
     assert kept.pop("version") and kept == json.loads(json.dumps(run.results.to_dict())), "not what is shown"
@@ -112,6 +112,9 @@ def test_nothing_is_changed_nor_traced_beside_a_run(desk: Desk) -> None:
         lambda: c.motion.step(3),
         lambda: c.settings.change(depth=2),
         lambda: c.settings.toggle_culling(),
+        lambda: c.settings.reset(()),
+        lambda: c.presets.apply("Quick and exact"),
+        lambda: c.undo.undo(),
         lambda: c.reset_modes(),
     ):
         c.notices.message = None
@@ -193,22 +196,8 @@ def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> N
     desk.came.clear()
     gc.collect()
     assert scene() is None and not any(frame() for frame in frames)
-    assert desk.runs.experiment.scene_path.name == "tiny.aff"
-
-
-def test_a_run_that_is_overtaken_by_another_scene_ends_and_keeps_what_it_has(desk: Desk, tmp_path: Path) -> None:
-    run = start_long(desk)
-    desk.runs.export(run, ".json")
-    desk.until(lambda: not desk.c.captures.busy)
-    (file,) = (tmp_path / "pictures").iterdir()
-    kept = json.loads(file.read_text())
-    assert 2 < len(kept["frames"]) < 5000 and desk.runs.current is run and not run.stopping, "saving has disturbed it"
-    desk.open(embedded_scenes()["figure4"])
-    desk.run_to_its_end()
-    assert run.done and run.error is None and 2 < len(run.results.frames) < 5000
-    assert desk.c.session.scene.path.name == "figure4.aff"
-    desk.c.navigator.go_to_experiment(run, 3)
-    assert "this was measured in tiny.aff; open that scene again" in desk.said
+    desk.c.navigator.go_to_experiment(desk.runs.experiment, 3)
+    assert "the experiment was made in tiny.aff; open that scene again" in desk.said
 
 
 def test_what_cannot_be_written_is_one_line(desk: Desk, tmp_path: Path) -> None:

@@ -17,69 +17,54 @@ from tests.viewer.desk import Desk
 from tests.viewer.fakes import make_frame, until
 from tracer.scene.files import stamp
 from tracer.scene.model import Scene, SceneError
-from viewer.services.capture_service import CaptureService
+from viewer.services.controller import Controller
 from viewer.services.scene_files import FileWatch
-from viewer.services.scene_loader import Arrival, SceneLoader
-from viewer.state.notices import Notices
-from viewer.state.preferences import Preferences
-from viewer.state.session import Session
+from viewer.services.scene_loader import Arrival
 
 
-class Door:
-    """A loader with a session that it opens scenes for."""
-
-    def __init__(self, folder: Path) -> None:
-        self.session, self.notices = Session(), Notices()
-        self.preferences = Preferences(screenshot_folder=str(folder))
-        self.loader = SceneLoader(self.session, self.preferences, self.notices, lambda _name, go_on: go_on())
-
-    def arrival(self) -> Arrival | None:
-        """What comes of the load that is under way."""
-        came: list[Arrival | None] = []
-        until(lambda: came.append(self.loader.take_finished()) or came[-1] is not None or not self.loader.busy)
-        return came[-1]
-
-    def opened(self, path: Path) -> Scene:
-        self.loader.open(path)
-        return self.arrival().renderer.scene
+def arrival(c: Controller) -> Arrival | None:
+    """What comes of the load that is under way."""
+    came: list[Arrival | None] = []
+    until(lambda: came.append(c.loader.take_finished()) or came[-1] is not None or not c.loader.busy)
+    return came[-1]
 
 
-@pytest.fixture
-def door(tmp_path: Path) -> Door:
-    return Door(tmp_path / "pictures")
+def opened(c: Controller, path: Path) -> Scene:
+    c.loader.open(path)
+    return arrival(c).renderer.scene
 
 
-def test_a_load_that_is_overtaken_never_arrives(door: Door, tiny_scene_file: Path):
+def test_a_load_that_is_overtaken_never_arrives(c: Controller, tiny_scene_file: Path):
     other = tiny_scene_file.with_name("other.aff")
     other.write_text(tiny_scene_file.read_text())
-    door.loader.open(tiny_scene_file)
-    door.loader.open(other)
-    assert door.arrival().renderer.scene.path == other
+    c.loader.open(tiny_scene_file)
+    c.loader.open(other)
+    assert arrival(c).renderer.scene.path == other
 
 
 def test_settings_of_the_command_line_are_those_of_what_is_opened_first(
-    door: Door, tiny_scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    c: Controller, tiny_scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     """Also where a saved place in it has others."""
-    door.session.open(door.opened(tiny_scene_file))
-    captures = CaptureService(door.session, door.preferences, door.notices)
-    captures.capture(make_frame(time=1.0), np.zeros((8, 16, 3), np.uint8))
-    assert captures.saving.pop().join(20.0)
+    c.preferences.screenshot_folder = str(tmp_path / "pictures")
+    c.session.open(opened(c, tiny_scene_file))
+    c.captures.capture(make_frame(time=1.0), np.zeros((8, 16, 3), np.uint8))
+    assert c.captures.saving.pop().join(20.0)
     (picture,) = (tmp_path / "pictures").iterdir()
-    door.session.scene = None
+    c.session.scene = None
     monkeypatch.setattr("viewer.services.scene_loader.warm_up", lambda progress: None)
-    door.loader.start({"lamp_radius": 0.5})
-    assert door.session.settings.lamp_radius == 0.5, "also where a scene is opened that says nothing of it"
+    c.loader.start({"lamp_radius": 0.5})
+    assert c.session.settings.lamp_radius == 0.5, "also where a scene is opened that says nothing of it"
     for radius in (0.5, None):
-        door.loader.open(picture)
-        arrival = door.arrival()
-        assert arrival.renderer.scene.path == tiny_scene_file and arrival.place.time == 1.0
-        assert arrival.place.settings.lamp_radius == radius
+        c.loader.open(picture)
+        came = arrival(c)
+        assert came.renderer.scene.path == tiny_scene_file and came.place.time == 1.0
+        assert came.place.settings.lamp_radius == radius
 
 
-def test_a_cancelled_load_is_gone_at_once_though_it_cannot_stop(door: Door, tiny_scene_file: Path, monkeypatch):
+def test_a_cancelled_load_is_gone_at_once_though_it_cannot_stop(c: Controller, tiny_scene_file: Path, monkeypatch):
     """As within a library that reads a mesh; and the scene that has waited in vain is let go."""
-    deaf, read, opened = threading.Event(), [], door.opened(tiny_scene_file)
+    deaf, read, before = threading.Event(), [], opened(c, tiny_scene_file)
 
     def waits(scene, settings, progress):
         read.append(weakref.ref(scene))
@@ -87,17 +72,17 @@ def test_a_cancelled_load_is_gone_at_once_though_it_cannot_stop(door: Door, tiny
         raise SceneError("no more")
 
     monkeypatch.setattr("viewer.services.scene_loader.build", waits)
-    door.session.open(opened)
-    door.loader.open(tiny_scene_file)
+    c.session.open(before)
+    c.loader.open(tiny_scene_file)
     until(lambda: read)
-    job = door.loader.load_job
-    door.loader.cancel()
-    assert not door.loader.busy
-    assert door.notices.message.text == "loading cancelled; the open scene stays"
+    job = c.loader.load_job
+    c.loader.cancel()
+    assert not c.loader.busy
+    assert c.notices.message.text == "loading cancelled; the open scene stays"
     monkeypatch.undo()
-    assert door.opened(tiny_scene_file).path == tiny_scene_file, "another is opened meanwhile"
+    assert opened(c, tiny_scene_file).path == tiny_scene_file, "another is opened meanwhile"
     deaf.set()
-    assert job.join(20.0) and door.loader.take_finished() is None
+    assert job.join(20.0) and c.loader.take_finished() is None
     del job
     gc.collect()
     assert read[0]() is None
@@ -137,34 +122,25 @@ def test_what_has_changed_is_told_once_and_when_it_rests(tmp_path: Path, monkeyp
     assert [looks(), looks(), looks()] == ["", "b.png and 1 more", ""]
 
 
-def test_a_scene_is_read_again_in_its_place_and_a_broken_one_is_not(desk: Desk, tiny_scene_file: Path):
-    c = desk.c
+def test_a_broken_scene_is_told_of_and_read_once_it_is_mended_and_none_where_that_is_not_wanted(
+    desk: Desk, tiny_scene_file: Path
+):
+    c, good = desk.c, tiny_scene_file.read_text()
     c.loader.open(tiny_scene_file)
-    desk.until(lambda: c.loader.load_job is None)
     desk.rest()
-    c.settings.change(method="paper", depth=3)
-    c.motion.move(c.session.camera)
-    c.session.change(time=0.5)
+    c.settings.change(depth=3)
     desk.rest()
-    here, good, undoes = c.session.state, tiny_scene_file.read_text(), c.undo.undoes
-
-    write(tiny_scene_file, good + "\nl 0 9 0  0.1 0.1 0.1\n")
-    desk.until(lambda: len(c.session.scene.lights) == 3)
-    desk.rest()
-    assert "tiny.aff reloaded" in desk.said and desk.said.endswith(": tiny.aff changed")
-    assert c.session.state == here and c.undo.undoes == undoes, "place and steps are kept"
-    scene = c.session.scene
-
+    scene, state, undoes = c.session.scene, c.session.state, c.undo.undoes
     write(tiny_scene_file, good + "\nl 0 nine\n")
     desk.until(lambda: c.notices.message.error)
     line = len(good.splitlines()) + 2
     assert f"tiny.aff:{line}" in desk.said and "\n" not in desk.said and c.session.scene is scene
-    write(tiny_scene_file, good)
+    write(tiny_scene_file, good + "\nl 0 9 0  0.1 0.1 0.1\n")
     desk.until(lambda: c.session.scene is not scene)
-    assert len(c.session.scene.lights) == 2 and c.session.state == here
-    c.preferences.watch_scene = False
-    now = c.session.scene
-    write(tiny_scene_file, good + "\n")
+    assert len(c.session.scene.lights) == 3 and desk.said.endswith(": tiny.aff changed")
+    assert c.session.state == state and c.undo.undoes == undoes, "place and steps are kept"
+    c.preferences.watch_scene, scene = False, c.session.scene
+    write(tiny_scene_file, good)
     end = time.monotonic() + 1.0
     desk.until(lambda: time.monotonic() > end)
-    assert c.session.scene is now
+    assert c.session.scene is scene

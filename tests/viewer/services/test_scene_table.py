@@ -39,25 +39,11 @@ def known(desk: Desk) -> Listing:
     def there() -> bool:
         listing = table.listing
         work = listing is not None and listing.table.columns["saved"] is not None
-        return work and not table.busy and listing.order == table.order and not desk.c.active
+        return work and not table.busy and listing.order == table.order
 
+    desk.rest()
     desk.until(there)
-    desk.tick()
-    desk.until(there)
-    assert table.listing is not None
     return table.listing
-
-
-def test_pixels_and_rays_are_those_of_the_picture(desk: Desk, table: SceneTable) -> None:
-    for level in Level:
-        table.level = level
-        listing, frame = known(desk), desk.c.frame
-        columns = {name: values.numbers for name, values in listing.table.columns.items() if values is not None}
-        assert columns["pixels"].sum() == (frame.primitive >= 0).sum()
-        for name, buffer in (("saved", frame.saved), ("due", frame.due_rays)):
-            assert columns[name].sum() == buffer[frame.primitive >= 0].sum(), (level, name)
-        assert (np.diff(columns["pixels"][listing.rows]) <= 0).all(), "those of most pixels come first"
-    assert desk.c.frame.settings.record_work, "rays are counted while the table is looked at, in any view"
 
 
 def test_rows_stay_as_they_are_under_the_pointer(desk: Desk, table: SceneTable) -> None:
@@ -126,7 +112,6 @@ def test_things_are_hidden_and_shown_again(desk: Desk, table: SceneTable) -> Non
     table.hide(sphere)
     table.save()
     assert "not up to date" in desk.said and not desk.c.captures.busy and table.is_hidden(sphere)
-    desk.until(lambda: not desk.c.editing.under_way)
     listing = known(desk)
     assert listing.table.rows == total and desk.c.session.scene.primitive_count == total - 1
     assert listing.table.cell("hidden", sphere) == "hidden" and listing.table.cell("pixels", sphere) == "0"
@@ -134,7 +119,6 @@ def test_things_are_hidden_and_shown_again(desk: Desk, table: SceneTable) -> Non
     table.select(sphere)
     assert "hidden" in desk.said and table.selected == 0
     table.hide(sphere, False)
-    desk.until(lambda: not desk.c.editing.under_way)
     assert known(desk).table.cell("pixels", sphere) != "0" and not table.is_hidden(sphere)
 
 
@@ -147,12 +131,13 @@ def test_rows_are_saved_as_they_are_seen(desk: Desk, table: SceneTable, tmp_path
     table.filter("kind:triangle")
     listing = known(desk)
     table.save()
-    desk.until(lambda: not desk.c.captures.busy)
+    desk.rest()
     assert "saved" in desk.said
     (path,) = (tmp_path / "pictures").glob("*.csv")
     rows = read(path)
     assert [int(row["Number"]) for row in rows] == listing.rows.tolist() and len(rows) > 0
-    assert [int(row["Pixels"]) for row in rows] == listing.table.columns["pixels"].numbers[listing.rows].tolist()
+    pixels = listing.table.columns["pixels"].numbers[listing.rows].tolist()
+    assert [int(row["Pixels"]) for row in rows] == pixels == sorted(pixels, reverse=True), "most pixels come first"
 
 
 def test_names_and_what_is_not_known_are_written_so_that_they_are_read_again(tmp_path: Path) -> None:

@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import pytest
 
-from tests.viewer.fakes import Moving
+from tests.viewer.fakes import Clock
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Camera
+from viewer.services.controller import Controller
 from viewer.services.motion import IDLE_AFTER
-from viewer.services.undo import Undo
 from viewer.state.comparison import CompareMode
 from viewer.state.draw_options import Tone
-from viewer.state.navigation import LONGEST_FLIGHT, SHORTEST_FLIGHT
+from viewer.state.navigation import LONGEST_FLIGHT
 from viewer.state.pixels import Zoom
 from viewer.state.session import Session
 from viewer.state.views import View
@@ -21,17 +21,17 @@ from viewer.state.views import View
 AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 
 
-class Desk(Moving):
-    """Everything that undo looks at, and a clock."""
+class Desk:
+    """A controller of which nothing is traced, and its clock."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        super().__init__(monkeypatch)
-        self.undo = Undo(self.session, self.motion, self.notices, lambda: self.locked)
+    def __init__(self, clock: Clock, c: Controller) -> None:
+        self.clock, self.session, self.motion, self.undo, self.notices = clock, c.session, c.motion, c.undo, c.notices
         self.frame()
 
     def frame(self, seconds: float = 0.02) -> None:
         """One of the window's frames."""
-        self.after(seconds)
+        self.clock.now += seconds
+        self.motion.advance(None)
         self.undo.note_changes()
 
     def rest(self) -> None:
@@ -48,8 +48,8 @@ class Desk(Moving):
 
 
 @pytest.fixture
-def desk(monkeypatch: pytest.MonkeyPatch) -> Desk:
-    return Desk(monkeypatch)
+def desk(clock: Clock, c: Controller) -> Desk:
+    return Desk(clock, c)
 
 
 def compare(session: Session, **fields: object) -> None:
@@ -106,26 +106,6 @@ def test_a_drag_is_one_step_whatever_it_passes_and_none_if_it_comes_back(
     assert desk.depth == 10 and desk.undo.undoes == ""
 
 
-def test_a_flight_is_one_step_and_glides_back(desk: Desk):
-    home = desk.session.camera
-    for x in range(1, 9):
-        desk.motion.move(replace(AWAY, position=(float(x), 0.0, 0.0)))
-        desk.frame(0.1)
-    far = desk.session.camera
-    desk.rest()
-    assert desk.undo.undoes == "camera" and desk.session.state.camera == far
-    desk.undo.undo()
-    assert desk.session.on_path and desk.session.camera == home and desk.undo.undoes == ""
-    desk.undo.redo()
-    desk.frame(0.5 * SHORTEST_FLIGHT)
-    assert desk.session.camera not in (home, far)
-    desk.rest()
-    assert desk.session.camera == far and desk.undo.redoes == "" and desk.undo.undoes == "camera"
-    desk.undo.undo()
-    desk.rest()
-    assert desk.undo.undoes == "", "the way back is no step"
-
-
 def test_a_view_chosen_in_flight_is_a_step_of_its_own_and_a_step_is_undone_while_it_goes_on(desk: Desk):
     desk.motion.move(AWAY)
     desk.frame()
@@ -171,15 +151,11 @@ def test_what_is_named_is_one_step_and_a_name_for_nothing_names_nothing_else(des
     assert desk.undo.undoes == "bounces 2"
 
 
-def test_nothing_is_undone_while_it_is_locked_and_another_scene_forgets_all(desk: Desk, monkeypatch):
+def test_so_many_steps_are_kept_and_another_scene_forgets_all(desk: Desk, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("viewer.services.undo.MOST_STEPS", 2)
     for depth in (4, 3, 2):
         desk.session.set_settings(depth=depth)
         desk.frame()
-    desk.locked = True
-    desk.undo.undo()
-    assert desk.depth == 2
-    desk.locked = False
     for depth in (3, 4, 4):
         desk.undo.undo()
         assert desk.depth == depth, "two steps are kept"

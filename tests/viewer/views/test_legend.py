@@ -21,20 +21,11 @@ from tracer.scene.lights import Light
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.overlays import with_legend
 from viewer.state.draw_options import Slice
-from viewer.state.palette import OCCLUSION_COLORS
+from viewer.state.palette import DARK, LIGHT, OCCLUSION_COLORS
 from viewer.state.views import View
 from viewer.util.numbers import count, percent
 from viewer.util.resources import embedded_scenes
-from viewer.views.legend import (
-    BACKDROP,
-    BACKDROP_OPACITY,
-    NOTES,
-    QUIET,
-    TEXT,
-    Legend,
-    fitting,
-    lay_out,
-)
+from viewer.views.legend import BACKDROP_OPACITY, NOTES, QUIET, Legend, fitting, lay_out
 
 SETTINGS = Settings(width=160, height=96, verify=True, record_work=True)
 LINE = 10.0
@@ -187,8 +178,8 @@ def test_in_little_room_less_is_said_and_in_none_nothing(frame: Frame):
 @pytest.mark.parametrize("picture", [0.0, 0.5, 1.0])
 def test_texts_can_be_read_over_any_picture(picture: float):
     """Contrast of 4.5 to 1 (WCAG 2), against the backdrop over black, grey and white."""
-    backdrop = tuple(BACKDROP_OPACITY * channel + (1.0 - BACKDROP_OPACITY) * picture for channel in BACKDROP)
-    for color in (TEXT, QUIET, *NOTES.values()):
+    backdrop = tuple(BACKDROP_OPACITY * channel + (1.0 - BACKDROP_OPACITY) * picture for channel in DARK)
+    for color in (LIGHT, QUIET, *NOTES.values()):
         assert (luminance(color) + 0.05) / (luminance(backdrop) + 0.05) > 4.5
 
 

@@ -203,7 +203,7 @@ def test_the_window_shows_the_same_and_what_is_selected(frame: Frame, view: View
         here, version = colorize(frame, how), display.version
         assert np.array_equal(display.read(), here)
         display.draw(frame, replace(how, legend=True))
-        assert display.version == version and display.shows(how), "nothing of the pixels has changed"
+        assert display.draw(frame, how) and display.version == version, "nothing of the pixels has changed"
         chosen = int(frame.primitive[40, 50])
         display.draw(frame, how, InWindow(selected=chosen))
         inside = np.pad(frame.primitive == chosen, 1, mode="edge")

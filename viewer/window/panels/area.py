@@ -12,14 +12,14 @@ from functools import cached_property
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.frame import Frame
+from viewer.state.palette import DARK, LIGHT
 from viewer.state.pixels import Zoom
 from viewer.state.projection import Stroke
-from viewer.views.legend import BACKDROP, TEXT
 from viewer.window.widgets import em
 
-BACK, FRONT = ImVec4(*BACKDROP, 0.9), ImVec4(*TEXT, 1.0)
-_PAD = 0.4  # ems around words
-SHADE = ImVec4(*BACKDROP, 0.6)
+BACK, FRONT = ImVec4(*DARK, 0.9), ImVec4(*LIGHT, 1.0)
+_PAD, _RIM = 0.4, 0.06  # ems around words, and around strokes
+SHADE = ImVec4(*DARK, 0.6)
 """Around what is drawn, so that it is seen on any picture."""
 
 
@@ -44,10 +44,6 @@ class Area:
     def whole(self) -> ImVec2:
         size = self.whole_size
         return ImVec2(self.corner.x - self.zoom.left * size.x, self.corner.y - self.zoom.top * size.y)
-
-    @cached_property
-    def whole_end(self) -> ImVec2:
-        return self.to_screen(1.0, 1.0)
 
     def to_picture(self, x: float, y: float) -> tuple[float, float]:
         """The point of the picture, 0 to 1 from left and top, at a point of the screen."""
@@ -91,9 +87,8 @@ class Pen:
         self.radius = max(0.4, 0.5 * math.hypot(*self.pixel) / em(1.0) + 0.2)
 
     def strokes(
-        self, strokes: Iterable[Stroke], color: ImVec4, width: float, behind: float = 0.6,
-        around: ImVec4 = SHADE, rim: float = 0.06,
-    ) -> None:  # fmt: skip
+        self, strokes: Iterable[Stroke], color: ImVec4, width: float, behind: float = 0.6, around: ImVec4 = SHADE
+    ) -> None:
         """Draw strokes with a rim `around` them; what lies behind something has the opacity `behind`."""
         edge = ImVec4(around.x, around.y, around.z, around.w * color.w)
         outer, inner = (  # of what lies behind something, and of what is seen
@@ -102,7 +97,7 @@ class Pen:
         )
         for stroke in strokes:
             a, b = self.to_screen(*stroke.start), self.to_screen(*stroke.end)
-            self.draw.add_line(a, b, outer[stroke.seen], em(width + 2.0 * rim))
+            self.draw.add_line(a, b, outer[stroke.seen], em(width + 2.0 * _RIM))
             self.draw.add_line(a, b, inner[stroke.seen], max(1.0, em(width)))
 
     def ring(self, at: tuple[float, float], radius: float | None = None, alpha: float = 1.0) -> None:
@@ -122,7 +117,7 @@ class Pen:
         """Draw the outline of a pixel around a point of the screen."""
         half = 0.5 * size[0] - 1.0, 0.5 * size[1] - 1.0
         a, b = ImVec2(middle.x - half[0], middle.y - half[1]), ImVec2(middle.x + half[0], middle.y + half[1])
-        self.draw.add_rect(a, b, imgui.get_color_u32(ImVec4(0.03, 0.04, 0.05, 0.9)), 0.0, max(3.0, em(0.2)))
+        self.draw.add_rect(a, b, imgui.get_color_u32(BACK), 0.0, max(3.0, em(0.2)))
         self.draw.add_rect(a, b, imgui.get_color_u32(color), 0.0, max(1.0, em(0.1)))
 
 

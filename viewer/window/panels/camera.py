@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.scene.model import Camera
+from tracer.setting import Setting
 from viewer.state import navigation
 from viewer.state.picking import extent_at, point_at, points_of
 from viewer.state.preferences import NAVIGATION
@@ -19,7 +20,7 @@ from viewer.window import menus
 from viewer.window.command import Command, Condition, Kind, scene_open
 from viewer.window.panels import named_states
 from viewer.window.panels.named_states import KEYED_BOOKMARKS
-from viewer.window.setting_rows import in_panel, setting_command, setting_row
+from viewer.window.setting_rows import panel_rows, setting_command, setting_row
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, heading, paragraph, properties, row
 
@@ -62,10 +63,12 @@ def _place(ui: Ui) -> None:
 
 def _moving(ui: Ui) -> None:
     heading("Moving")
-    with properties("moving", 5.0) as shown:
-        for one in in_panel(ui, "Camera") if shown else ():
-            if one.path != "playback_rate" or ui.controller.session.animated:
-                setting_row(ui, one)
+    panel_rows(ui, "Camera", 5.0, {"playback_rate": _rate})
+
+
+def _rate(ui: Ui, one: Setting) -> None:
+    if ui.controller.session.animated:
+        setting_row(ui, one)
 
 
 # --- what it does, and the menus -------------------------------------------------------------------

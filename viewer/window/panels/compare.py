@@ -10,7 +10,10 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from viewer.state.comparison import CompareMode
 from viewer.state.frame_rows import beside, change
 from viewer.state.palette import LESS, MORE
+from viewer.window import menus
+from viewer.window.command import Command, Condition
 from viewer.window.panels.culling import method_list
+from viewer.window.panels.runs import arrange
 from viewer.window.ui import Ui
 from viewer.window.widgets import (
     QUIET,
@@ -18,6 +21,7 @@ from viewer.window.widgets import (
     checkbox,
     clipped,
     em,
+    one_of_list,
     paragraph,
     properties,
     right,
@@ -27,33 +31,20 @@ from viewer.window.widgets import (
     wide_button,
 )
 
-_WIDE = 44.0  # ems of a panel that has room for controls and columns beside each other
-_CONTROLS = 15.5  # ems of the controls there
+_COLUMNS = 12.0  # ems of the statistics, at least
 _NAMES = 7.2  # ems of the names of figures
 
 
 def show(ui: Ui) -> None:
     """Draw the panel."""
-    if imgui.get_content_region_avail().x > em(_WIDE):
-        imgui.begin_child("controls", ImVec2(em(_CONTROLS), 0.0))
-        _controls(ui)
-        imgui.end_child()
-        imgui.same_line(0.0, em(1.0))
-        imgui.begin_child("columns", ImVec2(0.0, 0.0))
-        _columns(ui)
-        imgui.end_child()
-    else:
-        _controls(ui)
-        _columns(ui)
+    arrange(lambda: _controls(ui), lambda: None, (("Statistics", _COLUMNS, lambda: _columns(ui)),))
 
 
 def _controls(ui: Ui) -> None:
     """What A is, and how the two are shown."""
     session, comparing = ui.controller.session, ui.controller.comparing
     state, kept = comparing.state, comparing.kept
-    tip = f"Keep this picture, to compare others with it{ui.key('Keep as A')}."
-    if wide_button(f"{icons.ICON_FA_THUMBTACK}  Keep as A", tip, 2):
-        comparing.keep()
+    menus.button(ui, "Keep as A", icons.ICON_FA_THUMBTACK, columns=2)
     imgui.same_line()
     imgui.begin_disabled(not state.on)
     if wide_button(f"{icons.ICON_FA_XMARK}  End", "Show the live picture alone."):
@@ -86,14 +77,13 @@ def _controls(ui: Ui) -> None:
 
 def _mode(ui: Ui) -> None:
     comparing, state = ui.controller.comparing, ui.controller.comparing.state
-    if imgui.begin_combo("##mode", state.mode.label if state.on else "B alone"):
-        if imgui.selectable("B alone", not state.on)[0]:
-            comparing.end()
-        for mode in CompareMode:
-            if imgui.selectable(mode.label, state.on and state.mode is mode)[0]:
-                comparing.start(mode)
-            tooltip(mode.help)
-        imgui.end_combo()
+    modes = [(None, "B alone", ""), *((mode, mode.label, mode.help) for mode in CompareMode)]
+    now = state.mode if state.on else None
+    chosen = one_of_list("##mode", state.mode.label if state.on else "B alone", modes, now)
+    if chosen is not now and chosen is not None:
+        comparing.start(chosen)
+    elif chosen is not now:
+        comparing.end()
 
 
 def _columns(ui: Ui) -> None:
@@ -134,3 +124,30 @@ def _columns(ui: Ui) -> None:
                 imgui.table_next_column()
                 right(text)
     imgui.end_table()
+
+
+def compare_commands(ui: Ui) -> list[Command]:
+    """The menu Compare."""
+    comparing = ui.controller.comparing
+    there = Condition(lambda: comparing.b is not None, "there is no picture yet")
+    kept = Condition(lambda: comparing.kept is not None, "nothing is kept as A")
+
+    def keep() -> None:
+        comparing.keep()
+        ui.offer_panel("Compare")
+
+    def by(mode: CompareMode) -> Command:
+        return Command(mode.command, "Compare", lambda: comparing.toggle(mode), enabled=there, tip=mode.help,
+                       checked=lambda: comparing.state.on and comparing.state.mode is mode)  # fmt: skip
+
+    return [
+        Command("Keep as A", "Compare", keep, "Ctrl+A", enabled=there, tip="this picture, to compare others with it"),
+        Command("Clear A", "Compare", comparing.forget, enabled=kept),
+        Command("Two methods live", "Compare", comparing.toggle_methods, "Shift+C", enabled=there,
+                checked=lambda: bool(comparing.second_method),
+                tip="trace each frame by a second method as well, with modes and counters of its own"),
+        Command("Next compare mode", "Compare", comparing.next_mode, "Shift+Z", enabled=there, separated=True),
+        *map(by, CompareMode),
+        Command("B alone", "Compare", comparing.end, "Ctrl+Shift+A", checked=lambda: not comparing.state.on,
+                separated=True),
+    ]  # fmt: skip

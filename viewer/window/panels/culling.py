@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from imgui_bundle import ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
@@ -14,7 +14,7 @@ from viewer.services.controller import Controller
 from viewer.state import verified
 from viewer.state.methods import groups, toggled, with_base
 from viewer.window import menus
-from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
+from viewer.window.setting_rows import panel_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, outlined, paragraph, properties, row, tooltip
 
@@ -41,16 +41,10 @@ def show(ui: Ui) -> None:
             return f"\n{name} does not cull by modes: it changes those kept for the views alone."
         return ""
 
-    settings = in_panel(ui, "Culling")
-    setting_switches(ui, [one for one in settings if one.kind is bool and one.within == ("settings",)], note)
-    with properties("culling", 8.2 if method.has_certificates else 6.5) as shown:
-        for one in settings if shown else ():
-            if one.kind is not bool:
-                setting_row(ui, one, note(one))
+    panel_rows(ui, "Culling", 8.2 if method.has_certificates else 6.5, note=note)
     menus.button(ui, "Reset modes", icons.ICON_FA_ERASER, columns=2)
     imgui.same_line()
     menus.button(ui, "Trace again", icons.ICON_FA_ROTATE_RIGHT)
-    setting_switch(ui, ALL["pace.keep_tracing"])
     said = wrong_answers(c)
     if said is not None:  # at the end, where it moves nothing
         paragraph(*said)
@@ -74,10 +68,10 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
         return None
     if c.runs.current is not None:
         return f"The panel of the {c.runs.current.name} shows its wrong answers.", QUIET
-    if c.frame.settings.method != c.scheduler.settings.method:
+    if c.frame.settings.method != c.scheduler.inputs.settings.method:
         return None
     said, color = verified.in_words(c.frame.statistics), ERROR if verified.is_wrong(c.frame.statistics) else QUIET
-    if not c.scheduler.settings.verify or c.session.settings.verify:
+    if not c.scheduler.inputs.settings.verify or c.session.settings.verify:
         return said, color
     return f"{said} (verified for the view {c.session.draw.view.label})", color
 
@@ -89,45 +83,43 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
     """Show a list to be opened, as wide as there is room for; `choose` is given the name of what is chosen.
 
     Methods that have nothing to say of the scene are pale.  `combined`: additions are in it."""
-    fits = lights_to_fit(ui)
     parsed = Method.parse(method)
     room = imgui.calc_item_width() - imgui.get_frame_height() - 2.0 * imgui.get_style().frame_padding.x
     if not imgui.begin_combo(name, fitted(method, room), int(imgui.ComboFlags_.height_largest)):
         tooltip(parsed.kind.summary if method == parsed.base else method)
         return
-    for heading, kinds in groups():
-        imgui.separator_text(heading)
-        for kind in kinds:
-            if imgui.selectable(kind.name, kind is parsed.kind)[0]:
-                choose(with_base(method, kind.name))
-            _sentence(kind, fits)
-    if combined:
-        imgui.separator_text("Additions, any number of them")
-        for kind in additions(parsed.base):
-            with outlined():
-                changed, _ = imgui.checkbox(f"+{kind.name}", parsed.has(kind.name))
-            if changed:
+
+    def base(kind: Kind) -> None:
+        if imgui.selectable(kind.name, kind is parsed.kind)[0]:
+            choose(with_base(method, kind.name))
+
+    def addition(kind: Kind) -> None:
+        with outlined():
+            if imgui.checkbox(f"+{kind.name}", parsed.has(kind.name))[0]:
                 choose(toggled(method, kind.name))
-            _sentence(kind, fits)
+
+    kinds_of_methods(ui, groups(), base)
+    if combined:
+        kinds_of_methods(ui, [("Additions, any number of them", additions(parsed.base))], addition)
     imgui.end_combo()
 
 
-def _sentence(kind: Kind, lights: tuple[int, int]) -> None:
-    """Show what the method of the last item does, behind its name, or as far as the window is wide enough for it."""
-    tooltip(said_of(kind, lights))
-    room = imgui.get_main_viewport().work_size.x - em(_NAMES + 3.0)
-    if room >= em(_SENTENCE):
-        imgui.same_line(em(_NAMES))
-        imgui.text_colored(QUIET if kind.fits(*lights) else pale(), fitted(kind.summary, room))
+def kinds_of_methods(ui: Ui, groups: Iterable[tuple[str, Iterable[Kind]]], show: Callable[[Kind], None]) -> None:
+    """Show kinds of methods below the heading of their group, with what each does; those that have nothing to say of
+    the scene are pale."""
+    lights, room = _lights_to_fit(ui), imgui.get_main_viewport().work_size.x - em(_NAMES + 3.0)
+    for heading, kinds in groups:
+        imgui.separator_text(heading)
+        for kind in kinds:
+            show(kind)
+            tooltip(" ".join(filter(None, (kind.summary, worth(kind, *lights)))))
+            if room >= em(_SENTENCE):
+                pale = imgui.get_style_color_vec4(imgui.Col_.text_disabled)
+                imgui.same_line(em(_NAMES))
+                imgui.text_colored(QUIET if kind.fits(*lights) else pale, fitted(kind.summary, room))
 
 
-def said_of(kind: Kind, lights: tuple[int, int]) -> str:
-    """Return what a method does, and why it has nothing to say of so many lights and samples of them where it has
-    not."""
-    return " ".join(filter(None, (kind.summary, worth(kind, *lights))))
-
-
-def lights_to_fit(ui: Ui) -> tuple[int, int]:
+def _lights_to_fit(ui: Ui) -> tuple[int, int]:
     """Return how many lights the scene has, and how many samples these have together as they are set."""
     scene, settings = ui.controller.session.scene, ui.controller.session.settings
     if scene is None:
@@ -136,8 +128,3 @@ def lights_to_fit(ui: Ui) -> tuple[int, int]:
     return len(scene.lights), ui.cached(
         "samples of the lights", scene, chosen, lambda: lamps_in(scene.lights, *chosen)[1]
     )
-
-
-def pale() -> ImVec4:
-    """Return the colour of methods that have nothing to say of the scene."""
-    return imgui.get_style_color_vec4(imgui.Col_.text_disabled)

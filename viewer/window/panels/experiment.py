@@ -12,7 +12,7 @@ from viewer.output.reports import METHOD, caveats, table_1
 from viewer.state.methods import groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
-from viewer.window.panels.culling import lights_to_fit, pale, said_of
+from viewer.window.panels.culling import kinds_of_methods
 from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, go_to_experiment_frame, pointed_frame, wrong_axis
 from viewer.window.panels.runs import Part, results_table, show_run
 from viewer.window.setting_rows import plan_rows
@@ -46,41 +46,37 @@ def _plan(ui: Ui) -> None:
     with properties("plan", 4.6) as shown:
         if shown:
             row("Methods", f"Methods to compare with {REFERENCE}, which traces every shadow ray.")
-            _methods(plan, lights_to_fit(ui))
+            _methods(ui, plan)
             plan_rows(ui, plan, "frames", "size", "depth", "accelerator", "verify")
     imgui.pop_style_var()
 
 
-def _methods(plan: ExperimentPlan, lights: tuple[int, int]) -> None:
-    """A list to be opened: a line for each base, a tick for each way to add to it; the reference is always among
-    them, and what has nothing to say of so many lights is pale."""
+def _methods(ui: Ui, plan: ExperimentPlan) -> None:
+    """A list to be opened: a tick for each base, and for each way to add to those; the reference is always among
+    them."""
     opened = imgui.begin_combo("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
     tooltip(", ".join(in_order({REFERENCE, *plan.methods})))
     if not opened:
         return
-    for heading, kinds in groups():
-        imgui.separator_text(heading)
-        for kind in kinds:
-            imgui.begin_disabled(kind.name == REFERENCE)
-            _tick(plan, kind, {kind.name}, lights)
-            imgui.end_disabled()
-    imgui.separator_text("And each of these with")
-    bases = [method for method in plan.methods if "+" not in method]
-    for kind in additions():
-        _tick(plan, kind, {f"{base}+{kind.name}" for base in bases if base != kind.name}, lights, "+")
+
+    def add_or_remove(label: str, methods: set[str]) -> None:
+        there = bool(methods) and methods <= {REFERENCE, *plan.methods}
+        with outlined():
+            if imgui.checkbox(label, there)[0]:
+                plan.methods = plan.methods - methods if there else plan.methods | methods
+
+    def base(kind: Kind) -> None:
+        imgui.begin_disabled(kind.name == REFERENCE)
+        add_or_remove(kind.name, {kind.name})
+        imgui.end_disabled()
+
+    def addition(kind: Kind) -> None:
+        bases = [method for method in plan.methods if "+" not in method and method != kind.name]
+        add_or_remove(f"+{kind.name}", {f"{base}+{kind.name}" for base in bases})
+
+    kinds_of_methods(ui, groups(), base)
+    kinds_of_methods(ui, [("And each of these with", additions())], addition)
     imgui.end_combo()
-
-
-def _tick(plan: ExperimentPlan, kind: Kind, methods: set[str], lights: tuple[int, int], sign: str = "") -> None:
-    """Show a tick that adds methods to the plan, or takes them away."""
-    color = imgui.get_style_color_vec4(imgui.Col_.text) if kind.fits(*lights) else pale()
-    there = bool(methods) and methods <= {REFERENCE, *plan.methods}
-    imgui.push_style_color(imgui.Col_.text, color)
-    with outlined():
-        if imgui.checkbox(f"{sign}{kind.name}", there)[0]:
-            plan.methods = plan.methods - methods if there else plan.methods | methods
-    imgui.pop_style_color()
-    tooltip(said_of(kind, lights))
 
 
 def _table(ui: Ui, run: Experiment, results: Results) -> None:

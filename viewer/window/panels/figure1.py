@@ -13,7 +13,7 @@ from viewer.window import widgets
 from viewer.window.panels import status
 from viewer.window.style import BLUE
 from viewer.window.ui import Ui
-from viewer.window.widgets import em, packed, paragraph, tooltip_at
+from viewer.window.widgets import em, packed, paragraph, tooltip_at, width_of
 
 
 def show(ui: Ui) -> None:
@@ -29,7 +29,7 @@ def show(ui: Ui) -> None:
 
     def laid_out() -> Drawing:
         # The status bar and other panels say of what picture it is.
-        return lay_out(replace(figure_of(frame), title=""), _width_of, line, width, room.y)
+        return lay_out(replace(figure_of(frame), title=""), width_of, line, width, room.y)
 
     drawing: Drawing = ui.cached("figure 1", frame, (width, room.y, line), laid_out)
     at, scale = imgui.get_cursor_screen_pos(), drawing.scale
@@ -63,7 +63,7 @@ def _draw(part: Box | Words | Arrow, at: ImVec2, scale: float) -> None:
         return ImVec2(at.x + scale * x, at.y + scale * y)
 
     if isinstance(part, Words):
-        place = placed(part.x - (_width_of(part.text) if part.right else 0.0), part.y)
+        place = placed(part.x - (width_of(part.text) if part.right else 0.0), part.y)
         draw.add_text(imgui.get_font(), scale * imgui.get_font_size(), place, _color(part.ink), part.text)
     elif isinstance(part, Arrow):
         for start, end in pairwise(part.points):
@@ -78,7 +78,3 @@ def _draw(part: Box | Words | Arrow, at: ImVec2, scale: float) -> None:
             draw.add_rect(*corners, color, thickness=em(0.12))
         else:
             draw.add_rect_filled(*corners, color, em(0.25) if part.ink == BOX else 0.0)
-
-
-def _width_of(text: str) -> float:
-    return float(imgui.calc_text_size(text).x)

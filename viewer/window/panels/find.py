@@ -16,7 +16,7 @@ from viewer.state.row_filter import HELP, HINT
 from viewer.state.scene_rows import COLUMNS, Column, Level
 from viewer.util.numbers import several
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, count, em, paragraph, swatch, tooltip
+from viewer.window.widgets import ERROR, QUIET, count, em, one_of, paragraph, right, seen_rows, swatch, tooltip
 
 _FIELD, _NUMBER = 12.0, 4.2  # ems of width: of the filter at least, and of a number
 _COLORS = {
@@ -67,11 +67,8 @@ def show(ui: Ui) -> None:
 
 def _tools(ui: Ui, table: SceneTable) -> None:
     """What rows are, the filter, and saving, in one line where there is room."""
-    for level in Level:
-        if imgui.radio_button(level.value, table.level is level):
-            table.level = level
-        tooltip(_LEVEL_TIPS[level])
-        imgui.same_line()
+    table.level = one_of(((level, level.value, _LEVEL_TIPS[level]) for level in Level), table.level)
+    imgui.same_line()
     beside = em(2.0) + imgui.get_style().item_spacing.x
     if imgui.get_content_region_avail().x < em(_FIELD) + beside:
         imgui.new_line()
@@ -156,19 +153,13 @@ def _table(ui: Ui, table: SceneTable, listing: Listing) -> None:
     _sort(table, columns)
     table.pointed_at = imgui.is_window_hovered()
     wanted, selected = _to_show(ui, table, listing), table.selected
-    clipper = imgui.ListClipper()
-    clipper.begin(len(listing.rows), imgui.get_text_line_height() + 2.0 * imgui.get_style().cell_padding.y)
-    if wanted is not None:
-        clipper.include_item_by_index(wanted)
-    state.drawn = 0
-    while clipper.step():
-        for place in range(clipper.display_start, clipper.display_end):
-            row = int(listing.rows[place])
-            imgui.table_next_row()
-            imgui.table_set_column_index(0)
-            _row(ui, table, listing, row, row == selected, place == wanted)
-            state.drawn += 1
-    clipper.end()
+    state.drawn, height = 0, imgui.get_text_line_height() + 2.0 * imgui.get_style().cell_padding.y
+    for place in seen_rows(len(listing.rows), height, wanted):
+        row = int(listing.rows[place])
+        imgui.table_next_row()
+        imgui.table_set_column_index(0)
+        _row(ui, table, listing, row, row == selected, place == wanted)
+        state.drawn += 1
     imgui.end_table()
 
 
@@ -248,12 +239,9 @@ def _eye(table: SceneTable, row: int, hidden: bool) -> None:
 def _cell(listing: Listing, column: Column, row: int) -> None:
     text, values = listing.table.cell(column.name, row), listing.table.columns.get(column.name)
     if column.numeric:
-        room = imgui.get_content_region_avail().x - imgui.calc_text_size(text).x
-        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(0.0, room))
-        if column.name == "wrong" and text not in ("0", "-"):
-            imgui.text_colored(ERROR, text)
-            return
-    elif column.name in _COLORS and values is not None:
+        right(text, ERROR if column.name == "wrong" and text not in ("0", "-") else None)
+        return
+    if column.name in _COLORS and values is not None:
         color = _COLORS[column.name].get(int(values.numbers[row]))
         if color is not None:
             swatch(color)

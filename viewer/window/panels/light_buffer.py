@@ -8,7 +8,7 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from viewer.output.light_cube import Unfolded, by_depths, by_lists
-from viewer.services.queries import Newest
+from viewer.services.render_request import Newest
 from viewer.state.views import LIGHT_CUBES
 from viewer.window.panels import legend, lights
 from viewer.window.ui import Ui
@@ -46,7 +46,7 @@ def show(ui: Ui) -> None:
         return
     room, (down, across, _) = imgui.get_content_region_avail(), found.picture.shape
     scale = max(min((room.x - em(16.0)) / across, room.y / down), 0.1)
-    texture = ui.graphics.textures.texture_id(found, small=False) if ui.graphics.textures is not None else None
+    texture = ui.graphics.textures.texture_id(found, small=False)
     if texture is not None:
         imgui.image(imgui.ImTextureRef(texture), ImVec2(across * scale, down * scale))
         imgui.same_line()

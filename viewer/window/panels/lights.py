@@ -6,7 +6,7 @@ A scene may have thousands: a list draws the rows that are seen, and finds light
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from imgui_bundle import imgui
@@ -14,9 +14,9 @@ from imgui_bundle import imgui
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.scene.lights import Light, as_lamps, number_of
 from tracer.scene.model import Scene
-from viewer.window.setting_rows import ALL
+from tracer.setting import Setting
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, count, em, paragraph, row, tooltip
+from viewer.window.widgets import QUIET, count, em, one_of_list, paragraph, row, seen_rows, swatch, tooltip
 
 FEW = 8
 """Lights that are listed without a field to find them."""
@@ -34,12 +34,11 @@ class LightFilters:
     texts: dict[str, str] = field(default_factory=dict)
 
 
-def lamp_rows(ui: Ui) -> None:
-    """Rows of settings: what lamps point lights are made, and how many samples these have."""
+def lamp_radius(ui: Ui, one: Setting) -> None:
+    """Show the row of the radius: a slider from points on, as far as the scene is large."""
     c = ui.controller
     s, size = c.session.settings, diagonal(c.info.get("bounds"))
-    radius, samples = ALL["settings.lamp_radius"], ALL["settings.lamp_samples"]
-    row(radius.label, radius.help + _RADIUS)
+    row(one.label, one.help + _RADIUS)
     imgui.set_next_item_width(-imgui.get_frame_height() - em(0.3))
     shown = "%.7g" if s.lamp_radius else ("points" if s.lamp_radius == 0.0 else _SCENE_SAYS)
     smallest, flags = _SMALLEST * size, int(imgui.SliderFlags_.logarithmic)
@@ -52,14 +51,19 @@ def lamp_rows(ui: Ui) -> None:
         c.settings.change(lamp_radius=None)
     imgui.end_disabled()
     tooltip("lights as the scene says")
-    row(samples.label, samples.help + _SAMPLES)
+
+
+def lamp_samples(ui: Ui, one: Setting) -> None:
+    """Show the row of the samples: numbers that are worth choosing, where there is a lamp."""
+    c = ui.controller
+    s = c.session.settings
+    row(one.label, one.help + _SAMPLES)
     imgui.begin_disabled(c.scheduler.lamps.wanted == 1 and not c.scheduler.lamps.any)
-    if imgui.begin_combo("##lamp-samples", str(s.lamp_samples or _SCENE_SAYS)):
-        for number in (None, 1, 4, 16, 64, 256):
-            if imgui.selectable(str(number or _SCENE_SAYS), s.lamp_samples == number)[0]:
-                c.settings.change(lamp_samples=number)
-        imgui.end_combo()
+    choices = [(number, str(number or _SCENE_SAYS), "") for number in (None, 1, 4, 16, 64, 256)]
+    chosen = one_of_list("##lamp-samples", str(s.lamp_samples or _SCENE_SAYS), choices, s.lamp_samples)
     imgui.end_disabled()
+    if chosen != s.lamp_samples:
+        c.settings.change(lamp_samples=chosen)
 
 
 def diagonal(bounds: Sequence[Sequence[float]] | None) -> float:
@@ -89,26 +93,18 @@ def combo(
 def _list(ui: Ui, place: str, most: int, chosen: int | None, choose: Callable[[int], None]) -> bool:
     """The lights that are found, so many rows of them at once; whether one was clicked."""
     clicked = False
-
-    def row(number: int) -> None:
-        nonlocal clicked
+    for number in rows(found(ui, place), most, imgui.get_text_line_height_with_spacing()):
         if _row(ui, number, chosen == number):
             choose(number)
             clicked = True
-
-    rows(found(ui, place), most, imgui.get_text_line_height_with_spacing(), row)
     return clicked
 
 
-def rows(numbers: Sequence[int], most: int, height: float, row: Callable[[int], None]) -> None:
-    """Show rows of lights, each so high, of which only those are drawn that are seen: up to `most` at once."""
+def rows(numbers: Sequence[int], most: int, height: float) -> Iterator[int]:
+    """Yield the lights whose rows are to be drawn, each so high: those that are seen, up to `most` at once."""
     if imgui.begin_child("lights", (0.0, min(max(len(numbers), 1), most) * height + 2.0)):
-        clipper = imgui.ListClipper()
-        clipper.begin(len(numbers), height)
-        while clipper.step():
-            for k in range(clipper.display_start, clipper.display_end):
-                row(numbers[k])
-        clipper.end()
+        for place in seen_rows(len(numbers), height):
+            yield numbers[place]
     imgui.end_child()
 
 
@@ -116,12 +112,8 @@ def _row(ui: Ui, index: int, chosen: bool) -> bool:
     scene, s = ui.controller.session.scene, ui.controller.session.settings
     assert scene is not None
     (light,) = as_lamps((scene.lights[index],), s.lamp_radius, s.lamp_samples)
-    strongest, side = max(*light.color, 1e-9), imgui.get_text_line_height()
-    red, green, blue = (channel / strongest for channel in light.color)
-    imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.0)  # white ones are seen on white
-    imgui.color_button(f"##light{index}", (red, green, blue, 1.0), int(imgui.ColorEditFlags_.no_tooltip), (side, side))
-    imgui.pop_style_var()
-    imgui.same_line()
+    red, green, blue = (channel / max(*light.color, 1e-9) for channel in light.color)
+    swatch((red, green, blue))
     remarks = [] if light.kind == "point" else [f"{light.kind}, {light.samples}"]
     remarks += ["moves"] if light.track else []
     remarks += ["not culled"] if index >= MAX_CULLED_LIGHTS else []

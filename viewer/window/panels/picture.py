@@ -73,8 +73,7 @@ def show(ui: Ui) -> None:
 def _picture(ui: Ui, room: ImVec2) -> None:
     c = ui.controller
     c.selection.hovered = None
-    filling = sides.filling(ui)
-    texture = filling.texture_id if filling is not None else None
+    texture = sides.filling(ui).texture_id
     if c.traced is None:
         if texture is not None and c.reloaded:  # what was shown before stays until there is news: it would flash
             left, top, size = _fitted(ui.picture.shape, room)
@@ -110,7 +109,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
         what_if.show_lights(ui, area)
     lower = _title(ui, area)
     sides.show(ui, area, lower)
-    legend.show(ui, area.corner, area.end)
+    legend.show(ui, area)
     overlays.show_missing(ui, area.corner, area.end)
     show_words_in_space(ui)
 

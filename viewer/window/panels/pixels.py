@@ -10,21 +10,22 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from viewer.state.comparison import Side
+from viewer.state.palette import DARK
 from viewer.state.pixels import FIT, GRID_FROM, pixels_shown, zoomed
 from viewer.state.views import can_draw
 from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
 from viewer.window.panels import sides
-from viewer.window.panels.area import Area, inside
-from viewer.window.setting_rows import ALL, setting_switch
+from viewer.window.panels.area import FRONT, Area, inside
+from viewer.window.panels.plots import AXIS, FLAGS
+from viewer.window.setting_rows import panel_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, count, em, paragraph, right
 
 _FIGURES, _PLOT = 20.0, 5.4  # ems: the width of the figures, and the least height of the histogram
 _OF_CHANNELS = (ImVec4(0.92, 0.33, 0.31, 1.0), ImVec4(0.25, 0.70, 0.35, 1.0), ImVec4(0.35, 0.58, 0.96, 1.0))
 _OF_VALUES = (ImVec4(0.42, 0.65, 0.93, 1.0),)
-_GRID, _BACK = ImVec4(0.5, 0.5, 0.5, 0.45), ImVec4(0.03, 0.04, 0.05, 0.66)
-_FRONT = ImVec4(0.97, 0.97, 0.98, 1.0)
+_GRID, _BACK = ImVec4(0.5, 0.5, 0.5, 0.45), ImVec4(*DARK, 0.66)
 _SMALLEST = 0.62  # of the usual size of letters, for the numbers in pixels
 _MOST_NUMBERS = 1500  # pixels whose values are written at once
 
@@ -36,7 +37,7 @@ def show(ui: Ui) -> None:
     """How closely the picture is looked at, how the values that are seen lie, and the range of colours from them."""
     session = ui.controller.session
     zoom = session.draw.zoom
-    setting_switch(ui, ALL["pixel_values"])
+    panel_rows(ui, "Pixels", 5.0)
     imgui.same_line(0.0, em(1.0))
     if zoom.fits:
         clipped("Ctrl+wheel zooms into the picture, Ctrl+drag moves it", QUIET)
@@ -105,13 +106,10 @@ def _figures(found: Histogram, names: tuple[str, ...], width: float) -> None:
 
 def _plot(found: Histogram, names: tuple[str, ...]) -> None:
     room = imgui.get_content_region_avail()
-    flags = implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text
-    if len(names) == 1:
-        flags |= implot.Flags_.no_legend
-    if not implot.begin_plot("##histogram", ImVec2(room.x, max(room.y, em(_PLOT))), int(flags)):
+    flags = FLAGS | (int(implot.Flags_.no_legend) if len(names) == 1 else 0)
+    if not implot.begin_plot("##histogram", ImVec2(room.x, max(room.y, em(_PLOT))), flags):
         return
-    axis = int(implot.AxisFlags_.no_highlight)
-    implot.setup_axes("", "", axis, axis | int(implot.AxisFlags_.no_tick_labels))
+    implot.setup_axes("", "", AXIS, AXIS | int(implot.AxisFlags_.no_tick_labels))
     top = float(found.counts.max())
     implot.setup_axes_limits(found.low, found.high, 0.0, 1.08 * top, int(imgui.Cond_.always))
     implot.setup_legend(implot.Location_.north_east)
@@ -167,7 +165,7 @@ def _numbers(area: Area, width: int, height: int, words: Callable[[int, int], tu
     if part < _SMALLEST:
         return
     made, font, size = imgui.get_window_draw_list(), imgui.get_font(), part * letters
-    back, front = imgui.get_color_u32(_BACK), imgui.get_color_u32(_FRONT)
+    back, front = imgui.get_color_u32(_BACK), imgui.get_color_u32(FRONT)
     for (x, y), lines in texts.items():
         middle = area.to_screen((x + 0.5) / width, (y + 0.5) / height)
         halves = [0.5 * part * imgui.calc_text_size(line).x for line in lines]

@@ -22,7 +22,7 @@ from viewer.window.panels.area import SHADE, Pen
 from viewer.window.panels.links import Pointed
 from viewer.window.setting_rows import ALL, setting_switch
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, clipped, em, fitted, paragraph, same_line_for, swatch, tooltip, tooltip_at
+from viewer.window.widgets import QUIET, clipped, em, fitted, one_of, paragraph, seen_rows, swatch, tooltip, tooltip_at
 
 _ROWS = 14  # of the tree that are seen at once
 _LIGHT = 14.0  # ems of width, at most, for the name of a light
@@ -97,12 +97,8 @@ def rows(ui: Ui) -> list[tuple[int, RayRow]]:
 
 def _filters(ui: Ui, state: RaysState) -> None:
     """Which shadow rays are listed and drawn."""
-    for number, shown in enumerate(RaySubset):
-        if number:
-            same_line_for(shown.value)
-        if imgui.radio_button(shown.value, state.shown.shown is shown):
-            state.shown = state.shown._replace(shown=shown)
-        tooltip(SUBSET_HELP[shown])
+    shown = one_of(((one, one.value, SUBSET_HELP[one]) for one in RaySubset), state.shown.shown)
+    state.shown = state.shown._replace(shown=shown)
     imgui.set_next_item_width(min(em(_LIGHT), imgui.get_content_region_avail().x))
 
     def choose(light: int | None) -> None:
@@ -121,12 +117,8 @@ def _tree(ui: Ui, tree: RayTree) -> None:
         tooltip(f"{totals(tree)}\n\nAt most {MOST_DRAWN} shadow rays are drawn at once, and the selected one.")
     seen = rows(ui)
     if imgui.begin_child("rows", ImVec2(0.0, min(len(seen) + 0.3, _ROWS) * height)):
-        clipper = imgui.ListClipper()
-        clipper.begin(len(seen), height)
-        while clipper.step():
-            for level, row in seen[clipper.display_start : clipper.display_end]:
-                _row(state, level, row)
-        clipper.end()
+        for place in seen_rows(len(seen), height):
+            _row(state, *seen[place])
     imgui.end_child()
 
 

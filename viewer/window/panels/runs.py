@@ -28,6 +28,7 @@ from viewer.window.widgets import (
     right,
     row,
     same_line_for,
+    seen_rows,
     tooltip,
     wide_button,
 )
@@ -48,14 +49,6 @@ def frames_row(ui: Ui, plan: PathPlan, tip: str) -> None:
     changed, span = imgui.input_int2("##frames", list(plan.frames(ui.controller.session.scene)))
     if changed:
         plan.first, plan.last = max(0, span[0]), max(0, span[1])
-
-
-def either(no: str, yes: str, now: bool) -> bool:
-    """Show two buttons of which one is set, beside each other where there is room; returns whether it is the second."""
-    first = imgui.radio_button(no, not now)
-    same_line_for(yes.partition("##")[0])
-    second = imgui.radio_button(yes, now)
-    return second or (now and not first)
 
 
 Part = tuple[str, float, Callable[[], None]]
@@ -86,12 +79,12 @@ def show_run(
             _export_buttons(ui, run)
 
     if run is None or run.results is None:
-        _arrange(controls, lambda: paragraph(why, QUIET), ())
+        arrange(controls, lambda: paragraph(why, QUIET), ())
     else:
-        _arrange(controls, lambda: _heading(ui, run), parts)
+        arrange(controls, lambda: _heading(ui, run), parts)
 
 
-def _arrange(controls: Callable[[], None], heading: Callable[[], None], parts: Sequence[Part]) -> None:
+def arrange(controls: Callable[[], None], heading: Callable[[], None], parts: Sequence[Part]) -> None:
     """Show controls, and beside them parts below a heading: next to each other, or as tabs where there is no room for
     that.
 
@@ -153,22 +146,18 @@ def results_table(
         imgui.table_next_column()
         clipped(column.heading, QUIET)
         tooltip(column.meaning)
-    clipper = imgui.ListClipper()
-    clipper.begin(len(rows))
-    while clipper.step():
-        for number in range(clipper.display_start, clipper.display_end):
-            imgui.table_next_row()
-            for place, column in enumerate(columns):
-                imgui.table_next_column()
-                text, color = in_window_style(column.cell(rows[number])), ERROR if column.wrong(rows[number]) else None
-                if place or click is None:
-                    (clipped if column.text else right)(text, color)
-                    continue
-                if imgui.selectable(f"{text}##{number}", chosen == number, _ROW)[0]:
-                    click(number)
-                if tip is not None:
-                    tooltip(tip(rows[number]))
-    clipper.end()
+    for number in seen_rows(len(rows)):
+        imgui.table_next_row()
+        for place, column in enumerate(columns):
+            imgui.table_next_column()
+            text, color = in_window_style(column.cell(rows[number])), ERROR if column.wrong(rows[number]) else None
+            if place or click is None:
+                (clipped if column.text else right)(text, color)
+                continue
+            if imgui.selectable(f"{text}##{number}", chosen == number, _ROW)[0]:
+                click(number)
+            if tip is not None:
+                tooltip(tip(rows[number]))
     imgui.end_table()
 
 

@@ -10,10 +10,10 @@ from viewer.output.capture import TEMPLATE_HELP
 from viewer.services.film import Films
 from viewer.services.runs import duration
 from viewer.window import menus
-from viewer.window.panels.runs import either, frames_row, start_or_progress
-from viewer.window.setting_rows import in_panel, plan_rows, setting_row, setting_switches
+from viewer.window.panels.runs import frames_row, start_or_progress
+from viewer.window.setting_rows import panel_rows, plan_rows
 from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import QUIET, WARNING, begin_modal, em, paragraph, properties, row, tooltip
+from viewer.window.widgets import QUIET, WARNING, begin_modal, em, one_of, paragraph, properties, row, tooltip
 
 TITLE = Dialog.SAVE_AS.value
 
@@ -26,12 +26,7 @@ def show(ui: Ui) -> None:
     menus.button(ui, f"{Dialog.SAVE_AS.value}...", icons.ICON_FA_FLOPPY_DISK, "Save as", 2)
     imgui.same_line()
     menus.button(ui, "Copy as command", icons.ICON_FA_TERMINAL, "Copy command")
-    settings = in_panel(ui, "Saving")
-    with properties("pictures", 5.0) as shown:
-        for one in settings if shown else ():
-            if one.kind is not bool:
-                setting_row(ui, one, f"\n{TEMPLATE_HELP}" if one.path == "screenshot_template" else "")
-    setting_switches(ui, [one for one in settings if one.kind is bool])
+    panel_rows(ui, "Saving", 5.0, note=lambda one: f"\n{TEMPLATE_HELP}" if one.path == "screenshot_template" else "")
     paragraph("A saved picture carries scene, camera, settings and statistics: open or drop it to come back.", QUIET)
 
 
@@ -88,11 +83,12 @@ def _way(ui: Ui, films: Films) -> None:
         if not shown:
             return
         row("Along", "The frames of the animation, or a flight through the bookmarks at an even speed.")
-        plan.through_bookmarks = either("path", f"bookmarks ({marks})###bookmarks", plan.through_bookmarks)
+        ways = (False, "path", ""), (True, f"bookmarks ({marks})###bookmarks", "")
+        plan.through_bookmarks = one_of(ways, plan.through_bookmarks)
         if not plan.through_bookmarks:
             frames_row(ui, plan, "First and last frame of the animation.")
             row("Camera", "The scene's own camera, or the one in the picture now, which stays where it is.")
-            plan.from_here = either("own", "as here", plan.from_here)
+            plan.from_here = one_of(((False, "own", ""), (True, "as here", "")), plan.from_here)
         plan_rows(ui, plan, "seconds", "fps")
 
 

@@ -6,12 +6,11 @@ from imgui_bundle import ImVec2, imgui
 
 from viewer.services.controller import Controller
 from viewer.services.frame_scheduler import Activity
-from viewer.state.palette import FATE_COLORS, label_color
+from viewer.state.palette import DARK, FATE_COLORS, LIGHT, label_color
 from viewer.state.savings import LONGEST, WOULD_OPACITY, Clause, Part, Standing, Tone, bar_of, places, sentence
 from viewer.state.views import View
-from viewer.views.legend import BACKDROP, TEXT
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, em, fitted, packed, tooltip
+from viewer.window.widgets import ERROR, QUIET, em, fitted, packed, tooltip, width_of, write
 
 LEAST = 14.0
 """Ems of height that there must be for the picture, sentence and bar; with less, these are not shown."""
@@ -63,9 +62,7 @@ def _write(ui: Ui, clauses: tuple[Clause, ...], start: ImVec2, width: float, lin
         imgui.set_cursor_pos(ImVec2(start.x + x, start.y + line * imgui.get_text_line_height()))
         shown = text if x + imgui.calc_text_size(text.rstrip()).x <= width else fitted(text, width - x)
         color = QUIET if clause.tone is Tone.QUIET else ERROR if clause.tone is Tone.WRONG else None
-        imgui.push_style_color(imgui.Col_.text, color or imgui.get_style_color_vec4(imgui.Col_.text))
-        imgui.text_unformatted(shown)
-        imgui.pop_style_color()
+        write(shown, color)
         tooltip("\n".join(filter(None, (clause.text if shown != text else "", clause.tip))))
         x += imgui.calc_text_size(text).x
 
@@ -74,7 +71,7 @@ def _draw(ui: Ui, bar: tuple[Part, ...], width: float) -> None:
     """The parts beside each other, each as wide as its share; a click shows the pixels of one."""
     corner, high = imgui.get_cursor_screen_pos(), imgui.get_text_line_height() + em(0.1)
     draw, next_light = imgui.get_window_draw_list(), f"Next light{ui.key('Next light')}"
-    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), packed(BACKDROP), em(0.15))
+    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), packed(DARK), em(0.15))
     for part, left, right in places(bar, corner.x, corner.x + width):
         at, end = ImVec2(left, corner.y), ImVec2(max(right, left + 1), corner.y + high)
         imgui.set_cursor_screen_pos(at)
@@ -86,8 +83,8 @@ def _draw(ui: Ui, bar: tuple[Part, ...], width: float) -> None:
         if imgui.is_item_hovered() or ui.fate_shown is part.fate:
             draw.add_rect(at, end, imgui.get_color_u32(imgui.Col_.text), 0.0, thickness=2.0)
         tooltip(f"{part.in_words()}\nClick: the pixels whose rays to the chosen light these are. {next_light}")
-        text = part.label(lambda text: imgui.calc_text_size(text).x, end.x - at.x - 2.0 * em(_PAD))
-        color = TEXT if part.would else label_color(FATE_COLORS[part.fate])
+        text = part.label(width_of, end.x - at.x - 2.0 * em(_PAD))
+        color = LIGHT if part.would else label_color(FATE_COLORS[part.fate])
         draw.add_text(ImVec2(at.x + round(em(_PAD)), at.y + round(em(0.05))), packed(color), text)
 
 

@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.fit import lamps_in, overview
+from tracer.scene.model import Scene
 from viewer.util.resources import embedded_scenes
 from viewer.window.panels import lights
 from viewer.window.ui import Dialog, Ui
@@ -37,9 +38,9 @@ def show(ui: Ui) -> None:
     if c.session.scene is None:
         paragraph("No scene is open.", QUIET)
         return
-    _facts(ui)
-    _lights(ui)
-    _warnings(ui)
+    _facts(ui, c.session.scene)
+    _lights(ui, c.session.scene)
+    _warnings(c.session.scene)
 
 
 def _recent(ui: Ui) -> None:
@@ -59,39 +60,30 @@ def _recent(ui: Ui) -> None:
     imgui.end_popup()
 
 
-def _facts(ui: Ui) -> None:
-    c = ui.controller
-    scene, info = c.session.scene, c.info
-    assert scene is not None
-    start, end = scene.time_range
+def _facts(ui: Ui, scene: Scene) -> None:
+    info, (start, end) = ui.controller.info, scene.time_range
     facts = [
         ("File", scene.path.name, str(scene.path)),
         ("Triangles", count(info.get("triangles", 0)), ""),
-        (
-            "  dynamic",
-            count(info.get("dynamic_triangles", 0)),
-            "of objects that move: their shadow rays are never culled",
-        ),
+        ("  dynamic", count(info.get("dynamic_triangles", 0)),
+         "of objects that move: their shadow rays are never culled"),
         ("Spheres, cones", f"{count(info.get('spheres', 0))}, {count(info.get('cones', 0))}", ""),
         ("Objects", f"{len(scene.objects) - 1} dynamic" if len(scene.objects) > 1 else "all static", ""),
         ("Materials", f"{len(scene.materials)}, {len(scene.textures)} textures", ""),
-        *([("Animation", f"{scene.frames} frames, {end - start:.4g} s", "")] if c.session.animated else []),
-    ]
+        *([("Animation", f"{scene.frames} frames, {end - start:.4g} s", "")] if ui.controller.session.animated else []),
+    ]  # fmt: skip
     with properties("facts", 7.0) as shown:
         for fact in facts if shown else ():
             value(*fact)
 
 
-def _lights(ui: Ui) -> None:
-    c = ui.controller
-    scene = c.session.scene
-    assert scene is not None
-    number = len(scene.lights)
+def _lights(ui: Ui, scene: Scene) -> None:
+    number, settings = len(scene.lights), ui.controller.session.settings
     heading(f"Lights ({count(number)})")
     if not number:
         paragraph("No lights: only ambient light shows, and there are no shadows to cull.", WARNING)
         return
-    radius, samples = c.session.settings.lamp_radius, c.session.settings.lamp_samples
+    radius, samples = settings.lamp_radius, settings.lamp_samples
     said = ui.cached(
         "what methods do with the lights", scene, (radius, samples),
         lambda: overview(number, lamps_in(scene.lights, radius, samples)[0]),
@@ -101,9 +93,7 @@ def _lights(ui: Ui) -> None:
     lights.table(ui)
 
 
-def _warnings(ui: Ui) -> None:
-    scene = ui.controller.session.scene
-    assert scene is not None
+def _warnings(scene: Scene) -> None:
     if not scene.warnings:
         return
     heading(f"Warnings ({len(scene.warnings)})")

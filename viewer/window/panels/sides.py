@@ -11,7 +11,7 @@ from tracer.frame import Frame
 from tracer.method import Method
 from viewer.state.comparison import CompareMode, Side
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import LESS, MORE, Color
+from viewer.state.palette import DARK, HELD, LESS, LIGHT, MORE, Color
 from viewer.state.picking import pixel_at
 from viewer.state.views import View
 from viewer.views import words_at
@@ -30,7 +30,6 @@ GAP = 0.3
 """Ems between pictures side by side."""
 _REACH = 0.45  # ems to either side of the line where it can be taken hold of
 _LEAST = 3.0  # ems of room for a name beside the line
-_DARK, _LIGHT, _HELD = (0.05, 0.06, 0.08), (0.95, 0.96, 0.97), (0.42, 0.70, 0.96)
 
 
 # --- on the GPU --------------------------------------------------------------------------------------
@@ -45,57 +44,51 @@ def draw_options(ui: Ui) -> DrawOptions:
 
 def draw(ui: Ui, options: DrawOptions) -> None:
     """Bring what is to be seen besides the live picture, which is drawn with these options."""
-    comparing, compared = ui.controller.comparing, ui.graphics.compared
-    seen = comparing.seen
-    if compared is None:
-        return
+    seen, gl = ui.controller.comparing.seen, ui.graphics
     if seen is None:
-        compared.clear()
+        gl.a.clear()
+        gl.difference.clear()
     elif seen.difference is not None:
-        wanted = seen.difference, comparing.limit(seen.difference), options.mark_wrong
-        compared.difference.update(wanted, lambda: signed_picture(*wanted))
+        wanted = seen.difference, ui.controller.comparing.limit(seen.difference), options.mark_wrong
+        gl.difference.update(wanted, lambda: signed_picture(*wanted))
     else:
-        compared.a.draw(seen.a.frame, replace(options, view=seen.a.view, light=seen.a.light))
+        gl.a.draw(seen.a.frame, replace(options, view=seen.a.view, light=seen.a.light))
 
 
-def filling(ui: Ui) -> PictureTexture | None:
+def filling(ui: Ui) -> PictureTexture:
     """Return what fills the picture: B, or A, or their difference; A's part of a wipe is drawn over it."""
-    seen, compared = ui.controller.comparing.seen, ui.graphics.compared
-    if seen is None or compared is None:
-        return ui.graphics.display
-    if seen.shows_a:
-        return compared.a
-    return compared.difference if seen.difference is not None else ui.graphics.display
+    seen, gl = ui.controller.comparing.seen, ui.graphics
+    if seen is not None and seen.shows_a:
+        return gl.a
+    return gl.difference if seen is not None and seen.difference is not None else gl.display
 
 
 def magnify(ui: Ui, options: DrawOptions) -> None:
     """Where single pixels are to be seen, draw what is shown as large as it is shown, with crisp pixels."""
-    magnifier, size, zoom = ui.graphics.magnifier, ui.picture.size, options.zoom
-    if magnifier is None or min(size) < 1:
+    seen, gl, size, zoom = ui.controller.comparing.seen, ui.graphics, ui.picture.size, options.zoom
+    if min(size) < 1:
         return
-    seen, compared = ui.controller.comparing.seen, ui.graphics.compared
-    a = compared.a if compared is not None else None
     smooth = options.smooth and zoom.fits
     beside = seen is not None and (seen.has_line or seen.mode is CompareMode.SIDE)
-    for name, drawn in ((PICTURE, filling(ui)), (OF_A, a if beside else None)):
+    for name, drawn in ((PICTURE, filling(ui)), (OF_A, gl.a if beside else None)):
         picture = drawn.picture if drawn is not None else None
-        view = seen.a.view if seen is not None and drawn is a else options.view
-        blended = smooth and view.shows_clipped and (compared is None or drawn is not compared.difference)
+        view = seen.a.view if seen is not None and drawn is gl.a else options.view
+        blended = smooth and view.shows_clipped and drawn is not gl.difference
         enlarged = picture is not None and (size[0] > picture.size[0] or not zoom.fits)
         if drawn is not None and enlarged and not blended:
-            magnifier.draw(name, picture, drawn.version, zoom, size)
+            gl.magnifier.draw(name, picture, drawn.version, zoom, size)
         else:
-            magnifier.drop(name)
+            gl.magnifier.drop(name)
 
 
 def composed_picture(ui: Ui, b: Pixels) -> Pixels:
     """Return the picture to save: B as it was drawn, and what is compared with it."""
-    seen, compared = ui.controller.comparing.seen, ui.graphics.compared
-    if seen is None or compared is None:
+    seen = ui.controller.comparing.seen
+    if seen is None:
         return b
     if seen.difference is not None:
-        return compared.difference.read()
-    return composed(compared.a.read(), b, seen.mode, ui.controller.session.draw.wipe, seen.shows_a)
+        return ui.graphics.difference.read()
+    return composed(ui.graphics.a.read(), b, seen.mode, ui.controller.session.draw.wipe, seen.shows_a)
 
 
 # --- in words ----------------------------------------------------------------------------------------
@@ -167,8 +160,7 @@ def draw_picture(ui: Ui, name: str, texture: int, area: Area, right: float = 1.0
         return
     at = ImVec2(area.corner.x + (right - left) / (end - left) * area.size.x, area.end.y)
     start, stop = ImVec2(left, top), ImVec2(right, bottom)
-    magnifier = ui.graphics.magnifier
-    crisp = magnifier.texture_of(name, texture, area.zoom, ui.picture.size) if magnifier is not None else None
+    crisp = ui.graphics.magnifier.texture_of(name, texture, area.zoom, ui.picture.size)
     if crisp is not None:
         texture, start, stop = crisp, ImVec2(0.0, 0.0), ImVec2((right - left) / (end - left), 1.0)
     imgui.get_window_draw_list().add_image(imgui.ImTextureRef(texture), area.corner, at, start, stop)
@@ -176,7 +168,7 @@ def draw_picture(ui: Ui, name: str, texture: int, area: Area, right: float = 1.0
 
 def draw_a(ui: Ui, area: Area, right: float = 1.0) -> None:
     """Draw A, up to a column, if it is there."""
-    texture = ui.graphics.compared.a.texture_id if ui.graphics.compared is not None else None
+    texture = ui.graphics.a.texture_id
     if texture is not None:
         draw_picture(ui, OF_A, texture, area, right)
 
@@ -243,17 +235,17 @@ def _label(at: ImVec2, text: str, color: Color | None, room: float, ends_there: 
     width = imgui.calc_text_size(text).x + square + 3.0 * pad
     at = ImVec2(at.x - width if ends_there else at.x, at.y)
     draw = imgui.get_window_draw_list()
-    draw.add_rect_filled(at, ImVec2(at.x + width, at.y + line + 2.0 * pad), packed(_DARK, 0.94), em(0.3))
+    draw.add_rect_filled(at, ImVec2(at.x + width, at.y + line + 2.0 * pad), packed(DARK, 0.94), em(0.3))
     x, y = at.x + 1.5 * pad, at.y + pad + 0.18 * line
     if color is not None:
         draw.add_rect_filled(ImVec2(x, y), ImVec2(x + 0.7 * line, y + 0.7 * line), packed(color), em(0.1))
-    draw.add_text(ImVec2(x + square, at.y + pad), packed(_LIGHT), text)
+    draw.add_text(ImVec2(x + square, at.y + pad), packed(LIGHT), text)
 
 
 def _line(ui: Ui, area: Area, top: float, names: tuple[str, str], colors: tuple[Color | None, Color | None]) -> None:
     """The line, with a disc on it that has an arrow to either side, and what lies left and right of it."""
     draw, x, y = imgui.get_window_draw_list(), _line_at(ui, area), (area.corner.y + area.end.y) / 2.0
-    dark, bright = packed(_DARK, 0.72), packed(_HELD if ui.state(WipeState).held else _LIGHT)
+    dark, bright = packed(DARK, 0.72), packed(HELD if ui.state(WipeState).held else LIGHT)
     half, radius, arrow, apart = max(1.0, em(0.05)), em(0.8), em(0.28), em(0.7)
     draw.push_clip_rect(area.corner, area.end, True)
     for wide, color in ((2.0 * half, dark), (half, bright)):

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tracer.setting import Setting
 from viewer.services.runs import missing_in
 from viewer.state.draw_options import AXES
 from viewer.state.pixels import pixel_at
@@ -15,54 +17,52 @@ from viewer.state.views import View, can_draw
 from viewer.views import view_of, words_at
 from viewer.window import menus
 from viewer.window.panels import legend, lights
-from viewer.window.setting_rows import ALL, in_panel, setting_row, setting_switch, setting_switches
+from viewer.window.setting_rows import ALL, panel_rows, setting_row
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, WARNING, em, paragraph, properties, right, row, size_field, tooltip, tooltip_at
+from viewer.window.widgets import QUIET, WARNING, em, one_of, paragraph, right, row, size_field, tooltip, tooltip_at
 
 
 def show(ui: Ui) -> None:
     """Show the panel View."""
-    draw, scene = ui.controller.session.draw, ui.controller.session.scene
-    settings = in_panel(ui, "View") + in_panel(ui, "Tone")
-    with properties("view", 5.0) as shown:
-        if shown:
-            row("View", f"{draw.view.help}\nThe key of each view stands beside it in the list.")
-            _views(ui)
-            if draw.view.of_light and scene is not None and scene.lights:
-                row("Light", f"The light that the view is about{ui.key('Next light')}.")
-                lights.combo(ui, "view", draw.light, ui.controller.settings.set_light)
-            if draw.view.has_slice:
-                _slice_rows(ui)
-            for one in settings:
-                if one.path == "draw.tone.exposure":
-                    setting_row(ui, one, room=2.2)
-                    imgui.same_line(0.0, em(0.3))
-                    menus.button(ui, "Colours as traced", icons.ICON_FA_ROTATE_LEFT, width=1.9)
-                elif one.kind is not bool:
-                    setting_row(ui, one)
-            _range(ui)
-    setting_switches(ui, [one for one in settings if one.kind is bool])
+    own, above, below = {"draw.tone.exposure": _exposure}, partial(_view, ui), partial(_range, ui)
+    panel_rows(ui, "View", 5.0, own, above, below)
     legend.in_panel(ui)
     _explanation(ui)
 
 
 def show_rendering(ui: Ui) -> None:
     """Show the panel Rendering."""
-    c = ui.controller
-    pace = c.session.state.pace
-    setting_switch(ui, ALL["pace.fixed_size"])
+    lamps = {"settings.lamp_radius": lights.lamp_radius, "settings.lamp_samples": lights.lamp_samples}
+    panel_rows(ui, "Rendering", 6.4, {"pace.fixed_size": _fixed_size, **lamps}, also=("Lamps",))
+
+
+def _fixed_size(ui: Ui, one: Setting) -> None:
+    """Show whether pictures have a size of their own, and which."""
+    c, pace = ui.controller, ui.controller.session.state.pace
+    setting_row(ui, one)
     if pace.fixed_size:
         imgui.same_line()
         width, height = size_field((pace.width, pace.height), LONGEST_FIXED_SIDE, c.notices.say)
         if (width, height) != (pace.width, pace.height):
             c.session.set_pace(width=width, height=height)
-    setting_switch(ui, ALL["pace.progressive"])
-    with properties("quality", 6.4) as shown:
-        for one in in_panel(ui, "Rendering") if shown else ():
-            if one.kind is not bool:
-                setting_row(ui, one)
-        if shown and c.session.scene is not None and c.session.scene.lights:
-            lights.lamp_rows(ui)
+
+
+def _exposure(ui: Ui, one: Setting) -> None:
+    setting_row(ui, one, room=2.2)
+    imgui.same_line(0.0, em(0.3))
+    menus.button(ui, "Colours as traced", icons.ICON_FA_ROTATE_LEFT, width=1.9)
+
+
+def _view(ui: Ui) -> None:
+    """Show rows of the view, and of what it is about."""
+    draw, scene = ui.controller.session.draw, ui.controller.session.scene
+    row("View", f"{draw.view.help}\nThe key of each view stands beside it in the list.")
+    _views(ui)
+    if draw.view.of_light and scene is not None and scene.lights:
+        row("Light", f"The light that the view is about{ui.key('Next light')}.")
+        lights.combo(ui, "view", draw.light, ui.controller.settings.set_light)
+    if draw.view.has_slice:
+        _slice_rows(ui)
 
 
 def _views(ui: Ui) -> None:
@@ -121,11 +121,9 @@ def _slice_rows(ui: Ui) -> None:
     session, frame = ui.controller.session, ui.controller.frame
     cut = session.draw.slice
     row("Slice", "The axis that the slice goes across.")
-    for axis, name in enumerate(AXES):
-        if axis:
-            imgui.same_line(0.0, em(0.6))
-        if imgui.radio_button(f"{name}##slice", cut.axis == axis):
-            session.set_draw(slice=cut._replace(axis=axis))
+    axis = one_of(((number, f"{name}##slice", "") for number, name in enumerate(AXES)), cut.axis)
+    if axis != cut.axis:
+        session.set_draw(slice=cut._replace(axis=axis))
     layers = view_of(session.draw.view).layers(frame, cut.axis) if frame is not None else 0
     if layers:
         row("Layer", "Where along the axis it is. Ctrl+click to type a number.")

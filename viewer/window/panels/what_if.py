@@ -16,6 +16,7 @@ from tracer.scene.edits import Edited
 from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
 from viewer.state.comparison import CompareMode
+from viewer.state.palette import HELD
 from viewer.state.picking import same_place
 from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.view_state import one_by_one
@@ -40,7 +41,7 @@ from viewer.window.widgets import (
 _ROWS = 12  # of the list of lights that are seen at once
 _MOST_MARKS = 64  # of lights: more would hide the picture
 _REACH = 0.7  # ems from a mark's middle at which it can be taken hold of
-_ON, _HELD, _OFF = ImVec4(1.0, 0.93, 0.45, 1.0), ImVec4(0.42, 0.70, 0.96, 1.0), ImVec4(0.62, 0.65, 0.70, 1.0)
+_ON, _HELD, _OFF = ImVec4(1.0, 0.93, 0.45, 1.0), ImVec4(*HELD, 1.0), ImVec4(0.62, 0.65, 0.70, 1.0)
 _DIGITS = 6  # of a place to which a light is brought
 _STATIC = "It stays where it is at this moment, and counts as static: its primitives carry modes."
 _CAN_MOVE = "It stays where it is, but counts as dynamic: it carries no modes, and its shadow rays are always traced."
@@ -110,24 +111,19 @@ def _object(ui: Ui, edited: Edited) -> None:
         return
     thing, primitive = edited.thing_of(pick.primitive), int(edited.primitives[pick.primitive])
     clipped(thing.name)
+    wanted = now = editing.now
     if wide_button("Hide all of it", thing.name, 2):
-        editing.change(editing.now.with_thing(thing.name, False))
+        wanted = now.with_thing(thing.name, False)
     imgui.same_line()
     if wide_button("Hide primitive", f"primitive {primitive} alone", 1):
-        editing.change(editing.now.with_primitive(primitive, False))
-    if thing.moves:
-        static, now = thing.name in dict(editing.now.static), ui.controller.session.time
-
-        def rest(on: bool) -> None:
-            editing.change(editing.now.with_static(thing.name, now if on else None))
-
-        checkbox("Static", static, rest, _STATIC)
-    else:
-
-        def move(on: bool) -> None:
-            editing.change(editing.now.with_moving(thing.name, on))
-
-        checkbox("Dynamic", thing.name in editing.now.moving, move, _CAN_MOVE)
+        wanted = now.with_primitive(primitive, False)
+    static, moving = thing.name in dict(now.static), thing.name in now.moving
+    if thing.moves and checkbox("Static", static, tip=_STATIC) != static:
+        wanted = now.with_static(thing.name, None if static else ui.controller.session.time)
+    elif not thing.moves and checkbox("Dynamic", moving, tip=_CAN_MOVE) != moving:
+        wanted = now.with_moving(thing.name, not moving)
+    if wanted is not now:
+        editing.change(wanted)
 
 
 def _lights(ui: Ui, edited: Edited) -> None:
@@ -140,12 +136,10 @@ def _lights(ui: Ui, edited: Edited) -> None:
     numbers = lights.found(ui, "what if", original)
     places = original.light_positions(ui.controller.session.time)
 
-    def row(number: int) -> None:
+    for number in lights.rows(numbers, _ROWS, imgui.get_frame_height_with_spacing()):
         imgui.push_id(number)
         _light(ui, edited, number, places[number].tolist())
         imgui.pop_id()
-
-    lights.rows(numbers, _ROWS, imgui.get_frame_height_with_spacing(), row)
     paragraph("Drag a light in the picture, or type where it is.", QUIET)
 
 

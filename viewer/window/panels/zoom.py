@@ -75,7 +75,7 @@ def _thumbnail(ui: Ui, test: RecordedZoomTest, shot: Shot, step: Step, height: f
     size = ImVec2(height * shot.width / shot.height, height)
     if imgui.invisible_button(f"{shot.factor:g} step {shot.number}##shot", size):
         ui.controller.go_to_step(step)
-    if not imgui.is_item_visible() or ui.graphics.textures is None:
+    if not imgui.is_item_visible():
         return
     start, end = imgui.get_item_rect_min(), imgui.get_item_rect_max()
     draw, texture = imgui.get_window_draw_list(), ui.graphics.textures.texture_id(shot, small=True)
@@ -90,14 +90,14 @@ def _thumbnail(ui: Ui, test: RecordedZoomTest, shot: Shot, step: Step, height: f
 
 def _show_step(ui: Ui, test: RecordedZoomTest, factor: float, step: Step) -> None:
     """Beside the pointer: a step in numbers, and its picture as it was recorded, or the nearest that is kept."""
-    shot, textures = test.filmstrip.nearest(factor, step.number), ui.graphics.textures
+    shot = test.filmstrip.nearest(factor, step.number)
     if not imgui.begin_tooltip():
         return
     highest = f"highest count {count(step.highest)}" if step.highest else "not yet fully rendered"
     imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {highest}")
     wrong = f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture"
     imgui.text_unformatted("\n".join([wrong, *changes_in_words(step.changes), "click to fly there"]))
-    texture = textures.texture_id(shot, small=False) if shot is not None and textures is not None else None
+    texture = ui.graphics.textures.texture_id(shot, small=False) if shot is not None else None
     if shot is not None and texture is not None:
         scale = em(_LARGE) / max(shot.width, shot.height)
         imgui.image(imgui.ImTextureRef(texture), ImVec2(scale * shot.width, scale * shot.height))

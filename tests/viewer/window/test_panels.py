@@ -1,0 +1,59 @@
+"""Panels without a window: ImGui lays them out and writes them down, and nothing is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import pytest
+from imgui_bundle import imgui, implot
+
+from tests.viewer.desk import Desk
+from viewer.window import commands
+from viewer.window.layout import PANELS
+from viewer.window.setting_rows import ALL
+from viewer.window.ui import Ui
+
+KINDS = ("settings.patient", "settings.depth", "draw.rays", "pace.every_frame", "loop", "tev")
+"""A setting of each kind, wherever values live."""
+
+
+@pytest.fixture
+def written(desk: Desk) -> Iterator[Callable[[str], str]]:
+    """What a panel writes, of a scene that is open, where it has all the room it needs."""
+    ui = Ui(desk.c)
+    ui.take_commands(commands.build(ui))
+    context, plots = imgui.create_context(), implot.create_context()
+    io = imgui.get_io()
+    io.set_ini_filename("")
+    io.display_size, io.delta_time = (4000.0, 8000.0), 0.02
+    io.backend_flags |= int(imgui.BackendFlags_.renderer_has_textures)
+
+    def text(panel: str) -> str:
+        imgui.new_frame()
+        imgui.set_next_window_size((3000.0, 7000.0))
+        imgui.begin(panel)
+        imgui.internal.log_to_buffer(0)
+        PANELS[panel].show(ui)
+        found = imgui.get_current_context().log_buffer.c_str()
+        imgui.log_finish()
+        imgui.end()
+        imgui.end_frame()
+        return str(found)
+
+    yield text
+    implot.destroy_context(plots)
+    imgui.destroy_context(context)
+
+
+def test_a_panel_shows_every_setting_that_is_declared_for_it(
+    written: Callable[[str], str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    panels = sorted({one.panel for one in ALL.values()} & set(PANELS))
+    assert panels == ["Camera", "Culling", "Pixels", "Rendering", "Saving", "View"]
+    for panel in panels:
+        labels = {f"New {number}": path for number, path in enumerate(KINDS)}
+        for label, path in labels.items():
+            monkeypatch.setitem(ALL, label, replace(ALL[path], label=label, panel=panel))
+        found = written(panel)
+        assert not [label for label in labels if label not in found], f"{panel}: {found}"
