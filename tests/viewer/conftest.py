@@ -1,4 +1,4 @@
-"""What the viewer's tests share: a scene of numbers, frames of it, and a renderer that traces nothing."""
+"""What the viewer's tests share: settings of their own, a clock, controllers, and desks where something is traced."""
 
 from __future__ import annotations
 

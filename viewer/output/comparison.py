@@ -34,6 +34,14 @@ class Crop(NamedTuple):
     width: int
     height: int
 
+    @staticmethod
+    def around(pixel: tuple[int, int], size: tuple[int, int]) -> Crop:
+        """Return the surroundings of a pixel, inside a picture of this size."""
+        width, height = (min(max(least, side // 8), side) for least, side in zip((24, 18), size, strict=True))
+        x = min(max(pixel[0] - width // 2, 0), size[0] - width)
+        y = min(max(pixel[1] - height // 2, 0), size[1] - height)
+        return Crop(x, y, width, height)
+
     def of(self, pixels: NDArray[Any]) -> NDArray[Any]:
         return pixels[self.y : self.y + self.height, self.x : self.x + self.width]
 

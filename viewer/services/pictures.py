@@ -108,9 +108,9 @@ class Pictures:
         session, frame = self._session, self._scheduler.frame
         if session.scene is None or frame is None:
             return None
-        width, height = self._scheduler.full_size
+        width, height = self._scheduler.inputs.full_size
         settings: Settings = replace(
-            self._scheduler.settings, width=width, height=height, samples=session.settings.samples
+            self._scheduler.inputs.settings, width=width, height=height, samples=session.settings.samples
         )
         as_wanted = replace(frame, time=session.time, camera=session.camera, settings=settings)
         return self.state_of(as_wanted, session.draw.view)
@@ -137,7 +137,7 @@ class Pictures:
     @property
     def size(self) -> tuple[int, int]:
         """Of the picture that is planned; 0, 0 before there is one to take it of."""
-        width, height = self._scheduler.full_size if self.now() is not None else (0, 0)
+        width, height = self._scheduler.inputs.full_size if self.now() is not None else (0, 0)
         return width * self.plan.multiple, height * self.plan.multiple
 
     def save(self) -> bool:

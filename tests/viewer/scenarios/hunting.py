@@ -82,14 +82,14 @@ def _from_the_inspector(d: Driver) -> None:
 
 
 def _to_a_find(d: Driver) -> None:
-    c, plan = d.c, d.c.hunts.plan
+    c, plan = d.c, d.c.runs.hunt_plan
     plan.size, plan.last, plan.step, plan.around, plan.keep = (96, 96), LAST, STEP, 4, 5
     d.show_panel("Hunt")
     d.click(f"//Hunt/**/{icons.ICON_FA_PLAY}  Start")
-    d.wait(lambda: c.hunts.found is not None and c.runs.current is None, "the hunt", 120.0)
+    d.wait(lambda: c.runs.hunt.results is not None and c.runs.current is None, "the hunt", 120.0)
     d.settle()
-    found = c.hunts.found
-    assert c.hunts.hunt.whole and found.finds and found.frames == LAST // STEP + 5
+    found = c.runs.hunt.results
+    assert c.runs.hunt.whole and found.finds and found.frames == LAST // STEP + 5
     c.settings.change(samples=4)
     d.settle()
     d.click("//Hunt/**/1##0")

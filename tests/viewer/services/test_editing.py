@@ -110,11 +110,11 @@ def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
     c.editing.change(Edits(hidden=frozenset({"ball"})))
     desk.tick()
     c.editing.clear()  # it is being hidden nevertheless
-    for start in (c.runs.start_experiment, c.hunts.start, c.films.start, c.runs.start_zoom_test):
+    for start in (c.runs.start_experiment, c.runs.start_hunt, c.films.start, c.runs.start_zoom_test):
         c.notices.message = None
         start()
         assert desk.said == said and c.runs.current is None
-    assert c.runs.experiment is None and c.hunts.hunt is None and c.films.film is None
+    assert c.runs.experiment is None and c.runs.hunt is None and c.films.film is None
     desk.rest()
     c.runs.start_experiment()
     run = c.runs.current

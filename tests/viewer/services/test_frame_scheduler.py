@@ -16,7 +16,8 @@ from tracer.frame import Settings
 from tracer.scene.lights import Light
 from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
-from viewer.services.frame_scheduler import Activity, FrameInputs, FrameScheduler
+from viewer.services.frame_inputs import FrameInputs
+from viewer.services.frame_scheduler import Activity, FrameScheduler
 from viewer.services.jobs import Wake
 from viewer.services.refinement import MOST_FRAMES, MOST_LEARNING
 from viewer.services.render_request import RenderRequest, Traced
@@ -131,7 +132,7 @@ def test_the_next_frame_of_a_film_waits_until_this_one_can_be_asked_about():
 def test_until_certificates_can_be_made_pictures_come_without(ready: bool, method: str, traced: str):
     window = Window(method=method)
     window.request(ready=ready)
-    assert window.scheduler.settings.method == traced
+    assert window.scheduler.inputs.settings.method == traced
 
 
 def test_at_rest_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_for_twice():

@@ -75,17 +75,17 @@ def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(
 ) -> None:
     desk = desk_at(write_marbles(tmp_path))
     c = desk.c
-    c.hunts.plan.size = (96, 96)
+    c.runs.hunt_plan.size = (96, 96)
     c.settings.change(depth=2)
-    c.hunts.start()
-    desk.until(lambda: c.hunts.found is not None and c.hunts.found.finds)
-    c.hunts.go(0)
+    c.runs.start_hunt()
+    desk.until(lambda: c.runs.hunt.results is not None and c.runs.hunt.results.finds)
+    c.navigator.go_to_find(0)
     assert "the hunt is still under way" in desk.said
     c.runs.stop()
     desk.run_to_its_end()
-    assert c.hunts.found.finds and not c.hunts.hunt.whole
-    find, before = c.hunts.found.finds[-1], c.session.state
-    c.hunts.go(len(c.hunts.found.finds) - 1)
+    assert c.runs.hunt.results.finds and not c.runs.hunt.whole
+    find, before = c.runs.hunt.results.finds[-1], c.session.state
+    c.navigator.go_to_find(len(c.runs.hunt.results.finds) - 1)
     desk.run_to_its_end()
     assert tuple(c.frame.color[find.y, find.x].tolist()) == find.color
     assert tuple(c.frame.reference[find.y, find.x].tolist()) == find.reference
@@ -93,5 +93,5 @@ def test_a_hunt_that_is_stopped_keeps_its_finds_and_needs_its_scene(
     desk.rest()
     assert c.session.state == before
     desk.open(tiny_scene_file)
-    c.hunts.go(0)
+    c.navigator.go_to_find(0)
     assert "open that scene again" in desk.said and c.session.camera == c.session.scene.camera

@@ -13,9 +13,9 @@ from tracer.culling.fate import Fate
 from tracer.frame import Settings
 from viewer.state import palette
 from viewer.state.draw_options import Curve, Tone, brighter, clipped, toned
+from viewer.util.numbers import percent
 from viewer.views import penumbra
 from viewer.views.difference import Mark, wrong_marks
-from viewer.window.widgets import percent
 
 
 def dichromat(color: palette.Color) -> np.ndarray:

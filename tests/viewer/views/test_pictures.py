@@ -20,15 +20,11 @@ from viewer.state.palette import BACKGROUND, BENEATH, FATES, GREY, color_map
 from viewer.state.views import Record, View
 from viewer.util.numbers import percent
 from viewer.views import colorize
-from viewer.views.paint import CELL_LINE, FAINT_LINE
+from viewer.views.paint import CELL_LINE, FAINT_LINE, in_bytes
 from viewer.views.voxels import STATES, voxels_of, voxels_seen
 
 CLASSES = (View.OCCLUSION, View.SHADOW, View.CERTIFICATE, View.FATE, View.MOVING_SHADOW, View.PENUMBRA)
 MAP = np.round(color_map() * 255).astype(int)
-
-
-def in_bytes(color: tuple[float, ...] | NDArray) -> NDArray[np.uint8]:
-    return np.round(np.asarray(color, np.float32) * np.float32(255.0)).astype(np.uint8)
 
 
 def on_lines(cells: NDArray) -> NDArray[np.bool_]:

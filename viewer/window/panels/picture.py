@@ -110,7 +110,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
         what_if.show_lights(ui, area)
     lower = _title(ui, area)
     sides.show(ui, area, lower)
-    legend.show(ui, area.corner, area.end)
+    legend.show(ui, area)
     overlays.show_missing(ui, area.corner, area.end)
     show_words_in_space(ui)
 
