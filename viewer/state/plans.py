@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tracer.experiments.camera_path import MOST_FRAMES
 from tracer.geometry.accelerators import KD_TREE
 from tracer.scene.model import Scene
 from tracer.setting import setting
 from tracer.settings import Settings
 
 MOST_ZOOM_FACTORS = 6
-MOST_RUN_FRAMES = 100_000
 LONGEST_RUN_SIDE = 4096
 """Pixels of a run's pictures, of which there are many."""
 MOST_PICTURE_PIXELS = 1 << 26
@@ -39,7 +39,7 @@ class ExperimentPlan:
     paper's unless another is chosen."""
 
     methods: set[str]
-    frames: int = setting(100, "Frames", "Frames over the whole path of the scene.", low=1, high=MOST_RUN_FRAMES)
+    frames: int = setting(100, "Frames", "Frames over the whole path of the scene.", low=1, high=MOST_FRAMES)
     size: tuple[int, int] = setting((Settings.width, Settings.height), "Size", "Size of the pictures.",
                                     high=LONGEST_RUN_SIDE)  # fmt: skip
     depth: int = Settings.depth
@@ -54,8 +54,8 @@ class ZoomPlan:
 
     factors: str = setting(
         "4, 16", "Factors",
-        "Zoom factors to compare: a primitive is examined anew once it covers this many times its highest pixel count.",
-        check=parse_factors, option="--factors",
+        "Zoom factors to compare: a primitive is examined anew once it covers this many times the pixels of its last "
+        "examination.", check=parse_factors, option="--factors",
     )  # fmt: skip
     steps: int = setting(30, "Steps", "Steps towards the primitive.", low=1, high=10_000, option="--steps")
     ratio: float = setting(
@@ -107,10 +107,10 @@ class HuntPlan(PathPlan):
     """Frames of the path, by a method whose wrong pixels are searched; the worst `keep` are kept."""
 
     method: str = "paper"
-    step: int = setting(1, "Step", "Search only every nth of these frames.", low=1, high=MOST_RUN_FRAMES,
+    step: int = setting(1, "Step", "Search only every nth of these frames.", low=1, high=MOST_FRAMES,
                         option="--step")  # fmt: skip
     around: int = setting(40, "Extra views", "Extra random views near the worst findings.", low=0,
-                          high=MOST_RUN_FRAMES, option="--around")  # fmt: skip
+                          high=MOST_FRAMES, option="--around")  # fmt: skip
     radius: float = setting(
         0.3, "Radius", "How far extra views are from a finding's camera, as a part of its distance to what is wrong.",
         low=0.0, high=100.0, slider=(0.0, 1.0), digits=2, option="--radius",
