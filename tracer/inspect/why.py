@@ -14,13 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate, by_modes
-from tracer.culling.modes import (
-    OcclusionMode,
-    ShadowMode,
-    has_shadow_mode,
-    occlusion_mode,
-    shadow_mode,
-)
+from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode, occlusion_mode, shadow_mode
 from tracer.culling.verdicts import Verdict
 from tracer.inspect.occluded_by import Seen, occluded_by, references
 from tracer.inspect.path_records import VERDICTS, ShadowRays
