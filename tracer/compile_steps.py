@@ -26,9 +26,10 @@ from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
+from tracer.inspect import ray_probe
 from tracer.kernels import entry
 from tracer.method import Kind, Method
-from tracer.methods import certified_lights, watching
+from tracer.methods import certified_lights
 from tracer.methods.certified import CertifiedCells
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import StageTable
@@ -147,7 +148,8 @@ def _see_and_find(frame: FrameInProgress) -> None:
 def certificate_steps(lights: int, accelerator: str) -> Iterator[str]:
     """All that is certified, and dropped again; and what tells what became of a pixel's rays."""
     yield "certificates"
-    for kernel in (watching.find, watching.choose, watching.finish, certified_lights.approach, certified_lights.choose):
+    ray_probe.make_ready()
+    for kernel in (certified_lights.approach, certified_lights.choose):
         kernel.compile()
     renderer = _renderer(lights, accelerator, "certified+cache+rest")
     frame = renderer.begin(0.0)

@@ -33,7 +33,7 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, NullCache,
 _ROOT = Path(__file__).parents[1]  # of the packages
 # What kernels are made of: nothing else in the package ends up in machine code.
 _KERNEL_SOURCES = (
-    "simd/", "geometry/", "culling/", "shading/", "methods/",
+    "simd/", "geometry/", "culling/", "shading/", "methods/", "inspect/ray_probe.py",
     "scene/model.py", "scene/lamps.py", "scene/mesh_kernels.py",
 )  # fmt: skip
 _COMPILERS = ("kernels.py", "subkernels.py")

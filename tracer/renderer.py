@@ -281,31 +281,6 @@ class Renderer:
         self._turn = after(self._turn, part)
         return self._turn
 
-    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
-        """Say what the methods of the last frame know about a light at a point.
-
-        Parameters
-        ----------
-        primitive : int
-            The primitive that the point is on.
-        point : (3,) float32
-            Where shadow rays end, a little above the primitive.
-        light : int
-            Number of the light.
-
-        Returns
-        -------
-        tuple of str and tuple of int, or None
-            What is known, in a word, and the primitives that it rests on; None if nothing is known of single points.
-        """
-        answers = (method.explain(primitive, point, light) for method in self._last)
-        return next((answer for answer in answers if answer is not None), None)
-
-    @property
-    def takes_part(self) -> bool:
-        """Whether what the methods of the last frame know was asked for its shadow rays, and not only learnt."""
-        return all(method.takes_part for method in self._last)
-
     def beside(self) -> Renderer:
         """Make another renderer of the same world, with modes and counters of its own.
 

@@ -14,7 +14,7 @@ from tracer.experiments import counterexample, hunt, warmup_frames
 from tracer.experiments.counterexample import AROUND, PATH
 from tracer.experiments.hunt import Results, Search
 from tracer.inspect.ray_tree import ray_tree
-from viewer.services.hunts import crop_of
+from viewer.output.comparison import Crop
 
 SETTINGS = tracer.Settings(width=96, height=96, depth=2, method="paper", threads=1)
 FRAMES = LAST // STEP + 1
@@ -151,7 +151,7 @@ def test_words_say_what_is_wrong_and_true(world: tracer.World, found: Results) -
         assert f"Pixel {find.x}, {find.y} is too " in text and f" {find.primitive} of " in text
         assert ("but is blocked by" in text or "but the first is blocked by" in text) == find.lit
         assert ("nothing is in" in text) != find.lit
-        crop = crop_of(find, found.size)
+        crop = Crop.around((find.x, find.y), found.size)
         assert 0 <= find.x - crop.x < crop.width and 0 <= find.y - crop.y < crop.height
         assert crop.x + crop.width <= 96 and crop.y + crop.height <= 96
 

@@ -196,9 +196,9 @@ class Soak:
         runs.start_experiment()
 
     def _hunt(self) -> None:
-        plan = self.c.hunts.plan
+        plan = self.c.runs.hunt_plan
         plan.size, plan.first, plan.last, plan.around = (32, 24), 0, int(self.rng.integers(1, 8)), 2
-        self.c.hunts.start()
+        self.c.runs.start_hunt()
 
     def _stop(self) -> None:
         self.c.runs.stop()

@@ -22,7 +22,7 @@ from tracer.culling.certified.invalidate import copy_kept
 from tracer.culling.certified.store import CertificateStore
 from tracer.culling.rest import changes
 from tracer.geometry.rays import ray_batch
-from tracer.inspect.explanation import explain
+from tracer.inspect.ray_tree import ray_tree
 from tracer.scene.animation import Animation
 from tracer.scene.model import Cancelled
 
@@ -217,24 +217,26 @@ def test_what_a_certificate_names_is_what_blocks(accelerator: str):
         frame = certified.render()
     told = dict.fromkeys(("full", "lit", "candidates"), 0)
     for y, x in np.argwhere(frame.primitive >= 0):
-        for e in explain(certified, frame, x, y):
-            if not e.due:
+        tree = ray_tree(certified, frame, x, y)
+        for point, place in tree.shadow_rays():
+            if point.parent >= 0:
                 continue
-            certificate, named = _certificates(certified).describe(int(frame.primitive[y, x]), e.point, e.light)
+            s, light = point.shadows, int(point.shadows.light[place])
+            certificate, named = _certificates(certified).describe(point.primitive, point.end, light)
             told[certificate] = told.get(certificate, 0) + 1
-            met = _met(certified, e.light_position, e.point)
+            met, lit = _met(certified, tree.samples[place], point.end), s.blocker[place] < 0
             if certificate == "full":
-                assert not e.lit and met & set(named)
+                assert not lit and met & set(named)
             elif certificate == "lit":
-                assert e.lit and not met and named == ()
+                assert lit and not met and named == ()
             elif certificate == "candidates" and named:
                 assert met <= set(named)
     assert min(told.values()) > 20
 
 
-def _met(renderer: tracer.Renderer, light: tuple, point: tuple) -> set[int]:
+def _met(renderer: tracer.Renderer, light: np.ndarray, point: np.ndarray) -> set[int]:
     """The primitives between a light and a point, of all there are."""
-    ray = ray_batch(np.array([light], np.float32), np.subtract([point], [light]).astype(np.float32), 1e-5, 1.0)
+    ray = ray_batch(light[None], (point - light)[None], 1e-5, 1.0)
     everything = np.ones(len(renderer.world.object_of), np.bool_)
     return {int(i) for i in np.flatnonzero(np.isfinite(meet_all(renderer.world, ray, everything).t[0]))}
 
@@ -250,8 +252,8 @@ def _under(plate: list, accelerator: str) -> dict[tuple[str, tuple[int, ...]], i
         assert expected.color.tobytes() == frame.color.tobytes()
     told: Counter[tuple[str, tuple[int, ...]]] = Counter()
     for y, x in np.argwhere((frame.primitive == 0) | (frame.primitive == 1)):
-        (e,) = explain(certified, frame, x, y)
-        certificate, named = _certificates(certified).describe(int(frame.primitive[y, x]), e.point, 0)
+        point = ray_tree(certified, frame, x, y).rays[0]
+        certificate, named = _certificates(certified).describe(point.primitive, point.end, 0)
         told[certificate, tuple(sorted(named))] += 1
     assert frame.statistics.shadow.culled == sum(n for (certificate, _), n in told.items() if certificate == "full")
     return told

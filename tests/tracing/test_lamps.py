@@ -12,8 +12,8 @@ from tests.tracing.same import assert_same
 from tests.tracing.shades import BEHIND, floor, going, kite, roof
 from tests.tracing.worlds import random_corners, scene
 from tracer.culling.modes import FULLY_RENDERED, ShadowMode
-from tracer.inspect.explanation import explain
 from tracer.inspect.one_light import with_light
+from tracer.inspect.why import why
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
 from tracer.scene.lights import Light
@@ -239,16 +239,15 @@ def test_a_verified_frame_counts_wrong_samples():
     assert frame.reference is not None and frame.reference.tobytes() == none.color.tobytes()
 
 
-def test_an_explanation_counts_the_samples_that_reach_the_point():
+def test_reasons_count_the_samples_that_reach_the_point():
     renderer = Renderer(room(LAMP, POINT), SETTINGS)
     frame = renderer.render(0.0)
     assert frame.asked is not None and frame.reached is not None
     partly = np.argwhere((frame.reached[..., 0] > 0) & (frame.reached[..., 0] < frame.asked[..., 0]))
     for y, x in partly[:: len(partly) // 12]:
-        lamp, point = explain(renderer, frame, int(x), int(y))
-        assert (lamp.samples, lamp.reached) == (frame.asked[y, x, 0], frame.reached[y, x, 0])
-        assert lamp.lit and lamp.blocker is not None and lamp.blocked_at is not None
-        assert point.samples == frame.asked[y, x, 1] and point.reached == frame.reached[y, x, 1]
+        for light, one in enumerate(why(renderer, frame, int(x), int(y)).reasons):
+            assert (one.lit, one.fate.is_due) == (frame.reached[y, x, light], frame.asked[y, x, light] > 0)
+            assert one.rays == frame.asked[y, x, light] or not one.fate.is_due
 
 
 def test_a_picture_that_is_refined_becomes_the_whole_one():

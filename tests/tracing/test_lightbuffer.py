@@ -255,7 +255,7 @@ def test_the_inspector_says_what_the_light_sees():
             verdicts |= set(tree.counts)
             for ray in tree.rays:
                 if ray.shadows is not None:
-                    named |= {name for names in ray.shadows.named.values() for name in names}
+                    named |= {name for why in ray.shadows.reasons.values() for name in why.named}
     assert {Verdict.BUFFER_LIT, Verdict.BUFFER_FULL} <= verdicts
     first = len(floor())
     assert named and named <= set(range(first, first + 4)), "the roof and the kite are what hides the light"

@@ -15,10 +15,8 @@ from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Verdict
 from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch
-from tracer.inspect.explanation import explain
 from tracer.inspect.path_records import TRACED, RayKind, RayTree
-from tracer.inspect.ray_reasons import unused
-from tracer.inspect.ray_tree import ray_tree
+from tracer.inspect.ray_tree import ray_tree, unused
 from tracer.inspect.reasons import WHY_TRACED
 from tracer.methods.payoff import Payoff, Plan
 from tracer.renderer import Renderer
@@ -66,7 +64,8 @@ def test_all_trees_together_are_the_frame(scene_file: Path, method: str, acceler
     assert counts[Verdict.CACHED] == shadow.cache_hits and counts[Verdict.CANDIDATES] == shadow.candidates_only
     assert counts[Verdict.FULL_SHADOW] + counts[Verdict.CERTIFIED_FULL] + counts[Verdict.BEAM] >= shadow.culled
     assert counts[Verdict.NON_SHADOW] + counts[Verdict.CERTIFIED_LIT] == shadow.dynamic_only
-    known = Counter(word for tree in trees for ray in tree.rays if ray.shadows for word in ray.shadows.known.values())
+    reasons = [why for tree in trees for ray in tree.rays if ray.shadows for why in ray.shadows.reasons.values()]
+    known = Counter(why.known for why in reasons if why.known)
     if method in ("paper", "cells", "paper+cache"):
         assert sum(known.values()) == counts[Verdict.TRACED]
         assert set(known) <= {"INIT", "PARTIALLY_OCCLUDED", "DYNAMIC", "PARTIAL_SHADOW"} and len(known) > 1
@@ -88,17 +87,29 @@ def test_certificates_that_auto_does_not_look_up_are_told_as_in_the_inspector(
     monkeypatch.setattr(Payoff, "plan", lambda self, *_: Plan(seconds=1.0))
     renderer, frame = rendered(scene_file, "auto", "bvh8")
     told: Counter[str] = Counter()
+    (auto,) = renderer.work_on(frame).methods
     for tree in all_trees(renderer, frame)[::5]:
-        shadows = tree.rays[0].shadows
-        for one in explain(renderer, frame, tree.x, tree.y):
-            place = shadows.of_light(one.light).start
-            if one.due:
-                assert not one.used
-                assert shadows.verdict[place] == TRACED
-                expected = "" if one.certificate == "none" else unused(one.certificate)
-                assert shadows.known.get(place, "") == expected
-                told[expected] += 1
+        for ray, place in tree.shadow_rays():
+            s, (state, _) = ray.shadows, auto.explain(ray.primitive, ray.end, int(ray.shadows.light[place]))
+            expected = "" if state == "none" else unused(state)
+            assert s.verdict[place] == TRACED and s.reason(place).known == expected
+            told[expected] += 1
     assert told[""] < told.total() and set(told) - {""} <= set(WHY_TRACED), told
+
+
+@pytest.mark.parametrize("accelerator", ["kdtree", "bvh8"])
+def test_shadow_rays_end_where_the_pixel_looks_just_above_the_surface(scene_file: Path, accelerator: str):
+    renderer, frame = rendered(scene_file, "none", accelerator)
+    right, up, forward = frame.camera.basis()
+    half = np.tan(np.radians(frame.camera.angle) / 2.0)
+    for tree in all_trees(renderer, frame):
+        ray = tree.rays[0]
+        if ray.shadows is not None:
+            across = half * WIDTH / HEIGHT * (2.0 * (tree.x + 0.5) / WIDTH - 1.0)
+            way = forward + across * right + half * (1.0 - 2.0 * (tree.y + 0.5) / HEIGHT) * up
+            surface = frame.camera.position + way / np.linalg.norm(way) * frame.depth[tree.y, tree.x]
+            assert ray.point == pytest.approx(surface, abs=1e-4)
+            assert 1e-6 < np.linalg.norm(surface - ray.end) < 5e-4
 
 
 def test_a_tree_branches_where_the_surface_says(scene_file: Path):

@@ -19,10 +19,11 @@ from tracer.culling.regions.grid import boxes_of, make_grid, region_at
 from tracer.culling.regions.light_tree import LEAVES, build_light_tree
 from tracer.culling.regions.store import RegionStore
 from tracer.culling.shadow_testing import LIGHT_MARGIN
+from tracer.culling.verdicts import Verdict
 from tracer.geometry.layout import triangle_rows
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
-from tracer.inspect.explanation import explain
+from tracer.inspect.ray_tree import ray_tree
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet
@@ -246,13 +247,13 @@ def test_memory_is_bounded():
     assert not store.grid.certified.any()
 
 
-def test_an_explanation_names_what_hides_a_light():
+def test_reasons_name_what_hides_a_light():
     renderer = Renderer(rooms(samples=1), SETTINGS)
     frame = renderer.render(0.0)
-    told = [e for x in (8, 30, 50) for e in explain(renderer, frame, x, 40)]
-    hidden = [e for e in told if e.certificate == "full"]
-    assert len(hidden) > 20
-    assert not any(e.lit for e in hidden) and all(2 <= e.named[0] < 42 for e in hidden), "a triangle of the wall"
+    rays = [ray_tree(renderer, frame, x, 40).rays[0].shadows for x in (8, 30, 50)]
+    hidden = [(s, *one) for s in rays for one in s.reasons.items() if one[1].verdict is Verdict.PASSED_OVER]
+    assert len(hidden) > 20 and not any(s.lit[place] for s, place, _ in hidden)
+    assert all(2 <= why.named[0] < 42 for _, _, why in hidden), "a triangle of the wall"
 
 
 def test_nasty_worlds_under_many_lamps_look_as_by_none():

@@ -124,5 +124,5 @@ def test_culled_rays_say_what_their_voxels_and_cells_knew():
                 for place in np.flatnonzero([VERDICTS[n].culled for n in ray.shadows.verdict]).tolist():
                     verdict = VERDICTS[ray.shadows.verdict[place]]
                     seen[verdict] += 1
-                    assert ray.shadows.told.get(place) or verdict is Verdict.PASSED_OVER
+                    assert ray.shadows.reason(place).told or verdict is Verdict.PASSED_OVER
         assert set(seen) <= verdicts | {Verdict.PASSED_OVER} and set(seen) & verdicts, (method, seen)

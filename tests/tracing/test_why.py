@@ -24,7 +24,6 @@ from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shad
 from tracer.culling.verdicts import Verdict
 from tracer.frame import Frame, Settings
 from tracer.inspect.occluded_by import OccludedBy, Reference, Seen, occluded_by
-from tracer.inspect.path_records import FATES
 from tracer.inspect.ray_tree import ray_tree
 from tracer.inspect.reasons import Coverage, Reason, Rule, TaughtBy, Why
 from tracer.inspect.why import why
@@ -167,12 +166,6 @@ def test_of_a_lamps_rays_that_which_asked_most_is_in_the_view_of_fates(scene_fil
     assert Fate.FACES_AWAY in met and len(met) > 1
     if method == "certified" and samples > 1:
         assert {Fate.CULLED, Fate.DYNAMIC_ONLY} <= met
-
-
-def test_each_verdict_says_what_becomes_of_a_ray():
-    assert set(FATES) == set(Verdict) and not {Fate.NONE, Fate.DYNAMIC_ONLY} & set(FATES.values())
-    for verdict, fate in FATES.items():
-        assert verdict.due == fate.is_due and verdict.culled == (fate.is_due and not fate.is_traced)
 
 
 def expected(word: np.unsignedinteger, light: int) -> Fate:

@@ -1,8 +1,8 @@
-"""What the viewer's tests share: a scene of numbers, frames of it, and a renderer that traces nothing."""
+"""What the viewer's tests share: settings of their own, a clock, controllers, and desks where something is traced."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -33,17 +33,27 @@ def tiny_scene_file(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def desk(tiny_scene_file: Path, tmp_path: Path) -> Iterator[Desk]:
-    desk = Desk(tiny_scene_file, tmp_path / "pictures")
-    yield desk
-    assert desk.c.close()
+def desk_at(tmp_path: Path) -> Iterator[Callable[[Path], Desk]]:
+    """Opens the scene of a file at a desk."""
+    desks: list[Desk] = []
+
+    def at(path: Path) -> Desk:
+        desks.append(Desk(path, tmp_path / "pictures"))
+        return desks[-1]
+
+    yield at
+    for desk in desks:
+        assert desk.c.close()
 
 
 @pytest.fixture
-def figure4(tmp_path: Path) -> Iterator[Desk]:
-    desk = Desk(embedded_scenes()["figure4"], tmp_path / "pictures")
-    yield desk
-    assert desk.c.close()
+def desk(desk_at: Callable[[Path], Desk], tiny_scene_file: Path) -> Desk:
+    return desk_at(tiny_scene_file)
+
+
+@pytest.fixture
+def figure4(desk_at: Callable[[Path], Desk]) -> Desk:
+    return desk_at(embedded_scenes()["figure4"])
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""A controller at work without a window, as far as runs go."""
+"""A controller at work without a window."""
 
 from __future__ import annotations
 

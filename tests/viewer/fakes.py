@@ -15,6 +15,7 @@ from tracer.culling.fate import CACHED, CANDIDATES, CULLED, DYNAMIC_ONLY, FACES_
 from tracer.culling.voxels.grid import VoxelGrid
 from tracer.culling.voxels.tell import VoxelStates
 from tracer.frame import Frame, Settings
+from tracer.geometry.structure import BuiltPart
 from tracer.geometry.tree_parts import PartsAt, nothing_at
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
@@ -28,7 +29,7 @@ from tracer.scene.model import (
     Triangles,
     empty_quadrics,
 )
-from tracer.statistics import BuiltPart, CutCounts, FrameStatistics, WrongCounts
+from tracer.statistics import CutCounts, FrameStatistics, WrongCounts
 
 TINY_SCENE = """
 b 0.3 0.4 0.5

@@ -1,4 +1,4 @@
-"""A pixel's rays as they are told: the model of `tracer.inspect.ray_tree`."""
+"""A pixel's rays, and what became of their shadow rays: the model of `ray_tree`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate
-from tracer.culling.verdicts import Verdict
+from tracer.culling.verdicts import CullReason, Verdict
 from tracer.scene.arrays import Float32, Float64
 
 if TYPE_CHECKING:
@@ -22,30 +22,6 @@ if TYPE_CHECKING:
 VERDICTS = tuple(Verdict)
 NUMBER_OF = {verdict: number for number, verdict in enumerate(VERDICTS)}
 AWAY, TRACED = NUMBER_OF[Verdict.AWAY], NUMBER_OF[Verdict.TRACED]
-
-FATES: dict[Verdict, Fate] = {
-    Verdict.AWAY: Fate.FACES_AWAY,
-    Verdict.PASSED_OVER: Fate.CULLED,
-    Verdict.FULL_SHADOW: Fate.CULLED,
-    Verdict.NON_SHADOW: Fate.CULLED,
-    Verdict.CERTIFIED_FULL: Fate.CULLED,
-    Verdict.CERTIFIED_LIT: Fate.CULLED,
-    Verdict.CANDIDATES: Fate.CANDIDATES,
-    Verdict.BEAM: Fate.CULLED,
-    Verdict.CACHED: Fate.CACHED,
-    Verdict.BUFFER_LIT: Fate.CULLED,
-    Verdict.BUFFER_FULL: Fate.CULLED,
-    Verdict.BUFFER_TESTED: Fate.CANDIDATES,
-    Verdict.VOXEL_LIT: Fate.CULLED,
-    Verdict.VOXEL_FULL: Fate.CULLED,
-    Verdict.VOXEL_WALK: Fate.CANDIDATES,
-    Verdict.CELL_LIT: Fate.CULLED,
-    Verdict.CELL_FULL: Fate.CULLED,
-    Verdict.CELL_TESTED: Fate.CANDIDATES,
-    Verdict.ANSWERED: Fate.CULLED,
-    Verdict.TRACED: Fate.TRACED,
-}
-"""What becomes of a ray that each verdict answers, if dynamic objects need not be asked as well."""
 
 
 class RayKind(Enum):
@@ -64,6 +40,8 @@ class ShadowRays:
     ----------
     light : (s,) int32
         The light of each.
+    reasons : dict of int to CullReason
+        Where there is more to say than the verdict: why rays were culled, and what was known of those that were traced.
     verdict : (s,) uint8
         What became of it, as its place among `VERDICTS`.
     lit : (s,) bool
@@ -84,17 +62,10 @@ class ShadowRays:
     steps, tests : (s,) int32
         Traversal steps and intersection tests of the ray, traced alone; 0 unless it was traced or moving objects were
         asked.
-    named : dict of int to tuple of int
-        For rays that were culled: the primitives that this rests on, where it rests on some.
-    known : dict of int to str
-        For rays that were traced: what was known all the same, but did not do. That is a mode by its name: the
-        primitive's occlusion mode unless it was fully rendered, else its shadow mode; or "candidates"; or the state of
-        a certificate that was not looked up, as "proven full, unused".
-    told : dict of int to str
-        For rays that were culled: what more there is to say, in whole sentences, where there is any.
     """
 
     light: NDArray[np.int32]
+    reasons: dict[int, CullReason]
     verdict: NDArray[np.uint8]
     lit: NDArray[np.bool_]
     wrong: NDArray[np.bool_]
@@ -105,9 +76,6 @@ class ShadowRays:
     of_static: NDArray[np.bool_]
     steps: NDArray[np.int32]
     tests: NDArray[np.int32]
-    named: dict[int, tuple[int, ...]]
-    known: dict[int, str]
-    told: dict[int, str]
 
     def of_light(self, light: int) -> slice:
         """The places of a light's samples."""
@@ -118,19 +86,18 @@ class ShadowRays:
         """What became of a ray, by what answered it; why it was traced is not told."""
         verdict = VERDICTS[self.verdict[place]]
         # Light buffers count what they have tested as dynamic only where that is what remains.
-        asks_dynamic = FATES[verdict] is Fate.CULLED or verdict is Verdict.BUFFER_TESTED
-        return Fate.DYNAMIC_ONLY if asks_dynamic and self.of_static[place] else FATES[verdict]
+        asks_dynamic = verdict.fate is Fate.CULLED or verdict is Verdict.BUFFER_TESTED
+        return Fate.DYNAMIC_ONLY if asks_dynamic and self.of_static[place] else verdict.fate
+
+    def reason(self, place: int) -> CullReason:
+        """Why a ray was culled, or what was known of it although it was traced."""
+        return self.reasons.get(place) or CullReason(VERDICTS[self.verdict[place]])
 
     @cached_property
     def counts(self) -> Counter[Verdict]:
-        """How many rays each verdict has."""
-        return counted(self.verdict)
-
-
-def counted(verdicts: NDArray[np.uint8]) -> Counter[Verdict]:
-    """How many of them are which, in the order of `Verdict`, without those that none is."""
-    numbers = np.bincount(verdicts, minlength=len(VERDICTS))
-    return Counter({verdict: int(n) for verdict, n in zip(VERDICTS, numbers) if n})
+        """How many rays each verdict has, in the order of `Verdict`, without those that none has."""
+        numbers = np.bincount(self.verdict, minlength=len(VERDICTS))
+        return Counter({verdict: int(n) for verdict, n in zip(VERDICTS, numbers) if n})
 
 
 @dataclass(frozen=True, eq=False)  # arrays cannot be compared as one

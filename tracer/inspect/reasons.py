@@ -10,7 +10,7 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode
 from tracer.culling.verdicts import Verdict
 from tracer.inspect.occluded_by import OccludedBy, Reference
 from tracer.inspect.path_records import RayTree
-from tracer.inspect.ray_reasons import unused
+from tracer.inspect.ray_tree import unused
 
 
 class Rule(Enum):
@@ -112,7 +112,7 @@ WHY_TRACED: dict[str, str] = {
         for state, known in _PROVEN.items()
     },
 }
-"""What tracing says where something was known all the same (`ShadowRays.known`)."""
+"""What tracing says where something was known all the same (`CullReason.known`)."""
 
 
 @dataclass(frozen=True)

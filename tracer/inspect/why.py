@@ -22,10 +22,9 @@ from tracer.culling.modes import (
     shadow_mode,
 )
 from tracer.culling.verdicts import Verdict
-from tracer.inspect.explanation import Explanation, explain
 from tracer.inspect.occluded_by import Seen, occluded_by, references
 from tracer.inspect.path_records import VERDICTS, ShadowRays
-from tracer.inspect.ray_tree import Cancel, ray_tree
+from tracer.inspect.ray_tree import Cancel, ray_tree, unculled_shadow_rays
 from tracer.inspect.reasons import Coverage, Reason, Rule, Why
 from tracer.method import Method
 
@@ -44,6 +43,12 @@ _RULES = {
     Fate.DYNAMIC: Rule.DYNAMIC,
 }
 """Of the paper's method, by what it does with a ray (`tracer.culling.fate.by_modes`)."""
+_ANSWERED = {
+    Verdict.AWAY: Rule.FACES_AWAY,
+    Verdict.FULL_SHADOW: Rule.FULL_SHADOW,
+    Verdict.NON_SHADOW: Rule.NON_SHADOW,
+}
+"""Of the rays that these have answered; of others another method knew."""
 
 
 def why(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = None) -> Why:
@@ -80,13 +85,10 @@ def why(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = No
     primitive = int(frame.primitive[y, x])
     if primitive < 0:
         return Why(x, y, -1, (), tree=tree)
+    shadows = unculled_shadow_rays(renderer, frame, x, y, cancelled) if tree is None else tree.rays[0].shadows
+    assert shadows is not None, "the primary ray has hit"
     pixel = _Pixel(renderer, work, frame, x, y)
-    if tree is None:
-        reasons = tuple(pixel.in_part(one) for one in explain(renderer, frame, x, y))
-    else:
-        shadows = tree.rays[0].shadows
-        assert shadows is not None, "the primary ray has hit"
-        reasons = tuple(pixel.reason(shadows, light) for light in range(frame.lights))
+    reasons = tuple(pixel.reason(shadows, light) for light in range(frame.lights))
     compared = references(pixel.seen, (x, y)) if frame.settings.keeps_modes else ()
     return Why(x, y, primitive, reasons, pixel.coverage, compared, tree)
 
@@ -96,7 +98,7 @@ class _Pixel:
 
     def __init__(self, renderer: Renderer, work: FrameInProgress, frame: Frame, x: int, y: int) -> None:
         settings = frame.settings
-        self._frame, self._by_modes = frame, settings.keeps_modes
+        self._frame, self._by_modes, self._whole = frame, settings.keeps_modes, frame.statistics.part == 1.0
         self._method = Method.parse(settings.method)
         units = work.units
         self.seen = Seen(renderer.world.placed, work.rays, frame.primitive, units, work.first, settings.symmetric)
@@ -123,49 +125,33 @@ class _Pixel:
     def reason(self, s: ShadowRays, light: int) -> Reason:
         """Why the rays to a light had the fate that most of them had."""
         places = np.arange(len(s.light))[s.of_light(light)]
-        those, known = _most(s, places)
+        those = _most(s, places)
         place = int(those[0])
-        verdict, fate = VERDICTS[s.verdict[place]], s.fate(place)
+        verdict, because = VERDICTS[s.verdict[place]], s.reason(place)
         told = Reason(
             light=light,
-            rule=Rule.KNOWN,
-            fate=fate,
+            rule=_ANSWERED.get(verdict, Rule.KNOWN),
+            fate=s.fate(place),
             verdict=verdict,
             rays=len(those),
             samples=len(places),
             lit=int(s.lit[those].sum()),
             wrong=int(s.wrong[places].sum()),
             blocker=int(s.blocker[place]),
-            named=s.named.get(place, ()),
+            named=because.named,
             dynamic_objects=self._dynamic_objects,
-            told=s.told.get(place, ""),
+            told=because.told,
             method=self._frame.settings.method,
             **self._modes(light),
         )
-        if verdict is Verdict.TRACED:
-            return self._traced(told, known)
-        rules = {
-            Verdict.AWAY: Rule.FACES_AWAY,
-            Verdict.FULL_SHADOW: Rule.FULL_SHADOW,
-            Verdict.NON_SHADOW: Rule.NON_SHADOW,
-        }
-        return replace(told, rule=rules.get(verdict, Rule.KNOWN))
+        if verdict is not Verdict.TRACED:
+            return told
+        return self._traced(told, because.known) if self._whole else self._in_part(told)
 
-    def in_part(self, one: Explanation) -> Reason:
-        """What is truly in a light's way, and what the modes say, where a picture is shaded in part so far."""
-        told = Reason(
-            light=one.light,
-            rule=Rule.NOT_SHADED if one.due else Rule.FACES_AWAY,
-            fate=Fate.NONE if one.due else Fate.FACES_AWAY,
-            rays=one.samples,
-            samples=one.samples,
-            lit=one.reached,
-            blocker=-1 if one.blocker is None else one.blocker,
-            dynamic_objects=self._dynamic_objects,
-            method=self._frame.settings.method,
-            **self._modes(one.light),
-        )
-        if not one.due or not self._method.uses_modes:
+    def _in_part(self, told: Reason) -> Reason:
+        """What the modes say, where a picture is shaded in part so far."""
+        told = replace(told, rule=Rule.NOT_SHADED, fate=Fate.NONE, verdict=None, samples=told.rays, wrong=0)
+        if not self._method.uses_modes:
             return told
         by_paper = self._by_paper(told)
         return by_paper if self._shaded else replace(told, instead=by_paper)
@@ -210,11 +196,9 @@ class _Pixel:
         return replace(told, rule=rule, fate=fate)
 
 
-def _most(s: ShadowRays, places: NDArray[np.int64]) -> tuple[NDArray[np.int64], str]:
-    """The places of the rays of a light with the verdict and fate that most have that are due, and what was known of
-    them."""
+def _most(s: ShadowRays, places: NDArray[np.int64]) -> list[int]:
+    """The places of a light's rays that have the verdict, the fate and what was known that most have that are due."""
     alike: dict[tuple[int, Fate, str], list[int]] = {}
     for place in places.tolist():
-        alike.setdefault((int(s.verdict[place]), s.fate(place), s.known.get(place, "")), []).append(place)
-    most = max(alike, key=lambda one: (VERDICTS[one[0]].due, len(alike[one])))
-    return np.array(alike[most]), most[2]
+        alike.setdefault((int(s.verdict[place]), s.fate(place), s.reason(place).known), []).append(place)
+    return alike[max(alike, key=lambda one: (VERDICTS[one[0]].due, len(alike[one])))]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.counters import SHADOW
-from tracer.culling.verdicts import Answered, Because
+from tracer.culling.verdicts import Answered, CullReason
 from tracer.methods.certified import CertifiedCells, CertifiedLights
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.methods.payoff import Payoff, Plan, Trial
@@ -160,5 +160,5 @@ class Auto(ShadowMethod):
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return self._certified.explain(primitive, point, light) if self._plan.needs_certificates else None
 
-    def because(self, answered: Answered) -> Because:
+    def because(self, answered: Answered) -> CullReason:
         return self._certified.because(answered)

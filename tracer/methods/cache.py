@@ -13,7 +13,7 @@ import numpy as np
 from tracer.culling.occluder_cache import OccluderSlots, SlotKey, remember, test_slots
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
-from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.shading.points import points_in
@@ -81,8 +81,8 @@ class OccluderCache(ShadowMethod):
     def discard(self, frame: FrameView, begun: bool) -> None:
         self._slots.discard_found()
 
-    def because(self, answered: Answered) -> Because:
-        return Because(Verdict.CACHED, (int(self._read[answered.kept]),) if answered.kept >= 0 else ())
+    def because(self, answered: Answered) -> CullReason:
+        return CullReason(Verdict.CACHED, (int(self._read[answered.kept]),) if answered.kept >= 0 else ())
 
     def forget(self) -> None:
         triangles = self.services.world.placed.triangles

@@ -34,7 +34,7 @@ from tracer.culling.certified.view import view_at
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
-from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.memory import borrowed
 from tracer.kernels import entry, kernel
 from tracer.methods.certified_lights import CertifiedLights
@@ -206,14 +206,14 @@ class CertifiedCells(ShadowMethod):
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else self.store.describe(primitive, point, light)
 
-    def because(self, answered: Answered) -> Because:
+    def because(self, answered: Answered) -> CullReason:
         known = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light)
         state, named = known or ("none", ())
         if state == "candidates":
-            return Because(Verdict.CANDIDATES, named)
+            return CullReason(Verdict.CANDIDATES, named)
         if state == ("lit" if answered.lit else "full"):
-            return Because(Verdict.CERTIFIED_LIT if answered.lit else Verdict.CERTIFIED_FULL, named)
-        return Because(Verdict.BEAM)  # of a lamp, or where a point lies between two cells
+            return CullReason(Verdict.CERTIFIED_LIT if answered.lit else Verdict.CERTIFIED_FULL, named)
+        return CullReason(Verdict.BEAM)  # of a lamp, or where a point lies between two cells
 
     def forget(self) -> None:
         self.store = self.scheduler = None

@@ -22,7 +22,7 @@ from tracer.culling.regions.lookup import look, want_around
 from tracer.culling.regions.store import RegionStore, RegionView
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, looked_at, scratch_of, vectors
-from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import aligned_rows, borrowed
 from tracer.geometry.offsets import RAY_OFFSET
@@ -195,10 +195,10 @@ class CertifiedLights(ShadowMethod):
         hider = self.store.hidden_by(point, light)
         return ("full", (hider,)) if hider >= 0 else ("none", ())
 
-    def because(self, answered: Answered) -> Because:
+    def because(self, answered: Answered) -> CullReason:
         _, named = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light) or ("", ())
         # What no region hides was hidden, sample by sample, by what had hidden it from neighbours.
-        return Because(Verdict.PASSED_OVER if named else Verdict.BEAM, named)
+        return CullReason(Verdict.PASSED_OVER if named else Verdict.BEAM, named)
 
     def forget(self) -> None:
         self.store, self._rows = None, NO_TRIANGLES

@@ -27,7 +27,7 @@ from tracer.culling.mode_history import ModeHistory
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.rest import Resting
 from tracer.culling.stages import COLUMNS, Stages
-from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.camera import Pinhole
 from tracer.kernels import Entry
@@ -178,9 +178,9 @@ class ShadowMethod:
         None where this method knows nothing of single points."""
         return None
 
-    def because(self, answered: Answered) -> Because:
+    def because(self, answered: Answered) -> CullReason:
         """Why a stage of this method could answer a shadow ray of the last frame."""
-        return Because(Verdict.ANSWERED)
+        return CullReason(Verdict.ANSWERED)
 
     def forget(self) -> None:
         """Forget everything that earlier frames have taught."""

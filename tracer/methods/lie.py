@@ -20,7 +20,7 @@ from tracer.culling.environments.sample import seen_points, settle_by_samples
 from tracer.culling.environments.store import EnvironmentStore
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
-from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed
 from tracer.kernels import entry, kernel
@@ -165,10 +165,10 @@ class Environments(CellsOfSpace):
         found = super().layers(frame)
         return found | {"cell lights": self.store.asked_in(found["cells"])}
 
-    def because(self, answered: Answered) -> Because:
+    def because(self, answered: Answered) -> CullReason:
         store, point = self.store, np.array(answered.point, np.float32)
         if store is None:
-            return Because(Verdict.ANSWERED)
+            return CullReason(Verdict.ANSWERED)
         state, named = store.state_at(point, answered.light)
         tree, cell = store.tree, store.tree.leaf_at(point)
         asked, side = int(store.asked_in(np.array(cell, np.int32))), 2.0 ** tree.cells[cell, 3] * tree.frame.side
@@ -177,7 +177,7 @@ class Environments(CellsOfSpace):
             f"it asks {asked:,} of {len(store.places):,} lights."
         )
         verdict = Verdict.CELL_LIT if answered.lit else Verdict.CELL_FULL
-        return Because(Verdict.CELL_TESTED if state == "candidates" else verdict, named, told)
+        return CullReason(Verdict.CELL_TESTED if state == "candidates" else verdict, named, told)
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else self.store.state_at(point, light)

@@ -40,7 +40,7 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
-from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.accelerators import KD_TREE
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.kernels import entry
@@ -223,7 +223,7 @@ class LightBuffer(ShadowMethod):
         there = {k: b.static.side for k, b in self.buffers.items() if b.static is not None and self._answers(b)}
         statistics.light_buffers = [there.get(k, 0) for k in range(self._lights)]
 
-    def because(self, answered: Answered) -> Because:
+    def because(self, answered: Answered) -> CullReason:
         buffer, point = self.buffers.get(answered.light), np.array(answered.point, np.float32)
         verdicts = {Said.CANDIDATES: Verdict.BUFFER_TESTED, Said.BEHIND: Verdict.BUFFER_FULL}
         said = Verdict.BUFFER_LIT if answered.lit else Verdict.BUFFER_FULL
@@ -232,8 +232,8 @@ class LightBuffer(ShadowMethod):
                 told = tell(cube, buffer.place, point)
                 verdict = verdicts.get(told.said, said)
                 if verdict is not said or (told.named and not answered.lit):
-                    return Because(verdict, told.named)
-        return Because(said)
+                    return CullReason(verdict, told.named)
+        return CullReason(said)
 
     @property
     def memory_bytes(self) -> int:

@@ -21,7 +21,7 @@ from tracer.culling.shadow_modes import (
     words_at,
 )
 from tracer.culling.stages import call_at, scratch_of, vectors
-from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.kernels import entry
 from tracer.methods.interface import FrameView, ShadowMethod, Stage
 from tracer.shading.points import points_in
@@ -83,8 +83,8 @@ class Paper(ShadowMethod):
         chooses, learns_from = choose if self.culls else None, learn if learns else None
         return [Stage(modes, find=find, choose=chooses, learn=learns_from, rows=POINT_WORD_ROWS)]
 
-    def because(self, answered: Answered) -> Because:
-        return Because(Verdict.NON_SHADOW if answered.lit else Verdict.FULL_SHADOW)
+    def because(self, answered: Answered) -> CullReason:
+        return CullReason(Verdict.NON_SHADOW if answered.lit else Verdict.FULL_SHADOW)
 
 
 class ModesBeside(Paper):

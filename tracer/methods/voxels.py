@@ -18,7 +18,7 @@ from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.shadow_modes import POINT_WORD_ROWS, look_up, point_words_in, start_wave
 from tracer.culling.shadow_modes import words_of as looked_up
 from tracer.culling.stages import call_at, scratch_of, vectors
-from tracer.culling.verdicts import Answered, Because, Verdict
+from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.culling.voxels.store import VoxelStore
 from tracer.culling.voxels.tell import Stop
 from tracer.culling.voxels.view import voxel_view_at
@@ -116,15 +116,15 @@ class Voxels(CellsOfSpace):
         assert self.store is not None, "followed before"
         return super().layers(frame) | {"voxels": self.store.shown()}
 
-    def because(self, answered: Answered) -> Because:
+    def because(self, answered: Answered) -> CullReason:
         point = np.array(answered.point, np.float32)
         found = None if self.store is None else self.store.walked(point, answered.light)
         if found is None or self.store is None:
-            return Because(Verdict.ANSWERED)
+            return CullReason(Verdict.ANSWERED)
         verdict = Verdict.VOXEL_LIT if answered.lit else Verdict.VOXEL_FULL
         named = (found.blocker,) if found.blocker >= 0 else ()
         said = found.in_words(self.store.shown(), answered.light)
-        return Because(verdict if found.stop is Stop.HERE else Verdict.VOXEL_WALK, named, said)
+        return CullReason(verdict if found.stop is Stop.HERE else Verdict.VOXEL_WALK, named, said)
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
         return None if self.store is None else (self.store.state_at(point, light), ())

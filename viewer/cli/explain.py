@@ -211,14 +211,14 @@ def _ray(tree: RayTree, ray: PathRay, scene: Scene) -> dict[str, Any]:
 
 
 def _shadow_ray(tree: RayTree, s: ShadowRays, place: int, scene: Scene) -> dict[str, Any]:
-    light, blocker, met = int(s.light[place]), int(s.blocker[place]), int(s.met[place])
+    light, blocker, met, reason = int(s.light[place]), int(s.blocker[place]), int(s.met[place]), s.reason(place)
     return {
         "light": light, "sample": place - s.of_light(light).start, "position": _numbers(tree.samples[place]),
         "verdict": VERDICTS[s.verdict[place]].value, "lit": bool(s.lit[place]), "wrong": bool(s.wrong[place]),
         "blocker": {**_primitive(blocker, scene), "t": float(s.blocked_at[place])} if blocker >= 0 else None,
         "met": met if met >= 0 else None, "moving_objects_asked": bool(s.asked_moving[place]),
         "traversal_steps": int(s.steps[place]), "intersection_tests": int(s.tests[place]),
-        "names": list(s.named.get(place, ())), "known": s.known.get(place), "told": s.told.get(place),
+        "names": list(reason.named), "known": reason.known or None, "told": reason.told or None,
     }  # fmt: skip
 
 

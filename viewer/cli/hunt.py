@@ -5,25 +5,34 @@ Ctrl-C ends it after the last whole picture: what was found is shown, and writte
 
 from __future__ import annotations
 
+import shlex
 from argparse import Namespace
+from dataclasses import replace
 from pathlib import Path
 
-from tracer.experiments import hunt
+from tracer.experiments import counterexample, hunt
+from tracer.experiments.camera_path import along_path
+from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.hunt import Hunt, Search
 from tracer.experiments.titles import title
+from tracer.frame import Settings
 from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file
+from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Cancelled, Scene
 from tracer.text import printable
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser, count, number
 from viewer.cli.console import Work, listed, print_table, working
-from viewer.output import exports
+from viewer.output import commands, exports
+from viewer.output.comparison import Comparison, Crop
 from viewer.output.reports import findings
-from viewer.services import hunts, stills
-from viewer.state import navigation
+from viewer.services import stills
 from viewer.state.methods import NO_CULLING
+from viewer.state.view_state import ViewState, Warmup
 
+ALL = "hunt.json"
+"""What holds all findings; each has a figure and a JSON of its own beside it."""
 EPILOG = """\
 examples:
   shadowcull hunt kitchen.aff --frames 0-99 --size 256x256 --output wrong
@@ -73,10 +82,10 @@ def run(given: Namespace) -> int:
     with working() as work:
         scene = options.read_scene(given.path, given, work)
         first, last = given.frames or (0, scene.frames - 1)
-        times = [take.time for take in navigation.along_path(scene, first, last)][:: given.step]
+        times = [take.time for take in along_path(scene, first, last)][:: given.step]
         search = Search(settings, times, given.camera, given.around, given.radius, given.seed, given.keep)
         if given.output is not None:
-            hunts.check_folder(given.output)
+            _check_folder(given.output)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method, NO_CULLING)
         world = World(scene, times[0], settings.accelerator, work.progress)
         found = work.perform(Hunt(scene, search), world)
@@ -95,8 +104,8 @@ def _write(found: hunt.Results, scene: Scene, search: Search, world: World, give
     written, meshes = [], options.mesh_options(given).of_file(Path(scene.path))
     for rank, find in enumerate(found.finds, 1):
         stem = given.output / f"find-{rank}"
-        state, figure = hunts.comparison_of(find, found, scene, search.settings, meshes)
-        hunts.save_json(find, found, scene, state, stem.with_suffix(".json"))
+        state, figure = _comparison_of(find, found, scene, search.settings, meshes)
+        _save_json(find, found, scene, state, stem.with_suffix(".json"))
         if not work.stopped:
             work.count(f"figure {rank} of {len(found.finds)}", rank - 1, len(found.finds))
             try:
@@ -106,5 +115,51 @@ def _write(found: hunt.Results, scene: Scene, search: Search, world: World, give
             except Cancelled:
                 work.note("cancelled: the figures from here on are not drawn")
         written.append(stem.with_suffix(".json"))
-    exports.write_json(given.output / hunts.ALL, found.to_dict(scene))
-    return [*written, given.output / hunts.ALL]
+    exports.write_json(given.output / ALL, found.to_dict(scene))
+    return [*written, given.output / ALL]
+
+
+def _check_folder(folder: Path) -> None:
+    """Make the folder; raises OSError, in one line, where that cannot be, or where a hunt has written to it already."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        taken = next((path.name for path in folder.iterdir() if path.name == ALL or path.match("find-*.*")), None)
+    except OSError as error:
+        raise OSError(f"{folder}: cannot write counterexamples there: {error.strerror or error}") from None
+    if taken is not None:
+        raise OSError(f"{folder}: has counterexamples already ({taken}); give another folder")
+
+
+def _comparison_of(
+    find: Counterexample,
+    found: hunt.Results,
+    scene: Scene,
+    settings: Settings,
+    meshes: MeshOptions,
+) -> tuple[ViewState, Comparison]:
+    """Return the figure of a counterexample: the right picture and the method's, with the pixel's surroundings
+    enlarged."""
+    state = ViewState(
+        scene=str(Path(scene.path).absolute()),
+        time=find.time,
+        camera=find.seen_camera,
+        settings=replace(settings, method=found.method, verify=False, samples=1, modes=False),
+        warmup=Warmup(find.before),
+        meshes=meshes,
+    )
+    methods, words = (NO_CULLING, found.method), " ".join(counterexample.in_words(find, scene))
+    shown = Comparison(methods, (Crop.around((find.x, find.y), found.size),), ((find.x, find.y),), words)
+    return state, shown.checked(state.size)
+
+
+def _save_json(find: Counterexample, found: hunt.Results, scene: Scene, state: ViewState, path: Path) -> None:
+    """Write all about a counterexample, whose picture has this state, with the command that explains it.
+
+    Raises OSError in one line."""
+    words = ["shadowcull", "explain", commands.scene_word(Path(state.scene))]
+    words += commands.options(replace(state, warmup=Warmup()))
+    words += ["--pixel", f"{find.x},{find.y}", "--before", path.name, "--only", "wrong"]
+    told = counterexample.to_json(find, scene) | {"size": found.size, "method": found.method}
+    told |= {"scene": found.scene, "settings": found.settings}
+    told |= {"words": counterexample.in_words(find, scene), "explain": shlex.join(words)}
+    exports.write_json(path, told, indent=1)

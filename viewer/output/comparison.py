@@ -17,6 +17,7 @@ from tracer.scene.model import Scene
 from viewer.output.capture import CHUNK
 from viewer.state import codec
 from viewer.state.view_state import ViewState
+from viewer.state.views import Record
 from viewer.util.numbers import changed
 from viewer.views import colorize
 
@@ -32,6 +33,14 @@ class Crop(NamedTuple):
     y: int
     width: int
     height: int
+
+    @staticmethod
+    def around(pixel: tuple[int, int], size: tuple[int, int]) -> Crop:
+        """Return the surroundings of a pixel, inside a picture of this size."""
+        width, height = (min(max(least, side // 8), side) for least, side in zip((24, 18), size, strict=True))
+        x = min(max(pixel[0] - width // 2, 0), size[0] - width)
+        y = min(max(pixel[1] - height // 2, 0), size[1] - height)
+        return Crop(x, y, width, height)
 
     def of(self, pixels: NDArray[Any]) -> NDArray[Any]:
         return pixels[self.y : self.y + self.height, self.x : self.x + self.width]
@@ -88,7 +97,7 @@ class Shown:
         """What has the first and the last colour, for all methods: as was asked for, or of a map of work that of all;
         None in other views."""
         view = self.state.draw.view
-        if self.state.draw.span is not None or not view.needs_work:
+        if self.state.draw.span is not None or view.records is not Record.WORK:
             return self.state.draw.span
         return 0.0, max(view.declared.span(frame)[1] for frame in self.frames.values())
 

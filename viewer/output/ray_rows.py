@@ -201,7 +201,7 @@ class RayRows:
         for place in places.tolist():
             blocked = one and s.verdict[place] != AWAY and not s.lit[place] and s.blocker[place] >= 0
             by = self._scene.name_of(int(s.blocker[place])) if blocked else ""
-            outcome = int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place]), s.known.get(place, "")
+            outcome = int(s.verdict[place]), int(s.lit[place]), by, int(s.wrong[place]), s.reason(place).known
             outcomes.setdefault(outcome, []).append(place)
         return outcomes
 
@@ -214,7 +214,7 @@ class RayRows:
         if not verdict.due:
             return text
         shared = f"blocked by {by}" if by else "in shadow"
-        text += f" ({s.known[place]})" if place in s.known else ""
+        text += f" ({known})" if (known := s.reason(place).known) else ""
         text += ", lit" if s.lit[place] else f", {shared if alike else self._blocked(s, place)}"
         text += " (wrong)" if s.wrong[place] else ""
         if verdict is Verdict.TRACED:
@@ -225,13 +225,13 @@ class RayRows:
         return f"blocked by {self._name(int(s.blocker[place]))}" if s.blocker[place] >= 0 else "in shadow by its mode"
 
     def _tip(self, s: ShadowRays, place: int) -> str:
-        verdict = VERDICTS[s.verdict[place]]
-        parts = [WHY_TRACED.get(s.known.get(place, ""), MEANING[verdict])]
-        if place in s.told:
-            parts.append(s.told[place])
-        if place in s.named:
-            names = [self._name(number) for number in s.named[place][:MOST_NAMED]]
-            more = len(s.named[place]) - len(names)
+        verdict, reason = VERDICTS[s.verdict[place]], s.reason(place)
+        parts = [WHY_TRACED.get(reason.known, MEANING[verdict])]
+        if reason.told:
+            parts.append(reason.told)
+        if reason.named:
+            names = [self._name(number) for number in reason.named[:MOST_NAMED]]
+            more = len(reason.named) - len(names)
             parts.append("Named: " + ", ".join(names) + (f" and {more} more." if more else "."))
         if s.asked_moving[place]:
             parts.append(f"Testing dynamic objects took {s.steps[place]} steps and {s.tests[place]} tests.")

@@ -18,8 +18,8 @@ from tracer.geometry.accelerators import LAZY
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Cancelled
 from tracer.statistics import FrameStatistics
-from viewer.services import refinement
-from viewer.services.render_request import Parts, RenderRequest, Spare, Traced
+from viewer.services.refinement import MOST_FRAMES
+from viewer.services.render_request import REFINEMENT_SECONDS, Parts, RenderRequest, Spare, Traced
 from viewer.state.methods import NO_CULLING
 from viewer.state.savings import InTurn, Spread
 from viewer.util.messages import one_line
@@ -30,7 +30,7 @@ FIRST = 2
 """Frames of each method that do not count, at least: the first finds memory and caches cold, and learns."""
 PROVING = 2.0
 """Seconds that each of these may spend on certificates, which takes fewer frames than where each is shown."""
-MOST_PROVING = round(refinement.MOST_FRAMES * refinement.SECONDS / PROVING)
+MOST_PROVING = round(MOST_FRAMES * REFINEMENT_SECONDS / PROVING)
 """Frames that do not count, at most: as much time for certificates as the window's own take at rest."""
 MOST_ROUNDS = 40
 """Rounds, each of one frame by every method."""
@@ -189,7 +189,7 @@ class Baseline:
     def update(self, traced: Traced | None, second: str, moving: bool, busy: bool) -> None:
         """Measure the picture that is shown, and compared with one by a `second` method, in each frame of the window;
         not while anything is `moving`, or the thread is `busy` with what is wanted more."""
-        whole = traced if traced is not None and traced.whole and traced.request.divisor == 1 else None
+        whole = traced if traced is not None and traced.complete else None
         if moving or whole is None:  # what was measured to the end stays known, without the renderers of the rest
             self._known = {subject: rounds for subject, rounds in self._known.items() if rounds.ended}
             self._shown, self.why_not = None, ""

@@ -19,9 +19,10 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing
 from viewer.services.editing import Editing
 from viewer.services.film import Films
-from viewer.services.frame_scheduler import Activity, FrameInputs, FrameScheduler
-from viewer.services.history import FrameHistory, FrameNavigator
-from viewer.services.hunts import Hunts
+from viewer.services.frame_inputs import FrameInputs
+from viewer.services.frame_navigator import FrameNavigator
+from viewer.services.frame_scheduler import Activity, FrameScheduler
+from viewer.services.history import FrameHistory
 from viewer.services.inspector import Inspector, Selection
 from viewer.services.jobs import Wake
 from viewer.services.motion import Motion
@@ -69,7 +70,7 @@ class Controller:
         self.undo = undo = Undo(session, motion, notices, runs.refuses)
         self.presets = Presets(session, preferences, notices, settings.save, runs.refuses, undo.begin_step)
         self.inspector = Inspector(selection, renderer.query)
-        self.navigator = navigator = FrameNavigator(
+        self.navigator = FrameNavigator(
             session, self.history, scheduler, runs, undo, selection, notices, self.restore, self.reset_modes
         )
         self.editing = editing = Editing(
@@ -82,7 +83,6 @@ class Controller:
             session, preferences, scheduler, self.history, loader, runs, captures, notices
         )
         self.films = Films(session, preferences, runs, pictures, bookmarks)
-        self.hunts = Hunts(session, runs, navigator, notices)
         self.reloaded = False
         self.info: dict[str, Any] = {}
         self.drawn_seconds = 0.0
@@ -243,9 +243,11 @@ class Controller:
 
     def go_to_step(self, step: Step) -> None:
         """Glide to where a step of the zoom test stood, at the test's time."""
-        camera = self.runs.go_to(step)
-        if camera is not None:
-            self.motion.glide(camera)
+        test = self.runs.zoom_test
+        if test is not None and test.results is not None and self.runs.allows(test):
+            self.session.playing = False
+            self.session.change(time=test.results.time)
+            self.motion.glide(step.camera)
 
     def close(self, timeout: float = 30.0) -> bool:
         """Stop everything, finish writing files and save the preferences; false if something would not stop."""

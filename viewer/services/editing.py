@@ -10,7 +10,9 @@ picture with the one before them.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass, replace
+from concurrent.futures import Future
+from dataclasses import replace
+from functools import partial
 
 from tracer.carry_modes import carry_modes
 from tracer.frame import Settings
@@ -22,8 +24,9 @@ from viewer.services.render_thread import RenderThread
 from viewer.state.comparison import Side
 from viewer.state.notices import Notices
 from viewer.state.session import Session
-from viewer.util.messages import KNOWN, Failure, failure
+from viewer.util.messages import KNOWN, failure
 
+Made = tuple[Edited, Renderer]
 Show = Callable[[Edited, Renderer], None]
 
 
@@ -34,48 +37,30 @@ def makes(edits: Edits, scene: Scene) -> Hashable:
     return replace(edits, moved_lights=(), hidden=edits.hidden - in_place)
 
 
-@dataclass
-class EditTask:
-    """Makes the edits on the render thread; then `found` is set, or `problem`, unless it was cancelled.
+def make(
+    shown: Edited, edits: Edits, first: Renderer, forgets: bool, settings: Settings,
+    before: Renderer, cancelled: Callable[[], bool],
+) -> Made:  # fmt: skip
+    """Return the scene that is `shown` with other edits, and its renderer; on the render thread.  Raises Cancelled.
 
-    From its beginning on the renderer's scene may be another than the session's: no picture must be asked for until it
-    is `done`, and what it has `found` is taken up.  `first` is the renderer of the scene as it was read, whose modes it
+    From its beginning on the scene of the renderer `before` may be another than the session's: no picture must be asked
+    for until what it returns is taken up.  `first` is the renderer of the scene as it was read, whose modes it
     `forgets` if it is not in use."""
 
-    shown: Edited
-    edits: Edits
-    first: Renderer
-    forgets: bool
-    settings: Settings
-    done: bool = False
-    found: tuple[Edited, Renderer] | None = None
-    problem: Failure | None = None
+    def progress(_label: str, _fraction: float) -> None:
+        if cancelled():
+            raise Cancelled("cancelled")
 
-    def work(self, renderer: Renderer, cancelled: Callable[[], bool]) -> None:
-        try:
-            self.found = self._made(renderer, cancelled)
-        except Cancelled:
-            pass
-        except Exception as problem:
-            self.problem = failure(problem, "the scene could not be changed", KNOWN)
-        self.done = True
-
-    def _made(self, before: Renderer, cancelled: Callable[[], bool]) -> tuple[Edited, Renderer]:
-        def progress(_label: str, _fraction: float) -> None:
-            if cancelled():
-                raise Cancelled("cancelled")
-
-        if self.forgets and self.first is not before:
-            self.first.reset_modes()
-        scene = self.shown.original
-        made, made_of = edited(scene, self.edits), makes(self.edits, scene)
-        if made_of in (NO_EDITS, makes(self.shown.edits, scene)):
-            renderer = self.first if made_of == NO_EDITS else before
-            renderer.scene = renderer.world.scene = made.scene
-        else:
-            renderer = Renderer(made.scene, self.settings, progress)
-            carry_modes(before, self.shown, renderer, made)
-        return made, renderer
+    if forgets and first is not before:
+        first.reset_modes()
+    made, made_of = edited(shown.original, edits), makes(edits, shown.original)
+    if made_of in (NO_EDITS, makes(shown.edits, shown.original)):
+        renderer = first if made_of == NO_EDITS else before
+        renderer.scene = renderer.world.scene = made.scene
+    else:
+        renderer = Renderer(made.scene, settings, progress)
+        carry_modes(before, shown, renderer, made)
+    return made, renderer
 
 
 class Editing:
@@ -98,17 +83,17 @@ class Editing:
         self._locked, self._show, self._without_undo, self._again = locked, show, without_undo, again
         self._first: Renderer | None = None
         self._forgets = False  # whether all modes have been forgotten, those of the first renderer as well
-        self._task: EditTask | None = None
+        self._making: Future[Made] | None = None
         self.before: Side | None = None
 
     def enter(self, renderer: Renderer) -> None:
         """Begin with another scene, whose renderer this is."""
-        self._first, self._forgets, self._task, self.before = renderer, False, None, None
+        self._first, self._forgets, self._making, self.before = renderer, False, None, None
 
     @property
     def at_work(self) -> bool:
         """Whether the render thread makes edits, so that no picture may be asked for."""
-        return self._task is not None
+        return self._making is not None
 
     @property
     def under_way(self) -> bool:
@@ -141,23 +126,23 @@ class Editing:
     def apply(self, running: bool, seen: bool) -> None:
         """Take up what has been made, and have made what is wanted now: not while a run has the render thread, and once
         some of what was made last has been `seen`."""
-        session, task = self._session, self._task
-        if task is not None and task.done:
-            self._task = None
-            if task.problem is not None:
-                self._notices.report(task.problem)
-                self._without_undo(self._give_up)
-            if task.found is not None and task.shown.original is session.original:
-                self._show(*task.found)
-                seen = False  # of this scene, nothing yet
-            else:
+        session, made = self._session, self._making
+        if made is not None and made.done():
+            self._making = None
+            problem = None if made.cancelled() else made.exception()
+            if made.cancelled() or problem is not None:
                 self._again()
+            else:
+                self._show(*made.result())
+                seen = False  # of this scene, nothing yet
+            if problem is not None:
+                self._notices.report(failure(problem, "the scene could not be changed", KNOWN))
+                self._without_undo(self._give_up)
         shown, first = session.edited, self._first
-        if self._task is None and seen and not running and shown is not None and first is not None:
+        if self._making is None and seen and not running and shown is not None and first is not None:
             if shown.edits != session.edits:
-                self._task = EditTask(shown, session.edits, first, self._forgets, session.settings)
-                self._forgets = False
-                self._renderer.perform(self._task.work)
+                work = partial(make, shown, session.edits, first, self._forgets, session.settings)
+                self._making, self._forgets = self._renderer.perform(work), False
 
     def _give_up(self) -> None:
         if self._session.edited is not None:

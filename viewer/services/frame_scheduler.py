@@ -8,51 +8,21 @@ has come.  Nothing is asked for twice, and nothing at all while a run has the re
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from enum import Enum
 
-from tracer.experiments.runner import Run
-from tracer.frame import Frame, Settings
+from tracer.frame import Frame
 from tracer.inspect.one_light import with_light
-from tracer.method import Method
 from tracer.renderer import Renderer
-from tracer.scene.model import Camera, Scene
-from viewer.services import refinement
 from viewer.services.frame_budget import AT_ONCE, FrameBudget, Plan, divided
+from viewer.services.frame_inputs import FrameInputs
 from viewer.services.refinement import LampSamples, Refinement
 from viewer.services.render_request import RenderRequest, Traced, Warmup, as_asked, missing_buffers
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
-from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.view_state import ViewState
-from viewer.state.views import View, can_draw, records_fates, records_lights
+from viewer.state.views import Record, View, can_draw
 from viewer.views import view_of
-
-
-@dataclass(frozen=True)
-class FrameInputs:
-    """What decides which frame comes next.
-
-    The `state` that should be seen, of a `scene` (None: nothing is open) from a `camera`; the `size`, in pixels, that
-    there is room for (0 where it is hidden); whether anything is `moving`, time is `playing`, and rays are to be
-    counted in any view; the `run` that is under way, whether the scene is being `edited`, whether the kernels that make
-    certificates are `ready`, the `second` method that traces each frame once more (none where it is empty), the
-    point of the picture that matters most, its `focus`, and whether time plays while a pixel is `inspected`, so that
-    something is asked about each frame before the next may begin."""
-
-    state: ViewState = field(default_factory=ViewState)
-    scene: Scene | None = None
-    camera: Camera = field(default_factory=lambda: Camera((0, 0, 5), (0, 0, -1)))
-    size: tuple[int, int] = (0, 0)
-    moving: bool = False
-    playing: bool = False
-    counting: bool = False
-    run: Run | None = None
-    edited: bool = False
-    ready: bool = True
-    second: str = ""
-    focus: tuple[float, float] | None = None
-    inspected: bool = False
 
 
 class Activity(Enum):
@@ -92,7 +62,7 @@ class FrameScheduler:
         if traced is None:
             return None
         if self.traced is None or self.traced.request is not traced.request:
-            if not traced.request.refinement_seconds:  # else it took its time for certificates, not for its pixels
+            if not traced.request.refines:  # else it took its time for certificates, not for its pixels
                 pixels = traced.frame.width * traced.frame.height
                 self.budget.observe(traced.first, pixels, self.lamps.most(traced.request.settings))
         self.traced = traced
@@ -105,7 +75,7 @@ class FrameScheduler:
         if frame is None or self.inputs.run is not None or draw.light >= frame.lights:
             return
         lacks = not (frame.settings.record_lights or can_draw(frame, draw.view, draw.light))
-        if lacks and draw.view.needs_lights and draw.view.of_light:
+        if lacks and draw.view.records is Record.LIGHTS and draw.view.of_light:
             answer = self._thread.query(_with_light, frame, draw.light)
             if answer.done() and not answer.cancelled() and answer.exception() is None and self.traced is not None:
                 found: Frame = answer.result()  # with as many samples, or fewer: the light is the same
@@ -154,16 +124,16 @@ class FrameScheduler:
         if inputs.run is not None or inputs.edited:
             self._asked = None  # what was asked for has been dropped
             return
-        if inputs.scene is None or min(self.full_size) < 1:
+        if inputs.scene is None or min(self.inputs.full_size) < 1:
             return
         if self._new:  # what the scene brings into the window changes the room for its picture
             self._new = False
             self._wake()
             return
-        if self._at_rest and not self._lacks_lamp_samples and self._should_refine():
+        if inputs.at_rest and not self._lacks_lamp_samples and self._should_refine():
             self._serial += 1
             self._refines = True
-        self._refines = self._refines and self._at_rest
+        self._refines = self._refines and inputs.at_rest
         wanted = self._next_request()
         made = self._asked
         if made is None and self.traced is not None and self.samples_shown >= wanted.samples:
@@ -183,75 +153,35 @@ class FrameScheduler:
 
     def _should_refine(self) -> bool:
         """Whether, at rest, one more frame of the same view will know more about shadows."""
-        state = self.inputs.state
-        if self.is_frozen and not state.pace.keep_tracing:
-            return False
-        return self.refinement.wants_another(self.traced, state.draw.view, state.pace.keep_tracing)
-
-    @property
-    def _at_rest(self) -> bool:
-        return not self.inputs.moving and not self.inputs.playing
+        view, keep_tracing = self.inputs.state.draw.view, self.inputs.state.pace.keep_tracing
+        stays = self.is_frozen and not keep_tracing
+        return not stays and self.refinement.wants_another(self.traced, view, keep_tracing)
 
     def _next_request(self) -> RenderRequest:
         now, lamp_samples = self.inputs, self._next_lamp_samples()
         plan = self._plan(lamp_samples)
-        width, height = divided(*self.full_size, plan.divisor)
-        settings, samples = replace(self.settings, width=width, height=height, samples=1), self.samples_wanted
+        width, height = divided(*now.full_size, plan.divisor)
+        settings, samples = replace(now.settings, width=width, height=height, samples=1), self.samples_wanted
         if lamp_samples < self.lamps.wanted:
             settings, samples = replace(settings, lamp_samples=lamp_samples), 1
         return RenderRequest(
             now.state.time, now.camera, settings, plan.divisor, self._serial,
-            refinement.SECONDS if self._refines else 0.0, samples, self._until_ready(now.second),
-            parts=plan.parts, quick=not self._at_rest, focus=now.focus,
+            self._refines, samples, now.second_method,
+            parts=plan.parts, quick=not now.at_rest, focus=now.focus,
             warmup=self._frozen[1] if self._frozen is not None and self.is_frozen else None,
         )  # fmt: skip
 
     def _plan(self, lamp_samples: int) -> Plan:
         """Return how the frame comes about: at once where it refines what is shown, and where each is to be whole."""
         now = self.inputs
-        if self._refines or (self._at_rest and lamp_samples > self.lamps.first) or self._each_is_whole:
+        if self._refines or (now.at_rest and lamp_samples > self.lamps.first) or now.each_is_whole:
             return AT_ONCE
-        return self.budget.plan(*self.full_size, self._frame_seconds, now.moving, now.playing, lamp_samples)
-
-    @property
-    def _each_is_whole(self) -> bool:
-        """Whether no frame is shown before all of it has been traced."""
-        pace = self.inputs.state.pace
-        return not pace.progressive or (self.inputs.playing and pace.every_frame)
-
-    @property
-    def _frame_seconds(self) -> float:
-        """That a frame may take until some of it is shown: half of it where each is traced twice."""
-        return (0.5 if self.inputs.second else 1.0) / self.inputs.state.pace.target_fps
-
-    def _until_ready(self, method: str) -> str:
-        """The method, or the one without culling until what makes certificates has been compiled, which comes last: the
-        picture is the same."""
-        waits = bool(method) and not self.inputs.ready and Method.parse(method).has_certificates
-        return with_base(method, NO_CULLING) if waits else method
+        return self.budget.plan(*now.full_size, now.frame_seconds, now.moving, now.playing, lamp_samples)
 
     def _next_lamp_samples(self) -> int:
         """Return how many samples lamps have in the next frame: all of them once a picture with fewer is there."""
-        return self.lamps.wanted if (self._shows_inputs and self._at_rest) or self._each_is_whole else self.lamps.first
-
-    @property
-    def settings(self) -> Settings:
-        """What the user has set, with modes; verified, and with more recorded, where the view needs that and there is
-        memory for it."""
-        now, (width, height) = self.inputs, self.full_size
-        chosen, view = now.state.settings, now.state.draw.view
-        lights = len(now.scene.lights) if now.scene is not None else 0
-        method = self._until_ready(chosen.method)
-        return replace(
-            chosen,
-            method=method,
-            verify=chosen.verify or view.needs_verify,
-            record_work=view.needs_work or now.counting,
-            record_lights=records_lights(view, width * height, lights),
-            record_fates=records_fates(view, width * height, lights),
-            modes=not Method.parse(method).clusters,  # which would look at single lights for these alone
-            certificate_seconds=now.state.pace.certificate_share * self._frame_seconds,
-        )
+        now, lamps = self.inputs, self.lamps
+        return lamps.wanted if (self._shows_inputs and now.at_rest) or now.each_is_whole else lamps.first
 
     # --- what the newest frame is -------------------------------------------------------------------
 
@@ -274,14 +204,13 @@ class FrameScheduler:
             return Activity.ADDING_SAMPLES if self.samples_shown < coming.samples else Activity.RESTING
         if self._lacks_lamp_samples:
             return Activity.SAMPLING_LAMPS
-        certifies = coming.refinement_seconds > 0.0 and self.refinement.proves and not self.outdated
+        certifies = coming.refines and self.refinement.proves and not self.outdated
         return Activity.CERTIFYING if certifies else Activity.TRACING
 
     @property
     def becoming_finer(self) -> bool:
         """Whether a part of the picture is shown and the whole of the same view is to come."""
-        partly = self.traced is not None and (self.traced.request.divisor > 1 or not self.traced.whole)
-        return partly and not self.inputs.playing
+        return self.traced is not None and not self.traced.complete and not self.inputs.playing
 
     @property
     def shows_edits(self) -> bool:
@@ -299,7 +228,7 @@ class FrameScheduler:
         if self.traced is None or not self.traced.whole:
             return False
         now, shown = self.inputs, self.traced.request
-        wanted = now.state.time, now.camera, self._until_ready(now.second), as_asked(self.settings, shown.settings)
+        wanted = now.state.time, now.camera, now.second_method, as_asked(self.inputs.settings, shown.settings)
         return wanted == (shown.time, shown.camera, shown.second, shown.settings)
 
     @property
@@ -327,14 +256,8 @@ class FrameScheduler:
         """Whether the newest frame was traced with other settings than those now chosen, or lacks what they ask for."""
         if self.frame is None or self.inputs.run is not None:
             return False
-        had, wanted = self.frame.settings, self.settings
+        had, wanted = self.frame.settings, self.inputs.settings
         return missing_buffers(had, wanted) or as_asked(wanted, had) != had
-
-    @property
-    def full_size(self) -> tuple[int, int]:
-        """The resolution at rest: the window's, or the fixed one (0, 0 while there is nowhere to show it)."""
-        pace, size = self.inputs.state.pace, self.inputs.size
-        return (pace.width, pace.height) if pace.fixed_size and min(size) > 0 else size
 
     @property
     def magnified(self) -> int:
@@ -361,11 +284,11 @@ class FrameScheduler:
             return f"{shown_of(run)}   {title}{f' (this run {lacks})' if lacks else ''}"
         if draw.view is view:
             return title
-        settings = self.settings
-        comes = settings.record_fates if draw.view.needs_fates else draw.view.records is not None
+        settings = self.inputs.settings
+        comes = settings.record_fates if draw.view.records is Record.FATES else draw.view.records is not None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
             return f"{draw.view.label}: not available here, {view.label.lower()} shown"
-        return f"{draw.view.label}: {'verifying' if draw.view.needs_verify else 'counting'} ..."
+        return f"{draw.view.label}: {'verifying' if draw.view.records is Record.VERIFY else 'counting'} ..."
 
 
 def _with_light(renderer: Renderer, frame: Frame, light: int, _cancelled: Callable[[], bool]) -> Frame:

@@ -1,36 +1,23 @@
-"""The history of the frames that the window traces: their counters for the plots, which of them set each mode, and the
-way back to one of them.
-
-Going back brings back a frame's time, camera, settings and view.  Pictures of exact methods are then the same, bit for
-bit; others depend on the modes, which are learnt anew."""
+"""The history of the frames that the window traces: their counters for the plots, and which of them set each mode."""
 
 from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Hashable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.method import Method
 from tracer.mode_origins import ModeOrigins, Origins
-from tracer.scene.model import Camera
 from tracer.statistics import SampleCounts
-from viewer.output.commands import BUILT
-from viewer.services.frame_scheduler import FrameScheduler
-from viewer.services.inspector import Selection
-from viewer.services.render_request import RenderRequest, Traced, Warmup
-from viewer.services.runs import Experiment, Runs
-from viewer.services.undo import Undo
-from viewer.state.notices import Notices
-from viewer.state.pixels import Point, Zoom
+from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import View, has_modes_of_cells
+from viewer.state.views import has_modes_of_cells
 
 PLOTTED_FRAMES = 600
 KEPT_FRAMES = 10_000
@@ -242,105 +229,3 @@ def _key(frame: Frame) -> Key:
     """Return what tells mode histories apart."""
     s = frame.settings
     return s.width, s.height, has_modes_of_cells(frame), s.lamp_radius, s.lamp_samples
-
-
-class FrameNavigator:
-    """Goes back to frames of the history, to those of an experiment, and to other states."""
-
-    def __init__(
-        self,
-        session: Session,
-        history: FrameHistory,
-        scheduler: FrameScheduler,
-        runs: Runs,
-        undo: Undo,
-        selection: Selection,
-        notices: Notices,
-        restore: Callable[[ViewState], None],
-        reset_modes: Callable[[], None],
-    ) -> None:
-        self._session, self._history, self._scheduler = session, history, scheduler
-        self._runs, self._undo, self._selection, self._notices = runs, undo, selection, notices
-        self._restore, self._reset_modes = restore, reset_modes
-        self._wanted: tuple[float, Camera, Point] | None = None
-
-    def go(self, number: int) -> None:
-        """Go back to a frame by its number in the plots."""
-        record = self._history.records.get(number)
-        if self._session.scene is None or self._runs.refuses():
-            return
-        if record is None:
-            self._notices.say(f"picture {number} is no longer kept: only the last {KEPT_FRAMES:,} are")
-            return
-        self.go_to(record.state, f"picture {number}", record.size)
-        said = ": the same picture, bit for bit" if record.size == self._scheduler.full_size else ""
-        said = ": modes are learnt anew" if self._depends_on_modes else said
-        said = f", though {BUILT}" if record.state.draw.view is View.TREE else said
-        self._notices.say(f"{self.name_of(number)}, again{said}")
-
-    def go_to_experiment(self, run: Experiment, number: int) -> None:
-        """Go to a frame of an experiment, traced by the method that it shows."""
-        scene, session = self._session.scene, self._session
-        if scene is None or self._runs.refuses():
-            return
-        if not run.is_of(scene):
-            self._notices.say(f"this was measured {run.made_in(scene)}")
-            return
-        settings = replace(run.settings, method=run.shown, samples=session.settings.samples)
-        state = replace(session.state, time=run.times[number], camera=None, settings=settings)
-        name = f"frame {number} of the experiment"
-        self.go_to(state, name, (settings.width, settings.height))
-        self._notices.say(f"{name}, by {run.shown}")
-
-    def go_to(
-        self,
-        state: ViewState,
-        name: str,
-        size: tuple[int, int],
-        point: Point | None = None,
-        zoom: Zoom | None = None,
-        warmup: Warmup | None = None,
-    ) -> None:
-        """Restore a state, and select a point of the picture once that has come; `zoom` is how closely it is looked at
-        then.
-
-        With `warmup` frames, all modes are forgotten and these frames, by time and camera, are traced before the
-        picture, which then has one sample a pixel and is not refined: it stays as it was found until something is
-        done."""
-        self._undo.begin_step(f"going to {name}", with_time=True)
-        self._restore(state)
-        if zoom is not None:
-            self._session.set_draw(zoom=zoom)
-        self._selection.clear()
-        if warmup is not None or self._depends_on_modes:
-            self._reset_modes()
-        if warmup is not None:
-            if size != self._scheduler.full_size:
-                self._session.set_pace(fixed_size=True, width=size[0], height=size[1])
-            self._scheduler.freeze(self._session.state, warmup)
-        self._wanted = (self._session.time, self._session.camera, point) if point is not None else None
-
-    def select_when_shown(self, traced: Traced | None) -> None:
-        """Select the point that was gone to once its picture is shown, whole; once in each frame of the window."""
-        if self._wanted is None or self._runs.current is not None:
-            return
-        session, (then, camera, point) = self._session, self._wanted
-        edited = self._scheduler.shows_edits and session.edited is not None and session.edited.edits == session.edits
-        if (session.time, session.camera) != (then, camera):
-            self._wanted = None
-        elif edited and traced is not None and traced.whole and traced.request.divisor == 1:
-            if (traced.request.time, traced.request.camera) == (then, camera):
-                self._selection.select(point)
-                self._wanted = None
-
-    def name_of(self, number: int) -> str:
-        """Return what a frame is called: by its number in the plots, and in the scene's path, where it is another."""
-        record, session = self._history.records.get(number), self._session
-        if record is None or not session.animated:
-            return f"picture {number}"
-        return f"picture {number}, frame {session.frame_at(record.state.time)} of the path"
-
-    @property
-    def _depends_on_modes(self) -> bool:
-        """Whether the picture depends on what was seen before it."""
-        return not Method.parse(self._session.settings.method).exact or self._session.draw.view.of_modes

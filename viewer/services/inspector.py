@@ -18,8 +18,7 @@ from tracer.inspect.why import why
 from tracer.mode_origins import NEVER, Origins
 from tracer.renderer import Renderer
 from tracer.scene.edits import Edited
-from viewer.services.queries import Ask, Newest
-from viewer.services.render_request import Traced
+from viewer.services.render_request import Ask, Newest, Traced
 from viewer.state.picking import Pick, pick, pick_part, pick_primitive, pixel_of, same_place
 from viewer.state.pixels import Point, pixel_at
 from viewer.state.session import Session

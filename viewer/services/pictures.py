@@ -25,7 +25,7 @@ from viewer.state.plans import PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
-from viewer.state.views import View
+from viewer.state.views import Record, View
 from viewer.util.files import write_new
 
 UNKNOWN = "its modes were learnt from other frames as well"
@@ -90,7 +90,7 @@ class Pictures:
             return None
         draw = replace(
             session.draw, view=view, legend=self._preferences.legend_in_pictures, zoom=FIT,
-            magnified=self._scheduler.magnified if view.needs_verify else 1,
+            magnified=self._scheduler.magnified if view.records is Record.VERIFY else 1,
             savings="" if self._preferences.savings_in_pictures else None,
         ).as_needed()  # fmt: skip
         state = replace(session.state_of(frame), draw=draw, warmup=Warmup())
@@ -108,9 +108,9 @@ class Pictures:
         session, frame = self._session, self._scheduler.frame
         if session.scene is None or frame is None:
             return None
-        width, height = self._scheduler.full_size
+        width, height = self._scheduler.inputs.full_size
         settings: Settings = replace(
-            self._scheduler.settings, width=width, height=height, samples=session.settings.samples
+            self._scheduler.inputs.settings, width=width, height=height, samples=session.settings.samples
         )
         as_wanted = replace(frame, time=session.time, camera=session.camera, settings=settings)
         return self.state_of(as_wanted, session.draw.view)
@@ -137,7 +137,7 @@ class Pictures:
     @property
     def size(self) -> tuple[int, int]:
         """Of the picture that is planned; 0, 0 before there is one to take it of."""
-        width, height = self._scheduler.full_size if self.now() is not None else (0, 0)
+        width, height = self._scheduler.inputs.full_size if self.now() is not None else (0, 0)
         return width * self.plan.multiple, height * self.plan.multiple
 
     def save(self) -> bool:

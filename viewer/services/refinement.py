@@ -24,8 +24,6 @@ MOST_LEARNING = 4
 """Frames at idle, at most, that follow the first of a view to learn its modes."""
 MOST_FRAMES = 40
 """Frames at idle, at most, in which certificates are made."""
-SECONDS = 0.4
-"""That each of these may spend on certificates: the picture is there already, and a movement ends them at once."""
 FIRST_LAMP_SAMPLES = 4
 
 
@@ -76,7 +74,7 @@ def _has_learnt(statistics: FrameStatistics, proves: bool) -> bool:
 
 def _view_of(request: RenderRequest) -> RenderRequest:
     """The request without what varies between frames of the same view."""
-    return replace(request, settings=request.settings.recording_only(), serial=0, refinement_seconds=0.0)
+    return replace(request, settings=request.settings.recording_only(), serial=0, refines=False)
 
 
 def _is_about_certificates(request: RenderRequest, view: View) -> bool:

@@ -8,8 +8,8 @@ settings, a picture that has been shown), but the first part of one is let finis
 moves, the next request comes before the last picture is ready, and cancelling each would show none at all.
 
 An experiment is a `Task`: it has the thread, and with it the scene's world, to itself until it is
-done; the newest request of that time waits for its end.  A query (`viewer.services.queries`) takes a moment: it is
-answered between two frames, while the world still stands as it did in the frame that it is about.  `Spare` work is done
+done; the newest request of that time waits for its end.  A query (`render_request.py`) takes a moment: it is answered
+between two frames, while the world still stands as it did in the frame that it is about.  `Spare` work is done
 a step at a time while nothing else is wanted, and anything that is wanted ends a step.
 """
 
@@ -18,8 +18,8 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Hashable
-from concurrent.futures import Future, InvalidStateError
-from contextlib import closing, suppress
+from concurrent.futures import Future
+from contextlib import closing
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -29,8 +29,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled
 from viewer.services.beside import Pair
 from viewer.services.jobs import TRACER, lower_priority
-from viewer.services.queries import Function, Queries, Query
-from viewer.services.render_request import Parts, RenderRequest, Spare, Task, Traced
+from viewer.services.render_request import Function, Parts, Queries, Query, RenderRequest, Spare, Task, Traced, fulfil
 from viewer.util.messages import Failure, failure
 
 QUERY_SECONDS = 0.25
@@ -49,7 +48,7 @@ class RenderThread:
         self._waiting: RenderRequest | None = None
         self._running: RenderRequest | None = None
         self._shown = self._whole = False  # whether a part of what is running, or all of it, has been
-        self._task: tuple[Renderer, Task] | None = None
+        self._task: tuple[Renderer, Task[Any], Future[Any]] | None = None
         self._queries = Queries()
         self._spare: Spare | None = None
         self._placed_at: float | None = None  # the time of what was traced last
@@ -85,18 +84,21 @@ class RenderThread:
                 self._cancel = self._cancel or request.supersedes(self._running, self._shown)
             self._changed.notify_all()
 
-    def perform(self, task: Task) -> None:
+    def perform(self, task: Task[Any]) -> Future[Any]:
         """Do this instead of frames, from now on until it is done; what is under way is cut short, or dropped.
 
-        The task gets the renderer that is in use now.  Raises RuntimeError if none is."""
+        The task gets the renderer that is in use now; what it raises is in the future.  Raises RuntimeError if none
+        is."""
+        future: Future[Any] = Future()
         with self._changed:
             if self._renderer is None:
                 raise RuntimeError("there is no scene to work on")
-            self._task, self._waiting, self._cancel = (self._renderer, task), None, True
+            self._task, self._waiting, self._cancel = (self._renderer, task, future), None, True
             self._changed.notify_all()
+        return future
 
     def query(self, function: Function, frame: Frame, *arguments: Hashable) -> Future[Any]:
-        """Return the future of `function(renderer, frame, *arguments, cancelled)` (see `viewer.services.queries`)."""
+        """Return the future of `function(renderer, frame, *arguments, cancelled)` (see `render_request.py`)."""
         with self._changed:
             future = self._queries.ask(function, frame, arguments)
             self._changed.notify_all()
@@ -159,11 +161,7 @@ class RenderThread:
     def _run(self) -> None:
         lower_priority(TRACER)
         while (turn := self._next()) is not None:
-            try:
-                turn()
-            except Exception as problem:  # a task that raises though it must not
-                self._complain(problem, "background work failed")
-                self._wake()
+            turn()
 
     def _complain(self, problem: Exception, what: str) -> None:
         with self._changed:
@@ -175,10 +173,10 @@ class RenderThread:
             while not self._closing:
                 renderer = self._renderer
                 if self._task is not None:
-                    (of_task, task), self._task = self._task, None
+                    (of_task, task, future), self._task = self._task, None
                     self._performing, self._cancel = True, of_task is not renderer
                     self._placed_at = None
-                    return partial(self._perform, of_task, task, of_task is renderer and self._take_reset())
+                    return partial(self._perform, of_task, task, future, of_task is renderer and self._take_reset())
                 if renderer is None:
                     self._changed.wait()
                 elif self._placed_at is not None and (query := self._queries.take()):
@@ -208,15 +206,13 @@ class RenderThread:
         renderer.reset_modes()
         self._fresh, self._pair = True, None
 
-    def _perform(self, renderer: Renderer, task: Task, reset: bool) -> None:
-        try:
-            if reset:
-                self._forget(renderer)
-            task(renderer, lambda: self._cancel)
-        finally:
-            with self._changed:
-                self._performing = False
-            self._wake()
+    def _perform(self, renderer: Renderer, task: Task[Any], future: Future[Any], reset: bool) -> None:
+        if reset:
+            self._forget(renderer)
+        fulfil(future, lambda: task(renderer, lambda: self._cancel))
+        with self._changed:
+            self._performing = False
+        self._wake()
 
     def _spend(self, renderer: Renderer, work: Spare, moment: float) -> None:
         """One step of spare work; the world stands as it did before when it ends."""
@@ -250,14 +246,9 @@ class RenderThread:
 
         if moved:
             renderer.take_turn(query.frame.time)
-        with suppress(InvalidStateError):  # it was cancelled meanwhile
-            try:
-                query.future.set_result(query.function(renderer, query.frame, *query.arguments, cancelled))
-            except Cancelled:
-                query.future.cancel()
-            except Exception as problem:
-                query.future.set_exception(problem)
-                self._complain(problem, "no answer")
+        work = partial(query.function, renderer, query.frame, *query.arguments, cancelled)
+        if problem := fulfil(query.future, work):
+            self._complain(problem, "no answer")
         self._wake()
 
     def _answer_meanwhile(self, renderer: Renderer, moment: float) -> None:
@@ -277,10 +268,10 @@ class RenderThread:
         try:
             if reset or request.warmup is not None:
                 self._forget(renderer)
-            seconds = max(request.settings.certificate_seconds, request.refinement_seconds)
-            patient = request.refinement_seconds > 0.0
-            renderer.settings = replace(request.settings, certificate_seconds=seconds, patient=patient)
-            self._warm_up(renderer, request)
+            for before in request.frames_before(renderer, lambda: self._cancel):
+                with self._changed:
+                    self._note_learnt(before)
+            renderer.settings = request.traced_settings
             with closing(self._parts_of(renderer, request)) as parts:
                 for frame, second in parts:
                     first = first or frame.statistics
@@ -300,16 +291,6 @@ class RenderThread:
             if renderer is self._renderer and shown is not None and not shown.whole:
                 self._note_learnt(shown)
         self._wake()
-
-    def _warm_up(self, renderer: Renderer, request: RenderRequest) -> None:
-        """Trace the frames that set the modes of a picture."""
-        as_wanted = renderer.settings
-        renderer.settings = replace(as_wanted, verify=False)
-        for moment, camera in request.warmup or ():
-            frame = renderer.render(moment, camera, lambda: self._cancel)
-            with self._changed:
-                self._note_learnt(Traced(RenderRequest(moment, camera, frame.settings), frame, frame.statistics))
-        renderer.settings = as_wanted
 
     def _parts_of(self, renderer: Renderer, request: RenderRequest) -> Parts:
         """Return the parts and samples of a picture, each with that by the second method where there is one."""

@@ -9,20 +9,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from tracer.experiments import experiment, hunt, zoom
+from tracer.experiments.camera_path import along_path
 from tracer.experiments.experiment import Experiment
 from tracer.experiments.filmstrip import Filmstrip
+from tracer.experiments.hunt import Hunt, Search
 from tracer.experiments.runner import STARTING, Run
-from tracer.experiments.zoom import Step, ZoomTest
+from tracer.experiments.zoom import ZoomTest
 from tracer.frame import Frame
 from tracer.method import in_order
 from tracer.renderer import Renderer
-from tracer.scene.model import Camera, Scene
+from tracer.scene.model import Scene
 from tracer.settings import Settings
 from viewer.output import exports
 from viewer.services.capture_service import CaptureService
@@ -30,7 +31,7 @@ from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Task, Traced
 from viewer.state.methods import BY_MODES, CERTIFIED
 from viewer.state.notices import Notices
-from viewer.state.plans import ExperimentPlan, ZoomPlan, parse_factors
+from viewer.state.plans import ExperimentPlan, HuntPlan, ZoomPlan, parse_factors
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.views import Record, View
@@ -76,7 +77,7 @@ def missing_in(run: Run, view: View) -> str:
     if isinstance(run, FileRun) and run.view is None:
         return "is traced beside it"
     drawn = isinstance(run, FileRun) and run.view is view
-    if view.records is None or drawn or (view.needs_verify and run.verifies):
+    if view.records is None or drawn or (view.records is Record.VERIFY and run.verifies):
         return ""
     return _NOT_RECORDED[view.records]
 
@@ -98,13 +99,14 @@ def duration(seconds: float) -> str:
 
 
 class Runs:
-    """`experiment` and `zoom_test` are the last of their kind: under way, done or stopped; `current` is under way."""
+    """`experiment`, `zoom_test` and `hunt` are the last of their kind: under way, done or stopped; `current` is under
+    way.  `chosen_find` is the counterexample of the hunt that is looked at, by its place in the list."""
 
     def __init__(
         self,
         session: Session,
         selection: Selection,
-        perform: Callable[[Task], None],
+        perform: Callable[[Task[None]], object],
         preferences: Preferences,
         notices: Notices,
         files: CaptureService,
@@ -116,9 +118,11 @@ class Runs:
         self._session, self._selection, self._perform = session, selection, perform
         self._preferences, self._notices, self._files, self._wake = preferences, notices, files, wake
         self.experiment_plan = ExperimentPlan({BY_MODES, CERTIFIED})
-        self.zoom_plan = ZoomPlan()
+        self.zoom_plan, self.hunt_plan = ZoomPlan(), HuntPlan()
         self.experiment: Experiment | None = None
         self.zoom_test: RecordedZoomTest | None = None
+        self.hunt: Hunt | None = None
+        self.chosen_find: int | None = None
         self.current: Run | None = None
 
     # --- start and stop ---------------------------------------------------------------------------
@@ -129,6 +133,15 @@ class Runs:
             return False
         self._notices.say(f"the {self.current.name} is still under way; stop it first")
         return True
+
+    def allows(self, run: Run) -> bool:
+        """Return whether one may go to what a run has shown: none is under way, and its scene is open; else says so."""
+        if self.refuses():
+            return False
+        found = run.is_of(self._session.scene)
+        if not found:
+            self._notices.say(f"the {run.name} was made {run.made_in(self._session.scene)}")
+        return found
 
     def start(self, make: Callable[[Scene], Run]) -> bool:
         """Begin what `make` returns for the open scene; says why where that cannot be, as where it raises an error."""
@@ -147,9 +160,8 @@ class Runs:
                 return False
 
             def work(renderer: Renderer, cancelled: Callable[[], bool]) -> None:
-                with suppress(Exception):  # the run keeps it
-                    for _ in run.each(getattr(renderer, "world", None), cancelled, self._wake):
-                        pass
+                for _ in run.each(getattr(renderer, "world", None), cancelled, self._wake):  # it keeps what it raises
+                    pass
 
             run.watches = True
             self.current = run
@@ -189,7 +201,7 @@ class Runs:
             kept = "" if run.results is None else f"; what was done is kept{where}"
             self._notices.say(f"{run.name} stopped after {done} of {frames} frames{kept}")
 
-    # --- experiments and zoom tests ---------------------------------------------------------------
+    # --- experiments, zoom tests and hunts -----------------------------------------------------------
 
     def start_experiment(self) -> None:
         """Measure what `experiment_plan` says, over the open scene's path."""
@@ -225,18 +237,21 @@ class Runs:
 
         self.start(make)
 
-    def go_to(self, step: Step) -> Camera | None:
-        """Set the time of the zoom test, and return the camera of one of its steps; None, and one line, where that
-        cannot be."""
-        test, session = self.zoom_test, self._session
-        if test is None or test.results is None or self.refuses():
-            return None
-        if not test.is_of(session.scene):
-            self._notices.say(f"this test was made {test.made_in(session.scene)}")
-            return None
-        session.playing = False
-        session.change(time=test.results.time)
-        return step.camera
+    def start_hunt(self) -> None:
+        """Search for wrong pixels as `hunt_plan` says, with the settings that are chosen now."""
+
+        def make(scene: Scene) -> Run:
+            plan = self.hunt_plan
+            times = [take.time for take in along_path(scene, *plan.frames(scene))][:: plan.step]
+            settings = replace(
+                self._session.settings, method=plan.method, width=plan.size[0], height=plan.size[1], samples=1,
+                certificate_seconds=math.inf, verify=True,
+            ).validated()  # fmt: skip
+            search = Search(settings, times, None, plan.around, plan.radius, plan.seed, plan.keep)
+            self.hunt, self.chosen_find = Hunt(scene, search), None
+            return self.hunt
+
+        self.start(make)
 
     # --- results as files -------------------------------------------------------------------------
 

@@ -22,8 +22,7 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.editing import Editing
 from viewer.services.inspector import Selection
 from viewer.services.jobs import Job
-from viewer.services.queries import is_same_picture
-from viewer.services.render_request import Traced
+from viewer.services.render_request import Traced, is_same_picture
 from viewer.state.notices import Notices
 from viewer.state.parts import parts_of
 from viewer.state.preferences import Preferences
@@ -187,7 +186,7 @@ class SceneTable:
         if not self.visible or now is None or self._job is not None:
             return
         light, last = self._session.draw.light, self._source
-        if traced is not None and traced.whole and traced.request.divisor == 1:
+        if traced is not None and traced.complete:
             same = last is not None and last.now is now and last.light == light
             # Further samples of a picture count nothing.
             if last is None or not same or not (self.pointed_at or is_same_picture(last.frame, traced.frame)):

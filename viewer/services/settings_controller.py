@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Collection
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 from tracer.method import Method
@@ -14,7 +14,6 @@ from viewer.state.methods import NO_CULLING, with_additions
 from viewer.state.notices import Notices
 from viewer.state.preferences import Preferences, save_preferences
 from viewer.state.session import Session
-from viewer.util.files import BackgroundWriter
 
 SAVED_EVERY = 2.0
 """Seconds, where preferences have changed."""
@@ -29,7 +28,7 @@ class SettingsController:
         self._session, self._preferences, self._notices, self._locked = session, preferences, notices, locked
         self._stored = self._tried = self._now()  # as others have seen them; what could not be stored, too
         self._looked = time.monotonic()
-        self._writer = BackgroundWriter()
+        self._thread = ThreadPoolExecutor(1, "shadowcull preferences")
         self._writing: Future[None] | None = None
 
     def set(self, one: Setting, value: Any) -> None:
@@ -104,7 +103,9 @@ class SettingsController:
             else:
                 self._notices.say(problem, error=True)
 
-        self._writing = self._writer.write(write)
+        if self._writing is not None:
+            self._writing.cancel()  # what has not begun is old
+        self._writing = self._thread.submit(write)
 
     def finish(self) -> None:
         """Save, and wait until it is done."""

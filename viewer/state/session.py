@@ -15,6 +15,9 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.pixels import FIT
 from viewer.state.view_state import ViewState
 
+NOWHERE = Camera((0, 0, 5), (0, 0, -1))
+"""Where the picture is taken from while no scene is open."""
+
 
 @dataclass
 class Session:
@@ -100,7 +103,7 @@ class Session:
             return self.state.camera
         scene = self.scene
         if scene is None:
-            return Camera((0, 0, 5), (0, 0, -1))
+            return NOWHERE
         kept = self._on_path
         if kept is None or kept[0] is not scene or kept[1] != self.time:  # it is asked for many times a frame
             kept = self._on_path = scene, self.time, scene.camera_at(self.time)

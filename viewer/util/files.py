@@ -13,12 +13,9 @@ import socket
 import stat
 import zlib
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, BinaryIO, TypeVar
-
-T = TypeVar("T")
+from typing import BinaryIO
 
 
 def check_writable(path: Path) -> None:
@@ -133,22 +130,6 @@ def file_lock(path: Path, patience: float) -> Iterator[bool]:
         yield lock.is_locked
     finally:
         lock.release()
-
-
-class BackgroundWriter:
-    """Writes on a thread of its own, so that a window waits for no disk and no lock; the program waits at its end."""
-
-    def __init__(self) -> None:
-        self._thread = ThreadPoolExecutor(1, "writing")
-        self._last: Future[Any] | None = None
-
-    def write(self, save: Callable[[], T]) -> Future[T]:
-        """Let `save` run soon, in the place of what was asked before and has not begun."""
-        if self._last is not None:
-            self._last.cancel()
-        found = self._thread.submit(save)
-        self._last = found
-        return found
 
 
 # --- files that are still being written --------------------------------------------------------------

@@ -278,7 +278,7 @@ def _run(ui: Ui) -> list[Command]:
     return [
         Command("Experiment", "Run", partial(start, "Experiment", runs.start_experiment), enabled=idle),
         Command("Zoom test", "Run", partial(start, "Zoom test", runs.start_zoom_test), enabled=idle),
-        Command("Hunt", "Run", partial(start, "Hunt", c.hunts.start), enabled=idle,
+        Command("Hunt", "Run", partial(start, "Hunt", c.runs.start_hunt), enabled=idle,
                 tip="search the path for the worst wrong pixels of a method"),
         Command("Film", "Run", partial(start, "Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),

@@ -46,9 +46,9 @@ class Guard:
         else:
             self._drawn(f"{name}: saying what went wrong", lambda: self._instead(name, entry))
 
-    def again(self, name: str | None = None) -> None:
-        """Show this part once more, or all of them."""
-        self.broken = {} if name is None else {n: e for n, e in self.broken.items() if n != name}
+    def again(self, name: str) -> None:
+        """Show this part once more."""
+        self.broken.pop(name, None)
 
     def _drawn(self, name: str, show: Callable[[], None]) -> Entry | None:
         before = imgui.internal.ErrorRecoveryState()

@@ -27,7 +27,6 @@ _NAMED = {
     "QUIET": ("9EA6B2", "5A6270"),
     "WARNING": ("F5BD4F", "8F5B00"),
     "ERROR": ("FF786B", "BE2416"),
-    "GOOD": ("5CCCA3", "0B7A54"),
     "BLUE": ("408FDB", "1F6FBF"),
     "GREEN": ("00B887", "00875F"),
     "ORANGE": ("EDA31A", "C77700"),
@@ -43,10 +42,10 @@ _NAMED = {
 }
 _COLORS = {name: rgb(dark) for name, (dark, _) in _NAMED.items()}
 (
-    BACKGROUND, QUIET, WARNING, ERROR, GOOD, BLUE, GREEN, ORANGE, SKY, PINK, YELLOW, GREY, MARK,
+    BACKGROUND, QUIET, WARNING, ERROR, BLUE, GREEN, ORANGE, SKY, PINK, YELLOW, GREY, MARK,
     PLOT, GRID, AXIS_TEXT, TITLE,
 ) = _COLORS.values()  # fmt: skip
-ON_PICTURE_ERROR = rgb("FF786B")
+ON_PICTURE_ERROR = rgb(_NAMED["ERROR"][0])
 
 # Colours, dark and light, an opacity, and what of ImGui has them.
 _SLOTS = (

@@ -11,9 +11,7 @@ from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from viewer.util.numbers import count as count
-from viewer.util.numbers import percent as percent
 from viewer.window.style import ERROR as ERROR
-from viewer.window.style import GOOD as GOOD
 from viewer.window.style import QUIET as QUIET
 from viewer.window.style import WARNING as WARNING
 

@@ -61,11 +61,11 @@ def _from_the_inspector(d: Driver) -> None:
 
 
 def _to_a_find(d: Driver) -> None:
-    c, plan = d.c, d.c.hunts.plan
+    c, plan = d.c, d.c.runs.hunt_plan
     plan.size, plan.last, plan.step, plan.around, plan.keep = (96, 96), LAST, STEP, 4, 5
     d.show_panel("Hunt").start("Hunt").settle()
-    found = c.hunts.found
-    assert c.hunts.hunt.whole and found.finds and found.frames == LAST // STEP + 5
+    found = c.runs.hunt.results
+    assert c.runs.hunt.whole and found.finds and found.frames == LAST // STEP + 5
     d.change(samples=4)
     d.click("//Hunt/**/1##0").settle()
     find, picked = found.finds[0], c.selection.picked

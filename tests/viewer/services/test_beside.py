@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,14 +10,13 @@ import pytest
 
 from tests.commands import ROOM
 from tests.tracing.same import assert_same
-from tests.viewer.fakes import PATIENCE, Clock, FakeRenderer, make_frame, until
+from tests.viewer.fakes import Clock, FakeRenderer, make_frame
 from tracer.frame import Frame, Settings
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
-from tracer.scene.model import Camera, Cancelled, Scene
+from tracer.scene.model import Camera, Scene
 from viewer.services.beside import FIRST, MOST_ROUNDS, STILL, Baseline, Pair, Rounds, Subject, subject_of
 from viewer.services.render_request import RenderRequest, Traced
-from viewer.services.render_thread import RenderThread
 from viewer.state.savings import LEAST, Spread
 
 CAMERA = Camera((0.0, 1.0, 4.0), (0.0, -0.25, -1.0))
@@ -181,48 +179,6 @@ def test_what_fails_is_said_and_not_tried_again_for_the_same_picture(spare: Spar
         assert "out of memory" in spare.baseline.why_not
     assert [work for work in spare.works if work is not None] == [begun]
     assert spare.rest(traced(at=2.0)) is not None and not spare.baseline.why_not, "another picture is tried"
-
-
-class Work:
-    """Steps that last until they are cancelled."""
-
-    def __init__(self) -> None:
-        self.begun = self.ended = 0
-
-    def step(self, renderer, cancelled) -> bool:
-        self.begun += 1
-        while not cancelled():
-            time.sleep(0.001)
-        self.ended += 1
-        raise Cancelled()
-
-
-def test_the_thread_lets_anything_go_before_spare_work_and_puts_the_world_back():
-    thread, renderer, work, came = RenderThread(), FakeRenderer(), Work(), []
-
-    def is_there(at: float) -> bool:
-        came.extend(filter(None, [thread.take()]))
-        return bool(came) and came[-1].frame.time == at
-
-    thread.use(renderer)
-    thread.in_spare_time(work.step)
-    for number, at in enumerate((1.0, 2.0)):
-        assert work.begun == number, "not before a picture is there"
-        thread.submit(RenderRequest(at, CAMERA, SIZE))
-        until(lambda at=at: is_there(at))
-        until(lambda number=number: work.begun == number + 1)
-        assert not thread.busy and len(renderer.turns) == number, "put back after a step"
-
-    def column(renderer, frame, cancelled) -> float:
-        return frame.time
-
-    assert thread.query(column, came[-1].frame).result(PATIENCE) == 2.0
-    until(lambda: work.begun == 3)
-    thread.in_spare_time(None)
-    until(lambda: work.ended == 3 and len(renderer.turns) == 3)
-    thread.in_spare_time(work.step)
-    until(lambda: work.begun == 4)
-    assert thread.close(PATIENCE), "the thread hangs"
 
 
 def flyer(folder: Path) -> Scene:

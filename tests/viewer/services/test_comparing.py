@@ -24,20 +24,6 @@ def keep(desk: Desk, method: str = "none") -> None:
     desk.c.comparing.keep()
 
 
-def test_a_difference_is_found_once_and_seen_brighter_with_more_exposure(desk: Desk) -> None:
-    comparing = desk.c.comparing
-    keep(desk)
-    desk.c.settings.change(method="paper")
-    desk.c.motion.move(ELSEWHERE)
-    comparing.start(CompareMode.DIFFERENCE)
-    desk.rest()
-    seen = comparing.seen
-    assert seen.names == ("A  none", "B  paper") and seen.a.frame is comparing.kept.frame
-    assert comparing.difference(seen.a, seen.b) is seen.difference and seen.difference.stats.pixels
-    desk.c.session.set_draw(tone=Tone(exposure=2.0))
-    assert comparing.limit(seen.difference) == seen.difference.stats.limit / 4.0
-
-
 def test_a_is_seen_in_the_view_of_b_where_it_has_what_that_needs(desk: Desk) -> None:
     comparing = desk.c.comparing
     keep(desk, "paper")
@@ -48,6 +34,9 @@ def test_a_is_seen_in_the_view_of_b_where_it_has_what_that_needs(desk: Desk) -> 
         assert (comparing.a.view, comparing.b.view) == (seen, view)
         assert (comparing.seen.difference is None) == (seen is not view) == ("its picture is shown" in comparing.remark)
     assert comparing.seen.mode is CompareMode.DIFFERENCE
+    found = comparing.seen.difference
+    desk.c.session.set_draw(tone=Tone(exposure=2.0))
+    assert comparing.limit(found) == found.stats.limit / 4.0, "more exposure shows smaller differences"
 
 
 def test_maps_of_both_have_one_range(desk: Desk) -> None:
@@ -84,16 +73,13 @@ def test_a_whose_tree_is_gone_is_shown_as_a_picture(desk: Desk) -> None:
 
 def test_a_difference_is_that_of_the_chosen_slice(desk: Desk) -> None:
     comparing = desk.c.comparing
-    a, b = (
-        Side(with_tree(make_frame(settings)), View.TREE, 0, "", 0) for settings in (Settings(), Settings(samples=2))
-    )
+    sides = [Side(with_tree(make_frame(Settings(samples=samples))), View.TREE, 0, "", 0) for samples in (1, 2)]
+    found = []
     for cut in (Slice(1, 0.25), Slice(0, 0.6)):
         desk.c.session.set_draw(slice=cut)
-        found = comparing.difference(a, b)
-        assert found is not None and comparing.difference(a, b) is found
-        expected = values_in(b.frame, View.TREE, slice=cut)
-        assert np.array_equal(found.values.numbers, expected.numbers)
-    assert not np.array_equal(expected.numbers, values_in(b.frame, View.TREE, slice=Slice(1, 0.25)).numbers)
+        found.append(comparing.difference(*sides).values.numbers)
+        assert np.array_equal(found[-1], values_in(sides[1].frame, View.TREE, slice=cut).numbers)
+    assert not np.array_equal(*found)
 
 
 def side(method: str, time: float = 0.0, view: View = View.COLOR, scene: str = "study", **settings: int) -> Side:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -26,12 +26,10 @@ SCENE = TINY_SCENE.replace("s 0 0.8 0 0.8", CARS)
 
 
 @pytest.fixture
-def desk(tmp_path: Path) -> Iterator[Desk]:
+def desk(desk_at: Callable[[Path], Desk], tmp_path: Path) -> Desk:
     path = tmp_path / "parts.aff"
     path.write_text(SCENE)
-    found = Desk(path, tmp_path)
-    yield found
-    assert found.c.close()
+    return desk_at(path)
 
 
 def fresh(desk: Desk) -> np.ndarray:
@@ -112,11 +110,11 @@ def test_no_run_begins_while_the_scene_is_being_edited(desk: Desk):
     c.editing.change(Edits(hidden=frozenset({"ball"})))
     desk.tick()
     c.editing.clear()  # it is being hidden nevertheless
-    for start in (c.runs.start_experiment, c.hunts.start, c.films.start, c.runs.start_zoom_test):
+    for start in (c.runs.start_experiment, c.runs.start_hunt, c.films.start, c.runs.start_zoom_test):
         c.notices.message = None
         start()
         assert desk.said == said and c.runs.current is None
-    assert c.runs.experiment is None and c.hunts.hunt is None and c.films.film is None
+    assert c.runs.experiment is None and c.runs.hunt is None and c.films.film is None
     desk.rest()
     c.runs.start_experiment()
     run = c.runs.current

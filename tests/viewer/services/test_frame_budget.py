@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from tracer.frame import Settings
 from tracer.scene.lights import Light, as_lamps
 from tracer.statistics import FrameStatistics
-from viewer.services.frame_budget import PARTS, Cost, FrameBudget
+from viewer.services.frame_budget import PARTS, FrameBudget
 from viewer.services.refinement import LampSamples, has_lamps
 
 FIXED, RAY, PIXEL = 5e-3, 1e-7, 1e-6
@@ -29,17 +28,6 @@ def taught(*seen: FrameStatistics, pixels: int = 400_000) -> FrameBudget:
     for statistics in seen:
         budget.observe(statistics, pixels)
     return budget
-
-
-def test_fixed_and_growing_costs_are_learnt_apart():
-    cost, noise = Cost(1e-3, 1e-9), np.random.default_rng(1)
-    for number in (1e5, 4e5, 2e5, 3e5) * 6:
-        cost.observe(number, (5e-3 + 1e-7 * number) * noise.uniform(0.95, 1.05))
-    assert cost.fixed == pytest.approx(5e-3, rel=0.4)
-    assert cost(1e5) == pytest.approx(1.5e-2, rel=0.1) and cost(1e6) == pytest.approx(1.05e-1, rel=0.1)
-    for _ in range(15):
-        cost.observe(1e5, 5e-2)
-    assert cost(1e5) == pytest.approx(5e-2, rel=0.1), "old costs are forgotten"
 
 
 @pytest.mark.parametrize(

@@ -16,13 +16,15 @@ from tracer.frame import Settings
 from tracer.scene.lights import Light
 from tracer.scene.model import Scene
 from tracer.statistics import FrameStatistics
-from viewer.services.frame_scheduler import Activity, FrameInputs, FrameScheduler
+from viewer.services.frame_inputs import FrameInputs
+from viewer.services.frame_scheduler import Activity, FrameScheduler
 from viewer.services.jobs import Wake
 from viewer.services.refinement import MOST_FRAMES, MOST_LEARNING
 from viewer.services.render_request import RenderRequest, Traced
+from viewer.state import views
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import MOST_RECORDED, View
+from viewer.state.views import View
 
 SIZE = (16, 8)
 
@@ -130,7 +132,7 @@ def test_the_next_frame_of_a_film_waits_until_this_one_can_be_asked_about():
 def test_until_certificates_can_be_made_pictures_come_without(ready: bool, method: str, traced: str):
     window = Window(method=method)
     window.request(ready=ready)
-    assert window.scheduler.settings.method == traced
+    assert window.scheduler.inputs.settings.method == traced
 
 
 def test_at_rest_lamps_get_more_samples_before_pixels_do_and_nothing_is_asked_for_twice():
@@ -163,15 +165,15 @@ def test_points_have_one_sample_and_whole_pictures_all_of_them():
     assert set(window.rest(3, moving=True)) == {(None, 2)}
 
 
-def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it():
+def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_for_it(monkeypatch: pytest.MonkeyPatch):
     window = Window(lamp_radius=0.5, lamp_samples=16)
     window.rest()
     window.session.set_draw(view=View.PENUMBRA)
     assert window.rest() == [(16, 2)] and window.renders.asked[-1].settings.record_lights
     window.session.set_draw(view=View.COLOR)
     assert window.rest() == [], "there is more than the picture needs"
-    many = make_scene(lights=3)
-    window = Window(replace(many, lights=many.lights * (MOST_RECORDED // 128)))
+    monkeypatch.setattr(views, "MOST_RECORDED", 128)
+    window = Window()
     for view, title in (
         (View.PENUMBRA, "Penumbra: counting ..."),
         (View.LIGHTS, "Lights due: not available here, colour shown"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -29,15 +29,13 @@ ODD = 'it\'s "odd"; $HOME & -c\tüñ.aff'
 
 
 @pytest.fixture
-def odd(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Desk:
+def odd(desk_at: Callable[[Path], Desk], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Desk:
     """A desk with a scene of an odd name in a folder of another, which is the current one."""
     folder = tmp_path / "a folder's"
     folder.mkdir()
     (folder / ODD).write_text(TINY_SCENE)
     monkeypatch.chdir(tmp_path)
-    desk = Desk(folder / ODD, tmp_path / "pictures")
-    yield desk
-    assert desk.c.close()
+    return desk_at(folder / ODD)
 
 
 def fresh(desk: Desk) -> None:
@@ -149,10 +147,8 @@ def test_a_tree_that_rays_have_had_built_cannot_be_brought_back(odd: Desk) -> No
 
 
 @pytest.fixture
-def desk(tmp_path: Path) -> Iterator[Desk]:
-    desk = Desk(write_marbles(tmp_path), tmp_path / "pictures")
-    yield desk
-    assert desk.c.close()
+def desk(desk_at: Callable[[Path], Desk], tmp_path: Path) -> Desk:
+    return desk_at(write_marbles(tmp_path))
 
 
 def saved(desk: Desk, view: View, name: str) -> Path:
@@ -166,26 +162,17 @@ def saved(desk: Desk, view: View, name: str) -> Path:
     c.preferences.screenshot_template = name
     state = c.pictures.state_of(c.frame, view)
     assert state is not None and state.warmup.unknown, "its modes come from other frames"
-    pixels, _ = stills.draw(c.frame, c.session.scene, state)
-    c.captures.capture(c.frame, pixels, None, state)
-    job = c.captures.saving.pop()
-    assert job.join(10.0)
+    c.captures.capture(c.frame, shown(desk), None, state)
+    (job,) = c.captures.saving
+    desk.rest()
     return job.result
 
 
-Check = Callable[[Path], tuple[int, str]]
-
-
-@pytest.fixture
-def check(capfd: pytest.CaptureFixture[str]) -> Check:
+def check(capfd: pytest.CaptureFixture[str], path: Path) -> tuple[int, str]:
     """The exit code and the line of `check`."""
-
-    def checked(path: Path) -> tuple[int, str]:
-        code, out, errors = run(capfd, "check", path)
-        assert errors == "" and len(out.splitlines()) == 1
-        return code, out.strip()
-
-    return checked
+    code, out, errors = run(capfd, "check", path)
+    assert errors == "" and len(out.splitlines()) == 1
+    return code, out.strip()
 
 
 def changed(path: Path, name: str, **warmup: object) -> Path:
@@ -200,7 +187,9 @@ def changed(path: Path, name: str, **warmup: object) -> Path:
 @pytest.mark.parametrize(
     ("view", "in_motion"), [(View.COLOR, False), (View.DIFFERENCE, False), (View.SAVED, False), (View.SAVED, True)]
 )
-def test_a_picture_after_others_is_made_again_to_the_bit(desk: Desk, check: Check, view: View, in_motion: bool) -> None:
+def test_a_picture_after_others_is_made_again_to_the_bit(
+    desk: Desk, capfd: pytest.CaptureFixture[str], view: View, in_motion: bool
+) -> None:
     """Also after some in motion, of which some pixels have taught."""
     if in_motion:
         desk.c.session.set_pace(progressive=True, target_fps=5000.0)
@@ -210,14 +199,16 @@ def test_a_picture_after_others_is_made_again_to_the_bit(desk: Desk, check: Chec
         desk.until(lambda: len(desk.came) > 20 and any(frame.statistics.part < 1.0 for frame in desk.came))
         desk.c.session.playing = False
         desk.rest()
-    code, said = check(saved(desk, view, f"{view.value}.png"))
+    code, said = check(capfd, saved(desk, view, f"{view.value}.png"))
     assert code == 0 and "true: 64 × 48, bit for bit" in said, said
 
 
-def test_without_its_modes_a_picture_is_held_against_that_with_every_ray_traced(desk: Desk, check: Check) -> None:
+def test_without_its_modes_a_picture_is_held_against_that_with_every_ray_traced(
+    desk: Desk, capfd: pytest.CaptureFixture[str]
+) -> None:
     path = saved(desk, View.COLOR, "color.png")
     frame = desk.c.frame
-    code, said = check(changed(path, "older.png", modes=""))
+    code, said = check(capfd, changed(path, "older.png", modes=""))
     with Image.open(path) as image:
         kept = np.asarray(image.convert("RGB"))
     renderer = stills.Renderer(desk.c.session.scene, replace(frame.settings, method="none", verify=False))
@@ -228,7 +219,9 @@ def test_without_its_modes_a_picture_is_held_against_that_with_every_ray_traced(
         assert code == 0 and "true: 64 × 48, bit for bit" in said, said
 
 
-def test_modes_that_are_damaged_or_of_another_scene_are_said_to_be(desk: Desk, check: Check) -> None:
+def test_modes_that_are_damaged_or_of_another_scene_are_said_to_be(
+    desk: Desk, capfd: pytest.CaptureFixture[str]
+) -> None:
     path = saved(desk, View.SAVED, "saved.png")
     for name, modes, why in (
         ("letters", "no base64!", "damaged"),
@@ -236,14 +229,14 @@ def test_modes_that_are_damaged_or_of_another_scene_are_said_to_be(desk: Desk, c
         ("short", capture.read_carried(path).state["warmup"]["modes"][:-8], "damaged"),
         ("empty", "eJwDAAAAAAE=", "not those of"),
     ):
-        code, said = check(changed(path, f"{name}.png", modes=modes))
+        code, said = check(capfd, changed(path, f"{name}.png", modes=modes))
         assert code == 1 and why in said, (name, said)
 
 
-def test_views_of_modes_say_how_to_save_what_can_be_made_again(desk: Desk, check: Check) -> None:
+def test_views_of_modes_say_how_to_save_what_can_be_made_again(desk: Desk, capfd: pytest.CaptureFixture[str]) -> None:
     path = saved(desk, View.OCCLUSION, "modes.png")
     assert not capture.read_carried(path).state["warmup"]["modes"], "such a picture shows what comes of more than these"
-    code, said = check(path)
+    code, said = check(capfd, path)
     assert code == 1 and "cannot be made again" in said and "Backspace" in said
 
 

@@ -261,3 +261,27 @@ def test_a_picture_is_asked_about_before_its_next_sample(thread: Thread):
     answer = thread.query(lambda renderer, frame, cancelled: len(renderer.asked), frame)
     asked.set()
     assert answer.result(PATIENCE) == 4
+
+
+def test_spare_work_gives_way_to_anything_and_the_world_is_put_back(thread: Thread):
+    begun, ended = [], []
+
+    def work(renderer, cancelled) -> bool:
+        begun.append(renderer)
+        while not cancelled():
+            time.sleep(0.001)
+        ended.append(renderer)
+        raise Cancelled()
+
+    thread.in_spare_time(work)
+    for number, at in enumerate((1.0, 2.0)):
+        assert len(begun) == number, "not before a picture is there"
+        frame = thread.shown(at)
+        until(lambda number=number: len(begun) == number + 1)
+        assert not thread.busy and len(thread.fake.turns) == number, "put back after a step"
+    assert thread.query(row, frame, 1).result(PATIENCE) == 1
+    until(lambda: len(begun) == 3)
+    thread.in_spare_time(None)
+    until(lambda: len(ended) == len(thread.fake.turns) == 3)
+    thread.in_spare_time(work)
+    until(lambda: len(begun) == 4)

@@ -197,7 +197,7 @@ def test_a_run_that_is_over_keeps_neither_its_scene_nor_a_frame(desk: Desk) -> N
     gc.collect()
     assert scene() is None and not any(frame() for frame in frames)
     desk.c.navigator.go_to_experiment(desk.runs.experiment, 3)
-    assert "this was measured in tiny.aff; open that scene again" in desk.said
+    assert "the experiment was made in tiny.aff; open that scene again" in desk.said
 
 
 def test_what_cannot_be_written_is_one_line(desk: Desk, tmp_path: Path) -> None:

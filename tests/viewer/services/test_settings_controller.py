@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import closing
 from pathlib import Path
+from threading import Event
 
 import pytest
 
@@ -13,7 +14,6 @@ from viewer.services.controller import Controller
 from viewer.services.settings_controller import SAVED_EVERY
 from viewer.state import codec
 from viewer.state.preferences import Preferences
-from viewer.util.files import file_lock
 
 
 def test_a_setting_is_changed_unless_it_is_no_good_and_reset(c: Controller):
@@ -77,13 +77,24 @@ def test_a_change_that_rests_is_saved_and_other_windows_changes_stay(clock: Cloc
         assert (read["theme"], read["state"]["settings"]["depth"]) == ("light", 3)
 
 
-def test_no_window_waits_while_another_saves(own_settings: Path, c: Controller):
-    own_settings.mkdir(exist_ok=True)
-    with file_lock(own_settings / "settings.json", 0.0):
+def test_no_window_waits_for_the_disk_and_of_what_waits_only_the_newest_is_written(
+    c: Controller, monkeypatch: pytest.MonkeyPatch
+):
+    disk, began, written = Event(), Event(), list[str]()
+
+    def slowly(data: dict, base: dict) -> None:
+        began.set()
+        assert disk.wait(30.0)
+        written.append(data["theme"])
+
+    monkeypatch.setattr("viewer.services.settings_controller.save_preferences", slowly)
+    for c.preferences.theme in ("first", "second", "third"):
         c.settings.save()
-        assert not c.settings._writing.done(), "it waits for the other on a thread of its own"
-    c.settings.finish()
-    assert (own_settings / "settings.json").exists()
+        assert began.wait(30.0)
+    assert not written, "nobody waited"
+    disk.set()
+    c.settings._writing.result(30.0)
+    assert written == ["first", "third"]
 
 
 def test_preferences_that_cannot_be_saved_are_said_once(clock: Clock, own_settings: Path, c: Controller):

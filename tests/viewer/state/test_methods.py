@@ -24,32 +24,21 @@ from tracer.frame import Settings
 from tracer.method import DEFAULT_METHOD, Method, bases, in_order
 from tracer.statistics import CutCounts
 from viewer.state import codec
-from viewer.state.methods import (
-    SHOWN_BY,
-    default_for,
-    groups,
-    missing,
-    remark_on,
-    toggled,
-    with_base,
-)
+from viewer.state.methods import SHOWN_BY, default_for, groups, missing, remark_on, toggled, with_base
 from viewer.state.session import Session
 from viewer.state.views import MOST_RECORDED, View, can_draw
 from viewer.views import penumbra
+
+BUFFERS = {"certified": with_certificates, "lightcuts": with_cuts, "voxels": with_voxels, "lie": with_cell_lights}
 
 
 @pytest.mark.parametrize("method", [*(kind.name for kind in bases()), "certified+cache", "paper+rest", "none+cache"])
 @pytest.mark.parametrize("view", list(View))
 def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View, method: str):
     frame = make_frame(Settings(16, 8, method=method, modes=True, verify=True))
-    if method.startswith("certified"):
-        frame = with_certificates(frame)
-    if method.startswith("lightcuts"):
-        frame = with_cuts(frame)
-    if method.startswith("voxels"):
-        frame = with_voxels(frame)
-    if method.startswith("lie"):
-        frame = with_cell_lights(frame)
+    for base, with_its_buffers in BUFFERS.items():
+        if method.startswith(base):
+            frame = with_its_buffers(frame)
     found = missing(view, frame)
     cuts = "lightcuts", "lightcuts-stochastic", "lightcuts-certified"
     wrong = "paper", "cells", "lie", *cuts
@@ -121,9 +110,6 @@ LAMPS = {"lamp_radius": 0.1, "lamp_samples": 16}
         ("lightcuts", 6, LAMPS, ""),
         ("certified+voxels", 6, LAMPS, "All lights are lamps of several samples, of which voxels knows nothing: it "
                                        "answers no ray."),
-        ("voxels", 40, {}, "Of 40 lights, voxels answers for the first 31; rays to the others are traced."),
-        ("paper", 6, {}, ""),
-        ("auto", 6, {}, ""),
     ],
 )  # fmt: skip
 def test_what_a_method_leaves_to_tracing_is_said(method: str, lights: int, lamps: dict, said: str):
@@ -147,15 +133,13 @@ def test_a_map_of_clusters_in_which_each_light_is_one_says_so():
 def test_the_overview_names_every_method_that_leaves_lights_to_tracing():
     assert overview(6, 0) == ""
     every = "All lights are taken into account by certified, auto, lightcuts, lightcuts-stochastic and "
-    assert overview(4096, 0) == (
-        f"{every}lightcuts-certified; the first 31 by paper, cells, voxels and lightbuffer; some by lie-exact and lie."
-    )
-    assert overview(256, 256) == (
-        f"{every}lightcuts-certified; the first 31 by paper and cells; some by lie-exact and lie; none by voxels and "
-        "lightbuffer, which leave lamps of several samples to tracing."
-    )
-    assert overview(6, 3).endswith("; some by lie-exact and lie; voxels and lightbuffer leave the 3 lamps of several "
-                                   "samples to tracing.")  # fmt: skip
+    part, leave = "some by lie-exact and lie", "lamps of several samples to tracing."
+    for lights, lamps, others in (
+        (4096, 0, f"; the first 31 by paper, cells, voxels and lightbuffer; {part}."),
+        (256, 256, f"; the first 31 by paper and cells; {part}; none by voxels and lightbuffer, which leave {leave}"),
+    ):
+        assert overview(lights, lamps) == f"{every}lightcuts-certified{others}"
+    assert overview(6, 3).endswith(f"; {part}; voxels and lightbuffer leave the 3 {leave}")
 
 
 def test_one_method_is_the_default_everywhere_that_has_something_to_show():

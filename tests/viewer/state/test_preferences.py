@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 import pytest
@@ -70,20 +69,6 @@ def test_a_damaged_file_is_kept_aside_and_told_of(tmp_path: Path, content: bytes
     assert problem is not None and "\n" not in problem
     kept = [p for p in tmp_path.iterdir() if p.read_bytes() == content]
     assert len(kept) == 1
-
-
-def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    save_preferences(Preferences(speed=5.0), tmp_path)
-
-    def full(*_args):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "replace", full)
-    problem = save_preferences(Preferences(speed=9.0), tmp_path)
-    assert problem is not None and "No space left" in problem
-    monkeypatch.undo()
-    assert load_preferences(tmp_path)[0].speed == 5.0
-    assert [p.name for p in tmp_path.iterdir() if p.suffix != ".lock"] == [prefs.SETTINGS_FILE]
 
 
 def test_recent_scenes_are_few_and_newest_first():

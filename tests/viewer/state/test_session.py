@@ -36,16 +36,11 @@ def opened(**scene: object) -> Session:
     return session
 
 
-def session_somewhere() -> Session:
-    session = Session(state=ViewState(settings=Settings(method="none", zoom_factor=7.5, symmetric=True, depth=3)))
-    session.open(make_scene())
-    session.change(time=4.0, camera=AWAY)
-    session.set_draw(view=View.SHADOW, light=2, wipe=0.25)
-    return session
-
-
 def test_a_state_brings_everything_back_but_what_belongs_to_the_machine_and_what_the_scene_lacks() -> None:
-    first, second = session_somewhere(), Session(state=ViewState(settings=Settings(width=99, threads=3)))
+    first, second = opened(), Session(state=ViewState(settings=Settings(width=99, threads=3)))
+    first.set_settings(method="none", zoom_factor=7.5, symmetric=True, depth=3)
+    first.change(time=4.0, camera=AWAY)
+    first.set_draw(view=View.SHADOW, light=2, wipe=0.25)
     second.open(make_scene())
     second.playing = True
     second.restore(first.state)

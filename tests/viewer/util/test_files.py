@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import threading
-import time
 from argparse import Namespace
 from concurrent.futures import ThreadPoolExecutor
 from datetime import datetime
@@ -16,7 +15,6 @@ from tests.platforms import linux_only, posix_only
 from viewer.output import exports
 from viewer.util import files
 from viewer.util.files import (
-    BackgroundWriter,
     check_writable,
     file_lock,
     whole_file,
@@ -186,21 +184,3 @@ def test_a_lock_is_had_by_one_at_a_time(tmp_path: Path) -> None:
         assert mine and not others
     with file_lock(tmp_path / "a.json", 0.0) as again:
         assert again
-
-
-def test_a_background_writer_waits_for_nothing_and_writes_what_was_asked_last() -> None:
-    """While the disk takes its time, the window goes on; of what waits, only the newest is written."""
-    writer, disk, written = BackgroundWriter(), threading.Event(), list[str]()
-
-    def slow() -> None:
-        assert disk.wait(30.0)
-        written.append("first")
-
-    first = writer.write(slow)
-    while not first.running():
-        time.sleep(0.001)
-    second, third = (writer.write(lambda name=name: written.append(name)) for name in ("second", "third"))
-    assert not first.done(), "nobody waited"
-    disk.set()
-    third.result(30.0)
-    assert second.cancelled() and written == ["first", "third"]

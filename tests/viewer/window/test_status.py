@@ -103,7 +103,8 @@ def shown(method: str, **more: object) -> SimpleNamespace:
     """A controller with a frame by a method, which is the one that is chosen."""
     settings = Settings(16, 8, method=method, **more)
     session = SimpleNamespace(settings=settings, draw=DrawOptions(View.DIFFERENCE))
-    return SimpleNamespace(frame=make_frame(settings), scheduler=SimpleNamespace(settings=settings), session=session,
+    scheduler = SimpleNamespace(inputs=SimpleNamespace(settings=settings))
+    return SimpleNamespace(frame=make_frame(settings), scheduler=scheduler, session=session,
                            runs=SimpleNamespace(current=None))  # fmt: skip
 
 
@@ -116,7 +117,7 @@ def test_wrong_answers_are_those_of_the_method_that_is_shown() -> None:
     c.runs.current = SimpleNamespace(name="zoom test")
     text, color = wrong_answers(c)
     assert text == "The panel of the zoom test shows its wrong answers." and color != ERROR
-    c.runs.current, c.scheduler.settings = None, Settings(16, 8, method="auto", verify=True)
+    c.runs.current, c.scheduler.inputs.settings = None, Settings(16, 8, method="auto", verify=True)
     assert wrong_answers(c) is None
 
 

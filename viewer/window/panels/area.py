@@ -18,7 +18,7 @@ from viewer.state.projection import Stroke
 from viewer.window.widgets import em
 
 BACK, FRONT = ImVec4(*DARK, 0.9), ImVec4(*LIGHT, 1.0)
-_PAD = 0.4  # ems around words
+_PAD, _RIM = 0.4, 0.06  # ems around words, and around strokes
 SHADE = ImVec4(*DARK, 0.6)
 """Around what is drawn, so that it is seen on any picture."""
 
@@ -87,9 +87,8 @@ class Pen:
         self.radius = max(0.4, 0.5 * math.hypot(*self.pixel) / em(1.0) + 0.2)
 
     def strokes(
-        self, strokes: Iterable[Stroke], color: ImVec4, width: float, behind: float = 0.6,
-        around: ImVec4 = SHADE, rim: float = 0.06,
-    ) -> None:  # fmt: skip
+        self, strokes: Iterable[Stroke], color: ImVec4, width: float, behind: float = 0.6, around: ImVec4 = SHADE
+    ) -> None:
         """Draw strokes with a rim `around` them; what lies behind something has the opacity `behind`."""
         edge = ImVec4(around.x, around.y, around.z, around.w * color.w)
         outer, inner = (  # of what lies behind something, and of what is seen
@@ -98,7 +97,7 @@ class Pen:
         )
         for stroke in strokes:
             a, b = self.to_screen(*stroke.start), self.to_screen(*stroke.end)
-            self.draw.add_line(a, b, outer[stroke.seen], em(width + 2.0 * rim))
+            self.draw.add_line(a, b, outer[stroke.seen], em(width + 2.0 * _RIM))
             self.draw.add_line(a, b, inner[stroke.seen], max(1.0, em(width)))
 
     def ring(self, at: tuple[float, float], radius: float | None = None, alpha: float = 1.0) -> None:

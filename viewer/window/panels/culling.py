@@ -68,10 +68,10 @@ def wrong_answers(c: Controller) -> tuple[str, ImVec4] | None:
         return None
     if c.runs.current is not None:
         return f"The panel of the {c.runs.current.name} shows its wrong answers.", QUIET
-    if c.frame.settings.method != c.scheduler.settings.method:
+    if c.frame.settings.method != c.scheduler.inputs.settings.method:
         return None
     said, color = verified.in_words(c.frame.statistics), ERROR if verified.is_wrong(c.frame.statistics) else QUIET
-    if not c.scheduler.settings.verify or c.session.settings.verify:
+    if not c.scheduler.inputs.settings.verify or c.session.settings.verify:
         return said, color
     return f"{said} (verified for the view {c.session.draw.view.label})", color
 

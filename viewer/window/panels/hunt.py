@@ -9,7 +9,6 @@ from tracer.experiments import counterexample, hunt
 from tracer.experiments.counterexample import Counterexample
 from tracer.scene.model import Scene
 from viewer.output.reports import findings
-from viewer.services.hunts import Hunts
 from viewer.window.panels.culling import method_list
 from viewer.window.panels.rays import show_rays
 from viewer.window.panels.runs import Part, frames_row, results_table, show_run
@@ -22,15 +21,15 @@ _LIST, _DETAILS = 13.0, 14.0  # ems of width
 
 def show(ui: Ui) -> None:
     """The panel: what to search, the list of findings, and the one that was clicked."""
-    hunts, scene = ui.controller.hunts, ui.controller.session.scene
-    found, parts = hunts.found, list[Part]()
-    if found is not None and hunts.hunt is not None and scene is not None and hunts.hunt.is_of(scene):
-        parts.append(("Findings", _LIST, lambda: _findings(ui, hunts, found, scene)))
-        if hunts.chosen is not None and hunts.chosen < len(found.finds):
-            find, number = found.finds[hunts.chosen], hunts.chosen
+    runs, scene = ui.controller.runs, ui.controller.session.scene
+    found, parts = runs.hunt.results if runs.hunt is not None else None, list[Part]()
+    if found is not None and runs.hunt is not None and scene is not None and runs.hunt.is_of(scene):
+        parts.append(("Findings", _LIST, lambda: _findings(ui, found, scene)))
+        if runs.chosen_find is not None and runs.chosen_find < len(found.finds):
+            find, number = found.finds[runs.chosen_find], runs.chosen_find
             parts.append(("Details", _DETAILS, lambda: _details(ui, number, find, scene)))
     show_run(
-        ui, hunts.hunt, lambda: _plan(ui, hunts), hunts.start,
+        ui, runs.hunt, lambda: _plan(ui), runs.start_hunt,
         tip="Search the frames for the worst wrong pixels of the method",
         doing="Searching for wrong pixels",
         parts=parts,
@@ -39,8 +38,8 @@ def show(ui: Ui) -> None:
     )  # fmt: skip
 
 
-def _plan(ui: Ui, hunts: Hunts) -> None:
-    plan = hunts.plan
+def _plan(ui: Ui) -> None:
+    plan = ui.controller.runs.hunt_plan
     with properties("plan", 4.6) as shown:
         if not shown:
             return
@@ -50,17 +49,18 @@ def _plan(ui: Ui, hunts: Hunts) -> None:
         plan_rows(ui, plan, "step", "around", "radius", "seed", "size")
 
 
-def _findings(ui: Ui, hunts: Hunts, found: hunt.Results, scene: Scene) -> None:
+def _findings(ui: Ui, found: hunt.Results, scene: Scene) -> None:
     """A line for each, the worst first; a click flies there."""
     paragraph(in_window_style(found.summary), QUIET)
     if found.finds:
         tip = lambda find: f"Fly there. {counterexample.in_its_frame(find)}"  # noqa: E731
         columns = findings(scene, found.finds)
-        results_table("findings", columns, found.finds, lambda number: _fly(ui, number), hunts.chosen, tip)
+        chosen = ui.controller.runs.chosen_find
+        results_table("findings", columns, found.finds, lambda number: _fly(ui, number), chosen, tip)
 
 
 def _fly(ui: Ui, number: int) -> None:
-    ui.controller.hunts.go(number)
+    ui.controller.navigator.go_to_find(number)
     ui.show_panel("Inspector")
 
 

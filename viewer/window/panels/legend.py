@@ -10,6 +10,7 @@ from viewer.state.palette import DARK
 from viewer.views import legend_of
 from viewer.views.legend import BACKDROP_OPACITY, Layout, Legend, fitting, lay_out
 from viewer.window.panels import sides
+from viewer.window.panels.area import Area, inside
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, tooltip_at, width_of
 
@@ -57,15 +58,15 @@ def draw(legend: Legend) -> None:
     layout = fitting(legend, width_of, imgui.get_text_line_height(), imgui.get_content_region_avail().x, 1e6)
     layout = layout or lay_out(legend, width_of, imgui.get_text_line_height())
     at = imgui.get_cursor_screen_pos()
-    draw_layout(imgui.get_window_draw_list(), layout, at)
+    draw_layout(layout, at)
     imgui.dummy(ImVec2(layout.width, layout.height))
     if imgui.is_item_hovered():
         _tell(layout, at)
 
 
-def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
-    """Over the picture from `corner` to `end`: where it was put, and always inside."""
-    state = ui.state(LegendState)
+def show(ui: Ui, area: Area) -> None:
+    """Over the picture: where it was put, and always inside."""
+    state, corner, end = ui.state(LegendState), area.corner, area.end
     state.shown = False
     legend, options = of_picture(ui), ui.controller.session.draw
     if legend is None or not options.legend:
@@ -84,13 +85,12 @@ def show(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     imgui.set_cursor_screen_pos(at)
     imgui.invisible_button("legend", ImVec2(layout.width, layout.height))
     _drag(ui, at, least, room)
-    draw = imgui.get_window_draw_list()
-    draw.push_clip_rect(corner, end, True)
-    draw_layout(draw, layout, at)
+    with inside(area):
+        draw_layout(layout, at)
     if imgui.is_item_hovered() and not imgui.is_item_active():
-        draw.add_rect(at, ImVec2(at.x + layout.width, at.y + layout.height), packed((1.0, 1.0, 1.0), 0.35), em(0.3))
+        corner = ImVec2(at.x + layout.width, at.y + layout.height)
+        imgui.get_window_draw_list().add_rect(at, corner, packed((1.0, 1.0, 1.0), 0.35), em(0.3))
         _tell(layout, at)
-    draw.pop_clip_rect()
 
 
 def _drag(ui: Ui, at: ImVec2, least: ImVec2, room: ImVec2) -> None:
@@ -105,9 +105,9 @@ def _drag(ui: Ui, at: ImVec2, least: ImVec2, room: ImVec2) -> None:
         ui.controller.session.set_draw(legend_at=(min(max(across, 0.0), 1.0), min(max(down, 0.0), 1.0)))
 
 
-def draw_layout(draw: imgui.ImDrawList, layout: Layout, at: ImVec2) -> None:
+def draw_layout(layout: Layout, at: ImVec2) -> None:
     """Draw a legend as it is laid out."""
-    end = ImVec2(at.x + layout.width, at.y + layout.height)
+    draw, end = imgui.get_window_draw_list(), ImVec2(at.x + layout.width, at.y + layout.height)
     draw.add_rect_filled(at, end, packed(DARK, BACKDROP_OPACITY), em(0.3))
     for box in layout.boxes:
         start = ImVec2(at.x + box.x, at.y + box.y)

@@ -8,7 +8,7 @@ from tracer.frame import Frame
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from viewer.output.light_cube import Unfolded, by_depths, by_lists
-from viewer.services.queries import Newest
+from viewer.services.render_request import Newest
 from viewer.state.views import LIGHT_CUBES
 from viewer.window.panels import legend, lights
 from viewer.window.ui import Ui

@@ -15,6 +15,7 @@ from viewer.state import navigation, verified
 from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
 from viewer.state.pixels import STEP, panned
+from viewer.state.views import Record
 from viewer.util.numbers import whole_percent
 from viewer.window.menus import ANY_POPUP
 from viewer.window.panels import (
@@ -109,7 +110,7 @@ def _newest(ui: Ui, room: ImVec2, texture: int) -> None:
         what_if.show_lights(ui, area)
     lower = _title(ui, area)
     sides.show(ui, area, lower)
-    legend.show(ui, area.corner, area.end)
+    legend.show(ui, area)
     overlays.show_missing(ui, area.corner, area.end)
     show_words_in_space(ui)
 
@@ -167,7 +168,7 @@ def _title(ui: Ui, area: Area) -> float:
         return area.corner.y
     write_lines(lines, area.corner)
     lower = area.corner.y + size_of(lines)[1]
-    if view.needs_verify and not ui.state(LegendState).shown and verified.is_wrong(frame.statistics):
+    if view.records is Record.VERIFY and not ui.state(LegendState).shown and verified.is_wrong(frame.statistics):
         write_lines([verified.in_short(frame.statistics)], ImVec2(area.corner.x, lower), ON_PICTURE_ERROR)
         lower += size_of(lines)[1]
     return lower

@@ -17,6 +17,7 @@ from viewer.views import values_of
 from viewer.views.base import Histogram, histogram
 from viewer.window.panels import sides
 from viewer.window.panels.area import FRONT, Area, inside
+from viewer.window.panels.plots import AXIS, FLAGS
 from viewer.window.setting_rows import panel_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, count, em, paragraph, right
@@ -105,13 +106,10 @@ def _figures(found: Histogram, names: tuple[str, ...], width: float) -> None:
 
 def _plot(found: Histogram, names: tuple[str, ...]) -> None:
     room = imgui.get_content_region_avail()
-    flags = implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text
-    if len(names) == 1:
-        flags |= implot.Flags_.no_legend
-    if not implot.begin_plot("##histogram", ImVec2(room.x, max(room.y, em(_PLOT))), int(flags)):
+    flags = FLAGS | (int(implot.Flags_.no_legend) if len(names) == 1 else 0)
+    if not implot.begin_plot("##histogram", ImVec2(room.x, max(room.y, em(_PLOT))), flags):
         return
-    axis = int(implot.AxisFlags_.no_highlight)
-    implot.setup_axes("", "", axis, axis | int(implot.AxisFlags_.no_tick_labels))
+    implot.setup_axes("", "", AXIS, AXIS | int(implot.AxisFlags_.no_tick_labels))
     top = float(found.counts.max())
     implot.setup_axes_limits(found.low, found.high, 0.0, 1.08 * top, int(imgui.Cond_.always))
     implot.setup_legend(implot.Location_.north_east)

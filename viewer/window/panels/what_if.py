@@ -111,24 +111,19 @@ def _object(ui: Ui, edited: Edited) -> None:
         return
     thing, primitive = edited.thing_of(pick.primitive), int(edited.primitives[pick.primitive])
     clipped(thing.name)
+    wanted = now = editing.now
     if wide_button("Hide all of it", thing.name, 2):
-        editing.change(editing.now.with_thing(thing.name, False))
+        wanted = now.with_thing(thing.name, False)
     imgui.same_line()
     if wide_button("Hide primitive", f"primitive {primitive} alone", 1):
-        editing.change(editing.now.with_primitive(primitive, False))
-    if thing.moves:
-        static, now = thing.name in dict(editing.now.static), ui.controller.session.time
-
-        def rest(on: bool) -> None:
-            editing.change(editing.now.with_static(thing.name, now if on else None))
-
-        checkbox("Static", static, rest, _STATIC)
-    else:
-
-        def move(on: bool) -> None:
-            editing.change(editing.now.with_moving(thing.name, on))
-
-        checkbox("Dynamic", thing.name in editing.now.moving, move, _CAN_MOVE)
+        wanted = now.with_primitive(primitive, False)
+    static, moving = thing.name in dict(now.static), thing.name in now.moving
+    if thing.moves and checkbox("Static", static, tip=_STATIC) != static:
+        wanted = now.with_static(thing.name, None if static else ui.controller.session.time)
+    elif not thing.moves and checkbox("Dynamic", moving, tip=_CAN_MOVE) != moving:
+        wanted = now.with_moving(thing.name, not moving)
+    if wanted is not now:
+        editing.change(wanted)
 
 
 def _lights(ui: Ui, edited: Edited) -> None:

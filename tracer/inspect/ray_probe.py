@@ -1,4 +1,4 @@
-"""Watching what becomes of one pixel's rays: stages that stand between those of a method, and change nothing.
+"""Watch what becomes of one pixel's rays, by stages that stand between those of a method and change nothing.
 
 A shadow ray that was open before a stage and is not open after it has been answered by that stage.  So a tile is shaded
 once more with a watcher before the first stage and one after each: what they see is what culling does, whatever the
@@ -15,11 +15,14 @@ from numpy.typing import NDArray
 
 from tracer.culling.shadow_batch import shadow_batch_in
 from tracer.culling.stages import call_at, vectors
-from tracer.kernels import entry
+from tracer.geometry.memory import aligned_rows
+from tracer.kernels import entry, kernel
 from tracer.methods.interface import Stage
-from tracer.shading.points import LIGHT_ROW, POINT_ROWS, points_in
-from tracer.shading.wave import WAVE_ROWS, wave_in
-from tracer.simd.records import I32, I64, F32x2D, I32x2D, reading
+from tracer.scene.arrays import Float32
+from tracer.shading.bounce import next_wave
+from tracer.shading.points import LIFTED_ROW, LIGHT_ROW, POINT_ROWS, POSITION_ROW, Points, points_in
+from tracer.shading.wave import DIRECTION, HIT_PRIMITIVE, ORIGIN, WAVE_ROWS, WEIGHT, wave_in
+from tracer.simd.records import I32, I64, F32x2D, I32x2D, reading, row_number
 
 # Of what is noted for a shadow ray: bits, and how many stages had been watched when it was answered, from 1 on; 0 for
 # one that no stage answers.
@@ -27,6 +30,7 @@ DUE, LIT, SETTLED = 1, 2, 4
 ANSWERED = 8  # bits to the left
 FIRST, END, WANTED = range(3)  # of `state`: the rows of the wave, and how many rows there should be
 ROOM = 64  # rays to begin with
+_ENTERING_ROW = row_number(Points, "entering")
 
 
 class Seen(NamedTuple):
@@ -48,6 +52,22 @@ class Seen(NamedTuple):
     noted: I32x2D
     kept: I32x2D
     given: I32x2D
+
+    def primitive(self, row: int) -> int:
+        """What a ray hits."""
+        return int(self.wave.view(np.int32)[row, HIT_PRIMITIVE])
+
+    def position(self, row: int) -> Float32:
+        """(3,) where a ray hits it."""
+        return self.point[row, POSITION_ROW : POSITION_ROW + 3]
+
+    def end(self, row: int) -> Float32:
+        """(3,) where the shadow rays of that point end, a little above it."""
+        return self.point[row, LIFTED_ROW : LIFTED_ROW + 3]
+
+    def ray(self, row: int) -> SentRay:
+        """A ray itself."""
+        return SentRay(False, *_vectors(self.wave[row]))
 
 
 class Watch(NamedTuple):
@@ -165,3 +185,46 @@ class Watchers:
         """What has been seen, of the rays that there are."""
         end = int(self._seen.state[END])
         return Seen._make([self._seen.state, *(array[:end] for array in self._seen[1:])])
+
+
+def make_ready() -> None:
+    """Compile all that is here."""
+    for watches in (find, choose, finish):
+        watches.compile()
+    secondary_rays(Watchers(0, 1)._seen, 0)
+
+
+class SentRay(NamedTuple):
+    """A ray on its way: whether it is a refracted one, and its origin, direction and weight (3,)."""
+
+    refracted: bool
+    origin: Float32
+    direction: Float32
+    weight: Float32
+
+    @property
+    def key(self) -> bytes:
+        """Its origin and direction, to the bit."""
+        return bytes(self.origin.tobytes() + self.direction.tobytes())
+
+
+def _vectors(wave: Float32) -> list[Float32]:
+    return [wave[first : first + 3].copy() for first in (ORIGIN, DIRECTION, WEIGHT)]
+
+
+@kernel
+def _send_on(rays, points, bounce, memory):
+    """What the first of some points sends on: the memory of the rays, and how many they are."""
+    wave, _ = next_wave(points_in(points), wave_in(rays, 1), bounce, memory)
+    return wave.memory, wave.size
+
+
+def secondary_rays(seen: Seen, row: int) -> list[SentRay]:
+    """The rays that the hit of a ray sends on, as shading would; the refracted one comes first."""
+    rays, points, memory = (aligned_rows(rows, 32) for rows in (WAVE_ROWS, POINT_ROWS, WAVE_ROWS))
+    rays[:], points[:] = seen.wave[row][:, None], seen.point[row][:, None]
+    points.view(np.int32)[_ENTERING_ROW] = seen.entering[row]
+    sent, size = _send_on(rays, points, int(seen.bounce[row]), memory)
+    found = [_vectors(sent[:, i]) for i in range(size)]
+    made = [SentRay(not np.array_equal(vectors[0], seen.end(row)), *vectors) for vectors in found]
+    return sorted(made, key=lambda ray: not ray.refracted)
