@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
 import pytest
+from numpy.typing import NDArray
+from PIL import Image
 
 from viewer.__main__ import main
+from viewer.cli.console import Work
 
 ROOM = """\
 b 0.2 0.3 0.4
@@ -35,10 +42,6 @@ def run(capfd: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str
     return code, out, err
 
 
-def render(capfd: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
-    return run(capfd, "render", *arguments, "--size", "48x32", "--threads", 1)
-
-
 def complaint(result: tuple[int, str, str]) -> str:
     """The one line that a failed command says."""
     code, out, err = result
@@ -46,3 +49,41 @@ def complaint(result: tuple[int, str, str]) -> str:
     assert out == ""
     assert err.startswith("shadowcull: error: ") and err.count("\n") == 1 and err.endswith("\n"), err
     return err
+
+
+class Run:
+    """Command lines of a test: what they print, and the files they write in the current folder."""
+
+    def __init__(self, capfd: pytest.CaptureFixture[str]) -> None:
+        self._capfd = capfd
+
+    def __call__(self, *arguments: object) -> tuple[int, str, str]:
+        """Exit code, standard output and standard error."""
+        return run(self._capfd, *arguments)
+
+    def ok(self, *arguments: object) -> str:
+        """The standard output of a command that succeeds."""
+        code, out, err = self(*arguments)
+        assert code == 0, err
+        return out
+
+    def fails(self, *arguments: object) -> str:
+        """The one line that a failing command says."""
+        return complaint(self(*arguments))
+
+
+def pixels(path: Path | str) -> NDArray[np.uint8]:
+    """(h, w, 3) uint8 of a written picture."""
+    with Image.open(path) as image:
+        return np.asarray(image.convert("RGB"))
+
+
+def stop_at(monkeypatch: pytest.MonkeyPatch, wanted: Callable[[str, int], bool]) -> None:
+    """Press Ctrl-C once a command's progress, a label and how much is done, is as wanted."""
+    count = Work.count
+
+    def counted(work: Work, label: str, done: int, total: int) -> None:
+        count(work, label, done, total)
+        work.stopped = work.stopped or wanted(label, done)
+
+    monkeypatch.setattr(Work, "count", counted)

@@ -19,7 +19,6 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import numpy as np
-from imgui_bundle import imgui
 from PIL import Image
 
 from tests.viewer import real_window
@@ -31,7 +30,6 @@ ROOT = Path(__file__).resolve().parent.parent
 SIZE = [1280, 800]  # of the window
 FILM_SIZE = (880, 550)
 FOLDER = ROOT / "assets" / "readme"
-KEY = imgui.Key
 START, FLOWN = 40, 24  # the frame where the flight begins, and how many frames it is long
 STILL, SAMPLES = 53, 16  # the frame of the still picture, and its samples per pixel
 STEP, HOLD = 90, 1100  # milliseconds that a frame of the film is shown, in motion and when it rests
@@ -64,16 +62,16 @@ class Film:
 def film(d: Driver) -> None:
     """The flight, the modes and the wipe."""
     _begin(d)
-    d.press(KEY.right_arrow, START)
+    d.press(*["RightArrow"] * START)
     film = Film(d)
     for _ in range(FLOWN):
-        d.press(KEY.right_arrow)
+        d.press("RightArrow")
         film.shoot()
     film.durations[-1] = HOLD
-    for key in (KEY._2, KEY._3, KEY.l):
+    for key in ("2", "3", "L"):
         d.press(key)
         film.shoot(HOLD)
-    d.press(KEY._9)
+    d.press("9")
     for wipe in 0.5 + 0.4 * np.sin(np.linspace(0.0, 2.0 * np.pi, 17)[:-1]):
         d.c.session.set_draw(wipe=float(wipe))
         film.shoot()
@@ -83,10 +81,8 @@ def film(d: Driver) -> None:
 def still(d: Driver) -> None:
     """The window with a clicked pixel, after some frames from which culling has learnt."""
     _begin(d)
-    d.press(KEY.right_arrow, STILL - 1)
-    d.settle()
-    d.press(KEY.right_arrow)
-    d.settle()
+    d.press(*["RightArrow"] * (STILL - 1)).settle()
+    d.press("RightArrow").settle()
     d.c.settings.change(samples=SAMPLES)
     d.wait(lambda: d.c.frame.settings.samples == SAMPLES, "all samples")
     d.c.selection.select(CLICKED)
@@ -100,8 +96,8 @@ def _begin(d: Driver) -> None:
     """Whole pictures only, from the first frame on, and the pointer out of the way, as it is drawn, too."""
     d.c.session.set_pace(progressive=False)
     d.context.mouse_move_to_pos((SIZE[0] - 1.0, SIZE[1] - 1.0))
-    d.settle()
-    d.press(KEY.home)
+    d.press("Backspace").settle()  # what pictures in parts have taught is forgotten
+    d.press("Home")
 
 
 def main(names: list[str]) -> int:

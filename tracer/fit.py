@@ -30,11 +30,6 @@ def too_few(method: Method, lights: int, samples: int) -> str:
     return f"{method.base} is for {MANY} {what} or more, and there {'is' if samples == 1 else 'are'} {samples} here"
 
 
-def says_nothing(method: Method, lights: int, lamps: int) -> bool:
-    """Whether a method knows nothing of any light: all of them are lamps of several samples."""
-    return lights == lamps and all(not kind.lamps and not kind.in_part for kind in method.kinds)
-
-
 def overview(lights: int, lamps: int) -> str:
     """Which methods take all of so many lights into account, `lamps` of them with several samples, and what the others
     leave to tracing, in a sentence; nothing where none leaves any."""

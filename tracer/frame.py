@@ -49,7 +49,7 @@ class Frame:
     modes_before : (units,) uint32 or uint64
         The same as the last frame left them: what shadow testing has gone by.
     pixel_count, highest_count : (units,) int32
-        Pixels that a unit covers now, and the most it covered while fully rendered.
+        Pixels that a unit covers now, and those that it covered when it was last examined; 0 where it never was.
     lights : int
         How many lights there are.
     asked, reached : (h, w, lights) uint16

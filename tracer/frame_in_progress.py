@@ -33,7 +33,7 @@ from tracer.shading.surfaces import see_surfaces
 from tracer.shading.teaching import find_untaught
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
 from tracer.state import State
-from tracer.statistics import BuiltPart, WrongCounts, gather, sample_counts, shadow_counts
+from tracer.statistics import WrongCounts, gather, sample_counts, shadow_counts
 from tracer.tiles import Tile, nearest_first, tiles_of, tiles_to_shade
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
@@ -451,8 +451,7 @@ class FrameInProgress:
         statistics.resting = self._resting_primitives()
         if settings.record_lights:
             statistics.samples = sample_counts(buffers.asked, buffers.reached)
-        built = self._state.world.built()
-        statistics.built = None if built is None else BuiltPart(*built)
+        statistics.built = self._state.world.built()
         layers: dict[str, Any] = {}
         for method in self.methods:
             method.report(statistics)

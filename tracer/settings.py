@@ -59,7 +59,7 @@ class Settings:
     )  # fmt: skip
     zoom_factor: float = setting(
         4.0, "Zoom factor",
-        "Examine a primitive anew once it covers this many times its highest pixel count (§2.6).",
+        "Examine a primitive anew once it covers this many times the pixels of its last examination (§2.6).",
         low=1.0, slider=(1.0, 64.0), log=True, digits=1, option="--zoom-factor", panel="Culling", applies=_keeps_modes,
     )  # fmt: skip
     modes: bool = setting(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.counters import BY_LIGHT, PRIMARY, RAYS, SECONDARY, SHADOW, STEPS, TESTS, ShadowCounter
 from tracer.culling.mode_changes import ModeChanges
+from tracer.geometry.structure import BuiltPart
 
 if TYPE_CHECKING:
     from tracer.culling.certified.scheduler import Counts
@@ -165,34 +166,6 @@ def sample_counts(asked: NDArray[np.uint16], reached: NDArray[np.uint16]) -> Sam
     partly &= reached > 0
     due, arrived = (int(samples.sum(dtype=np.int64)) for samples in (asked, reached))
     return SampleCounts(due, arrived, int(np.count_nonzero(partly.any(axis=1))))
-
-
-@dataclass
-class BuiltPart:
-    """How much rays have had built so far of a tree that is built where they arrive: "kdtree-lazy", or "bvh8" of a
-    large scene.
-
-    Attributes
-    ----------
-    nodes : int
-        Nodes that are built.
-    primitives : int
-        Primitives in them.
-    of : int
-        Primitives in all.
-    memory_bytes : int
-        Memory of the tree, with what it keeps of primitives that no ray has come near.
-    """
-
-    nodes: int
-    primitives: int
-    of: int
-    memory_bytes: int
-
-    @property
-    def share(self) -> float:
-        """The part of the primitives that is built, 0 to 1."""
-        return self.primitives / max(self.of, 1)
 
 
 @dataclass

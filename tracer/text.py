@@ -11,6 +11,11 @@ def printable(text: object) -> str:
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(text))
 
 
+def mode_in_words(name: str) -> str:
+    """Return the name of a mode, such as NON_SHADOW, as people read it: non-shadow."""
+    return name.lower().replace("_", " ").replace("non shadow", "non-shadow")
+
+
 def saved(part: float, spread: float | None = None) -> str:
     """Return which part of some work is saved, and how much that varies: 41.2%, 41.2% ± 1.2; where more than ten times
     as much is done instead, how many times: 1,194 × as many."""

@@ -135,8 +135,8 @@ def test_a_zoom_test_is_drawn_with_counts_limits_marks_and_wrong_pixels() -> Non
     counts, wrong = figure.axes
     drawn = {line.get_label(): list(zip(line.get_xdata(), line.get_ydata())) for line in counts.get_lines()}
     assert drawn["the primitive's pixels"] == [(0, 10), (1, 11), (2, 12), (3, 13)]
-    assert drawn["4 × highest count"] == [(0, 20), (1, 20), (2, 48), (3, 48)]
-    assert drawn["64 × highest count"] == [(0, 320), (1, 320)]
+    assert drawn["4 × last examination"] == [(0, 20), (1, 20), (2, 48), (3, 48)]
+    assert drawn["64 × last examination"] == [(0, 320), (1, 320)]
     assert drawn["modes change, factor 4"] == [(2, 12)]
     assert list(wrong.get_lines()[0].get_ydata()) == [0, 2, 3, 0] and counts.get_yscale() == "log"
     assert "Never fully rendered" not in figure.get_suptitle()

@@ -18,7 +18,7 @@ from tracer.geometry.bvh8 import pieces
 from tracer.geometry.bvh8.pieces import PiecewiseTree
 from tracer.geometry.layout import triangle_rows
 from tracer.geometry.rays import Rays
-from tracer.geometry.structure import Built
+from tracer.geometry.structure import BuiltPart
 from tracer.geometry.wide_tree.cells import cells_over
 from tracer.method import bases
 from tracer.scene.model import Cancelled, Scene
@@ -30,7 +30,7 @@ def tiny_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pieces, "PIECE_SIZE", 16)
 
 
-def built(world: tracer.World) -> Built:
+def built(world: tracer.World) -> BuiltPart:
     told = world.built()
     assert told is not None
     return told
@@ -48,7 +48,7 @@ def assert_alike(lazy: tracer.World, whole: tracer.World, rays: Rays, threads: i
 
 
 def test_random_worlds_answer_alike_lazy_whole_and_not_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    parts: list[Built] = []
+    parts: list[BuiltPart] = []
 
     @quickly(12)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -15,6 +15,7 @@ from tracer.culling.fate import CACHED, CANDIDATES, CULLED, DYNAMIC_ONLY, FACES_
 from tracer.culling.voxels.grid import VoxelGrid
 from tracer.culling.voxels.tell import VoxelStates
 from tracer.frame import Frame, Settings
+from tracer.geometry.structure import BuiltPart
 from tracer.geometry.tree_parts import PartsAt, nothing_at
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
@@ -28,7 +29,7 @@ from tracer.scene.model import (
     Triangles,
     empty_quadrics,
 )
-from tracer.statistics import BuiltPart, CutCounts, FrameStatistics, WrongCounts
+from tracer.statistics import CutCounts, FrameStatistics, WrongCounts
 
 TINY_SCENE = """
 b 0.3 0.4 0.5
@@ -51,6 +52,15 @@ p 4
 4 0 -4
 a 0 4 20
 """
+
+
+def wall_of_triangles(wide: int, high: int, depths: Iterable[int]) -> str:
+    """A scene as an AFF file: grids of triangles, one behind the other."""
+    lines = ["v", "from 20 15 40", "at 20 15 0", "up 0 1 0", "angle 40", "hither 0.1", "resolution 8 8", "l 1 9 30",
+             "f 1 0 0 1 0 1 0 1"]  # fmt: skip
+    for z in depths:
+        lines += [f"p 3\n{x} {y} {z}\n{x + 1} {y} {z}\n{x} {y + 1} {z + 0.5}" for x, y in np.ndindex(wide, high)]
+    return "\n".join(lines) + "\n"
 
 
 def triangles(count: int) -> Triangles:

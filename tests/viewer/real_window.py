@@ -55,6 +55,8 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
         driver = Driver(app, context, Path(folder), dozes=name in DOZING)
         try:
             played = True
+            if name != "starting":
+                driver.settle()
             SCENARIOS[name](driver)
         except BaseException as error:
             failed.append(error)

@@ -13,6 +13,7 @@ from tracer.inspect.path_records import VERDICTS, RayTree
 from tracer.inspect.why_in_words import primitive_in_words
 from tracer.scene.lights import named_light
 from tracer.scene.model import Camera, Scene
+from tracer.text import mode_in_words
 
 PATH, AROUND = "path", "around"
 """Where a counterexample is: on the path that was searched, or beside it."""
@@ -79,8 +80,8 @@ def frame_of(example: Counterexample, scene: Scene) -> str:
 
 
 def verdict_of(example: Counterexample) -> str:
-    """Return the mode that culling goes by, such as "non shadow"."""
-    return example.verdict.replace("_", " ").lower()
+    """Return the mode that culling goes by, such as "non-shadow"."""
+    return mode_in_words(example.verdict)
 
 
 def taught_by(example: Counterexample, scene: Scene) -> str:

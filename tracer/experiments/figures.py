@@ -182,7 +182,7 @@ def zoom_figure(results: zoom.Results) -> Figure:
         numbers, factor = [step.number for step in approach.steps], f"{approach.factor:g}"
         limits = [approach.factor * step.highest or np.nan for step in approach.steps]
         looks = look(place)
-        counts.step(numbers, limits, where="post", label=f"{factor} × highest count", **looks)
+        counts.step(numbers, limits, where="post", label=f"{factor} × last examination", **looks)
         changed = [step.number for step in approach.steps if step.changes]
         marks = [max(approach.steps[number].pixels, 0.5) for number in changed]
         mark = {"marker": MARKS[place % len(MARKS)], "color": looks["color"], "linestyle": "", "mec": "white"}

@@ -2,8 +2,8 @@
 
 A primitive that was seen whole from afar is culled by what its few pixels met then.  A camera goes
 straight towards it, so that it covers more and more pixels; once they are more than `zoom_factor`
-times its highest count it is examined anew, and what was wrong until then should vanish.  The same
-way is gone once for each factor, every time with modes that start afresh.
+times those of its last examination it is examined anew, and what was wrong until then should
+vanish.  The same way is gone once for each factor, every time with modes that start afresh.
 """
 
 from __future__ import annotations
@@ -62,8 +62,9 @@ class Change:
 
 @dataclass(frozen=True)
 class Step:
-    """A frame on the way, as the frame leaves things: `pixels` that the primitive covers and the `highest` count,
-    its occlusion mode, its shadow mode for each light (None for a light without modes), and the modes that changed.
+    """A frame on the way, as the frame leaves things: `pixels` that the primitive covers and those of its last
+    examination (`highest`), its occlusion mode, its shadow mode for each light (None for a light without modes), and
+    the modes that changed.
 
     `wrong` counts the pixels with a wrong shadow answer, and `wrong_of_primitive` those that show the primitive.
     `due`, `culled` and `dynamic_only` count shadow rays of the whole frame."""
@@ -98,7 +99,7 @@ class Approach:
 
     @property
     def seen_whole(self) -> bool:
-        """Whether the primitive was ever fully rendered: else it has no highest count, and is never culled."""
+        """Whether the primitive was ever fully rendered: else it is never culled."""
         return any(step.highest for step in self.steps)
 
     @property

@@ -6,7 +6,8 @@ else knows which, or looks inside.
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,14 +20,32 @@ from tracer.kernels import Entry
 from tracer.scene.arrays import Float64
 
 
-class Built(NamedTuple):
-    """How much there is of a tree that is built where rays arrive: its nodes; the primitives in them, of so many; and
-    the bytes of all of it, with what is kept of primitives that no ray has come near."""
+@dataclass(frozen=True)
+class BuiltPart:
+    """How much rays have had built so far of a tree that is built where they arrive: "kdtree-lazy", or "bvh8" of a
+    large scene.
+
+    Attributes
+    ----------
+    nodes : int
+        Nodes that are built.
+    primitives : int
+        Primitives in them.
+    of : int
+        Primitives in all.
+    memory_bytes : int
+        Memory of the tree, with what it keeps of primitives that no ray has come near.
+    """
 
     nodes: int
     primitives: int
     of: int
     memory_bytes: int
+
+    @property
+    def share(self) -> float:
+        """The part of the primitives that is built, 0 to 1."""
+        return self.primitives / max(self.of, 1)
 
 
 class Structure(Protocol):
@@ -58,7 +77,7 @@ class Structure(Protocol):
     def build(self) -> None:
         """Build now what waits for rays, where it need not; for who measures frames."""
 
-    def built(self) -> Built | None:
+    def built(self) -> BuiltPart | None:
         """How much of it rays have had built so far; None for a structure that is built before they come."""
 
     def parts_built(self) -> TreeParts | None:

@@ -22,7 +22,7 @@ from tracer.geometry.poses import Poses, poses_at
 from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
 from tracer.geometry.queries import EVERYTHING, batch_of
 from tracer.geometry.rays import Hits, Rays
-from tracer.geometry.structure import Built, Structure
+from tracer.geometry.structure import BuiltPart, Structure
 from tracer.geometry.tree_parts import TreeParts
 from tracer.kernels import Entry
 from tracer.parallel import for_each_chunk, thread_count
@@ -295,7 +295,7 @@ class World:
         """Build now what `lazy` left, so that no frame has to: for measurements."""
         self.structure.build()
 
-    def built(self) -> Built | None:
+    def built(self) -> BuiltPart | None:
         """How much of the trees rays have had built so far; None where all are built before rays come."""
         return self.structure.built()
 

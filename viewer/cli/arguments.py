@@ -25,7 +25,7 @@ from tracer.scene.limits import LARGEST
 from tracer.setting import Setting
 from tracer.similar import similar
 from viewer.state.draw_options import DrawOptions
-from viewer.state.views import View
+from viewer.state.views import Record, View
 from viewer.util.messages import ERROR, say
 
 T = TypeVar("T")
@@ -164,7 +164,8 @@ def camera(text: str) -> Camera:
 
 def view_form(view: View) -> str:
     """Return a view as it is given, with what it takes: shadow:LIGHT, wipe:PART, saved:share."""
-    takes = ":LIGHT" if view.of_light else ":PART" if view is View.WIPE else "[:share]" if view.needs_work else ""
+    shares = "[:share]" if view.records is Record.WORK else ""
+    takes = ":LIGHT" if view.of_light else ":PART" if view is View.WIPE else shares
     return view.value + takes
 
 
@@ -184,7 +185,7 @@ def view(text: str) -> DrawOptions:
             return replace(chosen, light=count(0, 2**31 - 1)(detail))
         if found is View.WIPE:
             return replace(chosen, wipe=number(0.0, 1.0)(detail))
-        if found.needs_work and detail == "share":
+        if found.records is Record.WORK and detail == "share":
             return replace(chosen, shares=True)
     except ValueError as error:
         why = f": {error}"

@@ -9,6 +9,7 @@ from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
+from tracer.experiments.camera_path import Stop
 from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
@@ -20,7 +21,6 @@ from viewer.cli.console import working
 from viewer.output import capture
 from viewer.services import film as films
 from viewer.services import stills
-from viewer.state.navigation import Stop
 from viewer.state.preferences import load_preferences
 
 EPILOG = """\

@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from tracer.experiments import counterexample, hunt
+from tracer.experiments.camera_path import along_path
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.hunt import Hunt, Search
 from tracer.experiments.titles import title
@@ -27,7 +28,6 @@ from viewer.output import commands, exports
 from viewer.output.comparison import Comparison, Crop
 from viewer.output.reports import findings
 from viewer.services import stills
-from viewer.state import navigation
 from viewer.state.methods import NO_CULLING
 from viewer.state.view_state import ViewState, Warmup
 
@@ -82,7 +82,7 @@ def run(given: Namespace) -> int:
     with working() as work:
         scene = options.read_scene(given.path, given, work)
         first, last = given.frames or (0, scene.frames - 1)
-        times = [take.time for take in navigation.along_path(scene, first, last)][:: given.step]
+        times = [take.time for take in along_path(scene, first, last)][:: given.step]
         search = Search(settings, times, given.camera, given.around, given.radius, given.seed, given.keep)
         if given.output is not None:
             _check_folder(given.output)

@@ -23,7 +23,7 @@ from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
 from viewer.state.methods import BY_MODES, SHOWN_BY, default_for
 from viewer.state.view_state import ViewState, Warmup
-from viewer.state.views import View
+from viewer.state.views import Record, View
 
 DRAWN = [one for one in settings_of(DrawOptions) if one.option and f"draw.{one.path}" not in commands.NOT_PLAIN]
 OR_PICTURE = ", or a saved picture or a state as .json, for its scene, settings and view"
@@ -114,7 +114,7 @@ def check_view(settings: Settings, view: View, option: str = "--method") -> None
     }
     if not shown.get(view, True):
         raise ValueError(f"--view {view}: the method {method} has nothing for it; give {option} {SHOWN_BY[view]}")
-    if view.needs_fates and method.clusters:
+    if view.records is Record.FATES and method.clusters:
         why = f"the method {method} shades by clusters of lights: single lights have no rays"
         raise ValueError(f"--view {view}: {why}; give {option} {BY_MODES}")
 

@@ -35,8 +35,8 @@ examples:
   shadowcull zoom figure4 --pixel 64,64 --size 128x128 --json zoom.json --csv zoom.csv
 
 The camera moves straight towards the primitive; the first frames stay in place until the modes settle. The primitive
-is culled by what its few pixels met from afar, until it covers more pixels than the zoom factor times its highest
-pixel count. Every culled shadow ray is verified, and a pixel with a wrong answer is a wrong pixel: in the files
+is culled by what its few pixels met from afar, until it covers more than the zoom factor times the pixels of its
+last examination. Every culled shadow ray is verified, and a pixel with a wrong answer is a wrong pixel: in the files
 wrong_of_primitive counts those of the primitive, wrong those of the whole picture. Ctrl-C keeps the finished frames;
 the exit code is then 130.
 

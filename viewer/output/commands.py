@@ -27,7 +27,7 @@ from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, as_options
-from viewer.state.views import View
+from viewer.state.views import Record, View
 from viewer.util import resources
 
 CHANCE = "what is certified depends on time and threads"
@@ -37,7 +37,7 @@ BUILT = "what rays have had built depends on all that has been seen"
 def needs_history(state: ViewState) -> bool:
     """Return whether frames before it show in the picture of a state."""
     method, view = Method.parse(state.settings.method), state.draw.view
-    of_culling = view is View.CERTIFICATE or ((view.needs_work or view.needs_fates) and method.culls)
+    of_culling = view is View.CERTIFICATE or (view.records in (Record.WORK, Record.FATES) and method.culls)
     of_modes_or_tree = view.of_modes or view is View.TREE
     return of_culling or of_modes_or_tree or state.draw.savings is not None or not method.exact
 
@@ -108,7 +108,7 @@ def _view(state: ViewState) -> list[str]:
     draw, view = state.draw, state.draw.view
     light = f":{state.edits.light_number(draw.light)}" if view.of_light else ""
     line = f":{draw.wipe!r}" if view is View.WIPE else ""
-    shares = ":share" if view.needs_work and draw.shares else ""
+    shares = ":share" if view.records is Record.WORK and draw.shares else ""
     return [] if view is View.COLOR else ["--view", f"{view.value}{light}{line}{shares}"]
 
 

@@ -17,6 +17,7 @@ from tracer.scene.model import Scene
 from viewer.output.capture import CHUNK
 from viewer.state import codec
 from viewer.state.view_state import ViewState
+from viewer.state.views import Record
 from viewer.util.numbers import changed
 from viewer.views import colorize
 
@@ -96,7 +97,7 @@ class Shown:
         """What has the first and the last colour, for all methods: as was asked for, or of a map of work that of all;
         None in other views."""
         view = self.state.draw.view
-        if self.state.draw.span is not None or not view.needs_work:
+        if self.state.draw.span is not None or view.records is not Record.WORK:
             return self.state.draw.span
         return 0.0, max(view.declared.span(frame)[1] for frame in self.frames.values())
 

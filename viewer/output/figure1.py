@@ -152,11 +152,10 @@ def _shadow_testing(frame: Frame, method: Method, by_modes: bool) -> Stage:
     else:
         rule = "All rays are traced."
     would = any(part.would for part in bar)
-    names = palette.FATE_WOULD if would and by_modes else palette.FATE_NAMES
     flows = tuple(
-        Flow(names[fate], number, palette.FATE_COLORS[fate], palette.FATE_MEANING[fate], View.FATE,
+        Flow(palette.FATE_WOULD[fate] if would and by_modes else one.name, number, one.color, one.meaning, View.FATE,
              percent(number, s.shadow.due), hollow=would and fate.is_saved)
-        for fate, number in sorted(rays.items())
+        for fate, number, one in ((fate, rays[fate], palette.FATES[fate]) for fate in sorted(rays))
     )  # fmt: skip
     if s.wrong is not None and s.cuts is None:
         tip, wrong = f"{terms.MEANINGS[terms.WRONG]}: {verified.share(s.wrong)}", s.wrong
@@ -172,15 +171,15 @@ def _shadow_mode_setting(changes: ModeChanges) -> Stage:
         "PARTIAL_SHADOW, and always traced."
     )
 
-    def gained(mode: ShadowMode, name: str, number: int) -> Flow:
-        meaning, now = palette.SHADOW_MEANING[mode], count(changes.shadow_modes[mode.name.lower()])
-        tip = f"{meaning}: modes gained in this frame, of a primitive and a light each; there are {now} now"
-        return Flow(f"→ {name}", number, palette.SHADOW_COLORS[mode], tip, View.SHADOW)
+    def gained(mode: ShadowMode, number: int) -> Flow:
+        one, now = palette.SHADOW[mode], count(changes.shadow_modes[mode.name.lower()])
+        tip = f"{one.meaning}: modes gained in this frame, of a primitive and a light each; there are {now} now"
+        return Flow(f"→ {one.name}", number, one.color, tip, View.SHADOW)
 
     flows = (
-        gained(ShadowMode.FULL_SHADOW, "full shadow", changes.full_shadow),
-        gained(ShadowMode.NON_SHADOW, "non-shadow", changes.non_shadow),
-        gained(ShadowMode.PARTIAL_SHADOW, "partial shadow", changes.partial_shadow),
+        gained(ShadowMode.FULL_SHADOW, changes.full_shadow),
+        gained(ShadowMode.NON_SHADOW, changes.non_shadow),
+        gained(ShadowMode.PARTIAL_SHADOW, changes.partial_shadow),
     )
     return Stage("Shadow-mode setting", rule, flows, View.SHADOW, "§2.5")
 
@@ -197,15 +196,15 @@ def _occlusion_mode_setting(frame: Frame, method: Method, changes: ModeChanges) 
         _modes_of(OcclusionMode.PARTIALLY_OCCLUDED, "→ partially occluded", changes.partially_occluded,
                   f"{units} that became PARTIALLY_OCCLUDED, and were not in the last frame"),
         _modes_of(OcclusionMode.INIT, "→ examined anew", changes.examined_anew,
-                  f"{units} that went from FULLY_RENDERED to INIT, as they cover more than {factor} times their "
-                  "highest pixel count: they may show shadows that were too small before", View.PIXEL_COUNT),
+                  f"{units} that went from FULLY_RENDERED to INIT, as they cover more than {factor} times the pixels "
+                  "of their last examination: they may show shadows that were too small before", View.PIXEL_COUNT),
     )  # fmt: skip
     stage = Stage("Occlusion-mode setting", rule, flows, View.OCCLUSION, "§2.6")
     return _timed(frame.statistics, stage, "mode setting", counted=method.uses_modes)
 
 
 def _modes_of(mode: OcclusionMode, name: str, number: int, tip: str = "", view: View = View.OCCLUSION) -> Flow:
-    return Flow(name, number, palette.OCCLUSION_COLORS[mode], tip or palette.OCCLUSION_MEANING[mode], view)
+    return Flow(name, number, palette.OCCLUSION[mode].color, tip or palette.OCCLUSION[mode].meaning, view)
 
 
 def _notes(s: FrameStatistics, method: Method, changes: ModeChanges | None) -> Iterator[str]:

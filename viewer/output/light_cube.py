@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from tracer.culling.lightbuffer.cubes import Cube
 from tracer.culling.lightbuffer.tell import full_depths, list_lengths
 from tracer.culling.modes import ShadowMode
-from viewer.state.palette import BACKGROUND, GREY, LIGHT, SHADOW_COLORS, Color, color_map
+from viewer.state.palette import BACKGROUND, GREY, LIGHT, SHADOW, Color, color_map
 from viewer.util.numbers import count, percent
 from viewer.views.legend import Entry, Legend, Scale
 
 _CROSS = {(1, 0): "+x", (1, 1): "+z", (1, 2): "-x", (1, 3): "-z", (0, 1): "+y", (2, 1): "-y"}  # row and column
 NOTHING_THERE: Color = LIGHT
-COVERED: Color = SHADOW_COLORS[ShadowMode.FULL_SHADOW]
+COVERED: Color = SHADOW[ShadowMode.FULL_SHADOW].color
 
 
 def _ways(face: str, side: int) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from tracer.frame import Frame
-from viewer.state.palette import DARK, FATE_COLORS, LIGHT, Color, hex_color, label_color
+from viewer.state.palette import DARK, FATES, LIGHT, Color, hex_color, label_color
 from viewer.state.savings import WOULD_OPACITY, bar_of, counters, in_words, places
 from viewer.views.legend import BACKDROP_OPACITY, Legend, fitting, wrapped
 
@@ -57,7 +57,7 @@ def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None
     draw, letters, bottom = ImageDraw.Draw(strip), font(size), strip.height - margin
     for part, left, right in places(bar, margin, strip.width - margin):
         if right > left:
-            color, there = FATE_COLORS[part.fate], WOULD_OPACITY if part.would else 1.0
+            color, there = FATES[part.fate].color, WOULD_OPACITY if part.would else 1.0
             drawn = np.multiply(there, color) + np.multiply(1.0 - there, DARK)
             draw.rectangle((left, bottom - height, right - 1, bottom - 1), in_bytes((drawn[0], drawn[1], drawn[2])))
             text = part.label(letters.getlength, right - left - 2 * pad)

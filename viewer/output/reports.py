@@ -14,7 +14,7 @@ from tracer.experiments.titles import WRONG_PIXELS, FactorStep
 from tracer.experiments.zoom import Change, Step
 from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
-from tracer.text import printable, saved
+from tracer.text import mode_in_words, printable, saved
 from viewer.util.numbers import memory
 
 T = TypeVar("T")
@@ -104,14 +104,14 @@ def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
 
 
 def changes_in_words(changes: Sequence[Change]) -> list[str]:
-    """Say what changes, e.g. "lights 0, 2: init → non shadow"; lights that change alike are named together."""
+    """Say what changes, e.g. "lights 0, 2: init → non-shadow"; lights that change alike are named together."""
     alike: dict[tuple[bool, str, str], list[str]] = {}
     for change in changes:
         alike.setdefault((change.light is None, change.before, change.after), []).append(str(change.light))
     said = []
     for (own, before, after), lights in alike.items():
         whose = "" if own else f"light{'s' * (len(lights) > 1)} {', '.join(lights)}: "
-        said.append(f"{whose}{before} → {after}".replace("_", " ").lower())
+        said.append(f"{whose}{mode_in_words(before)} → {mode_in_words(after)}")
     return said
 
 
@@ -123,7 +123,7 @@ STEPS: tuple[Column[FactorStep], ...] = (
            wrong=lambda row: row[1].wrong_of_primitive > 0),
     Column("changes", "modes that change", lambda row: "; ".join(changes_in_words(row[1].changes)), text=True),
     Column("in picture", "wrong pixels of the whole picture", lambda row: f"{row[1].wrong:,}"),
-    Column("highest", "highest pixel count so far", lambda row: f"{row[1].highest:,}"),
+    Column("highest", "pixels of its last examination", lambda row: f"{row[1].highest:,}"),
     Column("distance", "from the camera to the primitive", lambda row: f"{row[1].distance:.4g}"),
 )  # fmt: skip
 

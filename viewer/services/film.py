@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.experiments.camera_path import Stop, Take, along_path, through
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Cancelled, Scene
@@ -28,15 +29,16 @@ from viewer.services import stills
 from viewer.services.named_states import Bookmarks
 from viewer.services.pictures import Pictures
 from viewer.services.runs import FileRun, Runs
-from viewer.state import codec, navigation
-from viewer.state.navigation import Stop, Take
+from viewer.state import codec
 from viewer.state.plans import FilmPlan
 from viewer.state.preferences import NamedState, Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
+from viewer.state.views import Record
 from viewer.util.files import check_writable, whole_file
 
 VIDEO = ".mp4"
+SECONDS_BETWEEN_STOPS = 2.0  # where no length is given
 QUALITY = "16"  # of x264: what the eye can hardly tell from the pictures
 FILMED = "its modes were learnt from the frames of its film before it"
 NEEDS_PYAV = "a video needs PyAV; install shadowcull[video] (pip install av), or give a folder for the pictures alone"
@@ -74,7 +76,7 @@ def frame_count(frames: tuple[int, int], stops: int | None, seconds: float, fps:
     from one stop to another."""
     if stops is None:
         return max(2, round(seconds * fps)) if seconds else frames[1] - frames[0] + 1
-    return max(2, round((seconds or navigation.LEG * (stops - 1)) * fps)) if stops > 1 else 0
+    return max(2, round((seconds or SECONDS_BETWEEN_STOPS * (stops - 1)) * fps)) if stops > 1 else 0
 
 
 def takes(
@@ -88,14 +90,14 @@ def takes(
     """The takes of a film, as `frame_count` counts them; raises ValueError, in one line, where there can be none."""
     count = frame_count(frames, None if stops is None else len(stops), seconds, fps)
     if stops is None:
-        return navigation.along_path(scene, *frames, count if seconds else None, camera)
+        return along_path(scene, *frames, count if seconds else None, camera)
     if not count:
         raise ValueError(f"a flight needs two bookmarks, or saved pictures, at least; there are {len(stops)}")
     start, end = scene.time_range
     for stop in stops:
         if not start <= stop.time <= end:
             raise ValueError(f"a stop's time, {stop.time:g} s, is not within the scene's, {start:g} to {end:g} s")
-    return navigation.through(stops, count)
+    return through(stops, count)
 
 
 def stops_of(bookmarks: Sequence[NamedState], scene: Scene) -> list[Stop]:
@@ -117,15 +119,15 @@ class FilmRun(FileRun):
     ) -> None:
         self.takes, self.state, self.folder, self.video, self.fps = takes, state, folder, video, fps
         self.view, self.remark = state.draw.view, ""
-        self.verifies = state.settings.verify or self.view.needs_verify
+        self.verifies = state.settings.verify or self.view.records is Record.VERIFY
         super().__init__(scene, len(takes))
         self.output = video or folder
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Path]:
         renderer, add = Renderer(scene, self.state.settings, world=world), None
         with ExitStack() as stack:
-            for take, path in zip(self.takes, self._paths()):
-                state = self._state_of(take, scene)
+            for number, path in enumerate(self._paths()):
+                state = self._state_of(number, scene)
                 try:
                     frame = stills.trace(renderer, state.with_warmup(of_path=0), cancelled=cancel)
                 except Cancelled:
@@ -141,17 +143,16 @@ class FilmRun(FileRun):
 
     def _paths(self) -> list[Path]:
         """The picture of each take: by the number of its frame, or else they are counted from 0."""
-        of_path = [take.number for take in self.takes if take.number is not None]
-        numbers = of_path if len(of_path) == len(self.takes) else list(range(len(self.takes)))
+        numbers = [at if take.number is None else take.number for at, take in enumerate(self.takes)]
         digits = max(4, len(str(max(numbers))))
         return [self.folder / f"{number:0{digits}d}.png" for number in numbers]
 
-    def _state_of(self, take: Take, scene: Scene) -> ViewState:
+    def _state_of(self, number: int, scene: Scene) -> ViewState:
         """How to make a take again, alone: after as many frames of the scene's path, where these were before it."""
+        take = self.takes[number]
         state = replace(self.state, time=take.time, camera=take.camera)
         if needs_history(state) and not state.warmup.unknown:  # where chance has a part in it, nothing brings it back
-            unknown = take.warmup is None
-            state = state.with_warmup(unknown=FILMED) if unknown else state.with_warmup(of_path=take.warmup or 0)
+            state = state.with_warmup(unknown=FILMED) if take.number is None else state.with_warmup(of_path=number)
         return stills.with_caption_filled(state, scene)
 
 

@@ -12,7 +12,7 @@ from tracer.scene.model import Camera, Scene
 from viewer.state.methods import NO_CULLING, with_base
 from viewer.state.session import NOWHERE
 from viewer.state.view_state import ViewState
-from viewer.state.views import records_fates, records_lights
+from viewer.state.views import recording
 
 
 @dataclass(frozen=True)
@@ -73,13 +73,13 @@ class FrameInputs:
         chosen, view, (width, height) = self.state.settings, self.state.draw.view, self.full_size
         lights = len(self.scene.lights) if self.scene is not None else 0
         method = self._until_ready(chosen.method)
+        recorded = recording(view, width * height, lights)
+        recorded["verify"] |= chosen.verify
+        recorded["record_work"] |= self.counting
         return replace(
             chosen,
+            **recorded,
             method=method,
-            verify=chosen.verify or view.needs_verify,
-            record_work=view.needs_work or self.counting,
-            record_lights=records_lights(view, width * height, lights),
-            record_fates=records_fates(view, width * height, lights),
             modes=not Method.parse(method).clusters,  # which would look at single lights for these alone
             certificate_seconds=self.state.pace.certificate_share * self.frame_seconds,
         )

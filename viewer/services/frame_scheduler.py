@@ -21,7 +21,7 @@ from viewer.services.render_request import RenderRequest, Traced, Warmup, as_ask
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
 from viewer.state.view_state import ViewState
-from viewer.state.views import View, can_draw
+from viewer.state.views import Record, View, can_draw
 from viewer.views import view_of
 
 
@@ -75,7 +75,7 @@ class FrameScheduler:
         if frame is None or self.inputs.run is not None or draw.light >= frame.lights:
             return
         lacks = not (frame.settings.record_lights or can_draw(frame, draw.view, draw.light))
-        if lacks and draw.view.needs_lights and draw.view.of_light:
+        if lacks and draw.view.records is Record.LIGHTS and draw.view.of_light:
             answer = self._thread.query(_with_light, frame, draw.light)
             if answer.done() and not answer.cancelled() and answer.exception() is None and self.traced is not None:
                 found: Frame = answer.result()  # with as many samples, or fewer: the light is the same
@@ -285,10 +285,10 @@ class FrameScheduler:
         if draw.view is view:
             return title
         settings = self.inputs.settings
-        comes = settings.record_fates if draw.view.needs_fates else draw.view.records is not None
+        comes = settings.record_fates if draw.view.records is Record.FATES else draw.view.records is not None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
             return f"{draw.view.label}: not available here, {view.label.lower()} shown"
-        return f"{draw.view.label}: {'verifying' if draw.view.needs_verify else 'counting'} ..."
+        return f"{draw.view.label}: {'verifying' if draw.view.records is Record.VERIFY else 'counting'} ..."
 
 
 def _with_light(renderer: Renderer, frame: Frame, light: int, _cancelled: Callable[[], bool]) -> Frame:

@@ -25,7 +25,7 @@ from viewer.state.plans import PicturePlan
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState, Warmup
-from viewer.state.views import View
+from viewer.state.views import Record, View
 from viewer.util.files import write_new
 
 UNKNOWN = "its modes were learnt from other frames as well"
@@ -90,7 +90,7 @@ class Pictures:
             return None
         draw = replace(
             session.draw, view=view, legend=self._preferences.legend_in_pictures, zoom=FIT,
-            magnified=self._scheduler.magnified if view.needs_verify else 1,
+            magnified=self._scheduler.magnified if view.records is Record.VERIFY else 1,
             savings="" if self._preferences.savings_in_pictures else None,
         ).as_needed()  # fmt: skip
         state = replace(session.state_of(frame), draw=draw, warmup=Warmup())

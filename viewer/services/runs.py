@@ -14,6 +14,7 @@ from functools import partial
 from pathlib import Path
 
 from tracer.experiments import experiment, hunt, zoom
+from tracer.experiments.camera_path import along_path
 from tracer.experiments.experiment import Experiment
 from tracer.experiments.filmstrip import Filmstrip
 from tracer.experiments.hunt import Hunt, Search
@@ -28,7 +29,6 @@ from viewer.output import exports
 from viewer.services.capture_service import CaptureService
 from viewer.services.inspector import Selection
 from viewer.services.render_request import RenderRequest, Task, Traced
-from viewer.state import navigation
 from viewer.state.methods import BY_MODES, CERTIFIED
 from viewer.state.notices import Notices
 from viewer.state.plans import ExperimentPlan, HuntPlan, ZoomPlan, parse_factors
@@ -77,7 +77,7 @@ def missing_in(run: Run, view: View) -> str:
     if isinstance(run, FileRun) and run.view is None:
         return "is traced beside it"
     drawn = isinstance(run, FileRun) and run.view is view
-    if view.records is None or drawn or (view.needs_verify and run.verifies):
+    if view.records is None or drawn or (view.records is Record.VERIFY and run.verifies):
         return ""
     return _NOT_RECORDED[view.records]
 
@@ -242,7 +242,7 @@ class Runs:
 
         def make(scene: Scene) -> Run:
             plan = self.hunt_plan
-            times = [take.time for take in navigation.along_path(scene, *plan.frames(scene))][:: plan.step]
+            times = [take.time for take in along_path(scene, *plan.frames(scene))][:: plan.step]
             settings = replace(
                 self._session.settings, method=plan.method, width=plan.size[0], height=plan.size[1], samples=1,
                 certificate_seconds=math.inf, verify=True,

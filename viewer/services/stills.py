@@ -33,7 +33,7 @@ from viewer.state import codec
 from viewer.state.plans import MOST_PICTURE_PIXELS
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
-from viewer.state.views import MOST_RECORDED, View, can_record_lights, records_lights
+from viewer.state.views import MOST_RECORDED, Record, View, can_record_lights, recording
 from viewer.views import colorize, legend_of
 from viewer.views.legend import lights_in_words
 
@@ -51,7 +51,7 @@ def check_lights(state: ViewState, scene: Scene, everything: bool = False) -> No
     if draw.view.of_light and draw.light >= lights:
         there = lights_in_words(lights + len(state.edits.lights_off))
         raise ValueError(f"--view {draw.view.value}:{state.edits.light_number(draw.light)}: {there}")
-    recorded = everything or draw.view is View.LIGHTS or draw.view.needs_fates
+    recorded = everything or draw.view is View.LIGHTS or draw.view.records is Record.FATES
     if recorded and not can_record_lights(width * height, lights):
         what, most = "all buffers" if everything else f"the view {draw.view.value}", MOST_RECORDED // lights
         raise ValueError(f"{what} with {lights:,} lights: not enough memory; make the picture {most:,} pixels at most")
@@ -98,17 +98,13 @@ def trace(
         word = np.dtype(word_type(len(scene.lights)))
         renderer.begin_with(commands.unpacked(state.warmup.modes, renderer.units, word))
     on_frame(len(before), len(before) + 1)
-    lights = everything or records_lights(view, settings.width * settings.height, len(scene.lights))
-    renderer.settings = replace(
-        settings,
-        modes=modes,
-        verify=settings.verify or view.needs_verify,
-        record_lights=lights,
-        record_fates=view.needs_fates,
-        record_work=view.needs_work,
-    )
+    recorded = recording(view, settings.width * settings.height, len(scene.lights))
+    recorded["verify"] |= settings.verify
+    recorded["record_lights"] |= everything
+    renderer.settings = replace(settings, modes=modes, **recorded)
     frame = renderer.render(state.time, state.camera, cancelled)
-    return with_light(renderer, frame, state.draw.light) if view.needs_lights and not lights else frame
+    lacks_light = view.records is Record.LIGHTS and not recorded["record_lights"]
+    return with_light(renderer, frame, state.draw.light) if lacks_light else frame
 
 
 def draw(

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tracer.setting import setting, setting_of, settings_of
 from viewer.state.palette import BENEATH
 from viewer.state.pixels import FIT, Zoom
-from viewer.state.views import View
+from viewer.state.views import Record, View
 
 # Hable's filmic curve, "Uncharted 2: HDR Lighting" (GDC 2010): shoulder, linear strength and angle, toe strength,
 # numerator and denominator.
@@ -185,12 +185,12 @@ class DrawOptions:
     shares: bool = setting(
         False, "Shares of rays",
         "Show the share of the shadow rays due, or of the rays traced without culling, instead of counts.",
-        panel="View", applies=in_views(lambda view: view.needs_work),
+        panel="View", applies=in_views(lambda view: view.records is Record.WORK),
     )  # fmt: skip
     mark_wrong: bool = setting(
         True, "Mark wrong pixels",
         "Draw rings around pixels with wrong shadow answers in Difference and Wipe, by which a lone one is found.",
-        option="--no-marks", panel="View", applies=in_views(lambda view: view.needs_verify),
+        option="--no-marks", panel="View", applies=in_views(lambda view: view.records is Record.VERIFY),
     )  # fmt: skip
     clipping: bool = setting(
         False, "Mark clipped pixels",
@@ -213,7 +213,7 @@ class DrawOptions:
     @property
     def has_span(self) -> bool:
         """Whether the view is of numbers that run from one to another; shares run from none to all."""
-        return self.view.has_range and not (self.view.needs_work and self.shares)
+        return self.view.has_range and not (self.view.records is Record.WORK and self.shares)
 
     @property
     def span(self) -> Span | None:

@@ -13,7 +13,7 @@ from tracer.geometry.world import LARGE
 from tracer.method import DEFAULT_METHOD, Kind, Method, additions, bases
 from tracer.scene.lights import Light
 from tracer.settings import Settings
-from viewer.state.views import MOST_RECORDED, TREE, TREE_IS_GONE, View, can_draw, can_record_lights
+from viewer.state.views import MOST_RECORDED, TREE, TREE_IS_GONE, Record, View, can_draw, can_record_lights
 from viewer.util.numbers import count
 
 NO_CULLING, BY_MODES, CERTIFIED, ADAPTIVE = "none", "paper", "certified", "auto"
@@ -88,7 +88,7 @@ def missing(view: View, frame: Frame, more: bool = False) -> Missing | None:
     """Return what to say over a frame in this view; None where there is something to see, or soon will be.  `more` says
     that frames follow."""
     method, decision, drawn = Method.parse(frame.settings.method), frame.statistics.decision, can_draw(frame, view)
-    if frame.lights == 0 and (view.of_light or view in SHOWN_BY or view.needs_lights):
+    if frame.lights == 0 and (view.of_light or view in SHOWN_BY or view.records is Record.LIGHTS):
         return Missing("The scene has no lights.")
     if view in SHOWN_BY and not drawn:
         if view is View.CERTIFICATE and decision and method.has_certificates and not method.clusters:
@@ -104,13 +104,14 @@ def missing(view: View, frame: Frame, more: bool = False) -> Missing | None:
         built = f"All of the tree was built before rays came ({frame.settings.accelerator})."
         lazy = f"{BVH8} with more than {count(LARGE)} primitives that never move"
         return Missing(f"{built} {LAZY} builds it where they arrive, and so does {lazy}.", accelerator=LAZY)
-    if view.needs_verify and method.exact and not method.uses_modes:
+    if view.records is Record.VERIFY and method.exact and not method.uses_modes:
         why = "is exact" if method.kind.culls else "traces every shadow ray"
         text = f"The method {method.base} {why}: no answer can be wrong. The paper's method is sometimes wrong."
         return Missing(text, BY_MODES)
-    if view.needs_fates and method.clusters:
+    if view.records is Record.FATES and method.clusters:
         return Missing(f"The method {method.base} shades by clusters of lights: single lights have no rays.", BY_MODES)
-    if (view is View.LIGHTS or view.needs_fates) and not can_record_lights(frame.primitive.size, frame.lights):
+    all_lights = view is View.LIGHTS or view.records is Record.FATES
+    if all_lights and not can_record_lights(frame.primitive.size, frame.lights):
         text = f"There is no memory to look at {count(frame.lights)} lights at each pixel of a picture of this size"
         most = count(MOST_RECORDED // frame.lights)
         return Missing(f"{text}, but at up to {most} pixels: give it a smaller size in the panel Rendering.")

@@ -1,4 +1,4 @@
-"""Moving a camera: pure functions from a camera to another one, and to the frames of a film.
+"""Moving a camera: pure functions from a camera to another one.
 
 Two ways to move, as in every modelling program: *fly* (walk along the view, look around in place)
 and *orbit* (turn around a point, which stays where it is on the screen).  A camera is turned as a
@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.scene.model import Camera, Scene
-from viewer.state.plans import MOST_RUN_FRAMES
+from tracer.scene.model import Camera
 
 Vector = NDArray[np.float64]
 
@@ -24,9 +23,6 @@ STEEPEST = math.radians(89.0)
 RADIANS_PER_HEIGHT = math.radians(100.0)
 CROSSING_SECONDS = 8.0
 SHORTEST_FLIGHT, LONGEST_FLIGHT = 0.35, 1.5
-LEG = 2.0
-"""Seconds from one bookmark to the next, where nothing else is said."""
-_FINE = 400  # points between two bookmarks, by which the way is measured
 
 
 def pace(low: Sequence[float], high: Sequence[float], seen: float = math.inf) -> float:
@@ -165,90 +161,3 @@ def _unit(v: Vector) -> Vector:
 
 def _triple(v: Vector) -> tuple[float, float, float]:
     return float(v[0]), float(v[1]), float(v[2])
-
-
-# --- films -----------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Stop:
-    """A place to fly through, and the scene's time there."""
-
-    time: float
-    camera: Camera
-
-
-@dataclass(frozen=True)
-class Take:
-    """A frame of a film: its camera is the scene's own where that is None; `warmup` is how many frames of the scene's
-    path come before it in the film, None where those before it are others, and `number` its number on that path, None
-    where it is no frame of it."""
-
-    time: float
-    camera: Camera | None
-    warmup: int | None = None
-    number: int | None = None
-
-
-def along_path(
-    scene: Scene, first: int, last: int, frames: int | None = None, camera: Camera | None = None
-) -> list[Take]:
-    """The scene's frames `first` to `last`, or so many `frames` at even distances of time between these.
-
-    Raises ValueError, in one line, for frames that there are not."""
-    if not 0 <= first <= last < scene.frames:
-        only = "is 0" if scene.frames == 1 else f"are 0 to {scene.frames - 1}"
-        raise ValueError(f"frames {first} to {last}: the scene's frame numbers {only}")
-    if frames is None or frames == last - first + 1:
-        return [Take(scene.frame_time(n), camera, n - first, n) for n in range(first, last + 1)]
-    _check(frames)
-    return [Take(float(time), camera) for time in np.linspace(scene.frame_time(first), scene.frame_time(last), frames)]
-
-
-def through(stops: Sequence[Stop], frames: int) -> list[Take]:
-    """So many frames through bookmarks, at an even speed: a smooth way, of which each frame goes on as far.
-
-    Turning counts as moving: by one radian as much as by the mean way between two bookmarks.  Raises ValueError where
-    there are fewer than two stops."""
-    if len(stops) < 2:
-        raise ValueError("a film through bookmarks needs two of them at least")
-    _check(frames)
-    rows = np.array([[*s.camera.position, *s.camera.basis()[2], *s.camera.basis()[1], s.camera.angle, s.time]
-                     for s in stops])  # fmt: skip
-    fine = np.concatenate([_span(rows, n) for n in range(len(stops) - 1)] + [rows[-1:]])
-    way = _measured(fine, np.linalg.norm(np.diff(rows[:, :3], axis=0), axis=1).mean())
-    if way[-1] == 0.0:  # all at one place: time alone goes on
-        way = np.linspace(0.0, 1.0, len(fine))
-    at = np.linspace(0.0, way[-1], frames)
-    takes = [
-        Take(float(row[10]), Camera(_triple(row[:3]), _triple(row[3:6]), _triple(row[6:9]), float(row[9])))
-        for row in np.stack([np.interp(at, way, column) for column in fine.T], axis=-1)
-    ]
-    takes[0], takes[-1] = (Take(stop.time, stop.camera) for stop in (stops[0], stops[-1]))
-    return takes
-
-
-def _check(frames: int) -> None:
-    if not 2 <= frames <= MOST_RUN_FRAMES:
-        raise ValueError(f"a film has 2 to {MOST_RUN_FRAMES:,} frames, not {frames:,}")
-
-
-def _span(rows: NDArray[np.float64], n: int) -> NDArray[np.float64]:
-    """(_FINE, 11) the way from bookmark n to the next, without its end: a Catmull-Rom curve for where the camera is and
-    looks, a straight line for angle and time, which must not overshoot."""
-    before, start, end, after = (rows[min(max(n + k, 0), len(rows) - 1)] for k in (-1, 0, 1, 2))
-    t = np.linspace(0.0, 1.0, _FINE, endpoint=False)[:, None]
-    into, out = 0.5 * (end - before), 0.5 * (after - start)
-    h = (2 * t**3 - 3 * t**2 + 1, t**3 - 2 * t**2 + t, 3 * t**2 - 2 * t**3, t**3 - t**2)
-    curve = h[0] * start + h[1] * into + h[2] * end + h[3] * out
-    curve[:, 9:] = start[9:] + t * (end[9:] - start[9:])
-    for part in (slice(3, 6), slice(6, 9)):  # a direction: of length 1 again, and never none
-        length = np.linalg.norm(curve[:, part], axis=1, keepdims=True)
-        curve[:, part] = np.where(length < 1e-3, end[part], curve[:, part] / np.maximum(length, 1e-3))
-    return curve
-
-
-def _measured(fine: NDArray[np.float64], radian: float) -> NDArray[np.float64]:
-    """(n,) how far it is to each point of the way; a turn by one radian is so far."""
-    moved, *turned = (np.linalg.norm(np.diff(fine[:, i : i + 3], axis=0), axis=1) for i in (0, 3, 6))
-    return np.concatenate([[0.0], np.cumsum(np.hypot(moved, (radian or 1.0) * np.maximum(*turned)))])

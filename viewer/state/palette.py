@@ -6,6 +6,7 @@ The colours of modes are those of Okabe and Ito, which every kind of colour-blin
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.inspect.reasons import WHY_NOT_CULLED
+from tracer.text import mode_in_words
 from viewer.state import terms
 
 Color = tuple[float, float, float]
@@ -36,6 +38,16 @@ FACES_AWAY = hex_color("3C3A72")
 """A surface that faces away from the light."""
 
 
+class Class(NamedTuple):
+    """Something that is shown in a colour of its own: its name, what it means, and the colour of stripes that it may
+    have."""
+
+    name: str
+    color: Color
+    meaning: str
+    stripes: Color | None = None
+
+
 class Certificate(IntEnum):
     """What is proven of a cell and a light, in the place that a shadow mode has in a word."""
 
@@ -45,65 +57,77 @@ class Certificate(IntEnum):
     CANDIDATES = 3
 
 
-_OCCLUSION: dict[OcclusionMode, tuple[Color, str]] = {
-    OcclusionMode.INIT: (GREY, "not seen yet, or to be examined again"),
-    OcclusionMode.PARTIALLY_OCCLUDED: (hex_color("E69F00"), "something hides a part of it in this frame"),
-    OcclusionMode.FULLY_RENDERED: (hex_color("009E73"), "fully rendered: culled by its shadow modes"),
-    OcclusionMode.DYNAMIC: (hex_color("CC79A7"), "it moves: never culled"),
+OCCLUSION = {
+    mode: Class(mode_in_words(mode.name), color, meaning)
+    for mode, color, meaning in (
+        (OcclusionMode.INIT, GREY, "not seen yet, or to be examined again"),
+        (OcclusionMode.PARTIALLY_OCCLUDED, hex_color("E69F00"), "something hides a part of it in this frame"),
+        (OcclusionMode.FULLY_RENDERED, hex_color("009E73"), "fully rendered: culled by its shadow modes"),
+        (OcclusionMode.DYNAMIC, hex_color("CC79A7"), "it moves: never culled"),
+    )
 }
-_SHADOW: dict[ShadowMode, tuple[Color, str]] = {
-    ShadowMode.INIT: (GREY, "no shadow ray yet"),
-    ShadowMode.FULL_SHADOW: (hex_color("0072B2"), "every shadow ray was blocked: culled once fully rendered"),
-    ShadowMode.NON_SHADOW: (
-        hex_color("F0E442"), "no shadow ray was blocked: tested against dynamic objects only once fully rendered",
-    ),
-    ShadowMode.PARTIAL_SHADOW: (hex_color("D55E00"), "some were blocked: always traced"),
+SHADOW = {
+    mode: Class(mode_in_words(mode.name), color, meaning)
+    for mode, color, meaning in (
+        (ShadowMode.INIT, GREY, "no shadow ray yet"),
+        (ShadowMode.FULL_SHADOW, hex_color("0072B2"), "every shadow ray was blocked: culled once fully rendered"),
+        (
+            ShadowMode.NON_SHADOW, hex_color("F0E442"),
+            "no shadow ray was blocked: tested against dynamic objects only once fully rendered",
+        ),
+        (ShadowMode.PARTIAL_SHADOW, hex_color("D55E00"), "some were blocked: always traced"),
+    )
 }  # fmt: skip
-OCCLUSION_COLORS = {mode: color for mode, (color, _) in _OCCLUSION.items()}
-OCCLUSION_MEANING = {mode: meaning for mode, (_, meaning) in _OCCLUSION.items()}
-SHADOW_COLORS = {mode: color for mode, (color, _) in _SHADOW.items()}
-SHADOW_MEANING = {mode: meaning for mode, (_, meaning) in _SHADOW.items()}
-CERTIFICATE_COLORS = {found: SHADOW_COLORS[ShadowMode(found)] for found in Certificate}
-CERTIFICATE_MEANING = {
-    Certificate.NONE: "nothing is proven, or the light is behind it: its shadow rays are traced",
-    Certificate.FULL: "all of it is in the shadow of static geometry: its shadow rays are culled",
-    Certificate.LIT: "nothing static is between it and the light: tested against dynamic objects only",
-    Certificate.CANDIDATES: "only a few primitives can block the light: tested against these and dynamic objects",
+CERTIFICATES = {
+    found: Class(found.name.lower(), SHADOW[ShadowMode(found)].color, meaning)
+    for found, meaning in (
+        (Certificate.NONE, "nothing is proven, or the light is behind it: its shadow rays are traced"),
+        (Certificate.FULL, "all of it is in the shadow of static geometry: its shadow rays are culled"),
+        (Certificate.LIT, "nothing static is between it and the light: tested against dynamic objects only"),
+        (
+            Certificate.CANDIDATES,
+            "only a few primitives can block the light: tested against these and dynamic objects",
+        ),
+    )
 }
 
 _BY_PAPER = "with the paper's method, {} of a fully rendered primitive (§2.4)"
-# The colour of a shadow ray, its name, and what became of it; a fate that a mode brings about has the mode's colour.
-_FATES: dict[Fate, tuple[Color, str, str]] = {
-    Fate.NONE: (UNKNOWN, "not known yet", "this pixel has not been shaded yet"),
-    Fate.FACES_AWAY: (
-        FACES_AWAY, "faces away", "no shadow ray is due: the surface faces away from the light",
+
+
+def _not_culled(fate: Fate, why: str, color: Color) -> Class:
+    return Class(f"{terms.TRACED}: {why}", color, f"traced: {WHY_NOT_CULLED[fate]}")
+
+
+FATES = {
+    Fate.NONE: Class("not known yet", UNKNOWN, "this pixel has not been shaded yet"),
+    Fate.FACES_AWAY: Class(
+        "faces away", FACES_AWAY, "no shadow ray is due: the surface faces away from the light",
     ),
-    Fate.CULLED: (
-        SHADOW_COLORS[ShadowMode.FULL_SHADOW], terms.CULLED,
+    Fate.CULLED: Class(
+        terms.CULLED, SHADOW[ShadowMode.FULL_SHADOW].color,
         f"answered without asking any geometry: {_BY_PAPER.format('FULL_SHADOW')}",
     ),
-    Fate.DYNAMIC_ONLY: (
-        SHADOW_COLORS[ShadowMode.NON_SHADOW], terms.DYNAMIC_ONLY,
+    Fate.DYNAMIC_ONLY: Class(
+        terms.DYNAMIC_ONLY, SHADOW[ShadowMode.NON_SHADOW].color,
         f"asked dynamic objects alone: {_BY_PAPER.format('NON_SHADOW')}",
     ),
-    Fate.CANDIDATES: (
-        hex_color("56B4E9"), terms.CANDIDATES_ONLY,
+    Fate.CANDIDATES: Class(
+        terms.CANDIDATES_ONLY, hex_color("56B4E9"),
         "asked the few static primitives that can block it, and dynamic objects",
     ),
-    Fate.CACHED: (hex_color("8ACBF3"), terms.CACHE_HITS, "blocked by what blocked the last ray from here"),
-    Fate.PARTLY_OCCLUDED: (
-        OCCLUSION_COLORS[OcclusionMode.PARTIALLY_OCCLUDED], f"{terms.TRACED}: partially occluded", "",
+    Fate.CACHED: Class(terms.CACHE_HITS, hex_color("8ACBF3"), "blocked by what blocked the last ray from here"),
+    Fate.PARTLY_OCCLUDED: _not_culled(
+        Fate.PARTLY_OCCLUDED, "partially occluded", OCCLUSION[OcclusionMode.PARTIALLY_OCCLUDED].color
     ),
-    Fate.PARTIAL_SHADOW: (SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW], f"{terms.TRACED}: partly in shadow", ""),
-    Fate.NOT_SEEN_WHOLE: (OCCLUSION_COLORS[OcclusionMode.INIT], f"{terms.TRACED}: not seen whole yet", ""),
-    Fate.DYNAMIC: (OCCLUSION_COLORS[OcclusionMode.DYNAMIC], f"{terms.TRACED}: dynamic", ""),
-    Fate.TRACED: (hex_color("D3D6DC"), terms.TRACED, "traced through the whole scene"),
+    Fate.PARTIAL_SHADOW: _not_culled(
+        Fate.PARTIAL_SHADOW, "partly in shadow", SHADOW[ShadowMode.PARTIAL_SHADOW].color
+    ),
+    Fate.NOT_SEEN_WHOLE: _not_culled(Fate.NOT_SEEN_WHOLE, "not seen whole yet", OCCLUSION[OcclusionMode.INIT].color),
+    Fate.DYNAMIC: _not_culled(Fate.DYNAMIC, "dynamic", OCCLUSION[OcclusionMode.DYNAMIC].color),
+    Fate.TRACED: Class(terms.TRACED, hex_color("D3D6DC"), "traced through the whole scene"),
 }  # fmt: skip
-FATE_COLORS = {fate: color for fate, (color, _, _) in _FATES.items()}
-FATE_NAMES = {fate: name for fate, (_, name, _) in _FATES.items()}
-"""Of shadow rays; TRACED also stands for all traced."""
-FATE_MEANING = {fate: meaning for fate, (_, _, meaning) in _FATES.items()}
-FATE_MEANING |= {fate: f"traced: {why}" for fate, why in WHY_NOT_CULLED.items()}
+"""What becomes of shadow rays; one that a mode brings about has the mode's colour.  TRACED also stands for all
+traced."""
 FATE_WOULD: dict[Fate, str] = {
     Fate.CULLED: "would be culled",
     Fate.DYNAMIC_ONLY: "… dynamic only",
@@ -130,7 +154,7 @@ def fate_palette(shown: Fate | None = None) -> list[Color]:
         red, green, blue = (OTHERS * part + (1.0 - OTHERS) * dark for part, dark in zip(color, BACKGROUND, strict=True))
         return red, green, blue
 
-    return [color if stands_out(fate) else dimmed(color) for fate, color in FATE_COLORS.items()]
+    return [one.color if stands_out(fate) else dimmed(one.color) for fate, one in FATES.items()]
 
 
 OTHERS = 0.18

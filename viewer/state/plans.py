@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tracer.experiments.camera_path import MOST_FRAMES
 from tracer.geometry.accelerators import KD_TREE
 from tracer.scene.model import Scene
 from tracer.setting import setting
 
 MOST_ZOOM_FACTORS = 6
-MOST_RUN_FRAMES = 100_000
 LONGEST_RUN_SIDE = 4096
 """Pixels of a run's pictures, of which there are many."""
 MOST_PICTURE_PIXELS = 1 << 26
@@ -25,7 +25,7 @@ class ExperimentPlan:
     paper's unless another is chosen."""
 
     methods: set[str]
-    frames: int = setting(100, "Frames", "Frames over the whole path of the scene.", low=1, high=MOST_RUN_FRAMES)
+    frames: int = setting(100, "Frames", "Frames over the whole path of the scene.", low=1, high=MOST_FRAMES)
     size: tuple[int, int] = setting((512, 512), "Size", "Size of the pictures.", high=LONGEST_RUN_SIDE)
     depth: int = 10
     accelerator: str = KD_TREE
@@ -39,7 +39,8 @@ class ZoomPlan:
 
     factors: str = setting(
         "4, 16", "Factors",
-        "Zoom factors to compare: a primitive is examined anew once it covers this many times its highest pixel count.",
+        "Zoom factors to compare: a primitive is examined anew once it covers this many times the pixels of its last "
+        "examination.",
     )  # fmt: skip
     steps: int = setting(30, "Steps", "Steps towards the primitive.", low=1, high=1000)
     ratio: float = setting(
@@ -90,9 +91,9 @@ class HuntPlan(PathPlan):
     """Frames of the path, by a method whose wrong pixels are searched; the worst `keep` are kept."""
 
     method: str = "paper"
-    step: int = setting(1, "Step", "Search only every nth of these frames.", low=1, high=MOST_RUN_FRAMES)
+    step: int = setting(1, "Step", "Search only every nth of these frames.", low=1, high=MOST_FRAMES)
     around: int = setting(
-        40, "Extra views", "Extra random views near the worst findings.", low=0, high=MOST_RUN_FRAMES
+        40, "Extra views", "Extra random views near the worst findings.", low=0, high=MOST_FRAMES
     )  # fmt: skip
     radius: float = setting(
         0.3, "Radius", "How far extra views are from a finding's camera, as a part of its distance to what is wrong.",

@@ -11,6 +11,7 @@ from difflib import get_close_matches
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.text import mode_in_words
 from viewer.state.scene_rows import COLUMNS, Level, Table, Values
 
 HINT = "wall   pixels>100   is:dynamic"
@@ -90,7 +91,7 @@ def _holds(table: Table, token: str) -> NDArray[np.bool_]:
     if sign not in (":", "="):
         raise FilterError(f"{name} is a word: write {name}:{wanted}")
     if name in _MODES:
-        wanted = re.sub(r"[_-]", " ", wanted)
+        wanted = mode_in_words(wanted.replace("-", "_"))
         if not any(wanted.casefold() in word for word in values.words):
             raise FilterError(f"no mode is called {wanted}: there are {', '.join(sorted(values.words))}")
     return _has_word(values, wanted, whole=sign == "=")

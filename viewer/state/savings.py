@@ -21,7 +21,7 @@ from tracer.method import Method
 from tracer.statistics import FrameStatistics
 from viewer.state import terms, verified
 from viewer.state.methods import BY_MODES, NO_CULLING
-from viewer.state.palette import FATE_MEANING, FATE_NAMES, FATE_WOULD
+from viewer.state.palette import FATE_WOULD, FATES
 from viewer.util.numbers import count, percent, whole_percent
 
 LONGEST = ": 29.6 % of shadow rays saved, not verified, 15 % fewer steps, 1.08 × as fast as none (± 0.02)"
@@ -119,7 +119,7 @@ class Part:
 
     @property
     def name(self) -> str:
-        return (FATE_WOULD if self.would else FATE_NAMES)[self.fate]
+        return FATE_WOULD[self.fate] if self.would else FATES[self.fate].name
 
     @property
     def share(self) -> str:
@@ -132,7 +132,7 @@ class Part:
 
     def in_words(self) -> str:
         """Return what it is, in two lines."""
-        meaning, way = FATE_MEANING[self.fate], f"what {BY_MODES} would do: " if self.would else ""
+        meaning, way = FATES[self.fate].meaning, f"what {BY_MODES} would do: " if self.would else ""
         return f"{self.name}: {count(self.rays)} of {count(self.due)} shadow rays due ({self.share})\n{way}{meaning}"
 
 

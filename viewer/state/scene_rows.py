@@ -17,6 +17,7 @@ from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.frame import Frame
 from tracer.scene.edits import Edited
+from viewer.state.palette import OCCLUSION, SHADOW
 from viewer.state.parts import KINDS, parts_of
 from viewer.state.views import has_modes_of_cells
 from viewer.util.numbers import count
@@ -115,9 +116,7 @@ class Table:
         return NOTHING if values is None else values.text(row)
 
 
-_OCCLUSION, _SHADOW = (  # in words, by their numbers
-    (*(mode.name.replace("_", " ").lower() for mode in kind), "several") for kind in (OcclusionMode, ShadowMode)
-)
+_OCCLUSION, _SHADOW = ((*(one.name for one in modes.values()), "several") for modes in (OCCLUSION, SHADOW))
 
 
 def tables_of(now: Edited, frame: Frame, light: int) -> dict[Level, Table]:

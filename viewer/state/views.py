@@ -9,7 +9,7 @@ from __future__ import annotations
 from enum import Enum, StrEnum
 from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
     from tracer.frame import Frame
@@ -30,7 +30,7 @@ TREE_IS_GONE = "the frame's tree was freed with its world"
 
 
 class Record(Enum):
-    """What a frame must have been asked to record for a view."""
+    """What a frame must have been asked to record for a view, by the setting that asks for it."""
 
     VERIFY = "verify"
     WORK = "record_work"
@@ -127,23 +127,6 @@ class View(StrEnum):
         """What its file in `viewer/views` declares."""
         return _declared(self.value)
 
-    @property
-    def needs_verify(self) -> bool:
-        """Whether it can be drawn of verified frames alone; and so for other records."""
-        return self.records is Record.VERIFY
-
-    @property
-    def needs_work(self) -> bool:
-        return self.records is Record.WORK
-
-    @property
-    def needs_lights(self) -> bool:
-        return self.records is Record.LIGHTS
-
-    @property
-    def needs_fates(self) -> bool:
-        return self.records is Record.FATES
-
 
 @cache
 def _declared(name: str) -> Declaration:
@@ -156,15 +139,12 @@ def can_record_lights(pixels: int, lights: int) -> bool:
     return pixels * lights <= MOST_RECORDED
 
 
-def records_lights(view: View, pixels: int, lights: int) -> bool:
-    """Return whether frames of so many pixels are to record all lights for this view."""
+def recording(view: View, pixels: int, lights: int) -> dict[str, Any]:
+    """Return the settings by which frames of so many pixels record what a view shows, as far as there is memory."""
+    fits = can_record_lights(pixels, lights)
     few = lights <= MOST_TOGETHER or not view.of_light
-    return view.needs_lights and few and can_record_lights(pixels, lights)
-
-
-def records_fates(view: View, pixels: int, lights: int) -> bool:
-    """Return whether frames of so many pixels are to record what becomes of all shadow rays for this view."""
-    return view.needs_fates and can_record_lights(pixels, lights)
+    possible = {Record.VERIFY: True, Record.WORK: True, Record.LIGHTS: few and fits, Record.FATES: fits}
+    return {one.value: view.records is one and there for one, there in possible.items()}
 
 
 def has_modes_of_cells(frame: Frame) -> bool:

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from tracer.culling.modes import OcclusionMode, has_shadow_mode, occlusion_mode, shadow_mode
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import CERTIFICATE_COLORS, CERTIFICATE_MEANING, Certificate
+from viewer.state.palette import CERTIFICATES, Certificate
 from viewer.util.numbers import count
 from viewer.views.base import Lights, hits
-from viewer.views.kinds import Class, ClassView, at_rest, not_culled
+from viewer.views.kinds import ClassView, at_rest, not_culled
 from viewer.views.legend import Legend
 from viewer.views.occlusion import MOVES
 
@@ -29,7 +29,7 @@ class Certificates(ClassView):
     shows = "certificates"
     what = "certificate"
     classes = (
-        *[Class(one.name.lower(), CERTIFICATE_COLORS[one], CERTIFICATE_MEANING[one]) for one in Certificate],
+        *CERTIFICATES.values(),
         MOVES._replace(meaning="it moves: never certified"),
     )
 

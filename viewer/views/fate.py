@@ -10,11 +10,11 @@ from tracer.frame import Frame
 from tracer.method import Method
 from viewer.state import terms
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import FATE_COLORS, FATE_MEANING, FATE_NAMES, fate_palette
+from viewer.state.palette import FATES, fate_palette
 from viewer.state.views import Record
 from viewer.util.numbers import percent
 from viewer.views.base import Lights, Pixels
-from viewer.views.kinds import Class, ClassView, filled_in
+from viewer.views.kinds import ClassView, filled_in
 from viewer.views.legend import Entry, Legend
 from viewer.views.paint import by_class
 
@@ -34,7 +34,7 @@ class Fates(ClassView):
     of_light = True
     shows = "fates"
     what = "fate of the shadow ray"
-    classes = tuple(Class(FATE_NAMES[one], FATE_COLORS[one], FATE_MEANING[one]) for one in Fate)
+    classes = tuple(FATES.values())
 
     def find(self, frame: Frame, light: int) -> NDArray[np.uint8]:
         return frame.fate(light)

@@ -8,31 +8,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode, shadow_mode
+from tracer.culling.modes import has_shadow_mode, shadow_mode
 from tracer.frame import Frame
 from tracer.method import Method
 from viewer.state import terms
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import GREY, Color
+from viewer.state.palette import GREY, Class
 from viewer.state.views import has_modes_of_cells
 from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, once, single
 from viewer.views.legend import Entry, Legend, Note, NoteKind, Scale, fact
 from viewer.views.paint import by_class, by_number, in_range
-
-
-class Class(NamedTuple):
-    """A class: its name, its colour, what it means, and the colour of the stripes that it may have."""
-
-    name: str
-    color: Color
-    meaning: str
-    stripes: Color | None = None
 
 
 class ClassView(FrameView):
@@ -117,11 +108,6 @@ class ModeView(ClassView):
 def filled_in(frame: Frame) -> tuple[Note, ...]:
     """Return what is said of a picture of which only a part has been shaded."""
     return () if frame.shaded is None else (Note("Pixels that are not shaded yet show the nearest one that is."),)
-
-
-def mode_name(mode: OcclusionMode | ShadowMode) -> str:
-    """Return the name of a mode as legends have it."""
-    return mode.name.replace("_", " ").lower()
 
 
 def at_rest(frame: Frame) -> tuple[Entry, ...]:

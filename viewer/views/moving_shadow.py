@@ -13,11 +13,11 @@ from tracer.frame import Frame
 from tracer.scene.lights import named_light
 from viewer.state import terms
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import OCCLUSION_COLORS, hex_color
+from viewer.state.palette import OCCLUSION, Class, hex_color
 from viewer.state.views import Record
 from viewer.util.numbers import percent
 from viewer.views.base import Lights, Pixels
-from viewer.views.kinds import Class, ClassView, filled_in
+from viewer.views.kinds import ClassView, filled_in
 from viewer.views.legend import Legend, Note, fact
 from viewer.views.paint import LUMINANCE, by_color, shaded
 
@@ -62,7 +62,7 @@ class MovingShadows(ClassView):
             "dynamic only, lit", hex_color("F8F2A0"),
             "its ray asked dynamic objects only, and none of them is in the way",
         ),
-        Class("moving object", OCCLUSION_COLORS[OcclusionMode.DYNAMIC], "it moves itself: dynamic, never culled"),
+        Class("moving object", OCCLUSION[OcclusionMode.DYNAMIC].color, "it moves itself: dynamic, never culled"),
     )  # fmt: skip
     """Over the paled picture: blues for shadows, pale NON_SHADOW, and DYNAMIC."""
 

@@ -8,15 +8,12 @@ from numpy.typing import NDArray
 from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import OCCLUSION_COLORS, OCCLUSION_MEANING
+from viewer.state.palette import OCCLUSION
 from viewer.views.base import Lights
-from viewer.views.kinds import Class, ModeView, culled_by_modes, mode_name
+from viewer.views.kinds import ModeView, culled_by_modes
 from viewer.views.legend import Legend
 
-MOVES = Class(
-    mode_name(OcclusionMode.DYNAMIC), OCCLUSION_COLORS[OcclusionMode.DYNAMIC],
-    "it moves, or could and the method is paper: never culled",
-)  # fmt: skip
+MOVES = OCCLUSION[OcclusionMode.DYNAMIC]._replace(meaning="it moves, or could and the method is paper: never culled")
 
 
 class Occlusion(ModeView):
@@ -24,10 +21,7 @@ class Occlusion(ModeView):
     key = "2"
     help = "How much of each primitive the camera has seen: only fully rendered ones are culled."
     what = "occlusion mode"
-    classes = (
-        *[Class(mode_name(one), OCCLUSION_COLORS[one], OCCLUSION_MEANING[one]) for one in list(OcclusionMode)[:-1]],
-        MOVES,
-    )
+    classes = tuple((OCCLUSION | {OcclusionMode.DYNAMIC: MOVES}).values())
 
     def of_units(self, frame: Frame, light: int) -> NDArray[np.uint8]:
         return occlusion_mode(frame.modes)

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import FACES_AWAY, SHADOW_COLORS, UNKNOWN, hex_color
+from viewer.state.palette import FACES_AWAY, SHADOW, UNKNOWN, Class, hex_color
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import Lights, Pixels, Values, Words, hits, is_shaded, shaded_pixels, single
-from viewer.views.kinds import Class, ClassView
+from viewer.views.kinds import ClassView
 from viewer.views.legend import Legend, fact
 from viewer.views.paint import by_color
 
@@ -42,7 +42,7 @@ class Penumbra(ClassView):
     shows = "asked"
     what = "share of the light"
     classes = (
-        Class("fully lit", SHADOW_COLORS[ShadowMode.NON_SHADOW], "all samples that it faces reach it"),
+        Class("fully lit", SHADOW[ShadowMode.NON_SHADOW].color, "all samples that it faces reach it"),
         Class(
             "penumbra, more than half", hex_color("F5BE82"),
             "more than half of the samples that it faces reach it, but not all",
@@ -51,7 +51,7 @@ class Penumbra(ClassView):
             "penumbra, at most half", hex_color("8F3F00"),
             "some samples reach it, but at most half of those that it faces",
         ),
-        Class("fully dark", SHADOW_COLORS[ShadowMode.FULL_SHADOW], "no sample of the light reaches it"),
+        Class("fully dark", SHADOW[ShadowMode.FULL_SHADOW].color, "no sample of the light reaches it"),
         Class("faces away", FACES_AWAY, "the surface faces away from all of the light"),
         Class("not known yet", UNKNOWN, "this pixel has not been shaded yet"),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""How many pixels a unit covers, against the most it covered while fully rendered (§2.6 of the paper)."""
+"""How many pixels a unit covers, against those that it covered when it was last examined (§2.6 of the paper)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from viewer.views.paint import by_number
 class PixelCount(FrameView):
     label = "Pixel count"
     key = "7"
-    help = "Pixels a primitive covers now, against the most it covered while fully rendered."
+    help = "Pixels a primitive covers now, against those of its last examination."
     of_modes = is_flat = True
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
@@ -32,15 +32,15 @@ class PixelCount(FrameView):
         zoom = frame.settings.zoom_factor
         scale = Scale(f"1/{zoom:.3g}", f"{zoom:.3g} x", "as many")
         entries = (Entry("never fully rendered", GREY),)
-        return Legend("Pixels now, against the highest count", (), entries, scale, culled_by_modes(frame))
+        return Legend("Pixels now, against the last examination", (), entries, scale, culled_by_modes(frame))
 
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(frame.pixel_count[frame.unit], "pixels of the primitive", hits(frame))
 
     def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
         unit = frame.unit[y, x]
-        highest = int(frame.highest_count[unit])
-        return f"{int(frame.pixel_count[unit])} now", f"{highest} most" if highest else "no most"
+        examined = int(frame.highest_count[unit])
+        return f"{int(frame.pixel_count[unit])} now", f"{examined} examined" if examined else "not examined"
 
 
 VIEW = PixelCount()

@@ -9,9 +9,9 @@ from tracer.culling.modes import FULLY_RENDERED, OcclusionMode, ShadowMode, has_
 from tracer.frame import Frame
 from tracer.scene.lights import number_of
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import SHADOW_COLORS, SHADOW_MEANING
+from viewer.state.palette import SHADOW, Class
 from viewer.views.base import Lights, Words
-from viewer.views.kinds import Class, ModeView, culled_by_modes, mode_name, not_culled, shadow_modes
+from viewer.views.kinds import ModeView, culled_by_modes, not_culled, shadow_modes
 from viewer.views.legend import Legend
 from viewer.views.occlusion import MOVES
 
@@ -22,12 +22,12 @@ _PLACES = np.array([0, 1, 3, 5], np.uint8)  # of these modes among the classes; 
 _MOVES = 6
 
 
-def _class(mode: ShadowMode, meaning: str = "") -> Class:
-    return Class(mode_name(mode), SHADOW_COLORS[mode], meaning or SHADOW_MEANING[mode])
+def _trusted(mode: ShadowMode, meaning: str) -> Class:
+    return SHADOW[mode]._replace(meaning=f"fully rendered, and {meaning}")
 
 
 def _untrusted(mode: ShadowMode, meaning: str) -> Class:
-    return Class(f"{mode_name(mode)}, untrusted", SHADOW_COLORS[mode], meaning, SHADOW_COLORS[_INIT])
+    return Class(f"{SHADOW[mode].name}, untrusted", SHADOW[mode].color, meaning, SHADOW[_INIT].color)
 
 
 class Shadow(ModeView):
@@ -41,12 +41,12 @@ class Shadow(ModeView):
     what = "shadow mode"
     stripe = STRIPE
     classes = (
-        _class(_INIT),
-        _class(_FULL, "fully rendered, and every shadow ray so far was blocked: culled"),
+        SHADOW[_INIT],
+        _trusted(_FULL, "every shadow ray so far was blocked: culled"),
         _untrusted(_FULL, "every shadow ray so far was blocked, but it is not fully rendered: traced"),
-        _class(_NON, "fully rendered, and no shadow ray so far was blocked: tested against dynamic objects only"),
+        _trusted(_NON, "no shadow ray so far was blocked: tested against dynamic objects only"),
         _untrusted(_NON, "no shadow ray so far was blocked, but it is not fully rendered: traced"),
-        _class(_PARTIAL),
+        SHADOW[_PARTIAL],
         MOVES,
     )
 

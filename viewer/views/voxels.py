@@ -10,7 +10,7 @@ from tracer.culling.voxels.grid import BLOCK
 from tracer.culling.voxels.tell import STATE_NAMES, VoxelStates, index_of
 from tracer.frame import Frame
 from viewer.state.draw_options import AXES, DrawOptions, Slice
-from viewer.state.palette import GREY, SHADOW_COLORS, Color
+from viewer.state.palette import GREY, SHADOW, Color
 from viewer.state.views import VOXELS
 from viewer.util.numbers import count, percent
 from viewer.views.base import FrameView, Lights, Pixels, Values, Words, once, single
@@ -22,11 +22,11 @@ FULL, LIT = int(ShadowMode.FULL_SHADOW), int(ShadowMode.NON_SHADOW)
 STATES: dict[int, tuple[Color, str]] = {
     0: (GREY, "neither is known: rays that end in it walk on towards the light, from voxel to voxel"),
     FULL: (
-        SHADOW_COLORS[ShadowMode.FULL_SHADOW],
+        SHADOW[ShadowMode.FULL_SHADOW].color,
         "one triangle hides the light from all of it: rays that end in it, or come to it, are blocked",
     ),
     LIT: (
-        SHADOW_COLORS[ShadowMode.NON_SHADOW],
+        SHADOW[ShadowMode.NON_SHADOW].color,
         "nothing static is between it and the light: rays that end in it, or come to it, are tested against dynamic "
         "objects only",
     ),

@@ -9,21 +9,18 @@ from pathlib import Path
 
 import pytest
 
-from tests.commands import complaint, run
+from tests.commands import Run, stop_at
 from tests.terminal import Terminal
 from tracer.experiments import figures
 from tracer.version import program_version
-from viewer.__main__ import main
-from viewer.cli.console import Work
 
 SMALL = ["bench", "figure4", "--path-frames", "6", "--size", "48x32"]
 
 
-def bench(folder: Path, *options: str) -> dict:
-    """The JSON of a small run."""
-    path = folder / "figures.json"
-    assert main([*SMALL, *options, "--json", str(path)]) == 0
-    return json.loads(path.read_text())
+def bench(run: Run, *options: str) -> tuple[dict, str]:
+    """The JSON of a small run, and what it prints."""
+    out = run.ok(*SMALL, *options, "--json", "figures.json")
+    return json.loads(Path("figures.json").read_text()), out
 
 
 def printed_row(out: str, method: str) -> list[str]:
@@ -32,17 +29,15 @@ def printed_row(out: str, method: str) -> list[str]:
     return [cell.strip() for cell in line.strip("│").split("│")][1:]
 
 
-def test_bench_writes_an_entry_per_frame_and_prints_the_table(tmp_path: Path, capsys):
-    lines, plot = tmp_path / "table.csv", tmp_path / "plot.svg"
+def test_bench_writes_an_entry_per_frame_and_prints_the_table(run: Run) -> None:
     more = ["--frames", "1:5", "--verify", "--methods", "none, paper"]
-    results = bench(tmp_path, *more, "--csv", str(lines), "--plot", str(plot))
-    assert list(results)[:4] == ["scene", "size", "frames", "methods"] and plot.read_text().startswith("<?xml")
-    out = capsys.readouterr().out
+    results, out = bench(run, *more, "--csv", "table.csv", "--plot", "plot.svg")
+    assert list(results)[:4] == ["scene", "size", "frames", "methods"]
+    assert Path("plot.svg").read_text().startswith("<?xml")
     assert "figure4.aff, 48 × 32, frames 1 to 4 of 6" in out and "no speed-up is told" in out
-    whole = bench(tmp_path)
+    whole, timed = bench(run)
     assert results["times"] == whole["times"][1:5] and results["path_frames"] == 6
     assert (results["planned_frames"], results["stopped"]) == (4, False)
-    timed = capsys.readouterr().out
     assert "figure4.aff, 48 × 32, frames 0 to 5 of 6" in timed and "no speed-up" not in timed
     assert "wrong" not in timed
     shared = {"depth": 10, "zoom_factor": 4.0, "symmetric": False, "accelerator": "kdtree", "threads": 0}
@@ -58,7 +53,7 @@ def test_bench_writes_an_entry_per_frame_and_prints_the_table(tmp_path: Path, ca
     for method in (none, paper):
         assert list(method) == figures.split() and {len(values) for values in method.values()} == {4}
     assert sum(paper["shadow_traversal_steps"]) < sum(none["shadow_traversal_steps"])
-    rows = list(csv.DictReader(lines.open()))
+    rows = list(csv.DictReader(Path("table.csv").read_text().splitlines()))
     assert [row["method"] for row in rows] == ["none", "paper"]
     average, most = [], []
     for work, name in (("steps", "traversal_steps"), ("tests", "intersection_tests")):
@@ -74,81 +69,36 @@ def test_bench_writes_an_entry_per_frame_and_prints_the_table(tmp_path: Path, ca
     assert printed_row(out, "paper")[1:7] == [*average, f"{wrong:,} ({wrong / due:.3%})", *most, f"{extra:.3f}"]
 
 
-def test_options_of_the_paper_reach_it(tmp_path: Path):
+def test_options_of_the_paper_reach_it(run: Run) -> None:
     """Tests in both directions are more of them; modes that are soon learnt anew save less than those kept."""
-    usual, symmetric = (bench(tmp_path, *more)["methods"] for more in ([], ["--symmetric"]))
+    usual, symmetric = (bench(run, *more)[0]["methods"] for more in ([], ["--symmetric"]))
     assert sum(symmetric["paper"]["occlusion_tests"]) > sum(usual["paper"]["occlusion_tests"])
     assert not any(symmetric["none"]["occlusion_tests"])
-    soon, never = (bench(tmp_path, "--zoom-factor", factor)["methods"]["paper"] for factor in ("1", "1e9"))
+    soon, never = (bench(run, "--zoom-factor", factor)[0]["methods"]["paper"] for factor in ("1", "1e9"))
     assert sum(soon["shadow_traversal_steps"]) > sum(never["shadow_traversal_steps"])
 
 
-@pytest.mark.parametrize(
-    ("wrong", "said"),
-    [
-        (["--frames", "5:2"], "give A:B, the frames A to B - 1 of the 6 there are"),
-        (["--frames", "1-4"], "--frames 1-4: give A:B"),
-        (["--zoom-factor", "0"], "argument --zoom-factor: 0 is not a number from 1 up"),
-        (["--method", "none"], "unrecognized arguments: --method none"),
-        (["--methods", "telepathy"], "argument --methods: invalid choice: 'telepathy'; it is one of none"),
-        (["--methods", "all,telepathy"], "+lightbuffer, +cache-directions, +cache-tile, +packets16, +packets1; or all"),
-        (["--methods", ""], "argument --methods: invalid choice: ''"),
-        (["--methods", "papr,paper,certifed"],
-         "invalid choice: 'papr': did you mean 'paper'? 'certifed': did you mean 'certified'? (see"),
-        (["--methods", "papr,all,telepathy"], "'papr': did you mean 'paper'? 'telepathy'; it is one of none"),
-        (["--accelerator", "kdtree-lasy"], "kdtree-lazy: did you mean 'kdtree-lazy'?"),
-        (["--accelerator", "grid"], "grid is not one of bvh8, kdtree"),
-        (["--methd", "paper"], "unrecognized arguments: --methd paper: did you mean '--methods'?"),
-        (["--lamp-sample=4"], "unrecognized arguments: --lamp-sample=4: did you mean '--lamp-samples'?"),
-    ],
-)  # fmt: skip
-def test_mistakes_are_one_line(wrong, said, capfd):
-    assert said in complaint(run(capfd, *SMALL, *wrong))
-
-
-@pytest.mark.parametrize(
-    ("wrong", "said"),
-    [
-        (["--plot", "OUT/plot.gif"], "plot.gif: unknown kind of plot; give one of .png .svg .pdf"),
-        (["--plot", "OUT/plot"], "unknown kind of plot"),
-        (["--plot", "OUT/none/plot.png"], "there is no folder"),
-        (["--json", "OUT"], "a folder"),
-        (["--csv", "OUT/same", "--json", "OUT/same"], "a file of its own"),
-        (["--methods", "none", "--plot", "OUT/plot.png"], "nothing to compare with none"),
-    ],
-)
-def test_files_that_cannot_be_are_known_before_any_work(wrong, said, tmp_path: Path, capfd, monkeypatch):
-    def work(*_: object) -> None:
-        raise AssertionError("nothing may be read or traced")
-
-    monkeypatch.setattr("viewer.cli.options.load_visible_scene", work)
-    assert said in complaint(run(capfd, *SMALL, *(word.replace("OUT", str(tmp_path)) for word in wrong)))
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_file_that_fails_takes_nothing_else_along(tmp_path: Path, capsys, monkeypatch):
+def test_a_file_that_fails_takes_nothing_else_along(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OSError("plot.png: not written: No space left on device")
 
     monkeypatch.setattr(figures, "file_of", full)
-    paths = [tmp_path / name for name in ("plot.png", "figures.json", "table.csv")]
-    assert main([*SMALL, "--plot", str(paths[0]), "--json", str(paths[1]), "--csv", str(paths[2])]) == 1
-    out, err = capsys.readouterr()
-    assert printed_row(out, "paper") and err == "shadowcull: error: plot.png: not written: No space left on device\n"
-    assert [path.exists() for path in paths] == [False, True, True]
+    code, out, err = run(*SMALL, "--plot", "plot.png", "--json", "figures.json", "--csv", "table.csv")
+    assert code == 1 and printed_row(out, "paper")
+    assert err == "shadowcull: error: plot.png: not written: No space left on device\n"
+    assert {path.name for path in Path().iterdir()} == {"room.aff", "figures.json", "table.csv"}
 
 
-def test_cancelled_before_any_frame_is_done_there_is_nothing_to_keep(tmp_path: Path, capsys, monkeypatch):
-    monkeypatch.setattr(Work, "count", lambda work, *_: setattr(work, "stopped", True))
-    assert main([*SMALL, "--json", str(tmp_path / "figures.json")]) == 130
-    assert capsys.readouterr() == ("", "shadowcull: cancelled\n")
-    assert not list(tmp_path.iterdir())
+def test_cancelled_before_any_frame_is_done_there_is_nothing_to_keep(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    stop_at(monkeypatch, lambda label, done: True)
+    assert run(*SMALL, "--json", "figures.json") == (130, "", "shadowcull: cancelled\n")
+    assert [path.name for path in Path().iterdir()] == ["room.aff"]
 
 
 # --- on a terminal ---------------------------------------------------------------------------------
 
 
-def test_progress_shows_frame_method_time_gone_and_time_left():
+def test_progress_shows_frame_method_time_gone_and_time_left() -> None:
     terminal = Terminal("bench", "default", "--frames", ":8", "--size", "160x160")
     *_, said = terminal.lines()
     assert terminal.end() == 0
@@ -160,7 +110,7 @@ def test_progress_shows_frame_method_time_gone_and_time_left():
     assert "│ paper" in said[said.rindex(" left") :]
 
 
-def test_ctrl_c_keeps_whole_frames(tmp_path: Path):
+def test_ctrl_c_keeps_whole_frames(room: Path, tmp_path: Path) -> None:
     paths = {kind: tmp_path / f"figures.{kind}" for kind in ("json", "csv", "pdf")}
     files = ["--json", str(paths["json"]), "--csv", str(paths["csv"]), "--plot", str(paths["pdf"])]
     terminal = Terminal("bench", "default", "--path-frames", "100000", "--size", "64x64", *files)
@@ -172,12 +122,12 @@ def test_ctrl_c_keeps_whole_frames(tmp_path: Path):
     assert (results["frames"], results["planned_frames"], results["stopped"]) == ([*range(done)], 100000, True)
     assert {len(values) for one in results["methods"].values() for values in one.values()} == {done}
     assert f"default.aff, 64 × 64, frames 0 to {done - 1} of 100000, stopped" in terminal.said
-    assert sorted(tmp_path.iterdir()) == sorted(paths.values()) and all(p.stat().st_size for p in paths.values())
+    assert {path for path in tmp_path.iterdir() if path.stat().st_size} == {room, *paths.values()}
+    assert len([*tmp_path.iterdir()]) == 4
 
 
-def test_all_methods_have_a_line_each(tmp_path: Path, capsys) -> None:
-    results = bench(tmp_path, "--methods", "all, paper+rest,paper", "--frames", ":3")
+def test_all_methods_have_a_line_each(run: Run) -> None:
+    results, out = bench(run, "--methods", "all, paper+rest,paper", "--frames", ":3")
     assert {"none", "paper", "certified", "free", "certified+cache", "paper+rest"} <= set(results["methods"])
-    out = capsys.readouterr().out
     assert all(printed_row(out, name) for name in results["methods"])
     assert max(results["memory_bytes"]["certified"]) > max(results["memory_bytes"]["none"]) == 0

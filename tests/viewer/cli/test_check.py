@@ -10,47 +10,35 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.commands import ROOM, complaint, run
+from tests.commands import ROOM, Run, pixels
 from tracer.culling.fate import Fate
 from viewer.cli.console import Work
 from viewer.output import capture
-from viewer.state.palette import FATE_COLORS
+from viewer.state.palette import FATES
 
 SIZE = ("--size", "64x48", "--threads", 1)
 
 
-@pytest.fixture(autouse=True)
-def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The room of `tests.commands` in a folder of its own, which is the current one."""
-    monkeypatch.chdir(tmp_path)
-    Path("room.aff").write_text(ROOM)
-
-
-def verdict(capfd: pytest.CaptureFixture[str], *files: object) -> tuple[int, list[str]]:
-    code, out, errors = run(capfd, "check", *files)
+def verdict(run: Run, *files: object) -> tuple[int, list[str]]:
+    code, out, errors = run("check", *files)
     assert errors == ""
     return code, out.splitlines()
 
 
-def pixels(path: str) -> np.ndarray:
-    with Image.open(path) as image:
-        return np.asarray(image.convert("RGB"))
-
-
-def test_pictures_stay_true_until_something_changes(capfd: pytest.CaptureFixture[str]) -> None:
+def test_pictures_stay_true_until_something_changes(run: Run) -> None:
     modes = ("--view", "shadow:1", "--frame", 5, "--warmup", 4, "--legend", "--caption", "A {view}")
-    assert run(capfd, "render", "room.aff", "-o", "modes.png", *SIZE, *modes)[0] == 0
-    assert run(capfd, "render", "room.aff", "-o", "plain.png", *SIZE, "--samples", 3)[0] == 0
-    code, lines = verdict(capfd, "modes.png", "plain.png")
+    run.ok("render", "room.aff", "-o", "modes.png", *SIZE, *modes)
+    run.ok("render", "room.aff", "-o", "plain.png", *SIZE, "--samples", 3)
+    code, lines = verdict(run, "modes.png", "plain.png")
     assert code == 0 and [line.split(": ")[:2] for line in lines] == [["modes.png", "true"], ["plain.png", "true"]]
     assert all("bit for bit" in line for line in lines)
 
     capture.write(Path("edited.png"), pixels("plain.png") ^ 1, capture.read_carried(Path("plain.png")).text())
-    code, (line,) = verdict(capfd, "edited.png")
+    code, (line,) = verdict(run, "edited.png")
     assert code == 1 and "FALSE: 3,072 of 3,072 pixels differ, by 1 of 255" in line and "the file's own pixels" in line
 
     Path("room.aff").write_text(ROOM.replace("l 2 4 3 1 1 1", "l 2 5 3 1 1 1").replace("f 0.8 0.6", "f 0.7 0.6"))
-    code, lines = verdict(capfd, "modes.png", "plain.png")
+    code, lines = verdict(run, "modes.png", "plain.png")
     assert code == 1 and all("changed since: the scene's materials and lights" in line for line in lines)
     assert all("FALSE" in line and "pixels differ" in line for line in lines)
 
@@ -58,37 +46,35 @@ def test_pictures_stay_true_until_something_changes(capfd: pytest.CaptureFixture
     carried = capture.read_carried(Path("plain.png"))
     carried = replace(carried, made=replace(carried.made, version="0.0.1"))
     capture.write(Path("old.png"), pixels("plain.png"), carried.text())
-    assert verdict(capfd, "old.png")[0] == 0, "another version that makes the same picture"
+    assert verdict(run, "old.png")[0] == 0, "another version that makes the same picture"
     carried.state["settings"]["depth"] = 0
     capture.write(Path("old.png"), pixels("plain.png"), carried.text())
-    code, (line,) = verdict(capfd, "old.png")
+    code, (line,) = verdict(run, "old.png")
     assert code == 1 and "the version, 0.0.1 then" in line
 
 
 @pytest.mark.parametrize("method", ["paper", "none"])
-def test_what_culling_saves_stands_above_the_picture_and_comes_back(
-    capfd: pytest.CaptureFixture[str], method: str
-) -> None:
+def test_what_culling_saves_stands_above_the_picture_and_comes_back(run: Run, method: str) -> None:
     wanted = "render", "room.aff", *SIZE, "--method", method, "--repeat", 1
     said = "1.10 × as fast as none"
-    assert run(capfd, *wanted, "-o", "plain.png")[0] == 0
-    assert run(capfd, *wanted, "-o", "savings.png", f"--savings={said}")[0] == 0
-    assert run(capfd, *wanted, "-o", "counted.png", "--savings")[0] == 0
+    run.ok(*wanted, "-o", "plain.png")
+    run.ok(*wanted, "-o", "savings.png", f"--savings={said}")
+    run.ok(*wanted, "-o", "counted.png", "--savings")
     plain, both, counted = (pixels(name) for name in ("plain.png", "savings.png", "counted.png"))
     height = len(plain)
     assert np.array_equal(both[-height:], plain) and np.array_equal(counted[-height:], plain)
     if method == "paper":  # with none it is dim
-        bar = np.round(255.0 * np.array(FATE_COLORS[Fate.TRACED]))
+        bar = np.round(255.0 * np.array(FATES[Fate.TRACED].color))
         assert (both[:-height] == bar).all(-1).any(), "no part of the bar is seen"
-    code, lines = verdict(capfd, "savings.png", "counted.png")
+    code, lines = verdict(run, "savings.png", "counted.png")
     assert code == 0 and all("true" in line for line in lines), lines
     for name, shown in (("savings.png", True), ("plain.png", False)):
-        words = run(capfd, "render", name, "--print-command")[1]
+        words = run.ok("render", name, "--print-command")
         assert (said in words) == shown == ("--savings" in words)
 
 
-def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> None:
-    assert run(capfd, "render", "room.aff", "-o", "a.png", *SIZE)[0] == 0
+def test_what_cannot_be_told_is_not_true(run: Run) -> None:
+    run.ok("render", "room.aff", "-o", "a.png", *SIZE)
     carried = capture.read_carried(Path("a.png"))
     unknown = {"warmup": {"unknown": "its modes were learnt elsewhere"}, "draw": {"view": "occlusion"}}
     said = {"window.png": "panels", "unknown.png": "learnt elsewhere", "gone.png": "its scene is gone",
@@ -100,24 +86,24 @@ def test_what_cannot_be_told_is_not_true(capfd: pytest.CaptureFixture[str]) -> N
     ]  # fmt: skip
     for name, change in zip(said, changes, strict=True):
         capture.write(Path(name), pixels("a.png"), replace(carried, **change).text())
-    code, lines = verdict(capfd, *said)
+    code, lines = verdict(run, *said)
     assert code == 1 and len(lines) == len(said)
     for line, (name, words) in zip(lines, said.items()):
         assert line.startswith(f"{name}: unknown: ") and words in line, line
     certificates = ("--view", "certificate:0", "--method", "certified", "--size", "64x48")
-    assert run(capfd, "render", "room.aff", "-o", "one.png", *certificates, "--threads", 1)[0] == 0
-    assert run(capfd, "render", "room.aff", "-o", "two.png", *certificates, "--threads", 2)[0] == 0
-    code, lines = verdict(capfd, "one.png", "two.png")
+    run.ok("render", "room.aff", "-o", "one.png", *certificates, "--threads", 1)
+    run.ok("render", "room.aff", "-o", "two.png", *certificates, "--threads", 2)
+    code, lines = verdict(run, "one.png", "two.png")
     assert "one.png: true" in lines[0] and "two.png: unknown" in lines[1] and "threads" in lines[1]
 
 
-def test_files_that_cannot_be_checked_are_errors(capfd: pytest.CaptureFixture[str]) -> None:
-    assert run(capfd, "render", "room.aff", "-o", "good.png", *SIZE)[0] == 0
+def test_files_that_cannot_be_checked_are_errors(run: Run) -> None:
+    run.ok("render", "room.aff", "-o", "good.png", *SIZE)
     Path("folder").mkdir()
     Image.new("RGB", (4, 4)).save("plain.png")
     Path("other.pdf").write_bytes(b"%PDF-1.4")
     Path("cut.png").write_bytes(Path("good.png").read_bytes()[:-40])
-    assert "cut.png: cannot be read as a picture: it is cut off" in complaint(run(capfd, "render", "cut.png"))
+    assert "cut.png: cannot be read as a picture: it is cut off" in run.fails("render", "cut.png")
     said = {
         "cut.png": "cannot be read as a picture: it is cut off",
         "plain.png": "a picture, but not one saved by Shadowcull",
@@ -127,46 +113,29 @@ def test_files_that_cannot_be_checked_are_errors(capfd: pytest.CaptureFixture[st
         "folder": "it is a folder, not a file",
         "room.aff": "check reads PNG and EXR pictures, and figures as PNG or PDF",
     }
-    code, out, errors = run(capfd, "check", *said, "good.png")
+    code, out, errors = run("check", *said, "good.png")
     assert code == 1 and out.startswith("good.png: true") and out.count("\n") == 1, "one is checked"
     for line, (name, words) in zip(errors.splitlines(), said.items(), strict=True):
         assert line.startswith(f"shadowcull: error: {name}: ") and words in line, line
 
 
 @pytest.mark.parametrize("ending", [".png", ".pdf"])
-def test_a_figure_compares_methods_and_can_be_checked(
-    capfd: pytest.CaptureFixture[str], ending: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_figure_compares_methods_and_can_be_checked(run: Run, ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
     options = ("--methods", "none,paper", "--crops", "4,4,20,8", "--frame", 3, "--warmup", 3, "--exposure", -1)
     if ending == ".pdf":
         options = ("--methods", "none,paper", "--view", "cost", "--range", "1:5", "--frame", 3)
-    code, out, _ = run(capfd, "figure", "room.aff", "-o", f"figure{ending}", *SIZE, *options)
-    assert code == 0 and "shadow rays due" in out and "pixels that differ" in out
-    code, (line,) = verdict(capfd, f"figure{ending}")
+    out = run.ok("figure", "room.aff", "-o", f"figure{ending}", *SIZE, *options)
+    assert "shadow rays due" in out and "pixels that differ" in out
+    code, (line,) = verdict(run, f"figure{ending}")
     assert code == 0 and line.startswith(f"figure{ending}: true"), line
     heard: list[str] = []
     with monkeypatch.context() as patch:
         patch.setattr(Work, "count", lambda self, label, done, total: heard.append(label))
-        verdict(capfd, f"figure{ending}")
+        verdict(run, f"figure{ending}")
     frames = 4 if ending == ".png" else 1
     assert f"figure{ending}, paper, frame {frames} of {frames}" in heard
     Path("room.aff").write_text(ROOM.replace("l -3 4 2", "l -3 3 2"))
-    code, (line,) = verdict(capfd, f"figure{ending}")
+    code, (line,) = verdict(run, f"figure{ending}")
     assert code == 1 and "the scene's lights" in line
     if ending == ".png":
         assert capture.read(Path("figure.png")).time == 3.0, "the window goes there"
-
-
-def test_figures_that_cannot_be_drawn(capfd: pytest.CaptureFixture[str]) -> None:
-    cases = [
-        (("-o", "f.svg"), ".png .pdf"),
-        (("-o", "f.png", "--crops", "60,0,10,10"), "60,0,10,10: not inside"),
-        (("-o", "f.png", "--methods", "none,none"), "each once"),
-        (("-o", "f.png", "--view", "certificate:0"), "one method alone"),
-        (("-o", "f.png", "--view", "shadow:9"), "lights are 0 to 1"),
-        (("-o", "f.png", "--view", "voxels"), "the method none has nothing for it; give --methods voxels"),
-        (("-o", "f.png", "--view", "cuts", "--methods", "lightcuts,paper"), "it; give --methods lightcuts"),
-        (("-o", "f.png", "--view", "tree", "--accelerator", "kdtree-lazy"), "all methods share one tree"),
-    ]
-    for options, said in cases:
-        assert said in complaint(run(capfd, "figure", "room.aff", *options, *SIZE))

@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -17,11 +16,11 @@ import pytest
 import trimesh
 from PIL import Image
 
-from tests.commands import CAMERA, ROOM, complaint, render, run
+from tests.commands import CAMERA, ROOM, Run, pixels
 from tests.terminal import Terminal
 from tracer.frame import Settings
 from tracer.scene.load import load_scene
-from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
+from tracer.scene.mesh_options import IN_STUDIO
 from viewer.cli import main as command_line
 from viewer.cli import pictures
 from viewer.output import capture
@@ -31,22 +30,18 @@ from viewer.views.color import TOO_BRIGHT
 
 ROOT = Path(__file__).resolve().parents[3]
 MAGENTA = (255, 0, 255)
-
-
-def pixels(path: Path) -> np.ndarray:
-    with Image.open(path) as image:
-        return np.asarray(image)
+ROOM_48 = ("render", "room.aff", "--size", "48x32", "--threads", 1)
+FIGURE_4 = ("render", "figure4", "--size", "128x128", "--threads", 1, "--frame", 20)
+"""Where culling misses a shadow, after the frames before it."""
 
 
 # --- info ------------------------------------------------------------------------------------------
 
 
-def test_info_says_what_a_scene_holds(capfd: pytest.CaptureFixture[str], room: Path) -> None:
+def test_info_says_what_a_scene_holds(run: Run) -> None:
     spheres = "".join(f"lamp sphere at {x} 3 0 radius 0.1 samples 4\n" for x in range(5))
-    room.write_text(ROOM + spheres + "lamp dome at 0 0 0 radius 9 samples 1 falloff inverse-square\n")
-    code, out, _ = run(capfd, "info", room, "--json")
-    facts = json.loads(out)
-    assert code == 0
+    Path("room.aff").write_text(ROOM + spheres + "lamp dome at 0 0 0 radius 9 samples 1 falloff inverse-square\n")
+    facts = json.loads(run.ok("info", "room.aff", "--json"))
     assert list(facts) == [
         "triangles", "static_triangles", "dynamic_triangles", "spheres", "cones", "lights", "materials",
         "textures", "frames", "time", "bounds", "warnings", "light_kinds", "studio",
@@ -54,63 +49,52 @@ def test_info_says_what_a_scene_holds(capfd: pytest.CaptureFixture[str], room: P
     assert (facts["triangles"], facts["dynamic_triangles"], facts["spheres"]) == (3, 1, 1)
     assert (facts["lights"], facts["frames"], facts["time"], facts["studio"]) == (8, 10, [0.0, 9.0], None)
     assert [(k["kind"], k["samples"], k["falloff"], k["lights"]) for k in facts["light_kinds"]] == [
-        ("point", 1, "none", 2),
-        ("sphere", 4, "none", 5),
-        ("dome", 1, "inverse square", 1),
-    ]
-    code, out, _ = run(capfd, "info", room)
-    assert code == 0 and "dynamic triangles" in out and "0 to 9 s" in out
+        ("point", 1, "none", 2), ("sphere", 4, "none", 5), ("dome", 1, "inverse square", 1),
+    ]  # fmt: skip
+    out = run.ok("info", "room.aff")
+    assert "dynamic triangles" in out and "0 to 9 s" in out
     for said in (r"lights\W+8\W+point", r"sphere, 4 samples\W+5", r"dome, 1 sample, falloff inverse square\W+1"):
         assert re.search(said, out), said
-    code, out, _ = run(capfd, "info", "default", "--json")
+    out = run.ok("info", "default", "--json")
     facts = json.loads(out)
     assert facts["triangles"] >= 20_000 and facts["lights"] >= 4 and facts["frames"] == 200
-    assert run(capfd, "info", "--json") == (0, out, ""), "it is the default"
+    assert run("info", "--json") == (0, out, ""), "it is the default"
 
 
 @pytest.mark.parametrize("ending", [".obj", ".stl", ".glb"])
-def test_info_says_what_a_studio_adds(capfd: pytest.CaptureFixture[str], tmp_path: Path, ending: str) -> None:
-    path = tmp_path / f"ball{ending}"
-    trimesh.creation.icosphere(subdivisions=1).export(path)
-    facts = json.loads(run(capfd, "info", path, "--json")[1])
+def test_info_says_what_a_studio_adds(run: Run, ending: str) -> None:
+    path, model = Path(f"ball{ending}"), trimesh.Scene(trimesh.creation.icosphere(subdivisions=1))
+    model.export(path)
+    facts = json.loads(run.ok("info", path, "--json"))
     shown = load_scene(path, meshes=IN_STUDIO)
     assert facts["triangles"] + facts["studio"]["triangles"] == shown.triangle_count
     assert facts["studio"]["lights"] == len(shown.lights) != facts["lights"]
-    code, out, _ = run(capfd, "info", path)
-    assert code == 0 and "a studio adds 2 triangles, and 3 lamps in place of these lights" in out
+    assert "a studio adds 2 triangles, and 3 lamps in place of these lights" in run.ok("info", path)
     if ending == ".glb":  # which may have a camera
-        model = trimesh.Scene(trimesh.creation.icosphere(subdivisions=1))
         model.camera_transform = trimesh.transformations.translation_matrix((0, 0, 5))
         model.export(path)
-        code, out, _ = run(capfd, "info", path)
-        assert code == 0 and "a studio adds" not in out
+        assert "a studio adds" not in run.ok("info", path)
 
 
 # --- render ----------------------------------------------------------------------------------------
 
 
-def test_render_writes_a_picture_that_remembers(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
-    output = tmp_path / "room.png"
-    code, out, _ = render(capfd, room, "-o", output, "--frame", 3, "--warmup", 2, "--camera", json.dumps(CAMERA))
-    assert code == 0
-    assert out.rstrip().endswith(str(output))
-    assert "Shadow rays" in out and "All steps" in out
-    with Image.open(output) as image:
+def test_render_writes_a_picture_that_remembers(run: Run) -> None:
+    out = run.ok(*ROOM_48, "-o", "room.png", "--frame", 3, "--warmup", 2, "--camera", json.dumps(CAMERA))
+    assert out.rstrip().endswith("room.png") and "Shadow rays" in out and "All steps" in out
+    with Image.open("room.png") as image:
         assert (image.size, image.mode) == ((48, 32), "RGB")
-    kept = capture.read(output)
-    assert (Path(kept.scene), kept.time, kept.camera.to_json()) == (room, 3.0, CAMERA)
-    assert not [p for p in tmp_path.iterdir() if p.name.startswith(".")]
-    code, _, err = render(capfd, room, "-o", tmp_path / "time.png", "--time", 3.0, "--warmup", 5, "--camera", output)
-    assert code == 0 and np.array_equal(pixels(tmp_path / "time.png"), pixels(output)), "the same moment"
+    kept = capture.read(Path("room.png"))
+    assert (Path(kept.scene), kept.time, kept.camera.to_json()) == (Path("room.aff").resolve(), 3.0, CAMERA)
+    assert {path.name for path in Path().iterdir()} == {"room.aff", "room.png"}
+    code, _, err = run(*ROOM_48, "-o", "time.png", "--time", 3.0, "--warmup", 5, "--camera", "room.png")
+    assert code == 0 and np.array_equal(pixels("time.png"), pixels("room.png")), "the same moment"
     assert "--warmup 5: only 3 frames come before this one" in err
 
 
-def test_buffers_have_the_promised_names_shapes_and_types(
-    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
-) -> None:
-    output = tmp_path / "room.npz"
-    assert render(capfd, room, "--buffers", output, "--warmup", 0)[0] == 0
-    with np.load(output) as npz:
+def test_buffers_have_the_promised_names_shapes_and_types(run: Run) -> None:
+    run.ok(*ROOM_48, "--buffers", "room.npz", "--warmup", 0)
+    with np.load("room.npz") as npz:
         arrays = dict(npz)
     image, lights = (32, 48), (32, 48, 2)
     assert {name: (a.shape, a.dtype.name) for name, a in arrays.items()} == {
@@ -126,34 +110,26 @@ def test_buffers_have_the_promised_names_shapes_and_types(
 
 
 @pytest.mark.slow
-def test_buffers_that_no_memory_holds_are_refused(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    said = complaint(run(capfd, "render", "courtyard", "--buffers", tmp_path / "a.npz"))
+def test_buffers_that_no_memory_holds_are_refused(run: Run) -> None:
+    said = run.fails("render", "courtyard", "--buffers", "a.npz")
     assert "all buffers with 10,000 lights: not enough memory; make the picture 26,843 pixels at most" in said
-    said = complaint(run(capfd, "render", "courtyard", "-o", tmp_path / "lights.png", "--view", "lights"))
+    said = run.fails("render", "courtyard", "-o", "lights.png", "--view", "lights")
     assert "the view lights with 10,000 lights" in said
-    assert not list(tmp_path.iterdir())
+    assert [path.name for path in Path().iterdir()] == ["room.aff"]
 
 
-def test_a_light_among_too_many_is_looked_at_alone(
-    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    shown = []
-    for output in (tmp_path / "all.png", tmp_path / "alone.png"):
-        assert render(capfd, room, "-o", output, "--view", "penumbra:1", "--lamp-radius", "0.5")[0] == 0
-        shown.append(pixels(output))
+def test_a_light_among_too_many_is_looked_at_alone(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    for output in ("all.png", "alone.png"):
+        run.ok(*ROOM_48, "-o", output, "--view", "penumbra:1", "--lamp-radius", "0.5")
         monkeypatch.setattr("viewer.state.views.MOST_TOGETHER", 1)
-    assert np.array_equal(*shown) and len(np.unique(shown[0].reshape(-1, 3), axis=0)) > 50
+    shown = pixels("alone.png")
+    assert np.array_equal(pixels("all.png"), shown) and len(np.unique(shown.reshape(-1, 3), axis=0)) > 50
 
 
-def test_verified_buffers_say_what_is_wrong(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """Figure 4 in frame 20, where culling misses a shadow."""
-    output, unculled = tmp_path / "paper.npz", tmp_path / "none.npz"
-    where = ("--size", "128x128", "--threads", 1, "--frame", 20)
-    given = ("--buffers", output, "--warmup", 20, "--verify", "--method", "paper")
-    code, out, _ = run(capfd, "render", "figure4", *given, *where)
-    assert code == 0
-    assert run(capfd, "render", "figure4", "--buffers", unculled, "--method", "none", *where)[0] == 0
-    with np.load(output) as npz, np.load(unculled) as none:
+def test_verified_buffers_say_what_is_wrong(run: Run) -> None:
+    out = run.ok(*FIGURE_4, "--buffers", "paper.npz", "--warmup", 20, "--verify", "--method", "paper")
+    run.ok(*FIGURE_4, "--buffers", "none.npz", "--method", "none")
+    with np.load("paper.npz") as npz, np.load("none.npz") as none:
         arrays = dict(npz)
         np.testing.assert_array_equal(arrays["reference"], none["color"])
         assert "reference" not in none and "wrong" not in none
@@ -164,28 +140,25 @@ def test_verified_buffers_say_what_is_wrong(capfd: pytest.CaptureFixture[str], t
     assert wrong is not None and int(wrong[1].replace(",", "")) == arrays["wrong"].sum() > 0
 
 
-def test_slices_and_cells_are_drawn_by_methods_that_have_them(
-    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
-) -> None:
-    path = tmp_path / "slice.png"
-    code, out, errors = render(capfd, room, "-o", path, "--view", "voxels:1", "--slice", "x:0.7", "--legend")
-    assert code == 0 and "method voxels" in out, errors
-    draw = capture.read(path).draw
-    assert (draw.view, draw.light, draw.slice) == ("voxels", 1, (0, 0.7))
-    code, out, _ = run(capfd, "render", path, "--print-command")
-    assert code == 0 and "--view voxels:1" in out and "--slice x:0.7" in out
-    code, out, errors = render(capfd, room, "-o", path, "--view", "cell-lights", "--range", "0:2")
-    assert code == 0 and "method lie-exact" in out, errors
-    drawn = []
-    for more in ((), (), ("--slice", "x:0.9")):
-        view = ("--view", "tree", "--accelerator", "kdtree-lazy", "--method", "none", "--legend", *more)
-        assert render(capfd, room, "-o", path, *view)[0] == 0
-        drawn.append(pixels(path))
-    assert (drawn[0] == drawn[1]).all() and (drawn[0] != drawn[2]).any()
+def test_views_are_drawn_by_methods_that_have_them(run: Run) -> None:
+    out = run.ok(*ROOM_48, "-o", "slice.png", "--view", "voxels:1", "--slice", "x:0.7", "--legend")
+    draw = capture.read(Path("slice.png")).draw
+    assert "method voxels" in out and (draw.view, draw.light, draw.slice) == ("voxels", 1, (0, 0.7))
+    out = run.ok("render", "slice.png", "--print-command")
+    assert "--view voxels:1" in out and "--slice x:0.7" in out
+    assert "method lie-exact" in run.ok(*ROOM_48, "-o", "lights.png", "--view", "cell-lights", "--range", "0:2")
+    tree = ("--view", "tree", "--accelerator", "kdtree-lazy", "--method", "none", "--legend")
+    for name, more in (("tree", ()), ("again", ()), ("elsewhere", ("--slice", "x:0.9"))):
+        run.ok(*ROOM_48, "-o", f"{name}.png", *tree, *more)
+    assert (pixels("tree.png") == pixels("again.png")).all() and (pixels("tree.png") != pixels("elsewhere.png")).any()
+    lamps = ("--lamp-radius", 0.5, "--lamp-samples", 64, "--lightcuts-error", 0.3)
+    for view, more in (("primitive", ()), ("pixel-count", ()), ("cuts", lamps)):
+        run.ok(*ROOM_48, "-o", f"{view}.png", "--frame", 2, "--warmup", 2, "--view", view, *more)
+        assert len(np.unique(pixels(f"{view}.png").reshape(-1, 3), axis=0)) > 3
 
 
-def test_what_moves_makes_no_tree_wait(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = load_scene(room)
+def test_what_moves_makes_no_tree_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = load_scene("room.aff")
     static = len(scene.objects[0].triangles) + len(scene.objects[0].quadrics)
     assert static < scene.primitive_count
     monkeypatch.setattr(pictures, "LARGE", static - 1)
@@ -195,15 +168,12 @@ def test_what_moves_makes_no_tree_wait(room: Path, monkeypatch: pytest.MonkeyPat
         pictures.check_tree(Settings(), View.TREE, scene)
 
 
-def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    drawn = {}
-    output = tmp_path / "view.png"
-    where = ("figure4", "-o", output, "--size", "128x128", "--threads", 1, "--frame", 20, "--warmup", 20)
+def test_views_of_what_is_wrong_verify_by_themselves(run: Run) -> None:
+    drawn, where = {}, (*FIGURE_4, "-o", "view.png", "--warmup", 20)
     for view in ("difference", "wipe:0", "wipe:1", "wipe:.25", "color"):
         method = ("--method", "paper") if view == "color" else ()  # which views of what is wrong choose by themselves
-        code, out, _ = run(capfd, "render", *where, "--view", view, *method)
-        assert code == 0 and ("Wrong answers" in out) == (view != "color")
-        drawn[view], kept = pixels(output), capture.read(output)
+        assert ("Wrong answers" in run.ok(*where, "--view", view, *method)) == (view != "color")
+        drawn[view], kept = pixels("view.png"), capture.read(Path("view.png"))
         assert kept.settings.verify is False and kept.draw.view == view.partition(":")[0]
     wrong, ring = ((drawn[view] == MAGENTA).all(axis=-1) for view in ("difference", "wipe:1"))
     beneath = np.abs(drawn["difference"] - BENEATH * drawn["color"])[~(ring | wrong)]
@@ -212,121 +182,104 @@ def test_views_of_what_is_wrong_verify_by_themselves(capfd: pytest.CaptureFixtur
     assert (drawn["wipe:0"][wrong] != drawn["color"][wrong]).any(axis=-1).all()
     np.testing.assert_array_equal(drawn["wipe:.25"][:, :32], drawn["wipe:1"][:, :32])
     np.testing.assert_array_equal(drawn["wipe:.25"][:, 33:], drawn["wipe:0"][:, 33:])
-    assert run(capfd, "render", *where, "--view", "wipe:1", "--no-marks")[0] == 0
-    np.testing.assert_array_equal(pixels(output), drawn["color"])
+    run.ok(*where, "--view", "wipe:1", "--no-marks")
+    np.testing.assert_array_equal(pixels("view.png"), drawn["color"])
 
 
-def test_warm_up_makes_culling_act(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
+def test_warm_up_makes_culling_act(run: Run) -> None:
     """The first frame has no history; the third culls."""
-    output, saved = tmp_path / "a.png", []
+    saved = []
     for warm_up in (0, 2):
-        given = ("-o", output, "--frame", 4, "--warmup", warm_up, "--method", "paper")
-        assert render(capfd, room, *given)[0] == 0
-        shadow = capture.read_carried(output).statistics["shadow"]
+        run.ok(*ROOM_48, "-o", "a.png", "--frame", 4, "--warmup", warm_up, "--method", "paper")
+        shadow = capture.read_carried(Path("a.png")).statistics["shadow"]
         saved.append(shadow["culled"] + shadow["dynamic_only"])
     assert saved[0] == 0 < saved[1]
 
 
-@pytest.mark.parametrize("view", ["occlusion", "shadow:1", "primitive", "depth", "normal", "pixel-count", "cuts"])
-def test_every_view_makes_a_picture(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path, view: str) -> None:
-    output = tmp_path / "view.png"
-    lamps = ("--lamp-radius", 0.5, "--lamp-samples", 64, "--lightcuts-error", 0.3) if view == "cuts" else ()
-    assert render(capfd, room, "-o", output, "--frame", 2, "--warmup", 2, "--view", view, *lamps)[0] == 0
-    assert len(np.unique(pixels(output).reshape(-1, 3), axis=0)) > 3
-
-
-def test_a_legend_is_drawn_where_it_is_wanted(capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path) -> None:
-    output, drawn = tmp_path / "view.png", []
+def test_a_legend_is_drawn_where_it_is_wanted(run: Run) -> None:
+    drawn = []
     for size, view, legend, said in (
         ("320x240", "occlusion", (), ""),
         ("320x240", "occlusion", ("--legend",), ""),
         ("40x30", "occlusion", ("--legend",), "no legend: the picture is too small for it"),
         ("320x240", "color", ("--legend",), "no legend: the view color needs none"),
     ):
-        code, _, errors = run(capfd, "render", room, "-o", output, "--size", size, "--view", view, *legend)
+        code, _, errors = run("render", "room.aff", "-o", "view.png", "--size", size, "--view", view, *legend)
         assert code == 0 and said in errors and bool(said) == ("legend" in errors)
-        drawn.append(pixels(output))
+        drawn.append(pixels("view.png"))
     rows, columns = np.nonzero((drawn[0] != drawn[1]).any(axis=-1))
     assert len(rows) and rows.min() > 60 and columns.max() < 300, "it lies in the lower left corner"
 
 
-def test_exposure_and_tone_are_those_of_the_picture_alone(
-    capfd: pytest.CaptureFixture[str], room: Path, tmp_path: Path
-) -> None:
-    picture, buffers, colors = tmp_path / "a.png", tmp_path / "a.npz", []
+def test_exposure_and_tone_are_those_of_the_picture_alone(run: Run) -> None:
+    colors = []
     for exposure, more in ((0, ()), (1, ()), (5, ("--mark-clipped",))):
-        given = ("--size", "24x16", "-o", picture, "--buffers", buffers, "--exposure", exposure, *more)
-        assert run(capfd, "render", room, *given)[0] == 0
-        colors.append(np.load(buffers)["color"])
+        outputs = ("-o", "a.png", "--buffers", "a.npz")
+        run.ok("render", "room.aff", "--size", "24x16", *outputs, "--exposure", exposure, *more)
+        colors.append(np.load("a.npz")["color"])
         assert np.array_equal(colors[0], colors[-1]), "buffers are as they were traced"
         if not more:
             exposed = np.clip(2.0**exposure * colors[0], 0.0, 1.0) * 255.0
-            assert np.array_equal(pixels(picture), np.round(exposed).astype(np.uint8))
-    red = (pixels(picture) == np.round(np.multiply(255.0, TOO_BRIGHT))).all(axis=-1)
+            assert np.array_equal(pixels("a.png"), np.round(exposed).astype(np.uint8))
+    red = (pixels("a.png") == np.round(np.multiply(255.0, TOO_BRIGHT))).all(axis=-1)
     assert red.any() and (32.0 * colors[0][red] > 1.0).any(axis=-1).all()
 
 
-def test_figure_1_of_a_frame(room: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_figure_1_of_a_frame(run: Run) -> None:
     """Alone, or beside a picture; with none it says what would be culled."""
     for method, said in (("paper", ">culled<"), ("none", ">would be culled<"), ("certified", ">Certificates<")):
-        file = tmp_path / f"{method}.svg"
-        given = ("--figure1", file, "--size", "32x24", "--method", method, "--repeat", "1")
-        code, out, _ = run(capfd, "render", room, *given)
-        assert code == 0 and out.splitlines()[-1] == str(file)
+        file = Path(f"{method}.svg")
+        out = run.ok("render", "room.aff", "--figure1", file, "--size", "32x24", "--method", method, "--repeat", "1")
         due = re.search(r"Due\D*([\d,]+)", out)
+        assert out.splitlines()[-1] == str(file)
         assert due is not None and f">{due[1]}<" in file.read_text() and said in file.read_text()
 
 
 # --- the window, without a display, and stopping ---------------------------------------------------
 
 
-def test_the_window_is_given_the_lamps(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    opened: list[tuple[Path | None, dict[str, object]]] = []
+def test_the_window_is_given_the_lamps(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened = []
 
-    def open_window(
-        scene: Path | None, settings: dict[str, object], folders: Sequence[Path], meshes: MeshOptions
-    ) -> int:
+    def open_window(scene: Path | None, settings: dict[str, object], *folders_and_meshes: object) -> int:
         opened.append((scene, settings))
-        assert list(folders) == [] and meshes == IN_STUDIO
+        assert folders_and_meshes == ([], IN_STUDIO)
         return 0
 
     monkeypatch.setattr("viewer.cli.main.has_display", lambda: True)
-    for arguments in ([str(room), "--lamp-radius", "0.1", "--lamp-samples", "9"], ["--lamp-radius", "0"], []):
+    for arguments in (["room.aff", "--lamp-radius", "0.1", "--lamp-samples", "9"], ["--lamp-radius", "0"], []):
         assert command_line.main(arguments, open_window) == 0
-    assert opened == [(room, {"lamp_radius": 0.1, "lamp_samples": 9}), (None, {"lamp_radius": 0.0}), (None, {})]
+    lamps = {"lamp_radius": 0.1, "lamp_samples": 9}
+    assert opened == [(Path("room.aff"), lamps), (None, {"lamp_radius": 0.0}), (None, {})]
 
 
 def without_display() -> dict[str, str]:
     return {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
 
 
-def shadowcull(*arguments: object) -> list[str]:
-    return [sys.executable, "-m", "viewer", *map(str, arguments)]
-
-
 @pytest.mark.parametrize("stale", [False, True])
 def test_the_window_without_a_display(room: Path, stale: bool) -> None:
     environment = without_display() | ({"DISPLAY": ":4711"} if stale else {})
-    done = subprocess.run(shadowcull(room), cwd=ROOT, env=environment, capture_output=True, text=True)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
+    command = [sys.executable, "-m", "viewer", str(room)]
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
     assert "no display" in done.stderr and f"shadowcull render {room}" in done.stderr
 
 
 @pytest.mark.slow
-def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path) -> None:
+def test_a_picture_instead_of_the_window(room: Path) -> None:
     """What `make run` does where there is no display."""
     command = [sys.executable, str(ROOT / "tools/run.py"), str(room)]
-    done = subprocess.run(command, cwd=tmp_path, env=without_display(), capture_output=True, text=True)
+    done = subprocess.run(command, env=without_display(), capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stderr.splitlines()[0] == "shadowcull: no display; rendering to files instead"
     for said in ("out/first-light.png", "out/figure-1.svg", "Work of shadow rays", "speed-up"):
         assert said in done.stdout
-    assert pixels(tmp_path / "out/first-light.png").shape == (480, 640, 3)
+    assert pixels("out/first-light.png").shape == (480, 640, 3)
     due = re.search(r"Due\D*([\d,]+)", done.stdout)
-    assert due is not None and due[1] in (tmp_path / "out/figure-1.svg").read_text()
+    assert due is not None and due[1] in Path("out/figure-1.svg").read_text()
     environment = without_display() | {"PYTHONUNBUFFERED": "1"}
-    stopped = subprocess.Popen(command, cwd=tmp_path, env=environment, stdout=-1, stderr=-1, text=True)
+    stopped = subprocess.Popen(command, env=environment, stdout=-1, stderr=-1, text=True)
     assert stopped.stdout is not None and any("figure-1.svg" in line for line in stopped.stdout)
     time.sleep(0.5)  # until it measures, which takes longer
     stopped.send_signal(signal.SIGINT)
@@ -335,8 +288,8 @@ def test_a_picture_instead_of_the_window(room: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_ctrl_c_ends_a_rendering(room: Path, tmp_path: Path) -> None:
-    output = tmp_path / "never.png"
+def test_ctrl_c_ends_a_rendering(room: Path) -> None:
+    output = room.with_name("never.png")
     terminal = Terminal("render", str(room), "-o", str(output), "--size", "4000x4000", "--frame", "9", "--warmup", "9")
     terminal.interrupt_once("warming up, frame 1 of 9")
     assert (terminal.end(), terminal.said.splitlines()[-1]) == (130, "shadowcull: cancelled")

@@ -17,7 +17,7 @@ import psutil
 import pyarrow.parquet as pq
 import pytest
 
-from tests.commands import ROOM, complaint, run
+from tests.commands import ROOM, Run, stop_at
 from tests.marbles import write_marbles
 from tracer import fingerprint
 from tracer.experiments import experiment
@@ -27,7 +27,6 @@ from tracer.frame import Frame
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
 from viewer.cli import sweep
-from viewer.cli.console import Work
 
 METHODS = ("none", "paper", "cells", "certified", "certified+cache")
 STUDY = """\
@@ -45,9 +44,7 @@ WAIT = 60.0
 
 
 @pytest.fixture(autouse=True)
-def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("room.aff").write_text(ROOM)
+def study(room: Path) -> None:
     Path("study.toml").write_text(STUDY)
 
 
@@ -81,7 +78,7 @@ def until(holds: Callable[[], bool], what: str) -> None:
 
 
 def test_figures_are_those_of_bench_also_when_a_process_dies(
-    shared: Cluster, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    shared: Cluster, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scene = load_scene(write_marbles(Path()))
     Path("study.toml").write_text(STUDY.replace("room.aff", "marbles.aff").replace("40x30", "40x40"))
@@ -100,7 +97,7 @@ def test_figures_are_those_of_bench_also_when_a_process_dies(
         return add(store, some)
 
     monkeypatch.setattr(sweeping.Store, "add", add_and_kill)
-    code, out, err = run(capfd, "sweep", "study.toml", "--workers", 2)
+    code, out, err = run("sweep", "study.toml", "--workers", 2)
     assert code == 0 and killed and killed[0] in before and killed[0] not in shared.process_ids(), err
     assert f"process {killed[0]} has died" in err and "certified+cache" in out
 
@@ -126,44 +123,36 @@ def test_figures_are_those_of_bench_also_when_a_process_dies(
             assert set(later) != {first}, "else nothing would depend on history"
 
 
-def test_a_sweep_that_was_stopped_goes_on(
-    shared: Cluster, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    count = Work.count
-
-    def interrupted(work: Work, label: str, done: int, total: int) -> None:
-        count(work, label, done, total)
-        work.stopped = done >= 3
-
+def test_a_sweep_that_was_stopped_goes_on(shared: Cluster, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as stopped:
-        stopped.setattr(Work, "count", interrupted)
-        code, out, err = run(capfd, "sweep", "study.toml")
+        stop_at(stopped, lambda label, done: done >= 3)
+        code, out, err = run("sweep", "study.toml")
         assert code == 130 and "these are kept" in err
     first = {(row["task"], row["frame"]): row for row in rows()}
     assert 3 <= len(first) < 40
 
     Path("study.toml").write_text(STUDY.replace('"40x30", ', ""))  # fewer sizes: a change, but nothing is wrong with it
-    code, out, err = run(capfd, "sweep", "study.toml")
+    code, out, err = run("sweep", "study.toml")
     assert code == 0 and "the study has changed: sizes: - 40x30" in err and "40×30" not in out
     Path("study.toml").write_text(STUDY)
-    assert run(capfd, "sweep", "study.toml")[0] == 0
+    run.ok("sweep", "study.toml")
     every = {(row["task"], row["frame"]): row for row in rows()}
     assert len(every) == 40 and first.items() <= every.items(), "what was kept has stayed, times and all"
     assert not list(Path("study-results/parts").iterdir())
 
     monkeypatch.setattr(sweep, "local_cluster", None)  # nothing is missing, so that nobody is asked
-    code, out, err = run(capfd, "sweep", "study.toml")
+    code, out, err = run("sweep", "study.toml")
     assert code == 0 and "40 of 40 frames are kept in study-results; nothing is missing" in err
 
     Path("room.aff").write_text(ROOM.replace("l 2 4 3", "l 2 4 4"))
-    line = complaint(run(capfd, "sweep", "study.toml"))
+    line = run.fails("sweep", "study.toml")
     assert "room.aff: other lights; give another --output, or --anew" in line
 
 
-def test_seeds_shake_the_camera_and_a_warmup_cuts_paths(shared: Cluster, capfd: pytest.CaptureFixture[str]) -> None:
+def test_seeds_shake_the_camera_and_a_warmup_cuts_paths(shared: Cluster, run: Run) -> None:
     more = 'seeds = [1, 2]\nshake = 0.02\nwarmup = 2\nmethods = ["none", "paper"]\nsizes = ["24x18"]\n'
     Path("study.toml").write_text('scenes = ["room.aff"]\n' + more + "[path]\nfirst = 0\nlast = 4\n")
-    assert run(capfd, "sweep", "study.toml")[0] == 0
+    run.ok("sweep", "study.toml")
     found = {(row["seed"], row["method"], row["frame"]): row for row in rows()}
     assert len(found) == 20 and len({row["task"] for row in found.values()}) == 20, "each frame is a task"
     assert found[1, "none", 2]["picture"] != found[2, "none", 2]["picture"]
@@ -178,25 +167,16 @@ def test_seeds_shake_the_camera_and_a_warmup_cuts_paths(shared: Cluster, capfd: 
     assert all(alone[name] == found[1, "paper", 4][name] for name in sweeping.SAME)
 
 
-def test_another_version_does_not_take_part(
-    shared: Cluster, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_another_version_does_not_take_part(shared: Cluster, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tracer.experiments.remote_jobs.program_version", lambda: "9.9")
-    code, _, err = run(capfd, "sweep", "study.toml")
+    code, _, err = run("sweep", "study.toml")
     assert code == 1 and "16 tasks failed, the first of them room.aff" in err and "not 9.9" in err
     assert not (Path("study-results") / "results.parquet").exists()
 
 
-def test_without_dask_one_line_says_so(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    assert "install shadowcull[sweep]" in complaint(run(capfd, "sweep", "study.toml"))
-
-
-def test_a_scheduler_that_is_not_there_is_one_line(
-    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_scheduler_that_is_not_there_is_one_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tracer.experiments.cluster.CONNECT", 0.3)
-    line = complaint(run(capfd, "sweep", "study.toml", "--scheduler", "tcp://127.0.0.1:9"))
+    line = run.fails("sweep", "study.toml", "--scheduler", "tcp://127.0.0.1:9")
     assert "--scheduler tcp://127.0.0.1:9: no Dask scheduler answers there" in line
 
 

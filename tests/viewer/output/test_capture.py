@@ -86,16 +86,14 @@ def test_a_folder_that_cannot_be_written_to_is_one_line(tmp_path: Path):
     assert "\n" not in str(caught.value)
 
 
-def test_other_files_are_refused_in_one_line(tmp_path: Path):
-    """What is no picture, and what is none of ours, `check` promises as well."""
+def test_a_state_that_is_none_is_refused_in_one_line(tmp_path: Path):
+    """What is no picture, and what is none of ours, the command line promises."""
     info = PngImagePlugin.PngInfo()
     info.add_itxt("shadowcull", '{"state": [1, 2]}')
     Image.fromarray(PIXELS).save(tmp_path / "wrong.png", pnginfo=info)
-    (tmp_path / "noise.png").write_bytes(b"not a picture")
-    for name, told in (("wrong.png", "cannot be restored"), ("noise.png", "cannot be read")):
-        with pytest.raises(capture.CaptureError, match=told) as caught:
-            capture.read(tmp_path / name)
-        assert name in str(caught.value) and "\n" not in str(caught.value)
+    with pytest.raises(capture.CaptureError, match=r"wrong\.png.*cannot be restored") as caught:
+        capture.read(tmp_path / "wrong.png")
+    assert "\n" not in str(caught.value)
 
 
 def test_a_program_named_like_a_picture_is_not_run(tmp_path, monkeypatch):

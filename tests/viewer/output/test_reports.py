@@ -63,7 +63,7 @@ def test_steps_where_something_happens_are_told_and_lights_that_change_alike_tog
     ]
     assert changes_in_words(changes) == [
         "init → fully rendered",
-        "lights 0, 3: init → non shadow",
+        "lights 0, 3: init → non-shadow",
         "light 1: init → full shadow",
     ]
     camera = Camera((0, 0, 5), (0, 0, -1))

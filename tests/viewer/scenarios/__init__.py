@@ -7,29 +7,23 @@ from tests.viewer.scenarios.at_home import at_home
 from tests.viewer.scenarios.closeup import closeup
 from tests.viewer.scenarios.closing import closing_while_experimenting, closing_while_loading, closing_while_tracing
 from tests.viewer.scenarios.comparing import comparing
-from tests.viewer.scenarios.culling import certifying, culling, explaining
-from tests.viewer.scenarios.drawing import difference, views, wiping
+from tests.viewer.scenarios.culling import culling, explaining
+from tests.viewer.scenarios.drawing import difference, fates, views
 from tests.viewer.scenarios.failing import failing
-from tests.viewer.scenarios.fates import fates
 from tests.viewer.scenarios.figure1 import figure1
-from tests.viewer.scenarios.files import browsing, cancelling, capturing, dropping, reopening
-from tests.viewer.scenarios.film import filmstrip
-from tests.viewer.scenarios.filming import filming
+from tests.viewer.scenarios.files import browsing, capturing, dropping, reopening
 from tests.viewer.scenarios.finding import finding
 from tests.viewer.scenarios.fitting import fitting
 from tests.viewer.scenarios.hunting import hunting
 from tests.viewer.scenarios.lamps import lamps
-from tests.viewer.scenarios.legends import legends
 from tests.viewer.scenarios.moving import flying, playing, resizing
 from tests.viewer.scenarios.navigating import navigating
-from tests.viewer.scenarios.panels import closing_panels, hiding, looks, panels
-from tests.viewer.scenarios.rays import rays
-from tests.viewer.scenarios.runs import asking, experimenting, zooming
+from tests.viewer.scenarios.panels import hiding, looks, panels
+from tests.viewer.scenarios.runs import asking, experimenting, filming, zooming
 from tests.viewer.scenarios.savings import savings
 from tests.viewer.scenarios.starting import starting
 from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
-from tests.viewer.scenarios.trees import trees
 from tests.viewer.scenarios.what_if import what_if
 from tests.viewer.scenarios.why import why
 

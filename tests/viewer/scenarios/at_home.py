@@ -8,20 +8,18 @@ from pathlib import Path
 import numpy as np
 from imgui_bundle import imgui
 
-from tests.viewer.driver import Driver
+from tests.viewer.driver import SMALL, Driver
 from viewer.state.views import View
 from viewer.window.menus import ANY_POPUP
 from viewer.window.panels.command_palette import Finder
 from viewer.window.panels.named_states import NameFields
 
-KEY = imgui.Key
-SMALL = (1000, 640)  # still with docked panels, and soon drawn
+PEN = "\uf304"
 
 
 def at_home(d: Driver) -> None:
     """One thing after another, as somebody would who settles in."""
-    d.resize(*SMALL)
-    d.settle()
+    d.resize(*SMALL).settle()
     _palette(d)
     _undo(d)
     _presets(d)
@@ -33,43 +31,36 @@ def _palette(d: Driver) -> None:
     find(d, "occlusion m")
     assert imgui.is_popup_open("", ANY_POPUP)
     before = d.c.session.camera
-    d.press(KEY.enter)
+    d.press("Enter")
     assert d.c.session.draw.view is View.OCCLUSION and not imgui.is_popup_open("", ANY_POPUP)
     assert d.c.session.camera == before, "letters that were typed flew"
-    find(d, "bounces")
-    d.press(KEY.enter)
+    find(d, "bounces").press("Enter")
     for typed, depth in (("500", 10), ("7", 7)):
-        d.type(typed)
-        d.press(KEY.enter)
+        d.type(typed).press("Enter")
         assert d.c.session.settings.depth == depth
         assert imgui.is_popup_open("", ANY_POPUP) == (typed == "500")
-    find(d, "redo")
-    d.press(KEY.enter)
+    find(d, "redo").press("Enter")
     assert imgui.is_popup_open("", ANY_POPUP) and "nothing to redo" in d.ui.state(Finder).problem
-    d.press(KEY.escape)
+    d.press("Escape")
     assert not imgui.is_popup_open("", ANY_POPUP)
     d.press("Ctrl+Shift+P")
     assert [item.name for item in d.ui.state(Finder).found[:2]] == ["setting Bounces", "Occlusion mode"]
-    for key in (KEY.down_arrow, KEY.up_arrow, KEY.down_arrow):
-        d.press(key)
+    d.press("DownArrow", "UpArrow", "DownArrow")
     assert d.ui.state(Finder).aimed.name == "Occlusion mode"
-    d.press(KEY.escape)
+    d.press("Escape")
 
 
-def find(d: Driver, typed: str) -> None:
+def find(d: Driver, typed: str) -> Driver:
     """Open the palette and type."""
-    d.press("Ctrl+Shift+P")
-    d.type(typed)
+    return d.press("Ctrl+Shift+P").type(typed)
 
 
 def _undo(d: Driver) -> None:
     home = d.c.session.camera
-    d.hold(KEY.d, 0.1)
-    x, y = d.picture_centre()
-    d.drag((x + 120.0, y - 60.0), (60.0, 10.0))  # beside the legend, which can be dragged as well
-    d.settle()
-    (left, top, right, bottom), shading = d.place("//View/**/##shading"), d.c.session.draw.shading
-    d.drag((0.5 * (left + right), 0.5 * (top + bottom)), (40.0, 0.0))
+    d.hold("D", 0.1)
+    d.drag(d.on_picture(0.7, 0.4), (60.0, 10.0)).settle()  # beside the legend, which can be dragged as well
+    shading = d.c.session.draw.shading
+    d.drag(d.middle("//View/**/##shading"), (40.0, 0.0))
     assert d.c.session.draw.shading != shading and d.c.undo.undoes.startswith("shading")
     d.choose("Edit/###Undo")
     assert d.c.session.draw.shading == shading, "a drag is one step"
@@ -79,10 +70,8 @@ def _undo(d: Driver) -> None:
     d.settle()
     assert d.c.session.camera == home
     d.press("Ctrl+Y")
-    assert d.c.undo.undoes == "camera" and d.c.motion.under_way
-    for _ in range(3):
-        d.press("Ctrl+Z")
-    d.settle()
+    assert d.c.undo.undoes == "camera"
+    d.press("Ctrl+Z", "Ctrl+Z", "Ctrl+Z").settle()
     assert d.c.session.settings.depth == 10 and d.c.session.draw.view is View.COLOR and not d.c.undo.undoes
     d.press("Ctrl+Shift+Z")
     assert d.c.session.draw.view is View.OCCLUSION
@@ -91,13 +80,10 @@ def _undo(d: Driver) -> None:
 
 def _presets(d: Driver) -> None:
     d.choose("Edit/Presets/Presets...")
-    d.click("//Presets/##new preset")
-    d.type("mine")
-    d.press(KEY.enter)
+    d.click("//Presets/##new preset").type("mine").press("Enter")
     assert [preset.name for preset in d.c.presets.all] == ["mine"]
     kept = d.c.session.settings
-    d.click("//Presets/As in the paper")
-    d.settle()
+    d.click("//Presets/As in the paper").settle()
     assert d.c.session.settings.method == "paper" and (d.c.frame.width, d.c.frame.height) == (512, 512)
     d.c.history.clear()
     d.c.session.playing = True
@@ -106,18 +92,12 @@ def _presets(d: Driver) -> None:
     d.settle()
     assert (d.c.history.values("pixels") == 512 * 512).all(), "each is traced in full, and learns from the one before"
     assert (d.c.history.values("culled") + d.c.history.values("dynamic_only") > 0)[1:].all()
-    d.click("//Presets/**/" + _PEN)
-    d.type("ours")
-    d.press(KEY.enter)
+    d.click(f"//Presets/**/{PEN}").type("ours").press("Enter")
     assert d.c.presets.all[0].name == "ours" and d.ui.state(NameFields).place is None
-    d.press(KEY.escape)
+    d.press("Escape")
     assert not d.ui.dialogs
-    d.choose("Edit/Presets/###preset ours")
-    d.settle()
+    d.choose("Edit/Presets/###preset ours").settle()
     assert d.c.session.settings == kept and d.c.undo.undoes == "preset ours"
-
-
-_PEN = "\uf304"
 
 
 def _log(d: Driver) -> None:
@@ -132,8 +112,7 @@ def _log(d: Driver) -> None:
 
 def _reloading(d: Driver) -> None:
     scene, path = d.c.session.scene, Path(d.c.session.scene.path)
-    d.hold(KEY.d, 0.1)
-    d.settle()
+    d.hold("D", 0.1).settle()
     here, picture = d.c.session.state, d.shown()
     good = path.read_text()
     _write(path, good.replace("l 3 5 4", "l -6 5 4"))

@@ -6,12 +6,9 @@ import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.drawn import picture
-from tests.viewer.driver import Driver
+from tests.viewer.driver import SMALL, Driver
 from viewer.state.pixels import Zoom, around, pixel_at, pixels_shown
 from viewer.state.views import View
-
-KEY = imgui.Key
-SMALL = 1024, 620  # a window that is quickly drawn, and just does not fold its panels
 
 
 def closeup(d: Driver) -> None:
@@ -19,8 +16,7 @@ def closeup(d: Driver) -> None:
     d.resize(*SMALL)
     d.fix_resolution(320, 240)
     d.c.preferences.pixel_values = False
-    d.c.session.set_draw(legend=False)
-    d.settle()
+    d.see(View.COLOR, legend=False)
     camera, traced, speed = d.c.session.camera, d.c.history.frames, d.c.preferences.speed
     for (u, v), notches in (((0.3, 0.4), 12), ((0.003, 0.5), 7), ((0.71, 0.998), 12)):
         d.point(u, v)
@@ -28,12 +24,10 @@ def closeup(d: Driver) -> None:
         _wheel(d, notches)
         assert np.isclose(_zoom(d).scale, min(2.0 ** (notches / 2), 64.0))
         assert _pixel(d) == (x, y), "the pixel has moved away from the pointer"
-        d.context.mouse_click(0)
-        d.frames(3)
+        d.click_here()
         assert d.c.selection.pixel == ((x, y) if d.c.frame.primitive[y, x] >= 0 else None)
         d.c.selection.clear()
-        d.context.mouse_click(2)
-        d.frames(3)
+        d.click_here(2)
         assert d.c.selection.picked is None, "the middle button pans, and selects nothing"
         if u == 0.3:
             _crisp(d, x, y)
@@ -41,14 +35,13 @@ def closeup(d: Driver) -> None:
         d.press("Shift+F")
         assert _zoom(d).fits
     assert d.c.session.camera == camera and d.c.history.frames == traced and d.c.preferences.speed == speed
-    d.press(KEY.equal, 3)
+    d.press("Equal", "Equal", "Equal")
     assert np.isclose(_zoom(d).scale, 2.0**1.5)
-    d.press(KEY.minus, 3)
+    d.press("Minus", "Minus", "Minus")
     assert _zoom(d).fits
     _numbers(d)
     _range(d)
     _exposed(d)
-    d.settle()
 
 
 def _zoom(d: Driver) -> Zoom:
@@ -61,11 +54,8 @@ def _pixel(d: Driver) -> tuple[int, int]:
 
 
 def _wheel(d: Driver, notches: int) -> None:
-    d.context.key_down(KEY.mod_ctrl)
-    d.context.mouse_wheel_y(notches)
-    d.frames(1)
-    d.context.key_up(KEY.mod_ctrl)
-    d.frames(3)
+    with d.held("Ctrl"):
+        d.context.mouse_wheel_y(notches)
 
 
 def _crisp(d: Driver, x: int, y: int) -> None:
@@ -77,20 +67,16 @@ def _crisp(d: Driver, x: int, y: int) -> None:
         middle = (np.array([x + dx + 0.5, y + dy + 0.5]) / pixels - (_zoom(d).left, _zoom(d).top)) * 64.0
         (x0, y0), (x1, y1) = (corner + middle * room + side * reach for side in (-1, 1))
         if left <= x0 and x1 < right - 1 and top + 40 < y0 and y1 < bottom:
-            near = (
-                np.abs(window[int(y0) : int(y1), int(x0) : int(x1)].astype(int) - shown[y + dy, x + dx]).max(axis=-1)
-                <= 1
-            )
+            off = np.abs(window[int(y0) : int(y1), int(x0) : int(x1)].astype(int) - shown[y + dy, x + dx])
+            near = off.max(axis=-1) <= 1
             assert near.mean() > (0.9 if (dx, dy) == (0, 0) else 0.999), "not one colour, or another one"  # the pointer
 
 
 def _panned(d: Driver) -> None:
     """A drag with Ctrl moves the picture along with the pointer, and no camera."""
     before, mouse = d.c.selection.hovered, imgui.get_io().mouse_pos
-    d.context.key_down(KEY.mod_ctrl)
-    d.drag((mouse.x, mouse.y), (60.0, 40.0))
-    d.context.key_up(KEY.mod_ctrl)
-    d.frames(2)
+    with d.held("Ctrl"):
+        d.drag((mouse.x, mouse.y), (60.0, 40.0))
     assert np.allclose(d.c.selection.hovered, before, atol=1e-3), "what was under the pointer has not come along"
     assert _zoom(d).scale == 64.0 and d.c.selection.picked is None
 
@@ -109,37 +95,29 @@ def _numbers(d: Driver) -> None:
         left, top, right, bottom = (int(edge) for edge in d.picture_edges())
         changed = (d.window() != without).any(axis=-1)[top + 30 : bottom, left:right]
         assert 0.02 < changed.mean() < 0.8, f"{view}: {changed.mean():.1%} of the picture changed"
-    d.c.session.set_draw(view=View.COLOR)
-    d.press("Shift+F")
-    d.settle()
+    d.press("1", "Shift+F").settle()
 
 
 def _range(d: Driver) -> None:
     """The panel has a histogram of the pixels that are seen, which give the colours their range."""
-    d.c.session.set_draw(view=View.DEPTH, zoom=around(0.5, 0.6, 3.0))
-    d.settle()
+    d.see(View.DEPTH, zoom=around(0.5, 0.6, 3.0))
     d.show_panel("Pixels")
     columns, rows = pixels_shown(d.c.session.draw.zoom, d.c.frame.width, d.c.frame.height)
     depth = d.c.frame.depth[rows.start : rows.stop, columns.start : columns.stop]
     depth = depth[np.isfinite(depth)]
-    d.click("//Pixels/**/Use as the range of colours")
-    d.press("Shift+F")
-    d.frames(3)
+    d.click("//Pixels/**/Use as the range of colours").press("Shift+F")
     assert np.allclose(d.c.session.draw.span, (depth.min(), depth.max()))
     d.expect_picture()
-    d.c.session.set_draw(spans=())
-    d.see(View.COLOR)
+    d.see(View.COLOR, spans=())
 
 
 def _exposed(d: Driver) -> None:
     """Exposure by keys, and stripes over what is clipped; neither traces, nor outlives what resets it."""
     traced = d.c.history.frames
-    d.press(KEY.right_bracket, 2)
-    d.press("Shift+M")
+    d.press("RightBracket", "RightBracket", "Shift+M")
     assert d.c.session.draw.tone.exposure == 1.0 and d.c.session.draw.clipping
     d.expect_picture(1)
-    d.press(KEY.left_bracket)
-    d.press("Shift+M")
+    d.press("LeftBracket", "Shift+M")
     assert d.c.session.draw.tone.exposure == 0.5
     d.choose("Picture/Colours as traced")
     assert d.c.session.draw.tone.neutral and np.array_equal(d.shown(), picture(d.c.frame)), "bit for bit as it was"

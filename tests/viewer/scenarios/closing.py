@@ -10,7 +10,6 @@ from viewer.services.frame_scheduler import Activity
 
 def closing_while_tracing(d: Driver) -> None:
     """The window goes at once, whatever is being traced."""
-    d.settle()
     d.c.settings.change(samples=4000)
     d.wait(lambda: d.c.scheduler.activity is Activity.ADDING_SAMPLES, "a long trace")
     _close(d)
@@ -18,15 +17,13 @@ def closing_while_tracing(d: Driver) -> None:
 
 def closing_while_loading(d: Driver) -> None:
     """The window goes at once, whatever is being loaded."""
-    d.wait(lambda: d.c.session.scene is not None, "the first scene")
     d.drop(d.folder / "big.aff")
-    d.wait(lambda: d.c.loader.load_job is not None, "a load")
+    assert d.c.loader.load_job is not None
     _close(d)
 
 
 def closing_while_experimenting(d: Driver) -> None:
     """The window goes at once, whatever is being measured."""
-    d.settle()
     d.c.runs.experiment_plan.size = (2048, 2048)
     d.c.runs.start_experiment()
     d.wait(lambda: d.c.runs.experiment.traced > 0, "a first frame")

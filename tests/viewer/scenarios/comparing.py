@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from imgui_bundle import imgui
-from PIL import Image
 
 from tests.viewer.drawn import picture
-from tests.viewer.driver import Driver
+from tests.viewer.driver import SMALL, Driver
 from tests.viewer.scenarios.fitting import check_fit
 from viewer.state.comparison import CompareMode
 from viewer.state.draw_options import Curve, Tone
 from viewer.state.frame_rows import beside
+from viewer.state.views import View
 from viewer.views.compare import GAP, composed, signed_picture
 from viewer.views.wipe import wipe_column
 from viewer.window.panels.sides import filling
-
-KEY = imgui.Key
-CTRL, SHIFT = int(KEY.mod_ctrl), int(KEY.mod_shift)
-SMALL = 1024, 620  # a window that is quickly drawn, and just does not fold its panels
 
 
 def comparing(d: Driver) -> None:
@@ -27,22 +22,20 @@ def comparing(d: Driver) -> None:
     d.fix_resolution(160, 120)
     d.change(method="none")
     comparing = d.c.comparing
-    d.press(int(KEY.z) | SHIFT)
+    d.press("Shift+Z")
     assert "choose Keep as A" in d.said and comparing.seen is None, "nothing is kept yet"
-    d.press(int(KEY.a) | CTRL | SHIFT)
-    d.press(int(KEY.a) | CTRL)
+    d.press("Ctrl+Shift+A", "Ctrl+A")
     kept = d.c.frame
     assert comparing.kept.frame is kept and comparing.kept.method == "none" and not comparing.state.on
-    d.hold(KEY.d, 0.2)
-    d.settle()
+    d.hold("D", 0.2).settle()
     assert d.c.frame is not kept and d.c.session.camera != kept.camera, "Ctrl+A has flown, or D has not"
     a, b = picture(kept), picture(d.c.frame)
     for mode in (CompareMode.WIPE, CompareMode.SIDE, CompareMode.DIFFERENCE, CompareMode.FLIP):
-        d.press(int(KEY.z) | SHIFT) if mode is not CompareMode.WIPE else d.c.comparing.start(mode)
+        d.press("Shift+Z") if mode is not CompareMode.WIPE else comparing.start(mode)
         d.settle()
         assert comparing.state.on and comparing.seen.mode is comparing.state.mode is mode
         assert d.c.frame.primitive.shape == kept.primitive.shape, "both can be compared pixel by pixel"
-        saved = _saved(d, f"{mode.value}.png")
+        saved = d.saved(f"{mode.value}.png")
         if mode is CompareMode.DIFFERENCE:
             found = comparing.seen.difference
             assert found.stats.pixels > 100
@@ -56,51 +49,33 @@ def comparing(d: Driver) -> None:
             for panel in ("Pixels", "Compare"):
                 d.show_panel(panel)
                 check_fit(d, f"{panel}, comparing")
-    d.context.key_down(KEY.z)
-    d.frames(3)
-    assert comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.a
-    assert np.array_equal(_saved(d, "held.png"), a)
-    d.context.key_up(KEY.z)
-    d.frames(3)
+    with d.held("Z"):
+        assert comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.a
+        assert np.array_equal(d.saved("held.png"), a)
     assert not comparing.seen.shows_a and filling(d.ui) is d.ui.graphics.display
     _line(d, a, b)
     d.c.session.set_draw(tone=Tone(-1.0, 1.0, Curve.SRGB))
-    d.frames(2)
     toned = (picture(frame, tone=d.c.session.draw.tone) for frame in (kept, d.c.frame))
     expected = composed(*toned, CompareMode.WIPE, d.c.session.draw.wipe, False)
-    assert np.abs(_saved(d, "toned.png").astype(int) - expected).max() <= 1, "both have the tone"
+    assert np.abs(d.saved("toned.png").astype(int) - expected).max() <= 1, "both have the tone"
     d.c.session.set_draw(tone=Tone())
-    d.press(KEY._9)
-    d.settle()
+    d.press("9").settle()
     assert not comparing.state.on and d.ui.graphics.a.texture_id is None, "one line at a time"
-    d.press(KEY._1)
-    d.c.session.set_pace(width=80, height=60)
+    d.press("1")
+    d.fix_resolution(80, 60)
     d.settle()
-    d.c.comparing.start(CompareMode.FLIP)
+    comparing.start(CompareMode.FLIP)
     d.settle()
-    assert "A is shown in B's size" in d.c.comparing.remark
-    d.c.comparing.forget()
+    assert "A is shown in B's size" in comparing.remark
+    comparing.forget()
     assert not comparing.state.on and comparing.kept is None
     _two_methods(d)
 
 
-def _saved(d: Driver, name: str) -> np.ndarray:
-    """The picture as it is saved now."""
-    path = d.folder / "pictures" / name
-    path.unlink(missing_ok=True)
-    d.c.preferences.screenshot_template = name
-    d.press(KEY.f12)
-    d.wait(lambda: path.exists() and not d.c.captures.busy, "the picture to be written")
-    with Image.open(path) as image:
-        return np.asarray(image)
-
-
 def _inspects_from_a(d: Driver) -> None:
     """A click on A inspects the pixel at the same place of B."""
-    area = d.context.item_info("//Picture/picture of A").rect_full
-    d.context.mouse_move_to_pos((0.25 * area.min.x + 0.75 * area.max.x, 0.4 * area.min.y + 0.6 * area.max.y))
-    d.context.mouse_click(0)
-    d.frames(3)
+    left, top, right, bottom = d.place("//Picture/picture of A")
+    d.move_to(0.25 * left + 0.75 * right, 0.4 * top + 0.6 * bottom).click_here()
     picked = d.c.selection.picked
     assert picked is not None
     assert abs(picked.x - 0.75 * d.c.frame.width) <= 3 and abs(picked.y - 0.6 * d.c.frame.height) <= 3
@@ -111,34 +86,30 @@ def _inspects_from_a(d: Driver) -> None:
 def _line(d: Driver, a: np.ndarray, b: np.ndarray) -> None:
     """The line between A and B is dragged as that of the other wipe; closely looked at, it waits at the edge."""
     d.c.comparing.start(CompareMode.WIPE)
-    d.c.session.set_draw(wipe=0.5)
-    d.settle()
-    left, top, right, bottom = d.picture_edges()
-    camera, middle = d.c.session.camera, (top + bottom) / 2.0
-    d.drag(((left + right) / 2.0, middle), (0.2 * (right - left), 3.0))
+    d.see(View.COLOR, wipe=0.5)
+    left, _, right, _ = d.picture_edges()
+    camera = d.c.session.camera
+    d.drag(d.on_picture(0.5, 0.5), (0.2 * (right - left), 3.0))
     assert abs(d.c.session.draw.wipe - 0.7) < 0.02 and d.c.session.camera == camera
     column = wipe_column(b.shape[1], d.c.session.draw.wipe)
-    saved = _saved(d, "dragged.png")
-    assert np.array_equal(saved[:, :column], a[:, :column]) and np.array_equal(
-        saved[:, column + 1 :], b[:, column + 1 :]
-    )
+    saved = d.saved("dragged.png")
+    assert np.array_equal(saved[:, :column], a[:, :column])
+    assert np.array_equal(saved[:, column + 1 :], b[:, column + 1 :])
     d.c.session.set_draw(zoom=type(d.c.session.draw.zoom)(4.0, 0.2, 0.5))
     d.frames(3)
-    d.drag((right - 1.0, middle), (-0.5 * (right - left), 0.0))
+    d.drag(d.on_picture(0.998, 0.5), (-0.5 * (right - left), 0.0))
     assert abs(d.c.session.draw.wipe - 0.2) < 0.02 and d.c.session.camera == camera
-    d.press(int(KEY.f) | SHIFT)
+    d.press("Shift+F")
     assert d.c.session.draw.zoom.fits
 
 
 def _two_methods(d: Driver) -> None:
     """Each frame is traced by both, at rest and in motion, and each counts for itself."""
     d.change(method="paper+cache")
-    d.press(int(KEY.c) | SHIFT)
-    d.settle()
+    d.press("Shift+C").settle()
     comparing = d.c.comparing
     assert comparing.second_method == "none" and comparing.state.mode is CompareMode.SIDE
-    d.press(KEY.t)
-    d.settle()
+    d.press("T").settle()
     frame, second = d.c.frame, d.c.traced.second
     assert (frame.settings.method, second.settings.method) == ("paper+cache", "none")
     assert second.time == frame.time and second.camera == frame.camera
@@ -151,7 +122,7 @@ def _two_methods(d: Driver) -> None:
     found = beside(d.c.traced.second, d.c.frame, d.c.baseline.measured)
     times = {row.name: row.number for pair in zip(*found, strict=True) for row in pair}
     assert times["Frame"] > times["  shading"] > 0.0
-    d.press(KEY.space)
+    d.press("Space")
     moments = set()
 
     def moved() -> bool:
@@ -162,10 +133,6 @@ def _two_methods(d: Driver) -> None:
         return len(moments) >= 4
 
     d.wait(moved, "frames by both while time goes on", 60.0)
-    d.press(KEY.space)
-    d.settle()
-    d.press(int(KEY.c) | SHIFT)
-    d.settle()
-    assert not comparing.state.on and d.c.traced.second is None and d.ui.graphics.a.texture_id is None, (
-        "what is not seen takes no memory"
-    )
+    d.press("Space").settle().press("Shift+C").settle()
+    assert not comparing.state.on and d.c.traced.second is None
+    assert d.ui.graphics.a.texture_id is None, "what is not seen takes no memory"

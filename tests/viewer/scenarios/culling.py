@@ -6,11 +6,11 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from imgui_bundle import imgui
 
 from tests.viewer.desk import place_of
 from tests.viewer.drawn import units_in
 from tests.viewer.driver import Driver
+from tracer.geometry.accelerators import BVH8
 from tracer.method import additions, bases
 from viewer.state.views import View
 from viewer.views.tree import LAYERS
@@ -19,31 +19,23 @@ from viewer.window.panels.light_buffer import CubeState, Unfolded
 from viewer.window.panels.links import Pointed
 from viewer.window.panels.view import words_in_space
 
-KEY = imgui.Key
-
 
 def culling(d: Driver) -> None:
-    """Tracing again culls; the key switches it off and on; resetting forgets."""
-    d.change(method="paper")
-    first = d.c.frame.statistics.shadow
-    assert first.due > 0 and first.culled == 0
-    for key, method, culls in (("T", "paper", True), ("C", "none", False), ("C", "paper", None),
-                               ("Backspace", "paper", False)):  # fmt: skip
-        _press(d, key)
-        shadow = d.c.frame.statistics.shadow
-        assert d.c.frame.settings.method == method and shadow.due == first.due
-        assert culls is None or (shadow.saved > 0 if culls else shadow.culled == 0)
-    d.click("//Culling/Symmetric occlusion test")
-    d.settle()
-    assert d.c.frame.settings.symmetric
-
-
-def certifying(d: Driver) -> None:
-    """Modes are there at once whatever culls; where a view has nothing to show, a note says so and a button switches;
-    a method is chosen with its additions; key C is off."""
-    d.settle()
-    d.wait(lambda: d.c.loader.warm_up_job is None, "the kernels that make certificates")
+    """Resetting forgets, and tracing again culls; modes are there at once whatever culls; where a view has nothing to
+    show, a note says so and a button switches; a method is chosen with its additions; key C switches culling off and
+    on."""
     d.fix_resolution(240, 180)
+    d.change(method="paper")
+    due = d.c.frame.statistics.shadow.due
+    for key, method, culls in (("Backspace", "paper", False), ("T", "paper", True), ("C", "none", False),
+                               ("C", "paper", True)):  # fmt: skip
+        d.press(key).settle()
+        shadow = d.c.frame.statistics.shadow
+        assert d.c.frame.settings.method == method and shadow.due == due > 0
+        assert shadow.saved > 0 if culls else shadow.culled == 0
+    for symmetric in (True, False):
+        d.click("//Culling/Symmetric occlusion test").settle()
+        assert d.c.frame.settings.symmetric == symmetric
     for base in ("certified", "none"):
         d.change(method=base)
         traced = d.c.history.frames
@@ -53,7 +45,7 @@ def certifying(d: Driver) -> None:
             d.expect_picture()
         assert units_in(d.c.frame, View.OCCLUSION)["fully rendered"]
         _use(d, View.DIFFERENCE, "paper")
-    _press(d, View.CERTIFICATE.key)
+    d.press(View.CERTIFICATE.key).settle()
     assert d.c.frame.certificates is None and d.c.scheduler.drawn_view is View.COLOR
     d.certify()
     _use(d, View.CERTIFICATE, "certified")
@@ -61,31 +53,22 @@ def certifying(d: Driver) -> None:
     d.click("//Culling/method/##method")
     names = [*(kind.name for kind in bases()), *(f"+{kind.name}" for kind in additions("certified"))]
     assert all(d.has(f"//##Combo_00/{name}") for name in names), "all are listed"
-    d.click("//##Combo_00/+cache")
-    _press(d, "Escape")
-    assert d.c.frame.settings.method == "certified+cache"
-    assert d.c.frame.certificates is not None
+    d.click("//##Combo_00/+cache").press("Escape").settle()
+    assert d.c.frame.settings.method == "certified+cache" and d.c.frame.certificates is not None
     d.expect_picture()
     for method in ("none", "certified+cache"):
-        _press(d, "C")
+        d.press("C").settle()
         assert d.c.frame.settings.method == method
     for key in ("H", "Shift+H"):
-        _press(d, key)
+        d.press(key).settle()
         assert d.c.scheduler.drawn_view is d.c.session.draw.view and not d.c.scheduler.outdated
     _clusters(d)
     _space(d)
 
 
-def _press(d: Driver, key: str) -> None:
-    d.press(key)
-    d.settle()
-
-
 def _use(d: Driver, view: View, method: str) -> None:
     """Choose a view that has nothing to show, and press the button that gives it a method."""
-    _press(d, view.key)
-    d.click(f"//Picture/**/Use {method}##instead")
-    d.settle()
+    d.press(view.key).settle().click(f"//Picture/**/Use {method}##instead").settle()
     used = d.c.frame.settings
     assert method in (used.accelerator, used.method.split("+")[0])
 
@@ -98,8 +81,7 @@ def _clusters(d: Driver) -> None:
     d.expect_picture()
     d.enter("//Culling/**/##lightcuts_error", 20.0)
     d.settle()  # the words above the sliders are of another length then, and the sliders elsewhere
-    d.enter("//Culling/**/##lightcuts_nodes", 3)
-    d.settle()
+    d.enter("//Culling/**/##lightcuts_nodes", 3).settle()
     used = d.c.frame.settings
     assert (used.lightcuts_error, used.lightcuts_nodes, d.c.frame.statistics.cuts.most) == (0.2, 3, 3)
 
@@ -107,7 +89,8 @@ def _clusters(d: Driver) -> None:
 def _space(d: Driver) -> None:
     """What methods keep of space: slices through voxels and through a tree; cells by the lights that they ask; a
     light's cube."""
-    d.c.settings.change(lamp_radius=None, lamp_samples=None)
+    d.change(lamp_radius=None, lamp_samples=None)
+    assert d.c.frame.statistics.built is None and not d.c.history.values("built").any()
     for view, method in ((View.VOXELS, "voxels"), (View.CELL_LIGHTS, "lie-exact"), (View.TREE, "kdtree-lazy")):
         _use(d, view, method)
         d.expect_picture()
@@ -136,8 +119,13 @@ def _slice(d: Driver) -> None:
 
 
 def _tree(d: Driver) -> None:
-    """What rays have had built of a tree is seen also where the camera looks at nothing; keys go through it."""
+    """What rays have had built of a tree is told, and seen also where the camera looks at nothing; keys go through it;
+    another tree, chosen from a list, has the same picture."""
     d.change(method="none")
+    lazy, built = d.c.frame, d.c.frame.statistics.built
+    assert 0 < built.primitives <= built.of and built.nodes > 0
+    assert d.c.history.values("built")[-1] == 100.0 * built.share
+    d.show_panel("Statistics").scroll_down("Statistics").expect("Built", "nodes")
     at, home = d.c.session.draw.slice, d.c.session.camera
     d.press("Shift+RightBracket")
     assert d.c.session.draw.slice.layer(LAYERS) == at.layer(LAYERS) + 1
@@ -147,7 +135,9 @@ def _tree(d: Driver) -> None:
     assert (d.c.frame.primitive < 0).all() and d.c.scheduler.drawn_view is View.TREE
     assert d.c.frame.statistics.built.primitives == 3, "what was built stays"
     d.c.motion.move(home)
-    d.change(accelerator="bvh8")
+    d.show_panel("Rendering").click("//Rendering/Rendering/##accelerator").click(f"//##Combo_00/{BVH8}").settle()
+    assert d.c.frame.settings.accelerator == BVH8 and d.c.frame.statistics.built is None
+    assert np.array_equal(d.c.frame.primitive, lazy.primitive)
 
 
 def _light_buffer(d: Driver) -> None:
@@ -164,7 +154,6 @@ def _light_buffer(d: Driver) -> None:
 
 def explaining(d: Driver) -> None:
     """What the pointer is on, or was clicked, is explained beside the window's own frames; a key hides the lines."""
-    d.settle()
     inspector, traced = d.c.inspector, d.c.history.frames
     assert inspector.why is None
     shadow, lit = (place_of(d.c, lit) for lit in (False, True))
@@ -175,9 +164,9 @@ def explaining(d: Driver) -> None:
     d.point(*shadow)
     answered(blocked=True)
     assert not any(one.lit for one in inspector.why.reasons if one.blocker >= 0)
-    hovering = _lines_drawn(d)
+    hovering = d.lines_drawn()
     d.press("I")
-    assert _lines_drawn(d) == hovering, "shadow rays are drawn for a pixel that was not clicked"
+    assert d.lines_drawn() == hovering, "shadow rays are drawn for a pixel that was not clicked"
     d.press("I")
     d.point(*lit)
     answered(blocked=False)
@@ -189,19 +178,18 @@ def explaining(d: Driver) -> None:
     assert _is_blocked(d), "it goes on following the pointer"
     assert d.c.history.frames == traced, "asking has traced a frame"
     point = inspector.tree.rays[0].end
-    d.hold(KEY.d, 0.3)
-    d.settle()
+    d.hold("D", 0.3).settle()
     assert inspector.why is not None and math.dist(inspector.tree.rays[0].end, point) < 0.2
     d.hover(f"//Inspector/**/{d.c.session.scene.lights[0].name}##light")
     assert d.ui.state(Pointed).light == 0
     d.point(*shadow)
-    drawn = _lines_drawn(d)
+    drawn = d.lines_drawn()
     d.press("I")
-    assert not d.c.session.draw.rays and _lines_drawn(d) < drawn - 50
+    assert not d.c.session.draw.rays and d.lines_drawn() < drawn - 50
     d.press("I")
-    assert _lines_drawn(d) == drawn
+    assert d.lines_drawn() == drawn
     d.press("Escape")
-    assert d.c.selection.picked is None and _lines_drawn(d) < drawn - 50, "Escape clears"
+    assert d.c.selection.picked is None and d.lines_drawn() < drawn - 50, "Escape clears"
     d.pick(*shadow)
     assert d.c.selection.picked is not None
     d.pick(0.5, 0.02)
@@ -211,8 +199,3 @@ def explaining(d: Driver) -> None:
 def _is_blocked(d: Driver) -> bool:
     """Whether something blocks a light at the pixel that is explained."""
     return any(one.blocker >= 0 for one in d.c.inspector.why.reasons)
-
-
-def _lines_drawn(d: Driver) -> int:
-    """How much is drawn over the picture, in corners of triangles."""
-    return imgui.internal.find_window_by_name("Picture").draw_list.vtx_buffer.size()

@@ -1,127 +1,214 @@
-"""Every view of the picture: its keys, what is wrong by difference and wipe, and legends."""
+"""Every view of the picture and its legend, and what is wrong by difference and wipe."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
-from imgui_bundle import imgui
 
 from tests.viewer.drawn import picture
-from tests.viewer.driver import Driver
-from tests.viewer.scenarios.steps import figure4
+from tests.viewer.driver import Driver, Rect
+from tracer.culling.fate import Fate
+from viewer.output import capture
 from viewer.state.palette import WRONG
-from viewer.state.views import View
+from viewer.state.preferences import load_preferences
+from viewer.state.views import View, can_draw
+from viewer.util.resources import embedded_scenes
 from viewer.views.wipe import wipe_column
+from viewer.window.panels.legend import LegendState
 
-KEY = imgui.Key
+OF_SOME_FRAMES = (View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.TREE)  # see `culling`
 
 
 def views(d: Driver) -> None:
-    """Every view by its key, each the same as what the command line would draw; only what must be verified, or
-    counted, is traced for, once, and as little for the views after it."""
-    d.c.settings.change(method="paper")
+    """Every view by its key, each the same as what the command line would draw, and with its legend in the picture;
+    only what must be verified, or counted, is traced for, once, and as little for the views after it."""
     d.fix_resolution(320, 220)
-    d.settle()
+    d.change(method="paper")
     d.certify()
-    d.press(KEY.t)
-    d.settle()
+    d.press("T").settle()
     traced = d.c.history.frames
     d.c.session.set_draw(shading=0.35)
     for view in View:
-        if view in (View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.TREE):  # of some frames (`culling`)
-            continue
         before = d.c.history.frames
         d.press(view.key)
         assert d.c.session.draw.view is view
         assert view.records or d.c.history.frames == before, "changing the view has traced"
         d.settle()
-        d.expect_picture()
-    d.press(KEY._3)
-    d.press(KEY.l)
+        there = can_draw(d.c.frame, view, d.c.session.draw.light)
+        assert there == (view not in OF_SOME_FRAMES) and d.ui.state(LegendState).shown == (there and view != View.COLOR)
+        if there:
+            d.expect_picture()
+        if d.ui.state(LegendState).shown:
+            _legend(d)
+    d.press("3", "L")
     assert d.c.session.draw.light == 1
     d.press("Shift+L")
     assert d.c.session.draw.light == 0
-    d.press(KEY.h)
-    d.press(KEY.u)
-    d.settle()
+    d.press("H", "U").settle()
     for view in (View.SAVED, View.COST):
-        d.c.session.set_draw(view=view)
-        d.frames(2)
-        expected = picture(d.c.frame, view, shares=True).astype(int)
-        assert np.abs(d.shown().astype(int) - expected).max() <= 2
-        assert np.abs(expected - picture(d.c.frame, view)).max() > 20
-    d.settle()
+        d.see(view)
+        d.expect_picture(shares=True)
+        assert np.abs(d.shown().astype(int) - picture(d.c.frame, view)).max() > 20
     assert d.c.history.frames == traced + 5, "only what a view needs more is traced for"
     assert not d.c.session.settings.verify
+    d.c.session.set_pace(fixed_size=False)
+    _dragged(d)
+    d.resize(1024, 700)
+    right, bottom = d.picture_edges()[2:]
+    area = _legend(d)
+    assert right - area[2] < 20.0 and bottom - area[3] < 20.0, "it has left its corner"
+    _off_and_on(d)
+    _in_saved_pictures(d)
+    d.c.settings.finish()
+    kept = load_preferences()[0]
+    draw = kept.state["draw"]
+    assert (draw["legend"], kept.legend_in_pictures, draw["legend_at"]) == (True, False, [1.0, 1.0])
+
+
+def _legend(d: Driver) -> Rect:
+    """Left, top, right and bottom of the legend, which lies inside the picture."""
+    d.frames(2)
+    area, picture = d.place("//Picture/legend"), d.picture_edges()
+    assert picture[0] <= area[0] and area[2] <= picture[2] and picture[1] <= area[1] and area[3] <= picture[3]
+    return area
+
+
+def _dragged(d: Driver) -> None:
+    """About the picture, and into two corners; nothing but the legend moves, and a click on it selects nothing."""
+    d.see(View.OCCLUSION)
+    camera, frame = d.c.session.camera, d.c.frame
+    for across in (0.5, 0.0, 1.0):  # the last is where it stays
+        (x, y), (_, _, _, bottom) = d.middle("//Picture/legend"), _legend(d)
+        to_x, to_y = d.on_picture(across, across)
+        d.drag((x, bottom - 6.0), (to_x - x, to_y - y))
+        _legend(d)
+        if across == 0.5:
+            assert np.allclose(d.middle("//Picture/legend"), (to_x, to_y), atol=3.0)
+            d.click_here()
+        else:
+            assert d.c.session.draw.legend_at == (across, across)
+    assert d.c.session.camera == camera and d.c.frame is frame and d.c.selection.picked is None
+
+
+def _off_and_on(d: Driver) -> None:
+    """Where the picture has no legend, the panel has it."""
+
+    def panel() -> float:
+        return d.show_panel("View").panel("View").content_size.y
+
+    with_legend = panel()
+    d.press("N")
+    assert not d.c.session.draw.legend and not d.ui.state(LegendState).shown
+    assert panel() > with_legend + 60.0
+    d.press("N")
+    assert d.ui.state(LegendState).shown and panel() == with_legend
+
+
+def _in_saved_pictures(d: Driver) -> None:
+    """Only where that is wanted; then the rest of the picture is what it was, and it still brings everything back."""
+    p = d.c.preferences
+    assert np.array_equal(d.saved("without.png"), d.shown())
+    d.show_panel("Saving").click("//Saving/Legend in saved pictures")
+    assert p.legend_in_pictures
+    other = (d.saved("with.png") != d.shown()).any(axis=-1)
+    assert all(capture.read(path).draw.view is View.OCCLUSION for path in d.pictures.iterdir())
+    rows, columns = np.nonzero(other)
+    assert other.any() and rows.min() > d.c.frame.height // 4 and columns.min() > d.c.frame.width // 4
+    d.click("//Saving/Legend in saved pictures")
+    assert not p.legend_in_pictures
+
+
+def fates(d: Driver) -> None:
+    """The keys of the views of fates; another light asks for no frame; no other view flashes up in motion."""
+    d.fix_resolution(240, 135)
+    d.c.settings.change(method="paper")
+    d.open(embedded_scenes()["default"])
+    d.press(View.FATE.key).settle()
+    frame, traced, drawn = d.c.frame, d.c.history.frames, []
+    assert d.c.scheduler.drawn_view is View.FATE and frame.fates is not None
+    for light in range(3):
+        assert d.c.session.draw.light == light
+        d.expect_picture()
+        drawn.append(d.shown())
+        d.press("L")
+    assert d.c.history.frames == traced and (drawn[0] != drawn[1]).any()
+    assert (frame.fate(0) == Fate.CULLED).any()
+
+    d.press("Space")
+    d.wait(lambda: d.c.frame.shaded is not None, "a picture of which a part is shaded")
+    for view in (View.FATE, View.OCCLUSION, View.MOVING_SHADOW):
+        d.press(view.key)
+        d.wait(lambda view=view: d.c.scheduler.drawn_view is view, f"the view {view.label}")
+        for _ in range(6):
+            frame = d.c.frame
+            d.wait(lambda frame=frame: d.c.frame is not frame, "another picture")
+            assert d.c.scheduler.drawn_view is view, "no other view flashes up"
+    d.press("Space").settle()
+    d.expect_picture()
 
 
 def difference(d: Driver) -> None:
     """The dimmed picture where all is right; where culling misses a shadow, one colour, counted, and ringed where that
-    is wanted."""
+    is wanted; and beside the picture as it should be."""
     of_wrong = np.round(np.multiply(255.0, WRONG))
 
     def dimmed() -> np.ndarray:
         return d.c.session.draw.beneath * picture(d.c.frame).astype(float)
 
-    d.settle()
-    d.press(KEY._8)
-    d.settle()
+    d.press("8").settle()
     assert d.c.frame.wrong is not None and not d.c.frame.wrong.any()
     assert np.abs(d.shown() - dimmed()).max() <= 1, "nothing is wrong, yet something shines"
-    d.press(KEY._1)
-    figure4(d, 20)
+    d.press("1")
+    _figure4(d, 20)
     assert d.c.frame.wrong is None, "verified, though no view asks for it"
-    d.press(KEY._8)
-    d.settle()
+    d.press("8").settle()
     wrong = d.c.frame.wrong > 0
     assert d.c.frame.statistics.shadow.wrong == d.c.frame.wrong.sum() > 0
     marked = d.shown()
     assert np.array_equal((marked == of_wrong).all(axis=-1), wrong)
     assert np.count_nonzero(np.abs(marked - dimmed()).max(axis=-1) > 1) > np.count_nonzero(wrong), "no rings"
-    d.press(KEY.m)
+    d.press("M")
     assert not d.c.session.draw.mark_wrong
     assert np.abs(d.shown() - dimmed())[~wrong].max() <= 1, "the picture, dimmed, where every answer is right"
-    d.press(KEY.m)
-    d.press(KEY.c)
-    d.settle()
+    _wiped(d)
+    d.press("8", "M", "C").settle()
     assert d.c.frame.settings.method == "none" and not d.c.frame.wrong.any()
     assert np.abs(d.shown() - dimmed()).max() <= 1 and not d.c.session.settings.verify
 
 
-def wiping(d: Driver) -> None:
+def _wiped(d: Driver) -> None:
     """The line of the wipe is dragged by the pointer and nothing else moves; elsewhere a drag turns the camera."""
-    d.settle()
-    figure4(d, 20)
-    d.c.session.set_draw(mark_wrong=False)
-    d.press(KEY._9)
-    d.settle()
+    d.press("9").settle()
     frame = d.c.frame
     assert (frame.color != frame.reference).any()
-    left, top, right, bottom = d.picture_edges()
-    camera, pivot, middle = d.c.session.camera, d.ui.picture.pivot, (top + bottom) / 2.0
-
-    def drag_line(start: float, end: float, height: float) -> None:
-        x = left + start * (right - left)
-        d.drag((x, height), ((end - start) * (right - left), 7.0))
+    left, _, right, _ = d.picture_edges()
+    camera, pivot = d.c.session.camera, d.ui.picture.pivot
+    for start, end, height in ((0.5, 0.3, 0.5), (0.3, 0.9, 0.2)):
+        d.drag(d.on_picture(start, height), ((end - start) * (right - left), 7.0))
         assert abs(d.c.session.draw.wipe - end) < 0.02
         assert d.c.session.camera == camera and d.ui.picture.pivot is pivot and d.c.selection.picked is None
-
-    drag_line(0.5, 0.3, middle)
-    assert (
-        np.abs(d.shown().astype(int) - picture(frame, View.WIPE, mark_wrong=False, wipe=d.c.session.draw.wipe)).max()
-        <= 1
-    )
-    drag_line(0.3, 0.9, top + 0.2 * (bottom - top))
+        d.expect_picture(1)
     pixels, column = d.shown(), wipe_column(128, d.c.session.draw.wipe)
     assert np.array_equal(pixels[:, :column], picture(frame)[:, :column]), "left of the line is the traced picture"
     right_one = picture(replace(frame, color=frame.reference))
     assert np.array_equal(pixels[:, column + 1 :], right_one[:, column + 1 :]), "right of the line is the reference"
-    d.drag((left + 0.9 * (right - left), middle), (2.0 * (right - left), 0.0))
+    d.drag(d.on_picture(0.9, 0.5), (2.0 * (right - left), 0.0))
     assert d.c.session.draw.wipe == 1.0, "past the edge it stays on it"
     assert d.c.frame is frame and d.c.session.camera == camera, "dragging the line has traced"
     traced = d.c.history.frames
-    d.drag((left + 0.7 * (right - left), middle), (60.0, 0.0))
+    d.drag(d.on_picture(0.7, 0.5), (60.0, 0.0))
     assert d.c.session.draw.wipe == 1.0 and d.c.session.camera != camera, "elsewhere a drag turns the camera"
     d.settle()
     assert d.c.history.frames > traced and d.c.frame.settings.verify
+
+
+def _figure4(d: Driver, frame: int) -> None:
+    """The paper's Figure 4 up to a frame, as it is described there: 128 x 128 pixels, frame by frame."""
+    d.c.session.set_pace(progressive=False, fixed_size=True, width=128, height=128, every_frame=False)
+    d.c.preferences.loop = False
+    d.c.settings.change(method="paper")
+    d.open(embedded_scenes()["figure4"])
+    for number in range(1, frame + 1):
+        d.press("RightArrow").settle()
+        assert d.c.session.frame == number

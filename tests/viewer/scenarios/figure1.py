@@ -12,35 +12,24 @@ from viewer.util.resources import embedded_scenes
 
 def figure1(d: Driver) -> None:
     """The figure has the frame's numbers, wherever its panel is, and its parts open the views that show them."""
-    d.settle()
-    d.drop(embedded_scenes()["figure4"])
-    d.wait(lambda: d.c.session.scene is not None and d.c.session.scene.path.stem == "figure4", "the scene")
+    d.open(embedded_scenes()["figure4"])
     d.fix_resolution(320, 220)
-    d.settle()
     d.change(method="paper")
     for _ in range(2):
-        d.c.scheduler.trace_again()
-        d.settle()
+        d.press("T").settle()
     for _ in d.sizes():
         d.show_panel("Figure 1")
         shadow, changes = d.c.frame.statistics.shadow, d.c.frame.statistics.mode_changes
         assert shadow.saved > 0
         told = " ".join(part.tip for part in _drawing(d).parts if isinstance(part, Box))
-        for name, number in (
-            ("shadow rays due", shadow.due),
-            ("culled", shadow.culled),
-            ("dynamic only", shadow.dynamic_only),
-            ("traced", shadow.traced),
-            ("→ fully rendered", changes.fully_rendered),
-        ):
-            assert f"{name}: {number:,}" in told
-        window = imgui.internal.find_window_by_name("Figure 1")
-        assert window.scroll_max.y == 0.0, "the figure does not fit its panel"
+        numbers = {"shadow rays due": shadow.due, "culled": shadow.culled, "dynamic only": shadow.dynamic_only,
+                   "traced": shadow.traced, "→ fully rendered": changes.fully_rendered}  # fmt: skip
+        assert all(f"{name}: {number:,}" in told for name, number in numbers.items()), told
+        assert d.panel("Figure 1").scroll_max.y == 0.0, "the figure does not fit its panel"
     for name, view in (("Shadow testing", View.FATE), ("→ examined anew", View.PIXEL_COUNT)):
         _click(d, name)
         assert d.c.session.draw.view is view, name
         d.settle()
-    d.c.session.set_draw(view=View.COLOR)
 
     # Without culling it says what modes would do; with certificates these stand in the place of modes.
     d.change(method="none")
@@ -51,7 +40,6 @@ def figure1(d: Driver) -> None:
     assert "Certificates" in said and not any("mode setting" in text for text in said)
     _click(d, "Certificates")
     assert d.c.session.draw.view is View.CERTIFICATE
-    d.c.session.set_draw(view=View.COLOR)
 
 
 def _drawing(d: Driver) -> Drawing:
@@ -69,11 +57,8 @@ def _words(d: Driver) -> list[Words]:
 def _click(d: Driver, name: str) -> None:
     """On the part of the figure that has this name, where the panel shows it."""
     scale, words = _drawing(d).scale, next(words for words in _words(d) if words.text.startswith(name))
-    window = imgui.internal.find_window_by_name("Figure 1")
+    window = d.panel("Figure 1")
     imgui.internal.set_scroll_y(window, max(scale * words.y - 0.5 * window.inner_rect.get_height(), 0.0))
     d.frames(3)
-    place = d.context.item_info("//Figure 1/figure 1").rect_full.min
-    d.context.mouse_move_to_pos((place.x + scale * words.x + 4.0, place.y + scale * words.y + 4.0))
-    d.frames(2)
-    d.context.mouse_click(0)
-    d.frames(3)
+    left, top, _, _ = d.place("//Figure 1/figure 1")
+    d.move_to(left + scale * words.x + 4.0, top + scale * words.y + 4.0).click_here()

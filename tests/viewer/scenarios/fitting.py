@@ -17,14 +17,11 @@ _VERTEX = np.dtype([("at", np.float32, 2), ("uv", np.float32, 2), ("color", np.u
 
 def fitting(d: Driver) -> None:
     """No text is cut off at the edge of what it lies in, and no widget lies over another, at any size."""
-    d.context.mouse_move_to_pos(d.picture_centre())
-    d.context.mouse_click(0)
-    d.settle()
+    d.pick()
     usual = (("certified", (1280, 800)), ("paper", (1000, 640)))
     for method, size in cases(usual, (("certified", (1600, 1000)), *usual)):
         d.c.settings.change(method=method)
-        d.resize(*size)
-        d.settle()
+        d.resize(*size).settle()
         _check_panels(d, size)
 
 
@@ -32,7 +29,7 @@ def _check_panels(d: Driver, size: tuple[int, int]) -> None:
     for label in SIDES:
         d.show_panel(label)
         check_fit(d, f"{label} at {size}")
-    d.ui.show_panel("Plots")
+    d.show_panel("Plots")
     # Frames of which the last has a tick of its own, on the plots' edge.
     for count in cases((1001,), (1, 11, 101, 1001)):
         d.c.history.frames = count

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.marbles import LAST, STEP, write_marbles
@@ -12,16 +11,10 @@ from viewer.state.picking import wrong_at
 from viewer.window.panels.inspector import wrong_beyond
 from viewer.window.panels.plots import PlotsState
 
-KEY = imgui.Key
-CTRL = int(KEY.mod_ctrl)
-
 
 def hunting(d: Driver) -> None:
     """A click in a plot, or on a frame in the inspector, goes back there; a hunt's finds are flown to and explained."""
-    d.settle()
-    d.drop(write_marbles(d.folder))
-    d.wait(lambda: d.c.session.scene.path.name == "marbles.aff", "the scene")
-    d.settle()
+    d.open(write_marbles(d.folder))
     d.change(method="paper", depth=2)
     _from_a_plot(d)
     _from_the_inspector(d)
@@ -30,32 +23,24 @@ def hunting(d: Driver) -> None:
 
 def _from_a_plot(d: Driver) -> None:
     c = d.c
-    d.ui.show_panel("Plots")
+    d.show_panel("Plots")
     for _ in range(3):
-        d.press(KEY.right_arrow)
-        d.settle()
-    here = c.session.time
-    wanted = c.session.scene.frame_time(1)
+        d.press("RightArrow").settle()
+    here, wanted = c.session.time, c.session.scene.frame_time(1)
     target = next(n for n, record in c.history.records.items() if record.state.time == wanted)
     _point_at_sample(d, target)
-    d.context.mouse_click(0)
-    d.settle()
-    assert c.session.time == c.session.scene.frame_time(1), "the click on the plot did not lead there"
-    d.press(int(KEY.z) | CTRL)
-    d.settle()
+    d.click_here().settle()
+    assert c.session.time == wanted, "the click on the plot did not lead there"
+    d.press("Ctrl+Z").settle()
     assert c.session.time == here
 
 
 def _point_at_sample(d: Driver, number: int) -> None:
     """The pointer onto a frame of a plot."""
-    history = d.c.history
-    window = imgui.internal.find_window_by_name("Plots")
-    d.context.mouse_move_to_pos((window.pos.x + 0.2 * window.size.x, window.pos.y + 0.6 * window.size.y))
-    d.frames(2)
+    history, window = d.c.history, d.panel("Plots")
     for place in np.linspace(0.02, 0.98, 97):  # the plot says itself which frame the pointer is on
         d.ui.state(PlotsState).pointed = None
-        d.context.mouse_move_to_pos((window.pos.x + place * window.size.x, window.pos.y + 0.6 * window.size.y))
-        d.frames(2)
+        d.move_to(window.pos.x + place * window.size.x, window.pos.y + 0.6 * window.size.y)
         if d.ui.state(PlotsState).pointed == number:
             return
     raise AssertionError(f"frame {number} is not found in the plot of frames {history.first} to {history.frames - 1}")
@@ -64,39 +49,26 @@ def _point_at_sample(d: Driver, number: int) -> None:
 def _from_the_inspector(d: Driver) -> None:
     c = d.c
     c.session.set_pace(fixed_size=False)
-    d.ui.show_panel("Inspector")
-    d.press(KEY.right_arrow)
-    d.settle()
-    d.context.mouse_move_to_pos(d.picture_centre())
-    d.context.mouse_click(0)
-    d.frames(3)
+    d.show_panel("Inspector").press("RightArrow").settle().pick()
     picked = c.selection.picked
     assert picked is not None
     taught = c.history.origins_of(c.frame, picked.primitive)
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
     then = c.history.records[lesson.lit].state
     d.scroll_down("Inspector")
-    d.click(f"//Inspector/**/{light} lit/picture {lesson.lit}##0")
-    d.settle()
+    d.click(f"//Inspector/**/{light} lit/picture {lesson.lit}##0").settle()
     assert (c.session.time, c.session.camera) == (then.time, then.camera or c.session.scene.camera_at(then.time))
 
 
 def _to_a_find(d: Driver) -> None:
     c, plan = d.c, d.c.runs.hunt_plan
     plan.size, plan.last, plan.step, plan.around, plan.keep = (96, 96), LAST, STEP, 4, 5
-    d.show_panel("Hunt")
-    d.click(f"//Hunt/**/{icons.ICON_FA_PLAY}  Start")
-    d.wait(lambda: c.runs.hunt.results is not None and c.runs.current is None, "the hunt", 120.0)
-    d.settle()
+    d.show_panel("Hunt").start("Hunt").settle()
     found = c.runs.hunt.results
     assert c.runs.hunt.whole and found.finds and found.frames == LAST // STEP + 5
-    c.settings.change(samples=4)
-    d.settle()
-    d.click("//Hunt/**/1##0")
-    find = found.finds[0]
-    d.wait(lambda: c.runs.current is None and c.selection.picked is not None, "the find", 60.0)
-    d.settle()
-    picked = c.selection.picked
+    d.change(samples=4)
+    d.click("//Hunt/**/1##0").settle()
+    find, picked = found.finds[0], c.selection.picked
     assert (picked.x, picked.y) == (find.x, find.y) and wrong_at(c.frame, find.x, find.y) > 0
     assert tuple(c.frame.color[find.y, find.x].tolist()) == find.color
     assert c.frame.settings.samples == 1 and c.session.settings.samples == 4, "refined, it is not as it was found"
@@ -111,8 +83,5 @@ def _to_a_find(d: Driver) -> None:
     d.click(f"//Hunt/**/{icons.ICON_FA_CODE_BRANCH}  Rays")
     d.wait(lambda: c.inspector.tree is not None, "its rays", 20.0)
     assert any(ray.shadows is not None and ray.shadows.wrong.any() for ray in c.inspector.tree.rays)
-    d.show_panel("Hunt")
-    d.press(KEY.right_arrow)
-    d.settle()
+    d.show_panel("Hunt").press("RightArrow").settle()
     assert c.frame.settings.samples == 4, "having moved, it gets its samples"
-    c.settings.change(samples=1)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import patch
 
 import numpy as np
-from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from tracer.renderer import Renderer
@@ -16,8 +16,6 @@ from viewer.views import penumbra
 from viewer.window.panels.lights import LightFilters
 from viewer.window.panels.status import doing
 
-KEY = imgui.Key
-
 
 def lamps(d: Driver) -> None:
     """Soft shadows come step by step, and are those of the renderer; many lights are listed as they are looked for."""
@@ -25,10 +23,8 @@ def lamps(d: Driver) -> None:
     d.c.session.set_pace(target_fps=240.0)  # there is to be no time for many samples in motion
     d.settle()
     hard = d.c.frame.color
-    d.show_panel("Rendering")
-    area = d.context.item_info("//Rendering/**/##lamp-radius").rect_full
-    middle = (area.min.x + 0.8 * (area.max.x - area.min.x), 0.5 * (area.min.y + area.max.y))
-    d.drag((area.min.x + 4.0, middle[1]), (middle[0] - area.min.x - 4.0, 0.0))
+    left, top, right, _ = d.show_panel("Rendering").place("//Rendering/**/##lamp-radius")
+    d.drag((left + 4.0, top + 6.0), (0.8 * (right - left) - 4.0, 0.0))
     radius = d.c.session.settings.lamp_radius
     assert 0.1 < radius < 2.0 and d.c.scheduler.lamps.wanted == 16
     d.settle()
@@ -49,8 +45,7 @@ def lamps(d: Driver) -> None:
     alone = Renderer(d.c.session.scene, frame.settings).render(frame.time, frame.camera)
     assert np.array_equal(frame.color, alone.color) and not np.array_equal(frame.color, hard)
 
-    d.press(KEY.j)
-    d.settle()
+    d.press("J").settle()
     frame = d.c.frame
     between = np.isin(penumbra.VIEW.find(frame, d.c.session.draw.light), (penumbra.Arrival.MOST, penumbra.Arrival.FEW))
     assert between.any() and frame.asked.max() == 64
@@ -62,24 +57,19 @@ def lamps(d: Driver) -> None:
     d.press("Shift+J")
     assert d.c.scheduler.drawn_view is View.LIGHTS and d.c.frame is frame, "nothing is traced for it"
     d.expect_picture()
-    d.press(KEY.j)
-    d.press(KEY.l)
+    d.press("J", "L")
     assert np.abs(d.shown().astype(int) - shown).max() > 50, "another light"
     d.press("Shift+L")
-    y, x = np.argwhere(between)[between.sum() // 2]
-    d.c.selection.select(((x + 0.5) / frame.width, (y + 0.5) / frame.height))
+    d.c.selection.select(d.places(between, reach=1)[0])
     d.wait(lambda: d.c.inspector.why is not None, "an answer about the penumbra", 20.0)
-    one = d.c.inspector.why.reasons[d.c.session.draw.light]
-    reached = int(frame.reached[y, x, d.c.session.draw.light])
-    assert (one.lit, one.samples) == (reached, int(frame.asked[y, x, d.c.session.draw.light]))
-    d.frames(3)
+    (x, y), light = d.c.selection.pixel, d.c.session.draw.light
+    one = d.c.inspector.why.reasons[light]
+    assert (one.lit, one.samples) == (frame.reached[y, x, light], frame.asked[y, x, light])
     d.c.selection.clear()
 
-    d.hold(KEY.d, 0.3)
+    d.hold("D", 0.3)
     assert d.c.frame.settings.lamp_samples in (1, 4), "few in motion"
-    d.press(KEY._1)
-    d.click("//Rendering/**/x##lamp-radius")
-    d.settle()
+    d.press("1").click("//Rendering/**/x##lamp-radius").settle()
     assert d.c.frame.settings.lamp_radius is None and d.c.scheduler.lamp_samples_shown == 1
 
     many = d.folder / "lights.aff"
@@ -87,9 +77,8 @@ def lamps(d: Driver) -> None:
     many.write_text(d.c.session.scene.path.read_text() + lights)
     d.open(many)
     _one_of_too_many(d)
-    d.ui.show_panel("Scene")
     d.ui.state(LightFilters).texts["table"] = "light 3"
-    d.frames(4)
+    d.show_panel("Scene")
 
 
 def _one_of_too_many(d: Driver) -> None:
@@ -97,21 +86,16 @@ def _one_of_too_many(d: Driver) -> None:
     frame = d.c.frame
     settings = replace(frame.settings, record_lights=True)
     expected = Renderer(d.c.session.scene, settings).render(frame.time, frame.camera)
-    most, view_names.MOST_RECORDED = view_names.MOST_RECORDED, 1000
-    try:
+    with patch.object(view_names, "MOST_RECORDED", 1000):
         traced = d.c.history.frames
-        d.press(KEY.j)
+        d.press("J")
         for _ in range(2):
-            d.press(KEY.l)
+            d.press("L")
             light = d.c.session.draw.light
             d.wait(lambda: d.c.scheduler.drawn_view is View.PENUMBRA, "one light", 20.0)
             assert d.c.frame.only_light == light and d.c.history.frames == traced
             assert np.array_equal(penumbra.VIEW.find(d.c.frame, light), penumbra.VIEW.find(expected, light))
             d.expect_picture()
-        d.press("Shift+J")
-        d.settle()
+        d.press("Shift+J").settle()
         assert d.c.scheduler.drawn_view is View.COLOR, "there is no memory for all"
-    finally:
-        view_names.MOST_RECORDED = most
-    d.press(KEY._1)
-    d.settle()
+    d.press("1").settle()

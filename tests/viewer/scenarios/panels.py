@@ -15,29 +15,39 @@ from viewer.window import style as window_style
 from viewer.window.layout import PANELS, PICTURE
 from viewer.window.ui import Dialog
 
-KEY = imgui.Key
-
 
 def panels(d: Driver) -> None:
-    """Every panel, dialog and menu is shown once, as a new user would open them."""
-    d.settle()
-    d.press(KEY.b)
+    """The cross closes one panel of several behind each other's tabs, and the default layout brings all back.  Every
+    panel, dialog and menu is shown once, as a new user would open them."""
+    docking = d.app.params.docking_params
+    closed = lambda: [w.label for w in docking.dockable_windows if not w.is_visible]  # noqa: E731
+    d.show_panel("Camera")
+    d.context.window_close("//Camera")
+    d.frames(3)
+    assert closed() == ["Camera"]
+    for label in ("Scene", "View", "Plots", "Log"):
+        docking.dockable_window_of_name(label).is_visible = False
+    d.choose("View/Default layout")
+    assert not closed()
+    docked = d.panel("Scene").dock_node
+    assert docked is not None and d.panel("Camera").dock_id == docked.id_
+
+    d.press("B")
     for label in ("Camera", "Rendering", "Saving", "Scene", "View", "Experiment", "Zoom test", "Plots"):
-        d.app.params.docking_params.focus_dockable_window(label)
+        docking.focus_dockable_window(label)
         d.frames(3)
-    d.press(KEY.f1)
+    d.press("F1")
     assert Dialog.KEYS in d.ui.dialogs
-    d.press(KEY.f1)
+    d.press("F1")
     d.choose("Help/About Shadowcull")
     d.expect("A Shadow Culling Algorithm for Interactive Ray Tracing")
     d.click("//About Shadowcull###question/Close")
     d.press("Ctrl+O")
-    d.frames(4)
     assert d.ui.dialogs == [Dialog.OPEN_FILE]
     before = d.c.session.draw.view
-    d.press(KEY._5)
+    d.press("5")
     assert d.c.session.draw.view is before, "a key reached the window behind a dialog"
-    d.press(KEY.escape)
+    d.press("Escape")
     assert not d.ui.dialogs
     d.choose("View/Depth")
     assert d.c.session.draw.view is View.DEPTH
@@ -47,27 +57,8 @@ def panels(d: Driver) -> None:
     d.press("K")
 
 
-def closing_panels(d: Driver) -> None:
-    """The cross closes one panel of several behind each other's tabs, and the default layout brings all back."""
-    d.settle()
-    docking = d.app.params.docking_params
-    closed = lambda: [w.label for w in docking.dockable_windows if not w.is_visible]  # noqa: E731
-    d.show_panel("Camera")
-    d.context.window_close("//Camera")
-    d.frames(3)
-    assert closed() == ["Camera"]
-    for label in ("Scene", "View", "Plots", "Log"):
-        docking.dockable_window_of_name(label).is_visible = False
-    d.frames(3)
-    d.choose("View/Default layout")
-    assert not closed()
-    docked = imgui.internal.find_window_by_name("Scene").dock_node
-    assert docked is not None and imgui.internal.find_window_by_name("Camera").dock_id == docked.id_
-
-
 def looks(d: Driver) -> None:
     """Theme and size of the interface change at once and are kept; settings are reset when the user agrees."""
-    d.settle()
     p, small = d.c.preferences, imgui.get_font_size()
     d.c.bookmarks.save("here")
     d.c.presets.save("mine")
@@ -79,18 +70,13 @@ def looks(d: Driver) -> None:
     assert brightness() < 60.0
     d.choose("View/Light theme")
     assert p.theme == "light" and brightness() > 200.0
-    for _ in range(3):
-        d.press("Ctrl+Equal")
-    d.frames(4)
+    d.press("Ctrl+Equal", "Ctrl+Equal", "Ctrl+Equal").frames(2)
     assert p.ui_scale == 1.5 and abs(imgui.get_font_size() - 1.5 * small) <= 1.0
-    d.press("Ctrl+0")
-    d.frames(4)
+    d.press("Ctrl+0").frames(2)
     assert p.ui_scale == 1.0 and imgui.get_font_size() == small and d.c.session.draw.view is View.COLOR
-    d.press("Ctrl+Minus")
-    d.press(KEY._4)
+    d.press("Ctrl+Minus", "4")
     for answer, after in (("Keep them", "light"), ("Reset", "dark")):
-        d.choose("File/Reset settings...")
-        d.click(f"//Reset all settings?###question/{answer}")
+        d.choose("File/Reset settings...").click(f"//Reset all settings?###question/{answer}")
         assert p.theme == after
     assert p.ui_scale == 1.0 and d.c.session.draw.view is View.COLOR and brightness() < 60.0
     assert p.recent and d.c.bookmarks.all[0].name == "here" and d.c.presets.all
@@ -98,8 +84,7 @@ def looks(d: Driver) -> None:
 
 def hiding(d: Driver) -> None:
     """Tab leaves the picture alone, and brings back what was there, where it was; F11 fills the screen, and back."""
-    d.resize(1280, 800)
-    d.settle()
+    d.resize(1280, 800).settle()
     for label in ("Camera", "Experiment"):
         d.show_panel(label)
     docking = d.app.params.docking_params
@@ -107,24 +92,18 @@ def hiding(d: Driver) -> None:
     d.frames(4)
     before = _places_of_panels()
     assert {"Camera", "Experiment", "Statistics", "Inspector"} < set(before)
-    d.press(KEY.tab)
-    d.frames(3)
+    d.press("Tab")
     there = _places_of_panels()
     assert set(there) == {PICTURE} and there[PICTURE][2] * there[PICTURE][3] > 0.9 * 1280 * 800
     d.settle()
     assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.scheduler.inputs.size[0] > 1200
-    d.hold(KEY.d, 0.1)
+    d.hold("D", 0.1)
     assert not d.c.session.on_path, "keys fly while the panels are hidden"
-    d.press(KEY.tab)
-    d.frames(5)
+    d.press("Tab").frames(3)
     _came_back(before)
     assert not docking.dockable_window_of_name("Saving").is_visible
 
-    d.press(KEY.tab)
-    d.resize(1000, 700)
-    d.resize(1280, 800)
-    d.press(KEY.tab)
-    d.frames(5)
+    d.press("Tab").resize(1000, 700).resize(1280, 800).press("Tab").frames(3)
     _came_back(before)
     _shares(d)
     _denser_screen(d)
@@ -133,15 +112,13 @@ def hiding(d: Driver) -> None:
     place = (*glfw.get_window_pos(window), *glfw.get_window_size(window))
     mode = glfw.get_video_mode(glfw.get_primary_monitor()).size
     for full in (True, False):
-        d.press(KEY.f11)
-        d.frames(5)
+        d.press("F11").frames(3)
         size = (mode.width, mode.height) if full else place[2:]
         assert bool(glfw.get_window_monitor(window)) == full and tuple(glfw.get_window_size(window)) == size
         d.settle()
     assert tuple(glfw.get_window_pos(window)) == place[:2]
     _came_back(before)
-    d.press(KEY.f11)  # so it is closed
-    d.frames(5)
+    d.press("F11")  # so it is closed
 
 
 def _shares(d: Driver) -> None:

@@ -1,4 +1,4 @@
-"""Experiments and zoom tests: started, stopped, and asked about."""
+"""Experiments, zoom tests and films: started, stopped, and asked about."""
 
 from __future__ import annotations
 
@@ -8,25 +8,24 @@ from pathlib import Path
 import numpy as np
 from imgui_bundle import glfw_utils, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
+from PIL import Image
 
 from tests.viewer.driver import Driver
-from tests.viewer.scenarios.steps import saved_results
+from tracer.experiments import zoom
+from viewer.services.runs import RecordedZoomTest
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 from viewer.window.ui import Dialog
 
-KEY = imgui.Key
-
 
 def experimenting(d: Driver) -> None:
     """An experiment starts from its panel, plays, can be stopped, and leaves a table, a plot and files."""
-    d.settle()
     runs, home, method = d.c.runs, d.c.session.camera, d.c.session.settings.method
     d.show_panel("Experiment")
     runs.experiment_plan.frames, runs.experiment_plan.size = 3000, (64, 48)
     d.click("//Experiment/**/##verify")
     assert runs.experiment_plan.verify
-    d.click(f"//Experiment/**/{icons.ICON_FA_PLAY}  Start")
+    d.start("Experiment")
     run = runs.experiment
     for _ in range(3):
         before = run.traced
@@ -34,24 +33,20 @@ def experimenting(d: Driver) -> None:
         assert (d.c.frame.width, d.c.frame.height) == (64, 48) == d.ui.graphics.display.picture.size, (
             "they are not the picture"
         )
-    d.hold(KEY.w, 0.1)
+    d.hold("W", 0.1)
     assert d.c.session.camera == home and "stop it first" in d.said
-    d.press(KEY.c)
+    d.press("C")
     assert d.c.session.settings.method == method
-    d.press(KEY._2)
+    d.press("2")
     assert d.c.session.draw.view is View.OCCLUSION, "a view can be chosen any time"
-    d.click(f"//Experiment/**/{icons.ICON_FA_STOP}  Stop")
-    d.wait(lambda: runs.current is None, "the experiment to stop", 20.0)
+    d.click(f"//Experiment/**/{icons.ICON_FA_STOP}  Stop").settle()
     assert 3 <= len(run.results.frames) < 3000 and "what was done is kept" in d.said
-    d.settle()
     assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.frame.camera == home
 
     runs.experiment_plan.frames = 6
-    d.choose("Run/Experiment")
-    d.wait(lambda: runs.current is None, "the experiment to end")
-    d.settle()
+    d.choose("Run/Experiment").settle()
     assert runs.experiment is not run and runs.experiment.whole
-    files = saved_results(d, "Experiment")
+    files = _saved_results(d, "Experiment")
     assert len(json.loads(files[".json"].read_text())["frames"]) == 6
     assert files[".csv"].read_text().splitlines()[1].startswith("none,")
 
@@ -59,7 +54,6 @@ def experimenting(d: Driver) -> None:
     runs.experiment_plan.frames, runs.experiment_plan.accelerator = 2, "kdtree-lazy"
     runs.experiment_plan.methods |= {"auto", "certified+cache"}
     runs.start_experiment()
-    d.wait(lambda: runs.current is None, "the experiment to end")
     d.settle()
     assert runs.experiment.results.settings["accelerator"] == "kdtree-lazy"
     for name in ("Table", "Plot", "Table"):
@@ -69,43 +63,86 @@ def experimenting(d: Driver) -> None:
 
 
 def zooming(d: Driver) -> None:
-    """A zoom test starts from its panel, plays, and leaves plots, steps to go to, and files; Escape stops another."""
-    d.settle()
-    runs = d.c.runs
-    d.show_panel("Zoom test")
-    start = f"//Zoom test/**/{icons.ICON_FA_PLAY}  Start"
-    d.click(start)
+    """A zoom test of Figure 4 starts from its panel, plays, and leaves plots with a strip of pictures under each, steps
+    to go to, and files; Escape stops another."""
+    d.open(embedded_scenes()["figure4"])
+    runs, plan = d.c.runs, d.c.runs.zoom_plan
+    d.show_panel("Zoom test").start("Zoom test")
     assert runs.zoom_test is None and "click a primitive" in d.said
-    d.context.mouse_move_to_pos(d.picture_centre())
-    d.context.mouse_click(0)
-    d.frames(2)
+    d.pick()
     assert d.c.selection.picked is not None
-    runs.zoom_plan.steps, runs.zoom_plan.size = 5, (64, 64)
-    d.click(start)
-    d.wait(lambda: runs.current is None, "the zoom test")
-    d.settle()
+    plan.factors, plan.steps, plan.size, plan.ratio = "4, 64", 40, (128, 128), 0.94
+    d.start("Zoom test").settle()
     test = runs.zoom_test
-    assert test.whole and [a.factor for a in test.results.approaches] == [4.0, 16.0]
-    step = test.results.approaches[0].steps[4]
-    d.click("//Zoom test/**/4 step 4##shot")
-    d.settle()
-    assert np.allclose(d.c.frame.camera.position, step.camera.position)
-    files = saved_results(d, "Zoom test")
+    assert test.whole and [len(test.filmstrip.of(factor)) for factor in (4.0, 64.0)] == [43, 43]
+    for _ in d.sizes():
+        for approach in test.results.approaches:
+            _point_and_click(d, test, approach)
+    files = _saved_results(d, "Zoom test")
     assert json.loads(files[".json"].read_text())["primitive"] == test.start.primitive
     assert len(files[".csv"].read_text().splitlines()) == 1 + test.frames
+    d.click(f"//Zoom test/**/{icons.ICON_FA_FLOPPY_DISK} Film").settle()
+    (path,) = d.pictures.glob("*-film*.png")
+    with Image.open(path) as image:
+        assert image.width == 1920 and image.height > 700
 
-    runs.zoom_plan.steps, runs.zoom_plan.ratio = 1000, 0.999
-    d.click(start)
-    d.wait(lambda: runs.zoom_test.traced > 5, "steps")
-    d.press(KEY.escape)
-    d.wait(lambda: runs.current is None, "the zoom test to stop", 20.0)
-    assert len(runs.zoom_test.results.approaches[0].steps) >= 5
+    plan.steps, plan.ratio = 1000, 0.999
+    d.start("Zoom test").wait(lambda: runs.zoom_test.traced > 5, "steps")
+    d.press("Escape").settle()
+    assert 5 <= len(runs.zoom_test.results.approaches[0].steps) < 1000
+
+
+def _point_and_click(d: Driver, test: RecordedZoomTest, approach: zoom.Approach) -> None:
+    """A thumbnail shows its step as it was recorded, rings included, while it is pointed at; a click flies there."""
+    step, traced = approach.steps[-1], d.c.history.frames
+    (window,) = (w for w in imgui.get_current_context().windows if "/films_" in w.name and w.active)
+    imgui.internal.set_scroll_x(window, window.scroll_max.x)
+    imgui.internal.set_scroll_y(window, window.scroll_max.y if approach is test.results.approaches[-1] else 0.0)
+    d.frames(3)
+    small = f"//Zoom test/**/{approach.factor:g} step {step.number}##shot"
+    d.hover(small)
+    shot = test.filmstrip.nearest(approach.factor, step.number)
+    magenta = (shot.pixels() == (255, 0, 255)).all(axis=-1)
+    assert magenta.shape == (128, 128) and magenta.any() == (step.wrong > 0) == (approach.factor == 64.0)
+    assert d.ui.graphics.textures.texture_id(shot, small=False) is not None, "it is not drawn"
+    assert d.c.history.frames == traced, "showing it has traced"
+    d.click(small).settle()
+    assert np.allclose(d.c.session.camera.position, step.camera.position)
+
+
+def filming(d: Driver) -> None:
+    """A path, with its modes; a flight through bookmarks; and one that is stopped."""
+    films, runs = d.c.films, d.c.runs
+    d.see(View.OCCLUSION)
+    d.choose("Run/Film")
+    films.plan.last, films.plan.size, films.plan.legend = 4, (160, 120), True
+    assert films.count == 5
+    d.start("Film").wait(lambda: runs.current is not None, "the film to begin")
+    d.c.questions.before_opening("another scene", lambda: None)
     d.settle()
+    assert d.c.questions.question is None, "whether to stop it is asked although it is done"
+    assert films.film.whole and "film done: 5 frames" in d.said
+    folder = films.film.folder
+    assert folder.parent == d.pictures and len(list(folder.iterdir())) == 5
+
+    d.click("//Film/**/###bookmarks")
+    assert films.plan.through_bookmarks and films.count == 0
+    d.start("Film")
+    assert d.c.notices.message.error and "two bookmarks" in d.said
+    d.c.bookmarks.add()
+    d.hold("D", 0.2).settle()
+    d.c.bookmarks.add()
+    films.plan.fps, films.plan.seconds = 50.0, 60.0
+    assert films.count == 3000
+    d.start("Film").wait(lambda: films.film.traced > 3, "frames of the flight")
+    assert d.c.scheduler.drawn_view is View.OCCLUSION
+    d.press("Escape").settle()
+    assert 3 < len(list(films.film.folder.iterdir())) < 3000
+    assert "is kept" in d.said and str(films.film.folder) in d.said
 
 
 def asking(d: Driver) -> None:
     """While an experiment runs, opening and quitting ask first; the answer that stops it keeps what is done."""
-    d.settle()
     runs, scene = d.c.runs, d.c.session.scene
     first, other = Path(scene.path), embedded_scenes()["figure4"]
     runs.experiment_plan.frames, runs.experiment_plan.size = 3000, (64, 48)
@@ -123,56 +160,66 @@ def asking(d: Driver) -> None:
         assert d.c.questions.question is None
 
     under_way()
-    for ask in (lambda: d.drop(other), lambda: d.press(KEY.f5), lambda: d.press("Ctrl+Q"),
+    for ask in (lambda: d.drop(other), lambda: d.press("F5"), lambda: d.press("Ctrl+Q"),
                 lambda: d.c.loader.open(other)):  # fmt: skip
         ask()
         answer("Keep running")
         assert runs.current is not None and not runs.current.stopping and d.c.loader.load_job is None
     d.drop(other)
-    d.frames(3)
-    d.press(KEY.escape)
+    d.press("Escape")
     assert d.c.questions.question is None and not runs.current.stopping, "Escape has stopped it beside the question"
     d.drop(d.folder / "gone.aff")
     assert d.c.questions.question is None and "no such file" in d.said
     run = runs.experiment
     d.drop(other)
     answer("Stop and open")
-    d.wait(lambda: d.c.session.scene.path == other and runs.current is None, "the other scene")
     d.settle()
-    assert run is runs.experiment and run.results is not None and not run.whole
+    assert d.c.session.scene.path == other and run is runs.experiment and run.results is not None and not run.whole
     d.show_panel("Experiment")
     d.expect(f"Made in {first.name}; open that scene again", f"{first.name}, 64 × 48", "begun at")
-    saved_results(d, "Experiment")
-    d.drop(first)
-    d.wait(lambda: d.c.session.scene.path == first, "the first scene again")
-    d.settle()
+    _saved_results(d, "Experiment")
+    d.open(first)
 
     # Escape closes what lies over the panels, one by one, and stops the run only when nothing does.
     under_way()
-    d.press(KEY.f1)
+    d.press("F1")
     d.choose("Edit/Presets/Presets...")
     assert d.ui.dialogs == [Dialog.KEYS, Dialog.PRESETS]
     popups = lambda: len(imgui.get_current_context().open_popup_stack)  # noqa: E731
     for there in ("//##MainMenuBar/##MenuBar/File", f"//Scene/{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Recent"):
         d.click(there)
         assert popups() == 1
-        d.press(KEY.escape)
+        d.press("Escape")
         assert popups() == 0 and d.ui.dialogs == [Dialog.KEYS, Dialog.PRESETS]
-    d.press(KEY.escape)
+    d.press("Escape")
     assert d.ui.dialogs == [Dialog.KEYS]
-    d.press(KEY.escape)
+    d.press("Escape")
     assert not d.ui.dialogs and not runs.current.stopping
-    d.press(KEY.escape)
-    d.wait(lambda: runs.current is None, "the experiment to stop", 20.0)
-    d.settle()
+    d.press("Escape").settle()
+    assert runs.current is None
 
     under_way()
-    before = set((d.folder / "pictures").glob("*"))
+    before = set(d.pictures.glob("*"))
     d.app._close_wanted(glfw_utils.glfw_window_hello_imgui())
     closed_with: list[set[Path]] = []
     leave = d.app._exit
-    d.app._exit = lambda: closed_with.append(set((d.folder / "pictures").glob("*")) - before)  # type: ignore
+    d.app._exit = lambda: closed_with.append(set(d.pictures.glob("*")) - before)  # type: ignore
     answer("Save and quit")
     d.wait(lambda: bool(closed_with), "the files to be written, and the end", 30.0)
     assert {path.suffix for path in closed_with[0]} == {".json", ".csv", ".png"}
     leave()
+
+
+def _saved_results(d: Driver, panel: str) -> dict[str, Path]:
+    """Save results by the panel's buttons; the files by their endings."""
+    before = set(d.pictures.glob("*"))
+    d.scroll_down(panel)
+    for kind in ("JSON", "CSV", "Plot"):
+        d.click(f"//{panel}/**/{icons.ICON_FA_FLOPPY_DISK} {kind}")
+    d.settle()
+    assert not d.c.notices.message.error, d.said
+    files = {path.suffix: path for path in set(d.pictures.glob("*")) - before}
+    assert set(files) == {".json", ".csv", ".png"}
+    with Image.open(files[".png"]) as plot:
+        assert plot.size == (1920, 1080)
+    return files

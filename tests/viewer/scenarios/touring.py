@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from unittest.mock import patch
 
-from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.viewer.desk import place_of
@@ -16,7 +15,6 @@ from viewer.state.preferences import load_preferences
 from viewer.state.views import View
 from viewer.window.panels.status import doing
 
-KEY = imgui.Key
 FLY, CULLING, MODES, SHADOW, ZOOM, DONE = STEPS
 SHOW, SKIP = f"//Picture/**/{icons.ICON_FA_PLAY}  Show me", "//Picture/**/Skip"
 
@@ -34,9 +32,8 @@ def touring(d: Driver) -> None:
 
 def _by_hand(d: Driver) -> None:
     tour = d.ui.tour
-    d.settle()
     assert doing(d.c).startswith("idle") and tour.step is FLY, "nothing has been done yet"
-    d.hold(KEY.w, 0.1)
+    d.hold("W", 0.1)
     assert tour.step is CULLING
     d.settle()
     assert d.c.frame.statistics.shadow.dynamic_only > 0, "the method at the start saves rays"
@@ -48,22 +45,17 @@ def _by_hand(d: Driver) -> None:
     assert not d.c.frame.statistics.shadow.dynamic_only
     d.expect("Choose paper, the published method, at the top of the Culling panel, and then press C twice")
     d.change(method="paper")
-    d.press(KEY.c)
-    d.settle()
+    d.press("C").settle()
     d.expect("Press C once more")
-    d.press(KEY.c)
-    d.settle()
+    d.press("C").settle()
     d.wait(lambda: tour.step is MODES, "culling, seen on again", 10.0)
-    d.press(KEY._2)
+    d.press("2")
     assert tour.step is MODES, "half of it"
-    d.press(KEY._3)
+    d.press("3")
     assert tour.step is SHADOW
-    d.context.mouse_move_to_pos((d.picture_edges()[0] + 3.0, d.picture_edges()[1] + 30.0))
-    d.context.mouse_click(0)  # the sky
-    d.frames(5)
+    d.pick(0.02, 0.1).settle()  # the sky
     assert tour.step is SHADOW
-    d.settle()
-    d.pick(*place_of(d.c, lit=False))
+    d.press("N").pick(*place_of(d.c, lit=False))  # the legend might lie over it
     d.wait(lambda: tour.step is ZOOM, "a shadow that was clicked", 20.0)
     chosen = next(one for one in d.c.inspector.why.reasons if one.blocker >= 0)
     words = plain(Words(d.c.session.scene, d.c.inspector.why).answer(chosen))
@@ -72,8 +64,7 @@ def _by_hand(d: Driver) -> None:
     d.choose("Run/Zoom test")
     d.wait(lambda: tour.step is DONE, "the end of the zoom test", 120.0)
     assert d.c.runs.zoom_test.whole
-    d.settle()
-    d.click("//Picture/**/Close")
+    d.settle().click("//Picture/**/Close")
     assert tour.step is None
 
 

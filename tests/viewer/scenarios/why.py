@@ -10,13 +10,14 @@ from imgui_bundle import imgui
 
 from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
-from tests.viewer.scenarios.rays import lines_drawn
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.inspect.reasons import Reason, Rule, Why
 from tracer.inspect.why_in_words import Words, plain
+from viewer.output.ray_rows import RaySubset
 from viewer.state import navigation
 from viewer.window.panels import rays
+from viewer.window.panels.rays import RaysState
 
 FULLY, PARTLY = OcclusionMode.FULLY_RENDERED, OcclusionMode.PARTIALLY_OCCLUDED
 ROOM = Path(__file__).resolve().parents[3] / "assets" / "scenes" / "default.aff"
@@ -25,13 +26,12 @@ ROOM = Path(__file__).resolve().parents[3] / "assets" / "scenes" / "default.aff"
 def why(d: Driver) -> None:
     """A culled shadow, and a primitive that is partially occluded: each click is answered by one sentence, at the top
     of the Inspector, and the names in it are links."""
-    d.settle()
     d.c.settings.change(method="paper")
     d.fix_resolution(400, 250)
     d.open(ROOM)
     for _ in range(3):
-        d.c.scheduler.trace_again()
-        d.settle()
+        d.press("T").settle()
+    _rays(d)
     _culled(d)
     _occluded(d)
     _taught(d)
@@ -43,8 +43,7 @@ def _culled(d: Driver) -> None:
     """The pixel's light is chosen by a click on its line, and the fate is said first."""
     one = _click(d, _of(d, FULLY, ShadowMode.FULL_SHADOW), lambda one: one.rule is Rule.FULL_SHADOW)
     d.c.settings.set_light((one.light + 1) % len(d.c.session.scene.lights))
-    d.frames(3)
-    d.click(f"//Inspector/$${one.light}/{d.ui.light_name(one.light)}##light")
+    d.frames(3).click(f"//Inspector/$${one.light}/{d.ui.light_name(one.light)}##light")
     assert d.c.session.draw.light == one.light
     said = plain(Words(d.c.session.scene, d.c.inspector.why).reason(one))
     assert said == "Culled: fully rendered, and every shadow ray so far was blocked (§2.4)."
@@ -63,12 +62,12 @@ def _occluded(d: Driver) -> None:
     hider = _named(d, by.primitive)
     text = plain(words.reason(one))
     assert f"partially occluded by {hider} at " in text and text.endswith("so its shadow mode is not trusted (§2.4).")
-    drawn = lines_drawn()
+    drawn = d.lines_drawn()
     link = next(part for part in words.reason(one) if not isinstance(part, str) and part.pixel is not None)
     d.hover(f"//Inspector/reason/{hider}##0")
-    assert lines_drawn() > drawn, "a name that the pointer is on is outlined"
+    assert d.lines_drawn() > drawn, "a name that the pointer is on is outlined"
     d.press("I")
-    assert lines_drawn() < drawn, "no outline of what hides it, and no squares"
+    assert d.lines_drawn() < drawn, "no outline of what hides it, and no squares"
     d.press("I")
     d.click(f"//Inspector/reason/{hider}##0")
     assert d.c.selection.picked.primitive == by.primitive
@@ -91,10 +90,48 @@ def _taught(d: Driver) -> None:
     d.c.motion.move(navigation.look(left, 0.02, 0.0, d.c.motion.world_up))
     d.settle()
     assert d.c.session.camera != left
-    d.click(f"//Inspector/reason/picture {number}##0")
-    d.settle()
+    d.click(f"//Inspector/reason/picture {number}##0").settle()
     assert d.c.session.camera == left, "it goes back to that picture, and what is selected stays so"
     assert d.c.selection.pixel is not None
+
+
+def _rays(d: Driver) -> None:
+    """The tree of a pixel's rays is unfolded, filtered, and picked out in the picture."""
+    c, state = d.c, d.ui.state(RaysState)
+    c.selection.clear()
+    assert not rays.are_listed(d.ui), "they are folded at first"
+    d.press("X")
+    assert c.inspector.tree is None, "nothing is clicked"
+    traced = c.history.frames
+    d.pick(*d.places(c.frame.primitive >= 0)[0])
+    d.wait(lambda: c.inspector.tree is not None, "the rays of the clicked pixel", 20.0)
+    tree = c.inspector.tree
+    assert c.history.frames == traced, "asking has traced a frame"
+    assert (tree.x, tree.y) == c.selection.pixel and tree.due > 0
+    d.frames(3)
+    drawn, everything = d.lines_drawn(), len(rays.rows(d.ui))
+
+    # Filters hide rows and lines.
+    d.click("//Inspector/wrong")
+    assert state.shown.shown is RaySubset.WRONG and len(rays.rows(d.ui)) < everything and d.lines_drawn() < drawn
+    d.click("//Inspector/all")
+    assert len(rays.rows(d.ui)) == everything
+
+    # A row that the pointer is on is picked out; a click selects it.
+    row = next(row for _, row in rays.rows(d.ui) if len(row.places) == 1 and "traced" in row.text)
+    d.hover(f"//Inspector/**/{row.key}/##row")
+    assert state.pointed is not None and state.pointed.key == row.key
+    d.click(f"//Inspector/**/{row.key}/##row")
+    assert state.selected == row.key
+
+    # The path ray folds; the tree goes with the selection.
+    top = rays.rows(d.ui)[0][1].key
+    for count in (1, everything):
+        state.toggled ^= {top}
+        d.frames(2)
+        assert len(rays.rows(d.ui)) == count
+    d.press("Escape")
+    assert c.inspector.tree is None and not rays.are_listed(d.ui)
 
 
 def _in_a_small_window(d: Driver) -> None:
@@ -103,8 +140,7 @@ def _in_a_small_window(d: Driver) -> None:
     d.resize(900, 600)
     _click(d, _of(d, PARTLY), lambda one: True)
     check_fit(d, "The Inspector in a small window")
-    d.resize(int(size.x), int(size.y))
-    d.settle()
+    d.resize(int(size.x), int(size.y)).settle()
 
 
 def _in_motion(d: Driver) -> None:
@@ -141,17 +177,11 @@ def _by_something(d: Driver) -> Callable[[Reason], bool]:
 
 
 def _click(d: Driver, here: np.ndarray, wanted: Callable[[Reason], bool]) -> Reason:
-    """Click a pixel of those that are `here`, with the like around it, that has such a reason, and return the first."""
-    frame = d.c.frame
-    for shift in (-2, 2):  # a hand is not that steady
-        for axis in (0, 1):
-            here = here & (np.roll(frame.primitive, shift, axis) == frame.primitive)
-    here[:3], here[-3:], here[:, :3], here[:, -3:] = False, False, False, False
-    rows, columns = np.nonzero(here)
-    near = np.argsort(np.hypot(rows - frame.height / 2, columns - frame.width / 2))
-    for i in near[:: max(1, len(near) // 20)].tolist():
+    """Click a pixel of those that are `here` that has such a reason, and return the first."""
+    near = d.places(here)
+    for place in near[:: max(1, len(near) // 20)]:
         d.c.selection.clear()
-        d.pick((columns[i] + 0.5) / frame.width, (rows[i] + 0.5) / frame.height)
+        d.pick(*place)
         d.wait(lambda: d.c.inspector.why is not None, "the reasons", 20.0)
         d.frames(3)
         found = next((one for one in d.c.inspector.why.reasons if wanted(one)), None)

@@ -64,7 +64,7 @@ def test_wide_words_reach_light_30():
     words = frame.modes.astype(np.uint64) | (np.uint64(2) << np.uint64(62))
     frame = replace(frame, modes=words)
     rows = units_in(frame, View.SHADOW, 30)
-    assert rows["non shadow"] + rows["non shadow, untrusted"] == 5
+    assert rows["non-shadow"] + rows["non-shadow, untrusted"] == 5
     assert shadow_mode_of(frame, 0, 30) is ShadowMode.NON_SHADOW
     assert shadow_mode_of(frame, 0, 31) is None
 

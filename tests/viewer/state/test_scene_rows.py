@@ -86,9 +86,9 @@ def test_rows_count_what_each_pixel_says(now: Edited, tables: dict[Level, Table]
 def test_modes_are_those_of_the_chosen_light(now: Edited, tables: dict[Level, Table]) -> None:
     primitives, objects = tables[Level.PRIMITIVES], tables[Level.OBJECTS]
     assert column(primitives, "occlusion")[:4] == ["init", "partially occluded"] + ["fully rendered"] * 2
-    assert column(primitives, "shadow")[2:4] == ["full shadow", "non shadow"]
+    assert column(primitives, "shadow")[2:4] == ["full shadow", "non-shadow"]
     other = column(tables_of(now, make_frame(RECORDED), 1)[Level.PRIMITIVES], "shadow")
-    assert other[2:4] == ["non shadow", "partial shadow"]
+    assert other[2:4] == ["non-shadow", "partial shadow"]
     assert column(objects, "full_shadow") == ["0", "1", "0", "0"]
     assert column(objects, "rendered") == ["1", "1", "1", "0"]
     none = tables_of(now, make_frame(replace(RECORDED, modes=False, method="none")), 0)[Level.PRIMITIVES]
@@ -103,7 +103,7 @@ def test_modes_of_cells_are_those_of_all_that_are_seen(now: Edited) -> None:
         column(tables_of(now, one, 0)[Level.PRIMITIVES], "shadow") for one in (frame, only_even, unseen)
     )
     assert all_cells == ["several"] * 7, "each has cells of two kinds"
-    assert even[2:4] == ["full shadow", "non shadow"] and without[2] == NOTHING
+    assert even[2:4] == ["full shadow", "non-shadow"] and without[2] == NOTHING
 
 
 def test_rows_keep_their_numbers_where_things_are_hidden(now: Edited) -> None:

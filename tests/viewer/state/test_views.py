@@ -31,11 +31,7 @@ def test_the_colour_of_wrong_answers_is_unmistakable():
     """Bright on black, and far from every colour of every other view, for the colour-blind too."""
     assert (luminance(palette.WRONG) + 0.05) / 0.05 > 4.5
     assert np.linalg.norm(dichromat(palette.WRONG)) > 0.8
-    others = [
-        *palette.OCCLUSION_COLORS.values(),
-        *palette.SHADOW_COLORS.values(),
-        *(one.color for one in penumbra.VIEW.classes),
-    ]
+    others = [one.color for one in (*palette.OCCLUSION.values(), *palette.SHADOW.values(), *penumbra.VIEW.classes)]
     others += [palette.BACKGROUND, palette.GREY]
     for other in [*others, palette.WIPE_LINE, *palette.color_map()]:
         assert np.linalg.norm(np.subtract(palette.WRONG, other)) > 0.5
@@ -66,14 +62,14 @@ def test_a_small_share_does_not_look_like_none(part, whole, said):
     assert percent(part, whole) == said
 
 
-@pytest.mark.parametrize("palette", [palette.OCCLUSION_COLORS, palette.SHADOW_COLORS, palette.CERTIFICATE_COLORS])
+@pytest.mark.parametrize("palette", [palette.OCCLUSION, palette.SHADOW, palette.CERTIFICATES])
 def test_mode_colours_can_be_told_apart_without_red_green_vision(palette):
     for a, b in itertools.combinations(palette.values(), 2):
-        assert np.linalg.norm(dichromat(a) - dichromat(b)) > 0.15
+        assert np.linalg.norm(dichromat(a.color) - dichromat(b.color)) > 0.15
 
 
 def test_one_fate_stands_out_and_words_can_be_read_on_each():
-    colors = palette.FATE_COLORS
+    colors = {fate: one.color for fate, one in palette.FATES.items()}
     assert palette.fate_palette() == list(colors.values())
     traced = palette.fate_palette(Fate.TRACED)
     assert [color == colors[fate] for fate, color in zip(colors, traced)] == [fate.is_traced for fate in colors]

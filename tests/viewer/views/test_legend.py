@@ -21,7 +21,7 @@ from tracer.scene.lights import Light
 from tracer.statistics import CutErrors, SaidByModes
 from viewer.output.overlays import with_legend
 from viewer.state.draw_options import Slice
-from viewer.state.palette import DARK, LIGHT, OCCLUSION_COLORS
+from viewer.state.palette import DARK, LIGHT, OCCLUSION
 from viewer.state.views import View
 from viewer.util.numbers import count, percent
 from viewer.util.resources import embedded_scenes
@@ -198,7 +198,7 @@ def test_a_legend_in_a_picture_has_its_colours_and_changes_nothing_around_it(
     for part, first, last, side in ((place[0], left, right, size[0]), (place[1], top, bottom, size[1])):
         assert part > 0.0 or first < near
         assert part < 1.0 or last > side - 1 - near
-    for color in OCCLUSION_COLORS.values():
+    for color in (one.color for one in OCCLUSION.values()):
         assert (drawn == np.round(255.0 * np.asarray(color))).all(axis=-1).sum() >= 25
     assert (white == 255).all(), "the picture itself stays as it is"
     assert with_legend(white[:40, :60], of(frame, View.OCCLUSION), place) is None, "it is too small for one"

@@ -16,19 +16,15 @@ from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
 from viewer import views
 from viewer.state.draw_options import Slice
-from viewer.state.palette import BACKGROUND, BENEATH, FATE_NAMES, GREY, color_map
-from viewer.state.views import View
+from viewer.state.palette import BACKGROUND, BENEATH, FATES, GREY, color_map
+from viewer.state.views import Record, View
 from viewer.util.numbers import percent
 from viewer.views import colorize
-from viewer.views.paint import CELL_LINE, FAINT_LINE
+from viewer.views.paint import CELL_LINE, FAINT_LINE, in_bytes
 from viewer.views.voxels import STATES, voxels_of, voxels_seen
 
 CLASSES = (View.OCCLUSION, View.SHADOW, View.CERTIFICATE, View.FATE, View.MOVING_SHADOW, View.PENUMBRA)
 MAP = np.round(color_map() * 255).astype(int)
-
-
-def in_bytes(color: tuple[float, ...] | NDArray) -> NDArray[np.uint8]:
-    return np.round(np.asarray(color, np.float32) * np.float32(255.0)).astype(np.uint8)
 
 
 def on_lines(cells: NDArray) -> NDArray[np.bool_]:
@@ -46,7 +42,7 @@ def classes_of(f: Frame, view: View, light: int) -> dict[str, NDArray[np.bool_]]
         return {mode.name.lower().replace("_", " "): occlusion == mode for mode in OcclusionMode}
     if view is View.SHADOW:
         culls = {f"{name}{after}": (shadow == mode) & ~moves & (whole == sure)
-                 for mode, name in ((1, "full shadow"), (2, "non shadow"))
+                 for mode, name in ((1, "full shadow"), (2, "non-shadow"))
                  for sure, after in ((True, ""), (False, ", untrusted"))}  # fmt: skip
         return culls | {"init": (shadow == 0) & ~moves, "partial shadow": (shadow == 3) & ~moves, "dynamic": moves}
     if view is View.CERTIFICATE:
@@ -54,7 +50,7 @@ def classes_of(f: Frame, view: View, light: int) -> dict[str, NDArray[np.bool_]]
         names = enumerate(("none", "full", "lit", "candidates"))
         return {name: (proven == number) & ~moves for number, name in names} | {"dynamic": moves}
     if view is View.FATE:
-        return {FATE_NAMES[fate]: f.fate(light) == fate for fate in Fate}
+        return {one.name: f.fate(light) == fate for fate, one in FATES.items()}
     if view is View.MOVING_SHADOW:
         dark, asked = f.moving_shadow(light), f.fate(light) == Fate.DYNAMIC_ONLY
         lit = asked & ~dark & ~moves
@@ -122,7 +118,7 @@ def test_colours_are_clamped_and_otherwise_untouched(frame: Frame) -> None:
     np.testing.assert_array_equal(picture(frame), np.round(np.clip(frame.color, 0, 1) * 255).astype(np.uint8))
 
 
-@pytest.mark.parametrize("view", [v for v in View if v is not View.COLOR and not v.needs_verify])
+@pytest.mark.parametrize("view", [v for v in View if v is not View.COLOR and v.records is not Record.VERIFY])
 def test_what_is_missed_has_the_background(frame: Frame, view: View) -> None:
     missed = frame.primitive < 0
     if view.has_slice:  # it is seen before the background, too

@@ -25,7 +25,7 @@ def test_pixels_are_put_into_words():
         (View.COLOR, 2): ("0.500",) * 3, (View.OCCLUSION, 2): ("partially", "occluded"),
         (View.SHADOW, 4): ("full", "shadow"), (View.SHADOW, 8): ("dynamic",),
         (View.PRIMITIVE, 13): ("6",), (View.PRIMITIVE, 15): ("miss",), (View.DEPTH, 3): ("2",),
-        (View.NORMAL, 3): ("+0.000", "+0.000", "+1.000"), (View.PIXEL_COUNT, 6): ("16 now", "32 most"),
+        (View.NORMAL, 3): ("+0.000", "+0.000", "+1.000"), (View.PIXEL_COUNT, 6): ("16 now", "32 examined"),
         (View.DIFFERENCE, 3): ("1 wrong",), (View.COST, 3): (str(FRAME.cost[2, 3]),),
         (View.PENUMBRA, 5): (f"{FRAME.reached[2, 5, 0]} of {FRAME.asked[2, 5, 0]}",),
         (View.LIGHTS, 5): (str(np.count_nonzero(FRAME.asked[2, 5])),),

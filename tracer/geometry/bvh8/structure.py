@@ -24,7 +24,7 @@ from tracer.geometry.layout import triangle_rows
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import Placed
-from tracer.geometry.structure import Built
+from tracer.geometry.structure import BuiltPart
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
 from tracer.parallel import thread_count
@@ -182,7 +182,7 @@ class Bvh8:
         self.build()
         return (self.static if self._pieces is None else self._pieces.used).blocks
 
-    def built(self) -> Built | None:
+    def built(self) -> BuiltPart | None:
         """What rays have had built of a large tree of what never moves, with the trees of all that moves."""
         if self._pieces is None or not self._lazy:
             return None
@@ -190,7 +190,7 @@ class Bvh8:
         large.check()
         starts = self._primitives.triangle_starts[1] + self._primitives.quadric_starts[1]
         size = large.memory_bytes + moving.nodes.nbytes + moving.blocks.nbytes
-        return Built(len(large.used.nodes) + len(moving.nodes), large.built + total - int(starts), total, size)
+        return BuiltPart(len(large.used.nodes) + len(moving.nodes), large.built + total - int(starts), total, size)
 
     def parts_built(self) -> PieceParts | None:
         """Which pieces of what never moves are built, and how."""

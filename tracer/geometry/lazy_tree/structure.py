@@ -23,7 +23,7 @@ from tracer.geometry.lazy_tree.upper import raise_over
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import Placed
-from tracer.geometry.structure import Built
+from tracer.geometry.structure import BuiltPart
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Progress
 
@@ -159,10 +159,10 @@ class LazyKdTree(InObjectSpace):
     def build(self) -> None:
         """Nodes wait for rays by nature."""
 
-    def built(self) -> Built:
+    def built(self) -> BuiltPart:
         """What rays have had built of the trees that there are now."""
         nodes, size = (sum(tree.counted(what) for tree in self._trees) for what in (NODES, BYTES))
-        return Built(nodes, int(np.count_nonzero(self._touched)), len(self._touched), size)
+        return BuiltPart(nodes, int(np.count_nonzero(self._touched)), len(self._touched), size)
 
     def parts_built(self) -> LazyParts:
         """What has been built where."""

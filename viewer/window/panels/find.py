@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.culling.modes import OcclusionMode, ShadowMode
 from viewer.services.scene_table import Listing, SceneTable
-from viewer.state.palette import OCCLUSION_COLORS, SHADOW_COLORS
+from viewer.state.palette import OCCLUSION, SHADOW
 from viewer.state.row_filter import HELP, HINT
 from viewer.state.scene_rows import COLUMNS, Column, Level
 from viewer.util.numbers import several
@@ -20,8 +19,8 @@ from viewer.window.widgets import ERROR, QUIET, count, em, one_of, paragraph, ri
 
 _FIELD, _NUMBER = 12.0, 4.2  # ems of width: of the filter at least, and of a number
 _COLORS = {
-    "occlusion": {int(mode): color for mode, color in OCCLUSION_COLORS.items() if isinstance(mode, OcclusionMode)},
-    "shadow": {int(mode): color for mode, color in SHADOW_COLORS.items() if isinstance(mode, ShadowMode)},
+    "occlusion": {int(mode): one.color for mode, one in OCCLUSION.items()},
+    "shadow": {int(mode): one.color for mode, one in SHADOW.items()},
 }
 _LEVEL_TIPS = {
     Level.OBJECTS: "one row for each object, and for each named part of the static geometry; double-click one to list "

@@ -20,13 +20,10 @@ from tracer.mode_origins import Origin
 from tracer.scene.model import Material, Scene
 from viewer.services.inspector import with_origins
 from viewer.state.palette import (
-    FATE_COLORS,
-    FATE_NAMES,
-    OCCLUSION_COLORS,
-    OCCLUSION_MEANING,
-    SHADOW_COLORS,
-    SHADOW_MEANING,
-    Color,
+    FATES,
+    OCCLUSION,
+    SHADOW,
+    Class,
 )
 from viewer.state.picking import Pick, shadow_mode_of, unit_of, wrong_at
 from viewer.state.views import has_modes_of_cells
@@ -216,7 +213,7 @@ def _name(ui: Ui, one: Reason, chosen: bool) -> ImVec2:
     """A light's colour and name, and where that ends; resting on it picks it out over the picture, a click chooses
     it."""
     imgui.push_id(one.light)
-    swatch(FATE_COLORS[one.fate])
+    swatch(FATES[one.fate].color)
     name, start = ui.light_name(one.light), imgui.get_cursor_screen_pos()
     clicked, _ = imgui.selectable(f"{name}##light", chosen, int(imgui.SelectableFlags_.allow_overlap))
     if clicked:
@@ -232,7 +229,7 @@ def _line(ui: Ui, words: Words, one: Reason) -> None:
     end = _name(ui, one, chosen=False)
     text = " ".join(filter(None, (plain(words.reason(one)), plain(words.answer(one)))))
     if imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)):
-        tooltip_at(f"{ui.light_name(one.light)}: {FATE_NAMES[one.fate]}\n\n{text}\n\nClick to choose this light.")
+        tooltip_at(f"{ui.light_name(one.light)}: {FATES[one.fate].name}\n\n{text}\n\nClick to choose this light.")
     below = imgui.get_cursor_screen_pos()
     imgui.set_cursor_screen_pos(ImVec2(end.x + em(0.5), end.y))
     imgui.text_colored(ERROR if one.wrong else QUIET, fitted(text, imgui.get_content_region_avail().x))
@@ -250,14 +247,14 @@ def _modes(ui: Ui, unit: int, frame: Frame, scene: Scene) -> None:
     occlusion = OcclusionMode(int(modes.occlusion_mode(frame.modes[unit])))
     origins, covered = ui.controller.history.origins_of(frame, unit), 0
     if imgui.begin_table("modes", 2, int(imgui.TableFlags_.sizing_stretch_same)):
-        _mode("occlusion", occlusion.name, OCCLUSION_COLORS[occlusion], OCCLUSION_MEANING[occlusion])
+        _mode("occlusion", OCCLUSION[occlusion])
         for light in range(len(scene.lights)):
             shadow = shadow_mode_of(frame, unit, light)
             if shadow is None:
                 break
             covered += 1
             if occlusion is not OcclusionMode.DYNAMIC:
-                _mode(ui.light_name(light), shadow.name, SHADOW_COLORS[shadow], SHADOW_MEANING[shadow])
+                _mode(ui.light_name(light), SHADOW[shadow])
                 if origins is not None and light < len(origins.lights):
                     _origin(ui, origins.lights[light], light)
         imgui.end_table()
@@ -270,13 +267,13 @@ def _modes(ui: Ui, unit: int, frame: Frame, scene: Scene) -> None:
             sentence(ui, Words(scene, found).reference(one), f"reference {number}", QUIET)
 
 
-def _mode(name: str, mode: str, color: Color, meaning: str) -> None:
+def _mode(name: str, mode: Class) -> None:
     imgui.table_next_column()
-    swatch(color)
+    swatch(mode.color)
     paragraph(name, QUIET)
     imgui.table_next_column()
-    paragraph(mode.replace("_", " ").lower())
-    tooltip(meaning)
+    paragraph(mode.name)
+    tooltip(mode.meaning)
 
 
 def _origin(ui: Ui, origin: Origin, light: int) -> None:

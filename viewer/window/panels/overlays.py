@@ -10,7 +10,7 @@ from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
 from tracer.inspect.reasons import Why
 from viewer.state.methods import missing, with_base
-from viewer.state.palette import FATE_COLORS, SHADOW_COLORS
+from viewer.state.palette import FATES, SHADOW
 from viewer.state.picking import outline_of, points_of, primitive_points
 from viewer.state.projection import Stroke, strokes
 from viewer.window.panels import rays
@@ -19,11 +19,11 @@ from viewer.window.panels.links import Pointed
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, paragraph, tooltip
 
-_BLOCKER = ImVec4(*SHADOW_COLORS[ShadowMode.PARTIAL_SHADOW], 1.0)
+_BLOCKER = ImVec4(*SHADOW[ShadowMode.PARTIAL_SHADOW].color, 1.0)
 _NAMED = ImVec4(0.90, 0.62, 0.0, 1.0)  # what the method's answer rests on
 _MOST_NAMED = 8  # of which so many are outlined
 _OUTLINE = 0.13  # width in ems
-_HIDER, _WHITE = ImVec4(*FATE_COLORS[Fate.PARTLY_OCCLUDED], 1.0), ImVec4(1.0, 1.0, 1.0, 1.0)
+_HIDER, _WHITE = ImVec4(*FATES[Fate.PARTLY_OCCLUDED].color, 1.0), ImVec4(1.0, 1.0, 1.0, 1.0)
 _SAME, _MISSED = ImVec4(0.6, 0.64, 0.7, 1.0), ImVec4(0.3, 0.85, 0.95, 1.0)
 _SIDE = 0.5  # ems, of a pixel's square at least
 _NOTE, _LEAST = 26.0, 8.0  # in ems of width: of a note, and of a picture that has room for one

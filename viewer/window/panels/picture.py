@@ -15,6 +15,7 @@ from viewer.state import navigation, verified
 from viewer.state.comparison import CompareMode
 from viewer.state.picking import point_at
 from viewer.state.pixels import STEP, panned
+from viewer.state.views import Record
 from viewer.util.numbers import whole_percent
 from viewer.window.menus import ANY_POPUP
 from viewer.window.panels import (
@@ -167,7 +168,7 @@ def _title(ui: Ui, area: Area) -> float:
         return area.corner.y
     write_lines(lines, area.corner)
     lower = area.corner.y + size_of(lines)[1]
-    if view.needs_verify and not ui.state(LegendState).shown and verified.is_wrong(frame.statistics):
+    if view.records is Record.VERIFY and not ui.state(LegendState).shown and verified.is_wrong(frame.statistics):
         write_lines([verified.in_short(frame.statistics)], ImVec2(area.corner.x, lower), ON_PICTURE_ERROR)
         lower += size_of(lines)[1]
     return lower

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, imgui
 
 from viewer.services.controller import Controller
 from viewer.services.frame_scheduler import Activity
-from viewer.state.palette import DARK, FATE_COLORS, LIGHT, label_color
+from viewer.state.palette import DARK, FATES, LIGHT, label_color
 from viewer.state.savings import LONGEST, WOULD_OPACITY, Clause, Part, Standing, Tone, bar_of, places, sentence
 from viewer.state.views import View
 from viewer.window.ui import Ui
@@ -77,14 +77,14 @@ def _draw(ui: Ui, bar: tuple[Part, ...], width: float) -> None:
         imgui.set_cursor_screen_pos(at)
         if imgui.invisible_button(f"{part.name}##savings", ImVec2(end.x - at.x, high)):
             _show_pixels(ui, part)
-        draw.add_rect_filled(at, end, packed(FATE_COLORS[part.fate], WOULD_OPACITY if part.would else 1.0))
+        draw.add_rect_filled(at, end, packed(FATES[part.fate].color, WOULD_OPACITY if part.would else 1.0))
         if imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         if imgui.is_item_hovered() or ui.fate_shown is part.fate:
             draw.add_rect(at, end, imgui.get_color_u32(imgui.Col_.text), 0.0, thickness=2.0)
         tooltip(f"{part.in_words()}\nClick: the pixels whose rays to the chosen light these are. {next_light}")
         text = part.label(width_of, end.x - at.x - 2.0 * em(_PAD))
-        color = LIGHT if part.would else label_color(FATE_COLORS[part.fate])
+        color = LIGHT if part.would else label_color(FATES[part.fate].color)
         draw.add_text(ImVec2(at.x + round(em(_PAD)), at.y + round(em(0.05))), packed(color), text)
 
 

@@ -13,7 +13,7 @@ from viewer.services.runs import missing_in
 from viewer.state.draw_options import AXES
 from viewer.state.pixels import pixel_at
 from viewer.state.view_state import LONGEST_FIXED_SIDE
-from viewer.state.views import View, can_draw
+from viewer.state.views import Record, View, can_draw
 from viewer.views import view_of, words_at
 from viewer.window import menus
 from viewer.window.panels import legend, lights
@@ -109,7 +109,7 @@ def _explanation(ui: Ui) -> None:
     if lacks:
         paragraph(f"This run {lacks}.", WARNING)
         return
-    cost = " It traces every culled ray as well, so that frames take longer." if view.needs_verify else ""
+    cost = " It traces every culled ray as well, so that frames take longer." if view.records is Record.VERIFY else ""
     paragraph(f"{view.help}{cost}", QUIET)
 
 

@@ -93,8 +93,8 @@ def _show_step(ui: Ui, test: RecordedZoomTest, factor: float, step: Step) -> Non
     shot = test.filmstrip.nearest(factor, step.number)
     if not imgui.begin_tooltip():
         return
-    highest = f"highest count {count(step.highest)}" if step.highest else "not yet fully rendered"
-    imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {highest}")
+    examined = f"last examined at {count(step.highest)}" if step.highest else "not yet fully rendered"
+    imgui.text_unformatted(f"step {step.number}: {count(step.pixels)} pixels, {examined}")
     wrong = f"{count(step.wrong_of_primitive)} of them wrong, {count(step.wrong)} in the picture"
     imgui.text_unformatted("\n".join([wrong, *changes_in_words(step.changes), "click to fly there"]))
     texture = ui.graphics.textures.texture_id(shot, small=False) if shot is not None else None

@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.commands import ROOM, complaint, run
+from tests.commands import ROOM, Run
 
 OpenEXR = pytest.importorskip("OpenEXR")
 SIZE = ("--size", "48x32", "--threads", 1)
-
-
-@pytest.fixture(autouse=True)
-def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The room of `tests.commands` in a folder of its own, which is the current one."""
-    monkeypatch.chdir(tmp_path)
-    Path("room.aff").write_text(ROOM)
 
 
 def read(path: str) -> tuple[dict[str, np.ndarray], dict]:
@@ -27,9 +19,9 @@ def read(path: str) -> tuple[dict[str, np.ndarray], dict]:
         return {name: channel.pixels.copy() for name, channel in file.channels().items()}, dict(file.header())
 
 
-def test_all_buffers_are_in_it(capfd: pytest.CaptureFixture[str]) -> None:
+def test_all_buffers_are_in_it(run: Run) -> None:
     options = ("--frame", 4, "--warmup", 3, "--method", "paper", "--verify", *SIZE)
-    assert run(capfd, "render", "room.aff", "-o", "out.exr", "--buffers", "out.npz", *options)[0] == 0
+    run.ok("render", "room.aff", "-o", "out.exr", "--buffers", "out.npz", *options)
     channels, header = read("out.exr")
     with np.load("out.npz") as kept:
         arrays = {name: kept[name] for name in kept.files}
@@ -51,21 +43,14 @@ def test_all_buffers_are_in_it(capfd: pytest.CaptureFixture[str]) -> None:
     assert data["statistics"]["shadow"]["due"] > 0
 
 
-def test_it_can_be_checked(capfd: pytest.CaptureFixture[str]) -> None:
-    assert run(capfd, "render", "room.aff", "-o", "full.exr", "--samples", 2, *SIZE)[0] == 0
-    assert run(capfd, "render", "room.aff", "-o", "half.exr", "--half", *SIZE)[0] == 0
+def test_it_can_be_checked(run: Run) -> None:
+    run.ok("render", "room.aff", "-o", "full.exr", "--samples", 2, *SIZE)
+    run.ok("render", "room.aff", "-o", "half.exr", "--half", *SIZE)
     full, half = read("full.exr")[0], read("half.exr")[0]
     assert full["R"].dtype == full["Z"].dtype == half["Z"].dtype == np.float32 and half["R"].dtype == np.float16
-    code, out, _ = run(capfd, "check", "full.exr", "half.exr")
-    assert code == 0 and out.count("true: 48 × 32, the colours bit for bit") == 2
+    out = run.ok("check", "full.exr", "half.exr")
+    assert out.count("true: 48 × 32, the colours bit for bit") == 2
     Path("room.aff").write_text(ROOM.replace("l -3 4 2", "l -3 3 2"))
     Path("none.exr").write_bytes(b"none")
-    code, out, said = run(capfd, "check", "full.exr", "none.exr")
+    code, out, said = run("check", "full.exr", "none.exr")
     assert code == 1 and "the scene's lights" in out and "none.exr: cannot be read" in said
-
-
-def test_without_the_library_one_line_says_so(
-    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "OpenEXR", None)
-    assert "shadowcull[exr]" in complaint(run(capfd, "render", "room.aff", "-o", "out.exr", *SIZE))
