@@ -26,8 +26,9 @@ from tracer.progressive import Parts
 from tracer.scene.lamps import Lamps
 from tracer.scene.model import Camera
 from tracer.settings import Settings
-from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks, pixels_of
+from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks
 from tracer.shading.buffers import Buffers, empty_buffers
+from tracer.shading.primary import BLOCK, EDGE
 from tracer.shading.surfaces import see_surfaces
 from tracer.shading.teaching import find_untaught
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
@@ -417,9 +418,13 @@ class FrameInProgress:
         return [(method, stage) for method, stage in stages if stage.shade is None]
 
     def shade_again(self, x: int, y: int, stages: list[Stage]) -> None:
-        """Shade the tile of a pixel once more, with these stages, in the company in which it was shaded."""
+        """Shade the tile of a pixel once more, with these stages, in the company in which it was shaded; alone if it
+        has not been shaded yet."""
         width, height = self.settings.width, self.settings.height
-        lanes = next((one for one in self._passes if pixels_of(one, width, height)[y, x]), self._everywhere)
+        block, lane = (y // BLOCK + EDGE, x // BLOCK + EDGE), 1 << (y % BLOCK * BLOCK + x % BLOCK)
+        alone = all_blocks(width, height, 0)
+        alone[block] = lane
+        lanes = next((one for one in self._passes if one[block] & lane), alone)
         tiles = tiles_to_shade(width, height, lanes, self.workers)
         tile = next(tile for tile in tiles if tile[0] <= x < tile[2] and tile[1] <= y < tile[3])
         self._reshader(stages, lanes)(tile, 0, np.zeros_like(self._counts[0]))

@@ -265,35 +265,35 @@ def test_a_frame_that_is_not_the_last_is_not_explained(scene_file: Path):
 # --- sentences -----------------------------------------------------------------------------------
 
 
-def said(room: tracer.Scene, one: Reason, x: int = 10, y: int = 6) -> str:
-    return plain(Words(room, Why(x, y, 5, (one,))).reason(one))
+def said(room: tracer.Scene, one: Reason, after: OcclusionMode = PARTLY, occluded: OccludedBy | None = None) -> str:
+    unit = Coverage(INIT, after, 9, 9, 4.0, False, occluded)
+    return plain(Words(room, Why(10, 6, 5, (one,), unit)).reason(one))
 
 
 def test_the_rules_of_the_paper_in_words(room: tracer.Scene):
     by = OccludedBy((9, 6), 812)
-    held = Reason(0, Rule.PARTLY_OCCLUDED, Fate.PARTLY_OCCLUDED, Verdict.TRACED, shadow=ShadowMode.FULL_SHADOW,
-                  occlusion=PARTLY, occlusion_after=PARTLY, occluded=by)  # fmt: skip
+    held = Reason(0, Rule.PARTLY_OCCLUDED, Fate.PARTLY_OCCLUDED, Verdict.TRACED, shadow=ShadowMode.FULL_SHADOW)
     table = named(room, 812)
     trusted = "so its shadow mode is not trusted (§2.4)."
-    assert said(room, held) == (
+    assert said(room, held, occluded=by) == (
         f"Traced although it has been dark so far: partially occluded by {table} at the pixel on its left (§2.3), "
         f"{trusted}"
     )
-    lit = replace(held, shadow=ShadowMode.NON_SHADOW, occluded=OccludedBy((0, 6), 5, at_edge=True))
-    assert said(room, lit) == (
+    lit = replace(held, shadow=ShadowMode.NON_SHADOW)
+    assert said(room, lit, occluded=OccludedBy((0, 6), 5, at_edge=True)) == (
         "Traced although nothing static has blocked it so far: clipped by the screen's edge at pixel (0, 6) (§2.3), "
         f"{trusted}"
     )
-    gone = replace(held, shadow=ShadowMode.INIT, occluded=None, occlusion_after=FULLY)
-    assert said(room, gone) == (
+    gone = replace(held, shadow=ShadowMode.INIT)
+    assert said(room, gone, FULLY) == (
         f"Traced: partially occluded in the frame before (§2.3), {trusted[:-1]}; this frame finds it so no more."
     )
-    new = replace(held, rule=Rule.NOT_SEEN_WHOLE, shadow=ShadowMode.INIT, occlusion=INIT)
-    assert said(room, new) == (
+    new = replace(gone, rule=Rule.NOT_SEEN_WHOLE)
+    assert said(room, new, occluded=by) == (
         f"Traced: not seen whole before this frame (§2.6), and now partially occluded by {table} at the pixel on its "
         "left (§2.3)."
     )
-    assert said(room, replace(new, occluded=None, occlusion_after=FULLY)) == (
+    assert said(room, new, FULLY) == (
         "Traced: not seen whole before this frame (§2.6), which sees it so: its shadow mode counts from the next one "
         "on (§2.4)."
     )
@@ -319,8 +319,9 @@ def test_the_rules_of_the_paper_in_words(room: tracer.Scene):
 
 def test_links_lead_to_what_is_named(room: tracer.Scene):
     by = OccludedBy((9, 6), 812)
-    one = Reason(0, Rule.PARTLY_OCCLUDED, Fate.PARTLY_OCCLUDED, shadow=ShadowMode.FULL_SHADOW, occluded=by)
-    links = [part for part in Words(room, Why(10, 6, 5, (one,))).reason(one) if isinstance(part, Link)]
+    one = Reason(0, Rule.PARTLY_OCCLUDED, Fate.PARTLY_OCCLUDED, shadow=ShadowMode.FULL_SHADOW)
+    found = Why(10, 6, 5, (one,), Coverage(INIT, PARTLY, 9, 9, 4.0, False, by))
+    links = [part for part in Words(room, found).reason(one) if isinstance(part, Link)]
     assert [(link.primitive, link.pixel, link.section) for link in links] == [
         (812, None, ""), (None, (9, 6), ""), (None, None, "2.3"), (None, None, "2.4"),
     ]  # fmt: skip

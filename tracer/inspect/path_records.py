@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate
 from tracer.culling.verdicts import CullReason, Verdict
+from tracer.geometry.rays import MISS
 from tracer.scene.arrays import Float32, Float64
 
 if TYPE_CHECKING:
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
 VERDICTS = tuple(Verdict)
 NUMBER_OF = {verdict: number for number, verdict in enumerate(VERDICTS)}
 AWAY, TRACED = NUMBER_OF[Verdict.AWAY], NUMBER_OF[Verdict.TRACED]
+
+
+def _nowhere() -> Float32:
+    return np.full(3, np.nan, np.float32)
 
 
 class RayKind(Enum):
@@ -117,14 +122,14 @@ class PathRay:
     origin: Float32
     direction: Float32
     weight: Float32
-    t: float
-    primitive: int
-    point: Float32
-    end: Float32
     light: Float64
-    steps: int
-    tests: int
-    shadows: ShadowRays | None
+    t: float = np.inf
+    primitive: int = MISS
+    point: Float32 = field(default_factory=_nowhere)
+    end: Float32 = field(default_factory=_nowhere)
+    steps: int = 0
+    tests: int = 0
+    shadows: ShadowRays | None = None
 
 
 @dataclass(frozen=True, eq=False)  # arrays cannot be compared as one

@@ -129,32 +129,24 @@ class _Pixel:
             self._watchers.give(np.array([found.lit for found in shadows]))
             self._shade(self._watchers)
         rows: dict[tuple[int, bytes], list[int]] = {}
-        for row in range(len(seen.lane)):
-            rows.setdefault((int(seen.bounce[row]), seen.ray(row).key), []).append(row)
+        for known in range(len(seen.lane)):
+            rows.setdefault((int(seen.bounce[known]), seen.ray(known).key), []).append(known)
         rays: list[PathRay] = []
         waiting = deque([(-1, 0, RayKind.PRIMARY, self._primary())])
         while waiting:
             parent, bounce, kind, sent = waiting.popleft()
-            found = rows.get((bounce, sent.key), [])
-            number = len(rays)
-            if not found:
-                rays.append(self._missed(number, parent, kind, bounce, sent))
-                continue
-            row = found.pop(0)
-            ray = self._missed(number, parent, kind, bounce, sent)
-            rays.append(
-                replace(
-                    ray,
-                    t=float(seen.wave[row, wave.HIT_T]),
-                    primitive=seen.primitive(row),
-                    point=seen.position(row),
-                    end=seen.end(row),
-                    light=(sent.weight * seen.light[row]).astype(np.float64),
-                    shadows=shadows[row],
-                )
-            )
-            for child in secondary_rays(seen, row) if bounce < work.settings.depth else ():
-                waiting.append((number, bounce + 1, RayKind.REFRACTED if child.refracted else RayKind.REFLECTED, child))
+            number, found = len(rays), rows.get((bounce, sent.key))
+            row = found.pop(0) if found else None
+            light = work.shading.background if row is None else seen.light[row]
+            ray = PathRay(number, parent, kind, bounce, *sent[1:], light=(sent.weight * light).astype(np.float64))
+            if row is not None:
+                t, primitive = float(seen.wave[row, wave.HIT_T]), seen.primitive(row)
+                point, end = seen.position(row), seen.end(row)
+                ray = replace(ray, t=t, primitive=primitive, point=point, end=end, shadows=shadows[row])
+                for child in secondary_rays(seen, row) if bounce < work.settings.depth else ():
+                    by = RayKind.REFRACTED if child.refracted else RayKind.REFLECTED
+                    waiting.append((number, bounce + 1, by, child))
+            rays.append(ray)
         assert not any(rows.values()), "every ray was sent by one that was seen"
         return rays
 
@@ -164,27 +156,6 @@ class _Pixel:
         rays = self._work.rays
         way = (rays.corner + np.float32(self._x) * rays.column + np.float32(self._y) * rays.row).astype(np.float32)
         return SentRay(False, np.asarray(rays.origin, np.float32), way / np.linalg.norm(way), np.ones(3, np.float32))
-
-    def _missed(self, number: int, parent: int, kind: RayKind, bounce: int, sent: SentRay) -> PathRay:
-        """A ray that leaves the scene."""
-        nowhere = np.full(3, np.nan, np.float32)
-        return PathRay(
-            number=number,
-            parent=parent,
-            kind=kind,
-            bounce=bounce,
-            origin=sent.origin,
-            direction=sent.direction,
-            weight=sent.weight,
-            t=np.inf,
-            primitive=MISS,
-            point=nowhere,
-            end=nowhere,
-            light=(sent.weight * self._work.shading.background).astype(np.float64),
-            steps=0,
-            tests=0,
-            shadows=None,
-        )
 
     # --- shadow rays -------------------------------------------------------------------------------------
 

@@ -149,12 +149,6 @@ class Reason:
         The primitive that is truly in the way, -1 for none.
     shadow : ShadowMode
         The shadow mode by which the ray was decided about.
-    occlusion, occlusion_after : OcclusionMode
-        The occlusion mode by which it was, and the one that the frame leaves.
-    taught_pixels : int
-        How many pixels have set its modes, where that is too few to trust them.
-    occluded : OccludedBy or None
-        Where this frame finds the primitive partially occluded.
     named : tuple of int
         The primitives that the answer rests on.
     dynamic_objects : int
@@ -181,10 +175,6 @@ class Reason:
     wrong: int = 0
     blocker: int = -1
     shadow: ShadowMode = ShadowMode.INIT
-    occlusion: OcclusionMode = OcclusionMode.INIT
-    occlusion_after: OcclusionMode = OcclusionMode.INIT
-    occluded: OccludedBy | None = None
-    taught_pixels: int = 0
     named: tuple[int, ...] = ()
     dynamic_objects: int = 0
     limit: int = MAX_CULLED_LIGHTS

@@ -14,13 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate, by_modes
-from tracer.culling.modes import (
-    OcclusionMode,
-    ShadowMode,
-    has_shadow_mode,
-    occlusion_mode,
-    shadow_mode,
-)
+from tracer.culling.modes import OcclusionMode, ShadowMode, has_shadow_mode, occlusion_mode, shadow_mode
 from tracer.culling.verdicts import Verdict
 from tracer.inspect.occluded_by import Seen, occluded_by, references
 from tracer.inspect.path_records import VERDICTS, ShadowRays
@@ -105,22 +99,24 @@ class _Pixel:
         unit = int(units[y, x])
         self._word = work.words[unit : unit + 1]
         self._examined_before = bool(renderer.highest_before[unit])
-        self._before, self._after = (
-            OcclusionMode(int(occlusion_mode(words[unit]))) for words in (work.words, frame.modes)
-        )
+        self._before = OcclusionMode(int(occlusion_mode(self._word[0])))
         present = renderer.world.pose(frame.time).present
         self._dynamic_objects = int(np.count_nonzero(present[1:] & (work.resting.since[1:] == 0)))
         self._lamps = np.diff(work.shading.lamps.first)
-        self._shaded, self._taught = work.has_shaded(x, y), work.taught(unit) if self._by_modes else 0
-        self._occluded = None
-        if self._by_modes and self._after is OcclusionMode.PARTIALLY_OCCLUDED:
-            self._occluded = occluded_by(self.seen, unit, (x, y))
-        self.coverage = None
+        self._shaded, self.coverage = work.has_shaded(x, y), None
         if self._by_modes:
+            after = OcclusionMode(int(occlusion_mode(frame.modes[unit])))
+            hidden = after is OcclusionMode.PARTIALLY_OCCLUDED
             self.coverage = Coverage(
-                self._before, self._after, int(frame.pixel_count[unit]), int(frame.highest_count[unit]),
-                settings.zoom_factor, self._method.uses_cells, self._occluded, self._taught,
-            )  # fmt: skip
+                before=self._before,
+                after=after,
+                pixels=int(frame.pixel_count[unit]),
+                highest=int(frame.highest_count[unit]),
+                zoom_factor=settings.zoom_factor,
+                in_cells=self._method.uses_cells,
+                occluded=occluded_by(self.seen, unit, (x, y)) if hidden else None,
+                taught_pixels=work.taught(unit),
+            )
 
     def reason(self, s: ShadowRays, light: int) -> Reason:
         """Why the rays to a light had the fate that most of them had."""
@@ -142,7 +138,7 @@ class _Pixel:
             dynamic_objects=self._dynamic_objects,
             told=because.told,
             method=self._frame.settings.method,
-            **self._modes(light),
+            shadow=ShadowMode(int(shadow_mode(self._word, light)[0])) if self._by_modes else ShadowMode.INIT,
         )
         if verdict is not Verdict.TRACED:
             return told
@@ -155,15 +151,6 @@ class _Pixel:
             return told
         by_paper = self._by_paper(told)
         return by_paper if self._shaded else replace(told, instead=by_paper)
-
-    def _modes(self, light: int) -> dict:
-        if not self._by_modes:
-            return {}
-        shadow = ShadowMode(int(shadow_mode(self._word, light)[0]))
-        return {
-            "shadow": shadow, "occlusion": self._before, "occlusion_after": self._after, "occluded": self._occluded,
-            "taught_pixels": self._taught,
-        }  # fmt: skip
 
     def _traced(self, told: Reason, known: str) -> Reason:
         """Why a ray was traced."""
@@ -189,7 +176,7 @@ class _Pixel:
             return replace(told, rule=Rule.NO_ROOM, fate=Fate.TRACED)
         fate = Fate(int(by_modes(np.array([Fate.TRACED], np.uint8), self._word, told.light)[0]))
         rule = _RULES[fate]
-        if rule is Rule.NOT_SEEN_WHOLE and told.occlusion is OcclusionMode.FULLY_RENDERED:
+        if rule is Rule.NOT_SEEN_WHOLE and self._before is OcclusionMode.FULLY_RENDERED:
             rule = Rule.NO_SHADOW_MODE
         elif rule is Rule.NOT_SEEN_WHOLE and self._examined_before:
             rule = Rule.EXAMINED_ANEW

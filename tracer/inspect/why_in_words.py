@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tracer.culling.fate import Fate
@@ -14,6 +14,18 @@ from tracer.scene.model import CONE, Scene
 
 MOST_NAMED = 3  # primitives of an answer that are named
 _MOVING = "objects that move"  # where a verdict's meaning says that they are asked
+_CLAUSES = {
+    Rule.FULL_SHADOW: "fully rendered, and every shadow ray so far was blocked ",
+    Rule.NON_SHADOW: "nothing static has ever blocked it ",
+    Rule.DYNAMIC: "dynamic, never culled ",
+    Rule.NO_SHADOW_MODE: "fully rendered, but none of its shadow rays has asked this light before ",
+}
+"""Before the section of each rule."""
+_ALTHOUGH = {
+    ShadowMode.FULL_SHADOW: " although it has been dark so far",
+    ShadowMode.NON_SHADOW: " although nothing static has blocked it so far",
+}
+"""Of a shadow mode that is not trusted."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +80,7 @@ class Words:
 
     def reason(self, reason: Reason) -> Sentence:
         """Say in one sentence why the shadow rays to a light were culled or traced."""
-        said = [*_HEADS[reason.rule](self, reason)]
+        said = [*self._rule(reason)]
         if reason.rays < reason.samples and reason.rule is not Rule.FACES_AWAY:
             said.append(f" So are {reason.rays} of its {reason.samples} samples.")
         return tuple(said)
@@ -97,14 +109,14 @@ class Words:
             return ("In shadow: its own surface is in the way, as the light grazes it.",)
         return ("In shadow: blocked by ", self.primitive(reason.blocker), ".")
 
-    def coverage(self, unit: Coverage, told: OccludedBy | None = None) -> Sentence:
-        """Say what keeps a unit from being fully rendered, or how far it is from being examined anew; `told` is what
-        has just been said to hide it."""
+    def coverage(self, unit: Coverage, told: bool = False) -> Sentence:
+        """Say what keeps a unit from being fully rendered, or how far it is from being examined anew; `told` if what
+        hides it has just been said."""
         covers = f"{'Its cell covers' if unit.in_cells else 'Covers'} {_pixels(unit.pixels)}"
         if unit.after is OcclusionMode.DYNAMIC:
             return (f"{covers}. Dynamic: it has no modes ", *_section("2.2"), ".")
         if unit.after is OcclusionMode.PARTIALLY_OCCLUDED:
-            if unit.occluded is not None and unit.occluded == told:
+            if unit.occluded is not None and told:
                 return (
                     f"{covers}; not fully rendered, as it is partially occluded (see above) ",
                     *_section("2.6"),
@@ -171,53 +183,65 @@ class Words:
             return ("its outline goes on", *at, ", which sees nothing: that is rounding ", *section)
         return ("partially occluded by ", self.primitive(by.primitive), *at, " ", *section)
 
-    def _traced(self, reason: Reason) -> str:
-        """How a sentence begins about a ray that was traced because its modes are not trusted."""
-        although = {
-            ShadowMode.FULL_SHADOW: " although it has been dark so far",
-            ShadowMode.NON_SHADOW: " although nothing static has blocked it so far",
-        }
-        return f"Traced{although.get(reason.shadow, '')}: "
+    def _rule(self, reason: Reason) -> Sentence:
+        """The sentence of a rule."""
+        match reason.rule:
+            case Rule.FACES_AWAY:
+                return ("Faces away from this light.",)
+            case Rule.FULL_SHADOW:
+                return ("Culled: ", *self._clause(reason), ".")
+            case Rule.NON_SHADOW:
+                movers = _movers(reason.dynamic_objects)
+                asks = f"Asks {movers} only: " if reason.dynamic_objects else "Asks nothing, as nothing moves: "
+                return (asks, *self._clause(reason), ".")
+            case Rule.KNOWN:
+                return self._known(reason)
+            case Rule.CLUSTERS:
+                return ("Shaded by clusters of lights: no light is asked by itself.",)
+            case Rule.NOT_ANSWERED:
+                return (f"Traced: the method {reason.method} knows nothing of lamps of several samples.",)
+            case Rule.UNKNOWN:
+                return (_unknown(reason),)
+            case Rule.OFF:
+                return self._off(reason)
+            case Rule.NOT_SHADED:
+                return self._not_shaded(reason)
+            case Rule.PARTLY_OCCLUDED | Rule.NOT_SEEN_WHOLE | Rule.EXAMINED_ANEW:
+                return (f"Traced{_ALTHOUGH.get(reason.shadow, '')}: ", *self._clause(reason), ".")
+        return ("Traced: ", *self._clause(reason), ".")
 
-    def _partly_occluded(self, reason: Reason) -> Sentence:
-        return (self._traced(reason), *self._partly(reason), ".")
+    def _clause(self, reason: Reason) -> Sentence:
+        """What modes say by a rule of the paper, or why they say nothing."""
+        rule = reason.rule
+        match rule:
+            case Rule.PARTLY_OCCLUDED:
+                return self._partly()
+            case Rule.NOT_SEEN_WHOLE | Rule.EXAMINED_ANEW:
+                return self._not_whole(rule)
+            case Rule.PARTIAL_SHADOW:
+                return _partial(reason)
+            case Rule.NO_ROOM:
+                return _no_room(reason)
+        return (_CLAUSES[rule], *_section(rule.section))
 
-    def _partly(self, reason: Reason) -> Sentence:
-        trusted = (", so its shadow mode is not trusted ", *_section("2.4"))
-        if reason.occluded is not None:
-            return (*self._occluded(reason.occluded), *trusted)
-        return (
-            "partially occluded in the frame before ",
-            *_section("2.3"),
-            *trusted,
-            "; this frame finds it so no more",
-        )
+    def _partly(self) -> Sentence:
+        unit, trusted = self._found.coverage, (", so its shadow mode is not trusted ", *_section("2.4"))
+        if unit is not None and unit.occluded is not None:
+            return (*self._occluded(unit.occluded), *trusted)
+        found_no_more = "; this frame finds it so no more"
+        return ("partially occluded in the frame before ", *_section("2.3"), *trusted, found_no_more)
 
-    def _not_seen_whole(self, reason: Reason) -> Sentence:
-        return (self._traced(reason), *self._not_whole(reason), ".")
-
-    def _not_whole(self, reason: Reason) -> Sentence:
-        anew = "examined anew, and not seen whole again" if reason.rule is Rule.EXAMINED_ANEW else "not seen whole"
-        said: Sentence = (f"{anew} before this frame ", *_section("2.6"))
-        if reason.occluded is not None:
-            return (*said, ", and now ", *self._occluded(reason.occluded))
-        if reason.occlusion_after is OcclusionMode.FULLY_RENDERED:
+    def _not_whole(self, rule: Rule) -> Sentence:
+        unit, section = self._found.coverage, _section("2.6")
+        anew = "examined anew, and not seen whole again" if rule is Rule.EXAMINED_ANEW else "not seen whole"
+        said: Sentence = (f"{anew} before this frame ", *section)
+        if unit is not None and unit.occluded is not None:
+            return (*said, ", and now ", *self._occluded(unit.occluded))
+        if unit is not None and unit.after is OcclusionMode.FULLY_RENDERED:
             return (*said, ", which sees it so: its shadow mode counts from the next one on ", *_section("2.4"))
-        if reason.occlusion_after is OcclusionMode.INIT:
-            return ("seen whole, but too few of its pixels have set its shadow modes so far ", *_section("2.6"))
+        if unit is not None and unit.after is OcclusionMode.INIT:
+            return ("seen whole, but too few of its pixels have set its shadow modes so far ", *section)
         return said
-
-    def _partial_shadow(self, reason: Reason) -> Sentence:
-        return ("Traced: ", *self._partial(reason), ".")
-
-    def _partial(self, reason: Reason) -> Sentence:
-        section = _section("2.5")
-        if not reason.taught:
-            return ("PARTIAL_SHADOW, as some of its shadow rays were blocked and others were not ", *section)
-        newest = max(one.frame for one in reason.taught)
-        last = [one for one in reason.taught if one.frame == newest][-1]
-        did = "saw the light" if last.lit else "was in shadow"
-        return ("PARTIAL_SHADOW since ", _frame(last), f", in which some of it {did} ", *section)
 
     def _known(self, reason: Reason) -> Sentence:
         assert reason.verdict is not None
@@ -252,20 +276,10 @@ class Words:
 
     def _instead(self, reason: Reason, then: str) -> Sentence:
         """What the paper's method makes of the modes, after "would have" or "is"."""
-        if reason.rule is Rule.FULL_SHADOW:
-            return (f"culled{then}", *_dark())
         if reason.rule is Rule.NON_SHADOW:
-            return (f"tested{then.rstrip(': ')} against dynamic objects only: ", *_never_blocked())
-        clauses: dict[Rule, Callable[[Reason], Sentence]] = {
-            Rule.PARTLY_OCCLUDED: self._partly,
-            Rule.NOT_SEEN_WHOLE: self._not_whole,
-            Rule.EXAMINED_ANEW: self._not_whole,
-            Rule.PARTIAL_SHADOW: self._partial,
-            Rule.DYNAMIC: lambda _: _dynamic(),
-            Rule.NO_SHADOW_MODE: lambda _: _nothing_learnt(),
-            Rule.NO_ROOM: _no_room,
-        }
-        return (f"traced{then}", *clauses[reason.rule](reason))
+            then = f"{then.rstrip(': ')} against dynamic objects only: "
+        does = {Rule.FULL_SHADOW: "culled", Rule.NON_SHADOW: "tested"}.get(reason.rule, "traced")
+        return (f"{does}{then}", *self._clause(reason))
 
 
 # --- clauses that name nothing of the scene ------------------------------------------------------
@@ -287,20 +301,14 @@ def _movers(number: int) -> str:
     return "the dynamic object" if number == 1 else f"the {number:,} dynamic objects"
 
 
-def _dark() -> Sentence:
-    return ("fully rendered, and every shadow ray so far was blocked ", *_section("2.4"))
-
-
-def _never_blocked() -> Sentence:
-    return ("nothing static has ever blocked it ", *_section("2.4"))
-
-
-def _dynamic() -> Sentence:
-    return ("dynamic, never culled ", *_section("2.2"))
-
-
-def _nothing_learnt() -> Sentence:
-    return ("fully rendered, but none of its shadow rays has asked this light before ", *_section("2.5"))
+def _partial(reason: Reason) -> Sentence:
+    section = _section("2.5")
+    if not reason.taught:
+        return ("PARTIAL_SHADOW, as some of its shadow rays were blocked and others were not ", *section)
+    newest = max(one.frame for one in reason.taught)
+    last = [one for one in reason.taught if one.frame == newest][-1]
+    did = "saw the light" if last.lit else "was in shadow"
+    return ("PARTIAL_SHADOW since ", _frame(last), f", in which some of it {did} ", *section)
 
 
 def _no_room(reason: Reason) -> Sentence:
@@ -309,37 +317,7 @@ def _no_room(reason: Reason) -> Sentence:
     return (f"the method {reason.method} answers rays to the first {reason.limit} lights only",)
 
 
-def _dynamic_only(reason: Reason) -> Sentence:
-    if not reason.dynamic_objects:
-        return ("Asks nothing, as nothing moves: ", *_never_blocked(), ".")
-    return (f"Asks {_movers(reason.dynamic_objects)} only: ", *_never_blocked(), ".")
-
-
-def _unknown(reason: Reason) -> Sentence:
-    if reason.told in WHY_TRACED:
-        return (WHY_TRACED[reason.told],)
+def _unknown(reason: Reason) -> str:
     if reason.told:
-        return (f"Traced. {reason.told}",)
-    return (f"Traced: the method {reason.method} knows nothing of this light here.",)
-
-
-_HEADS: dict[Rule, Callable[[Words, Reason], Sequence[str | Link]]] = {
-    Rule.FACES_AWAY: lambda _, reason: ("Faces away from this light.",),
-    Rule.FULL_SHADOW: lambda _, reason: ("Culled: ", *_dark(), "."),
-    Rule.NON_SHADOW: lambda _, reason: _dynamic_only(reason),
-    Rule.KNOWN: Words._known,
-    Rule.DYNAMIC: lambda _, reason: ("Traced: ", *_dynamic(), "."),
-    Rule.PARTLY_OCCLUDED: Words._partly_occluded,
-    Rule.NOT_SEEN_WHOLE: Words._not_seen_whole,
-    Rule.EXAMINED_ANEW: Words._not_seen_whole,
-    Rule.PARTIAL_SHADOW: Words._partial_shadow,
-    Rule.NO_SHADOW_MODE: lambda _, reason: ("Traced: ", *_nothing_learnt(), "."),
-    Rule.NO_ROOM: lambda _, reason: ("Traced: ", *_no_room(reason), "."),
-    Rule.NOT_ANSWERED: lambda _, reason: (
-        f"Traced: the method {reason.method} knows nothing of lamps of several samples.",
-    ),
-    Rule.UNKNOWN: lambda _, reason: _unknown(reason),
-    Rule.OFF: Words._off,
-    Rule.NOT_SHADED: Words._not_shaded,
-    Rule.CLUSTERS: lambda _, reason: ("Shaded by clusters of lights: no light is asked by itself.",),
-}
+        return WHY_TRACED.get(reason.told, f"Traced. {reason.told}")
+    return f"Traced: the method {reason.method} knows nothing of this light here."

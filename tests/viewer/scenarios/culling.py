@@ -135,7 +135,7 @@ def _tree(d: Driver) -> None:
     assert (d.c.frame.primitive < 0).all() and d.c.scheduler.drawn_view is View.TREE
     assert d.c.frame.statistics.built.primitives == 3, "what was built stays"
     d.c.motion.move(home)
-    d.show_panel("Rendering").click("//Rendering/**/##accelerator").click(f"//##Combo_00/{BVH8}").settle()
+    d.show_panel("Rendering").click("//Rendering/Rendering/##accelerator").click(f"//##Combo_00/{BVH8}").settle()
     assert d.c.frame.settings.accelerator == BVH8 and d.c.frame.statistics.built is None
     assert np.array_equal(d.c.frame.primitive, lazy.primitive)
 

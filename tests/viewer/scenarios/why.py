@@ -55,13 +55,14 @@ def _culled(d: Driver) -> None:
 def _occluded(d: Driver) -> None:
     """What hides it is named and outlined, and the pixel at which it does is a link, as the thing is."""
     inside = _of(d, PARTLY) & ~_at_border(d)
-    one = _click(d, inside, _by_something)
+    one = _click(d, inside, _by_something(d))
     d.c.settings.set_light(one.light)
     d.frames(3)
-    words, hider = Words(d.c.session.scene, d.c.inspector.why), _named(d, one.occluded.primitive)
+    by, words = d.c.inspector.why.coverage.occluded, Words(d.c.session.scene, d.c.inspector.why)
+    hider = _named(d, by.primitive)
     text = plain(words.reason(one))
     assert f"partially occluded by {hider} at " in text and text.endswith("so its shadow mode is not trusted (§2.4).")
-    by, drawn = d.c.inspector.why.coverage.occluded, d.lines_drawn()
+    drawn = d.lines_drawn()
     link = next(part for part in words.reason(one) if not isinstance(part, str) and part.pixel is not None)
     d.hover(f"//Inspector/reason/{hider}##0")
     assert d.lines_drawn() > drawn, "a name that the pointer is on is outlined"
@@ -69,8 +70,8 @@ def _occluded(d: Driver) -> None:
     assert d.lines_drawn() < drawn, "no outline of what hides it, and no squares"
     d.press("I")
     d.click(f"//Inspector/reason/{hider}##0")
-    assert d.c.selection.picked.primitive == one.occluded.primitive
-    _click(d, inside, _by_something)
+    assert d.c.selection.picked.primitive == by.primitive
+    _click(d, inside, _by_something(d))
     d.click(f"//Inspector/reason/{link.text}##1")
     assert (d.c.selection.picked.x, d.c.selection.picked.y) == link.pixel == by.pixel
 
@@ -148,7 +149,7 @@ def _in_motion(d: Driver) -> None:
         d.c.session.set_pace(every_frame=every_frame)
         d.c.session.go_to_frame(0)
         d.settle()
-        _click(d, _of(d, PARTLY) & ~_at_border(d), _by_something)
+        _click(d, _of(d, PARTLY) & ~_at_border(d), _by_something(d))
         times, answers = [d.c.frame.time], [d.c.inspector.why]
         d.c.motion.toggle_play()
 
@@ -167,8 +168,12 @@ def _in_motion(d: Driver) -> None:
         assert len(times) > 5 and len(answers) >= len(times) - 1, (len(times), len(answers))
 
 
-def _by_something(one: Reason) -> bool:
-    return one.rule is Rule.PARTLY_OCCLUDED and not one.occluded.at_edge and one.occluded.primitive >= 0
+def _by_something(d: Driver) -> Callable[[Reason], bool]:
+    def wanted(one: Reason) -> bool:
+        by = d.c.inspector.why.coverage.occluded
+        return one.rule is Rule.PARTLY_OCCLUDED and by is not None and not by.at_edge and by.primitive >= 0
+
+    return wanted
 
 
 def _click(d: Driver, here: np.ndarray, wanted: Callable[[Reason], bool]) -> Reason:

@@ -147,14 +147,13 @@ def _why(ui: Ui, pick: Pick, unit: int, frame: Frame, scene: Scene) -> None:
         paragraph("The scene has no lights.", QUIET)
     number = min(ui.controller.session.draw.light, len(found.reasons) - 1)
     chosen = found.reasons[number] if found.reasons else None
-    told = None  # what hides the primitive, where the light's sentence says so
+    told = False  # what hides the primitive
     if chosen is not None:
         _name(ui, chosen, chosen=True)
         sentence(ui, words.reason(chosen), "reason")
         if said := words.answer(chosen):
             sentence(ui, said, "answer", ERROR if chosen.wrong else QUIET)
-        if (chosen.instead or chosen).rule in (Rule.PARTLY_OCCLUDED, Rule.NOT_SEEN_WHOLE, Rule.EXAMINED_ANEW):
-            told = chosen.occluded
+        told = (chosen.instead or chosen).rule in (Rule.PARTLY_OCCLUDED, Rule.NOT_SEEN_WHOLE, Rule.EXAMINED_ANEW)
     if found.coverage is not None:
         imgui.dummy(ImVec2(0.0, em(0.1)))
         sentence(ui, words.coverage(found.coverage, told), "coverage")
