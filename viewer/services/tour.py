@@ -17,6 +17,7 @@ import numpy as np
 from tracer.method import Method
 from viewer.services.controller import Controller
 from viewer.services.paper_figures import FIGURE_4, SIDE, Act, Condition, Part, open_scene, opened
+from viewer.state import verified
 from viewer.state.methods import BY_MODES, with_base
 from viewer.state.views import View
 from viewer.util.resources import default_scene
@@ -118,6 +119,10 @@ def _saves(c: Controller) -> bool:
 
 def _shows(view: View) -> Condition:
     return lambda c: c.session.draw.view is view
+
+
+def _shows_wrong(c: Controller) -> bool:
+    return c.session.draw.view is View.DIFFERENCE and c.frame is not None and verified.is_wrong(c.frame.statistics)
 
 
 def _shadowed(c: Controller) -> int | None:
@@ -283,7 +288,7 @@ STEPS = (
             Part(_is_staged, _stage, True),
             Part(_at_least(FAILS), lambda c: None, True),
             Part(lambda c: not c.session.playing, _stop, True),
-            Part(_shows(View.DIFFERENCE), _show(View.DIFFERENCE)),
+            Part(_shows_wrong, _show(View.DIFFERENCE)),
         ),
     ),
     Step("The rule of four", _rule_of_four, (Part(_at_least(EXAMINED), _play),)),
