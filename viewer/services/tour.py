@@ -282,7 +282,7 @@ STEPS = (
     Step(
         "Where the method fails",
         "The paper's Figure 4. From afar no shadow ray of this triangle met the small ball, so its mode is "
-        f"non-shadow. Now its shadow is missing. Press {{{View.DIFFERENCE.label}}}: red pixels are wrong.",
+        f"non-shadow. Now its shadow is missing. Press {{{View.DIFFERENCE.label}}}: the marked pixels are wrong.",
         (
             opened(FIGURE_4),
             Part(_is_staged, _stage, True),

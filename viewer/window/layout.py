@@ -86,7 +86,7 @@ WORKSPACES = (
     Workspace(
         "Explore", "room for the picture, and a column: how shadow rays are culled, what is shown, and why",
         ((_RIGHT, _WHOLE, imgui.Dir.right, 0.235), (_BOTTOM, _WHOLE, imgui.Dir.down, 0.35),
-         (TOUR, _RIGHT, imgui.Dir.up, 0.2),
+         (TOUR, _RIGHT, imgui.Dir.up, 0.24),
          ("RightMiddle", _RIGHT, imgui.Dir.down, 0.66), ("RightBottom", "RightMiddle", imgui.Dir.down, 0.5)),
         {_RIGHT: ("View", "Culling"), "RightMiddle": ("Figure 1",), "RightBottom": ("Inspector",)},
         {_RIGHT: ("Scene", "Rendering", "Camera", "Saving"), "RightMiddle": ("Statistics",),

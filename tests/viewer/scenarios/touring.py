@@ -18,7 +18,7 @@ from viewer.state.views import View
 from viewer.window.panels.status import doing
 
 COST, WHOLE, MET, WHY, MOVE, FAILS, RULE, NEXT = STEPS
-SHOW, SKIP = f"//Tour/**/{icons.ICON_FA_PLAY}  Show me", "//Tour/**/Skip"
+SHOW, SKIP = f"//Tour/{icons.ICON_FA_PLAY}  Show me", "//Tour/**/Skip"
 
 
 def touring(d: Driver) -> None:
@@ -71,7 +71,7 @@ def _by_hand(d: Driver) -> None:
     assert d.c.session.frame >= EXAMINED
     for command in NEXT.commands:
         assert d.command(command), "the tour's end offers it"
-    d.click("//Tour/**/Close")
+    d.click("//Tour/Close")
     assert tour.step is None
 
 
@@ -99,7 +99,7 @@ def _shown(d: Driver) -> None:
     d.change(method="auto")
     for step in STEPS[1:]:
         d.click(SHOW)
-        d.wait(lambda step=step: d.ui.tour.step is step, "the step that is shown", 120.0)
+        d.wait(lambda step=step: d.ui.tour.step is step, f"the step {step.title}", 120.0)
         if step is WHOLE:
             assert d.c.session.settings.method == "paper" and d.c.frame.statistics.shadow.traced
         elif step is MET:
@@ -109,4 +109,4 @@ def _shown(d: Driver) -> None:
         elif step is RULE:
             assert d.c.session.draw.view is View.DIFFERENCE
     assert not d.has(SHOW)
-    d.click("//Tour/**/Close")
+    d.click("//Tour/Close")

@@ -21,8 +21,6 @@ def show(ui: Ui) -> None:
         return
     last = step is STEPS[-1]
     paragraph(step.title if last else f"{STEPS.index(step) + 1} of {len(STEPS) - 1}: {step.title}")
-    begun = ui.controller.frame is not None
-    paragraph(tour.text(step) if begun else "You can begin as soon as there is a picture.", QUIET)
     if last:
         for number, name in enumerate(step.commands):
             menus.button(ui, name, _ICONS[number], columns=2)
@@ -30,9 +28,12 @@ def show(ui: Ui) -> None:
                 imgui.same_line()
         if wide_button("Close", _AGAIN):
             tour.end()
-        return
-    if wide_button(f"{icons.ICON_FA_PLAY}  Show me", "Do this step for me.", 2):
-        tour.show()
-    imgui.same_line()
-    if wide_button("Skip", "Go on to the next step.", 2):
-        tour.skip()
+            return
+    else:  # above the text, so that no text moves them
+        if wide_button(f"{icons.ICON_FA_PLAY}  Show me", "Do this step for me.", 2):
+            tour.show()
+        imgui.same_line()
+        if wide_button("Skip", "Go on to the next step.", 2):
+            tour.skip()
+    begun = ui.controller.frame is not None
+    paragraph(tour.text(step) if begun else "You can begin as soon as there is a picture.", QUIET)
