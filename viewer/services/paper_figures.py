@@ -6,7 +6,6 @@ its first picture, then a run is started."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -99,14 +98,9 @@ class PaperFigures:
     def figure_4(self) -> None:
         """Come near to a triangle whose shadow can be seen only from there, with zoom factors 4 and 64."""
 
-        def select(c: Controller) -> None:
-            c.session.set_pace(fixed_size=True, width=SIDE, height=SIDE)
-            c.selection.select((0.5, 0.5))
-
         def test(c: Controller) -> None:
-            plan = ZoomPlan(factors="4, 64", size=(SIDE, SIDE))
-            c.runs.zoom_plan = replace(plan)
+            c.runs.zoom_plan = ZoomPlan(factors="4, 64", size=(SIDE, SIDE))
             c.runs.start_zoom_test()
 
-        selected = Part(lambda c: c.selection.picked is not None, select)
+        selected = Part(lambda c: c.selection.picked is not None, lambda c: c.selection.select((0.5, 0.5)))
         self._begin((opened(FIGURE_4), selected, Part(lambda c: c.runs.current is not None, test)))

@@ -19,6 +19,7 @@ from viewer.services.controller import Controller
 from viewer.services.paper_figures import FIGURE_4, SIDE, Act, Condition, Part, open_scene, opened
 from viewer.state import verified
 from viewer.state.methods import BY_MODES, with_base
+from viewer.state.view_state import Pace
 from viewer.state.views import View
 from viewer.util.resources import default_scene
 
@@ -49,6 +50,7 @@ class Tour:
         self.step: Step | None = None
         self._held = 0  # of the step's parts
         self._shows, self._until = False, 0.0
+        self._pace = Pace()  # as it was before the tour
 
     def text(self, step: Step) -> str:
         """Return what to do in a step, as things are, with the keys that do it now."""
@@ -62,6 +64,7 @@ class Tour:
     def start(self) -> None:
         """Begin with the first step."""
         self._c.selection.clear()  # what was clicked before was not clicked for the tour
+        self._pace = self._c.session.state.pace
         self._go_to(STEPS[0])
 
     def end(self) -> None:
@@ -93,6 +96,8 @@ class Tour:
             self._until = 0.0 if part.sets_stage else time.monotonic() + SECONDS
 
     def _go_to(self, step: Step | None) -> None:
+        if step in (None, STEPS[-1]) and _is_staged(self._c):  # nobody wants Kitchen in figure4's size
+            self._c.session.change(pace=self._pace)
         self.step, self._held, self._shows, self._until = step, 0, False, 0.0
 
 
@@ -143,12 +148,8 @@ def _at_least(number: int) -> Condition:
 
     def holds(c: Controller) -> bool:
         frame, scene = c.frame, c.session.scene
-        return (
-            scene is not None
-            and scene.path == FIGURE_4
-            and frame is not None
-            and c.session.frame_at(frame.time) >= number
-        )
+        shown = scene is not None and scene.path == FIGURE_4 and frame is not None
+        return shown and c.session.frame_at(frame.time) >= number  # type: ignore[union-attr]
 
     return holds
 

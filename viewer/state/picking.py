@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tracer.culling import modes
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
+from tracer.inspect.projection import HIDDEN, place
 from tracer.inspect.why_in_words import kind_of
 from tracer.scene.deformation import deformed
 from tracer.scene.edits import Edited
@@ -18,7 +19,6 @@ from tracer.scene.model import CONE, Camera, Quadrics, Scene
 from viewer.state.navigation import Vector, ray
 from viewer.state.parts import parts_of
 from viewer.state.pixels import pixel_at
-from viewer.state.projection import HIDDEN, place
 from viewer.state.views import has_modes_of_cells
 
 NEARBY = 2

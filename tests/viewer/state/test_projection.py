@@ -10,9 +10,9 @@ import pytest
 
 from tests.viewer.fakes import make_frame
 from tracer.frame import Frame, Settings
+from tracer.inspect.projection import place, strokes
 from tracer.scene.model import Camera
 from viewer.state.picking import point_at
-from viewer.state.projection import place, strokes
 
 CAMERA = Camera((1.0, 2.0, 3.0), (0.3, -0.2, -1.0), (0.1, 1.0, 0.0), 50.0)
 

@@ -12,9 +12,9 @@ from functools import cached_property
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from tracer.frame import Frame
+from tracer.inspect.projection import Stroke
 from viewer.state.palette import DARK, LIGHT
 from viewer.state.pixels import Zoom
-from viewer.state.projection import Stroke
 from viewer.window.widgets import em
 
 BACK, FRONT = ImVec4(*DARK, 0.9), ImVec4(*LIGHT, 1.0)

@@ -8,11 +8,11 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from tracer.culling.fate import Fate
 from tracer.culling.modes import ShadowMode
 from tracer.frame import Frame
+from tracer.inspect.projection import Stroke, strokes
 from tracer.inspect.reasons import Why
 from viewer.state.methods import missing, with_base
 from viewer.state.palette import FATES, SHADOW
 from viewer.state.picking import outline_of, points_of, primitive_points
-from viewer.state.projection import Stroke, strokes
 from viewer.window.panels import rays
 from viewer.window.panels.area import BACK, FRONT, Area, Pen
 from viewer.window.panels.links import Pointed

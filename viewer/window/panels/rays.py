@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.inspect.path_records import AWAY, TRACED, RayTree
+from tracer.inspect.projection import Stroke, place, strokes
 from viewer.output.ray_rows import SUBSET_HELP, RayFilter, RayKey, RayRow, RayRows, RaySubset, totals, unfolded
 from viewer.state.picking import Pick
-from viewer.state.projection import Stroke, place, strokes
 from viewer.window.panels import lights
 from viewer.window.panels.area import SHADE, Pen
 from viewer.window.panels.links import Pointed

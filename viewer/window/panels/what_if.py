@@ -12,13 +12,13 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
+from tracer.inspect.projection import at_depth, place, seen_from
 from tracer.scene.edits import Edited
 from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
 from viewer.state.comparison import CompareMode
 from viewer.state.palette import HELD
 from viewer.state.picking import same_place
-from viewer.state.projection import at_depth, place, seen_from
 from viewer.state.view_state import one_by_one
 from viewer.window.command import Command, Condition
 from viewer.window.panels import lights
