@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
-from tracer.method import HELD, MANY, Kind, Method, bases
+from tracer.method import MANY, Kind, Method
 from tracer.scene.lights import Light, as_lamps
 
 
@@ -28,31 +26,6 @@ def too_few(method: Method, lights: int, samples: int) -> str:
         return ""
     what = "lights" if samples == lights else "light samples"
     return f"{method.base} is for {MANY} {what} or more, and there {'is' if samples == 1 else 'are'} {samples} here"
-
-
-def overview(lights: int, lamps: int) -> str:
-    """Which methods take all of so many lights into account, `lamps` of them with several samples, and what the others
-    leave to tracing, in a sentence; nothing where none leaves any."""
-    culling = [kind for kind in bases() if kind.culls]
-    part = [kind for kind in culling if kind.in_part]
-    blind = [kind for kind in culling if lamps and not kind.lamps and kind not in part]
-    none = blind if lamps == lights else []
-    first = [kind for kind in culling if kind.answers < lights and kind not in (*part, *none)]
-    every = [kind for kind in culling if kind.answers >= lights and kind.fits(lights) and kind not in (*part, *blind)]
-    if not first and not blind:
-        return ""
-    said = [f"All lights are taken into account by {_names(every)}"]
-    said += [f"the first {HELD} by {_names(first)}"] if first else []
-    said += [f"some by {_names(part)}"] if part else []
-    said += [f"none by {_names(none)}, which leave lamps of several samples to tracing"] if none else []
-    if blind and not none:
-        said += [f"{_names(blind)} leave the {lamps:,} lamps of several samples to tracing"]
-    return "; ".join(said) + "."
-
-
-def _names(kinds: Iterable[Kind]) -> str:
-    *names, last = (kind.name for kind in kinds)
-    return f"{', '.join(names)} and {last}" if names else last
 
 
 def remark(method: Method, lights: int, lamps: int) -> str:

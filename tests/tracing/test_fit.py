@@ -10,7 +10,7 @@ import pytest
 import tracer
 from tests.tracing.shades import shadow_scene
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.fit import lights_in_words, overview, remark, too_few, worth
+from tracer.fit import lights_in_words, remark, too_few, worth
 from tracer.method import HELD, Method, bases, line_up
 from tracer.scene.model import Scene
 
@@ -90,7 +90,7 @@ def test_clusters_are_worth_it_by_the_samples_of_all_lights():
         few = too_few(method, lights, samples)
         assert bool(few) == bool(worth(method.kind, lights, samples)) == (not method.fits(lights, samples)), few
         assert ("lightcuts" in line_up(lights, samples)) == (not few)
-    assert "lightcuts" in overview(40, 40) and "voxels" not in line_up(40, 640)
+    assert "voxels" not in line_up(40, 640)
 
 
 def test_what_a_base_and_an_addition_make_is_counted_together():

@@ -234,7 +234,9 @@ class RayRows:
             more = len(reason.named) - len(names)
             parts.append("Named: " + ", ".join(names) + (f" and {more} more." if more else "."))
         if s.asked_moving[place]:
-            parts.append(f"Testing dynamic objects took {s.steps[place]} steps and {s.tests[place]} tests.")
+            parts.append(
+                f"Asking dynamic objects: {several(s.steps[place], 'step')}, {several(s.tests[place], 'test')}."
+            )
         if verdict is Verdict.TRACED and s.met[place] not in (-1, s.blocker[place]):
             parts.append(f"Tracing hit {self._name(int(s.met[place]))} first.")
         if s.wrong[place]:

@@ -35,16 +35,6 @@ class Part(NamedTuple):
     sets_stage: bool = False
 
 
-def is_open(path: Path) -> Condition:
-    """Return whether the picture shows a scene, and rests."""
-
-    def holds(c: Controller) -> bool:
-        scene, rests = c.session.scene, c.scheduler.activity in (Activity.RESTING, Activity.ADDING_SAMPLES)
-        return scene is not None and scene.path == path and c.loader.load_job is None and c.frame is not None and rests
-
-    return holds
-
-
 def open_scene(path: Path) -> Act:
     """Open a scene, unless it is open or on its way."""
 
@@ -57,8 +47,13 @@ def open_scene(path: Path) -> Act:
 
 
 def opened(path: Path) -> Part:
-    """Return the part that opens a scene."""
-    return Part(is_open(path), open_scene(path), True)
+    """Return the part that opens a scene, and waits until its picture rests."""
+
+    def holds(c: Controller) -> bool:
+        scene, rests = c.session.scene, c.scheduler.activity in (Activity.RESTING, Activity.ADDING_SAMPLES)
+        return scene is not None and scene.path == path and c.frame is not None and rests and not c.loader.busy
+
+    return Part(holds, open_scene(path), True)
 
 
 class PaperFigures:

@@ -10,7 +10,8 @@ import itertools
 import re
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,8 @@ from viewer.util.resources import default_scene
 SECONDS = 2.0  # that what was done can be looked at
 FAILS, EXAMINED = 20, 28
 """Frames of the scene figure4: the shadow is missing, and after the triangle was examined anew it is there."""
+_PACE: dict[str, Any] = {"fixed_size": True, "width": SIDE, "height": SIDE, "every_frame": True}
+_RULES: dict[str, Any] = {"method": BY_MODES, "symmetric": False, "zoom_factor": 4.0}
 _PLACES = itertools.cycle(  # where a shadow is looked for, in parts of the picture's size: from its middle on
     sorted(itertools.product(np.arange(1, 14) / 14.0, repeat=2), key=lambda at: np.hypot(at[0] - 0.5, at[1] - 0.5))
 )
@@ -139,10 +142,6 @@ def _shadowed(c: Controller) -> int | None:
     return next(by_others, None)
 
 
-def _in_shadow(c: Controller) -> bool:
-    return _shadowed(c) is not None
-
-
 def _at_least(number: int) -> Condition:
     """Return whether the picture shows a frame of figure4, or a later one."""
 
@@ -185,21 +184,16 @@ def _click_a_shadow(c: Controller) -> None:
         c.selection.select(next(_PLACES))
 
 
-def _moves(c: Controller) -> bool:
-    return c.session.scene is not None and len(c.session.scene.objects) > 1
-
-
 def _is_staged(c: Controller) -> bool:
     """Return whether figure4 is traced frame by frame, as its file says."""
     pace, settings = c.session.state.pace, c.session.settings
-    sized = pace.fixed_size and (pace.width, pace.height) == (SIDE, SIDE) and pace.every_frame
-    return sized and (settings.method, settings.symmetric, settings.zoom_factor) == (BY_MODES, False, 4.0)
+    return replace(pace, **_PACE) == pace and replace(settings, **_RULES) == settings
 
 
 def _stage(c: Controller) -> None:
     """Learn the modes of figure4 from afar."""
-    c.settings.change(method=BY_MODES, symmetric=False, zoom_factor=4.0)
-    c.session.set_pace(fixed_size=True, width=SIDE, height=SIDE, every_frame=True)
+    c.settings.change(**_RULES)
+    c.session.set_pace(**_PACE)
     c.session.set_draw(view=View.COLOR)
     c.motion.follow_path(True)
     c.session.go_to_frame(0)
@@ -214,8 +208,7 @@ def _stop(c: Controller) -> None:
 
 
 def _play(c: Controller) -> None:
-    if not c.session.playing and not _at_least(EXAMINED)(c):
-        c.motion.toggle_play()
+    c.session.playing = True
 
 
 # --- the steps -------------------------------------------------------------------------------------
@@ -272,13 +265,17 @@ STEPS = (
         "Why, for one pixel",
         "Click a dark spot in the picture. The Inspector says why its shadow ray is culled or traced, and lines show "
         "the shadow rays.",
-        (Part(_in_shadow, _click_a_shadow),),
+        (Part(lambda c: _shadowed(c) is not None, _click_a_shadow),),
     ),
     Step(
         "Shadows that move",
         f"Press {{{View.MOVING_SHADOW.label}}}, and {{Play}}: the shadows of moving objects fall on primitives in "
         "non-shadow mode, and are right, as these ask dynamic objects.",
-        (Part(_moves, open_scene(default_scene()), True), Part(_shows(View.MOVING_SHADOW), _show(View.MOVING_SHADOW))),
+        (
+            Part(lambda c: c.session.scene is not None and len(c.session.scene.objects) > 1,
+                 open_scene(default_scene()), True),
+            Part(_shows(View.MOVING_SHADOW), _show(View.MOVING_SHADOW)),
+        ),
     ),
     Step(
         "Where the method fails",

@@ -36,7 +36,7 @@ def default_for(view: View) -> str:
 def groups() -> list[tuple[str, list[Kind]]]:
     """Return the methods to choose from, those that are never wrong first."""
     exact, other = ([kind for kind in bases() if kind.exact is never] for never in (True, False))
-    return [("Exact: the picture is that of none", exact), ("With errors", other)]
+    return [("Exact: the same picture as by none", exact), ("With errors", other)]
 
 
 def with_base(method: str, base: str) -> str:

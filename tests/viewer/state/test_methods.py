@@ -19,7 +19,6 @@ from tests.viewer.fakes import (
     with_voxels,
 )
 from tracer.experiments.experiment import with_reference
-from tracer.fit import overview
 from tracer.frame import Settings
 from tracer.method import DEFAULT_METHOD, Method, bases, in_order
 from tracer.statistics import CutCounts
@@ -128,18 +127,6 @@ def test_a_map_of_clusters_in_which_each_light_is_one_says_so():
         (note,) = legend_in(frame, View.CUTS).notes
         assert note.text == said
     assert legend_in(frame, View.CUTS).facts[0].values[0].endswith(" for 100 samples of 3 lights")
-
-
-def test_the_overview_names_every_method_that_leaves_lights_to_tracing():
-    assert overview(6, 0) == ""
-    every = "All lights are taken into account by certified, auto, lightcuts, lightcuts-stochastic and "
-    part, leave = "some by lie-exact and lie", "lamps of several samples to tracing."
-    for lights, lamps, others in (
-        (4096, 0, f"; the first 31 by paper, cells, voxels and lightbuffer; {part}."),
-        (256, 256, f"; the first 31 by paper and cells; {part}; none by voxels and lightbuffer, which leave {leave}"),
-    ):
-        assert overview(lights, lamps) == f"{every}lightcuts-certified{others}"
-    assert overview(6, 3).endswith(f"; {part}; voxels and lightbuffer leave the 3 {leave}")
 
 
 def test_one_method_is_the_default_everywhere_that_has_something_to_show():

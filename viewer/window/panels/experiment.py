@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui, implot
 from tracer.experiments import experiment
 from tracer.experiments.experiment import REFERENCE, Experiment, Results, Row
 from tracer.method import Kind, additions, in_order
-from viewer.output.reports import METHOD, PUBLISHED, caveats, published_in_words, table_1, verdicts
+from viewer.output.reports import METHOD, PUBLISHED, caveats, table_1, verdicts
 from viewer.state.methods import groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
@@ -88,7 +88,7 @@ def _table(ui: Ui, run: Experiment, results: Results) -> None:
     said = in_window_style("; ".join(caveats(results, in_window=True)))
     paragraph(f"{said[:1].upper()}{said[1:]}.", QUIET)
     for paper in PUBLISHED:
-        paragraph(in_window_style(published_in_words(paper)), QUIET)
+        paragraph(in_window_style(paper), QUIET)
     results_table("table 1", [METHOD, *table_1(results)], rows)
 
 

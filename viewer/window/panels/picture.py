@@ -25,7 +25,6 @@ from viewer.window.panels import (
     savings,
     sides,
     status,
-    timeline,
     toolbar,
     what_if,
 )
@@ -49,7 +48,7 @@ def show(ui: Ui) -> None:
     ui.guard.panel("The row above the picture", lambda: toolbar.show(ui, room.x))
     room.y -= toolbar.height()
     if c.session.animated:
-        room.y -= timeline.height()
+        room.y -= toolbar.time_height()
     above = savings.height(ui, room)
     if above > 0.0:
         start = imgui.get_cursor_pos()
@@ -64,7 +63,7 @@ def show(ui: Ui) -> None:
         _picture(ui, room)
     if c.session.animated:
         imgui.set_cursor_pos(ImVec2(top.x, top.y + room.y))
-        timeline.show(ui)
+        toolbar.show_time(ui)
 
 
 def _picture(ui: Ui, room: ImVec2) -> None:

@@ -8,8 +8,8 @@ from pathlib import Path
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.fit import lamps_in, overview
 from tracer.scene.model import Scene
+from viewer.state.methods import remark_on
 from viewer.util.resources import embedded_scenes
 from viewer.window import menus
 from viewer.window.command import Command, Kind
@@ -83,11 +83,7 @@ def _lights(ui: Ui, scene: Scene) -> None:
     if not number:
         paragraph("No lights: only ambient light shows, and there are no shadows to cull.", WARNING)
         return
-    radius, samples = settings.lamp_radius, settings.lamp_samples
-    said = ui.cached(
-        "what methods do with the lights", scene, (radius, samples),
-        lambda: overview(number, lamps_in(scene.lights, radius, samples)[0]),
-    )  # fmt: skip
+    said = ui.cached("what the method leaves", scene, settings, lambda: remark_on(scene.lights, settings))
     if said:
         paragraph(f"{icons.ICON_FA_TRIANGLE_EXCLAMATION} {said}", WARNING)
     lights.table(ui)

@@ -118,9 +118,8 @@ def doing(c: Controller) -> str:
         return f"lamp samples: {c.scheduler.lamp_samples_shown} of {c.scheduler.lamps.wanted}"
     if activity is Activity.CERTIFYING:
         made = c.frame.statistics.certificates if c.frame is not None else 0
-        before = ", before more samples" if c.session.settings.samples > 1 else ""
         makes, _ = terms.made(c.session.settings.method)
-        return f"making certificates{before}{f' ({makes} in the last picture: {count(made)})' if made else ''}"
+        return f"making certificates{f' ({makes} in the last picture: {count(made)})' if made else ''}"
     if c.renderer.busy or activity is Activity.TRACING:
         is_there = c.frame is not None and not c.scheduler.outdated and c.frame.camera == c.session.camera
         return "refining the picture" if is_there else TRACING
