@@ -33,6 +33,7 @@ def culling(d: Driver) -> None:
         shadow = d.c.frame.statistics.shadow
         assert d.c.frame.settings.method == method and shadow.due == due > 0
         assert shadow.saved > 0 if culls else shadow.culled == 0
+    d.show_panel("Culling")
     for symmetric in (True, False):
         d.click("//Culling/Symmetric occlusion test").settle()
         assert d.c.frame.settings.symmetric == symmetric
@@ -107,7 +108,7 @@ def _slice(d: Driver) -> None:
     for key, step in (("Shift+RightBracket", 1), ("Shift+LeftBracket", 0)):
         d.press(key)
         assert d.c.session.draw.slice.layer(sides[cut.axis]) == cut.layer(sides[cut.axis]) + step
-    d.click("//View/**/z##slice")
+    d.show_panel("View").click("//View/**/z##slice")
     d.enter("//View/**/##layer", sides[2] // 2)
     cut = d.c.session.draw.slice
     assert (cut.axis, cut.layer(sides[2])) == (2, sides[2] // 2)

@@ -15,8 +15,8 @@ from viewer.state.preferences import load_preferences
 from viewer.state.views import View, can_draw
 from viewer.util.resources import embedded_scenes
 from viewer.views.wipe import wipe_column
-from viewer.window.panels.legend import LegendState
 
+LEGEND = "//Picture/legend"
 OF_SOME_FRAMES = (View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.TREE)  # see `culling`
 
 
@@ -25,7 +25,10 @@ def views(d: Driver) -> None:
     only what must be verified, or counted, is traced for, once, and as little for the views after it."""
     d.fix_resolution(320, 220)
     d.change(method="paper")
-    d.certify()
+    d.see(View.OCCLUSION)
+    assert not d.has(LEGEND), "the panel View has it, and nothing lies over the picture"
+    d.app.params.docking_params.dockable_window_of_name("View").is_visible = False
+    d.see(View.COLOR).certify()
     d.press("T").settle()
     traced = d.c.history.frames
     d.c.session.set_draw(shading=0.35)
@@ -36,10 +39,10 @@ def views(d: Driver) -> None:
         assert view.records or d.c.history.frames == before, "changing the view has traced"
         d.settle()
         there = can_draw(d.c.frame, view, d.c.session.draw.light)
-        assert there == (view not in OF_SOME_FRAMES) and d.ui.state(LegendState).shown == (there and view != View.COLOR)
+        assert there == (view not in OF_SOME_FRAMES) and d.has(LEGEND) == (there and view != View.COLOR)
         if there:
             d.expect_picture()
-        if d.ui.state(LegendState).shown:
+        if d.has(LEGEND):
             _legend(d)
     d.press("3", "L")
     assert d.c.session.draw.light == 1
@@ -69,7 +72,7 @@ def views(d: Driver) -> None:
 def _legend(d: Driver) -> Rect:
     """Left, top, right and bottom of the legend, which lies inside the picture."""
     d.frames(2)
-    area, picture = d.place("//Picture/legend"), d.picture_edges()
+    area, picture = d.place(LEGEND), d.picture_edges()
     assert picture[0] <= area[0] and area[2] <= picture[2] and picture[1] <= area[1] and area[3] <= picture[3]
     return area
 
@@ -79,12 +82,12 @@ def _dragged(d: Driver) -> None:
     d.see(View.OCCLUSION)
     camera, frame = d.c.session.camera, d.c.frame
     for across in (0.5, 0.0, 1.0):  # the last is where it stays
-        (x, y), (_, _, _, bottom) = d.middle("//Picture/legend"), _legend(d)
+        (x, y), (_, _, _, bottom) = d.middle(LEGEND), _legend(d)
         to_x, to_y = d.on_picture(across, across)
         d.drag((x, bottom - 6.0), (to_x - x, to_y - y))
         _legend(d)
         if across == 0.5:
-            assert np.allclose(d.middle("//Picture/legend"), (to_x, to_y), atol=3.0)
+            assert np.allclose(d.middle(LEGEND), (to_x, to_y), atol=3.0)
             d.click_here()
         else:
             assert d.c.session.draw.legend_at == (across, across)
@@ -92,17 +95,14 @@ def _dragged(d: Driver) -> None:
 
 
 def _off_and_on(d: Driver) -> None:
-    """Where the picture has no legend, the panel has it."""
-
-    def panel() -> float:
-        return d.show_panel("View").panel("View").content_size.y
-
-    with_legend = panel()
-    d.press("N")
-    assert not d.c.session.draw.legend and not d.ui.state(LegendState).shown
-    assert panel() > with_legend + 60.0
-    d.press("N")
-    assert d.ui.state(LegendState).shown and panel() == with_legend
+    """The legend is in the panel View or, where that is not in sight, in the picture if it is wanted there."""
+    for there in (True, False, True):
+        assert d.has(LEGEND) == there == d.c.session.draw.legend
+        d.press("N").frames(2)
+    d.press("N").show_panel("View").frames(2)
+    assert not d.has(LEGEND) and d.c.session.draw.legend
+    d.show_panel("Culling").frames(2)
+    assert d.has(LEGEND), "the panel is behind another"
 
 
 def _in_saved_pictures(d: Driver) -> None:

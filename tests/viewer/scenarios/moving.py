@@ -28,7 +28,7 @@ def flying(d: Driver) -> None:
     d.drag(d.on_picture(0.5, 0.5), (-80.0, 0.0), 1)
 
     before = d.c.session.camera
-    panel = d.panel("Statistics")
+    panel = d.panel("Inspector")
     d.drag((panel.pos.x + 60.0, panel.pos.y + panel.size.y - 20.0), (50.0, -30.0))
     assert d.c.session.camera == before, "a drag on a panel moved the camera"
 

@@ -6,7 +6,7 @@ from unittest import mock
 
 import glfw
 import numpy as np
-from imgui_bundle import glfw_utils, imgui
+from imgui_bundle import glfw_utils, hello_imgui, imgui
 
 from tests.sweeps import cases
 from tests.viewer.driver import Driver
@@ -20,18 +20,27 @@ def panels(d: Driver) -> None:
     """The cross closes one panel of several behind each other's tabs, and the default layout brings all back.  Every
     panel, dialog and menu is shown once, as a new user would open them."""
     docking = d.app.params.docking_params
-    closed = lambda: [w.label for w in docking.dockable_windows if not w.is_visible]  # noqa: E731
-    d.show_panel("Camera")
-    d.context.window_close("//Camera")
+    is_open = lambda: {w.label for w in docking.dockable_windows if w.is_visible}  # noqa: E731
+    first = is_open()
+    d.show_panel("Culling")
+    d.context.window_close("//Culling")
     d.frames(3)
-    assert closed() == ["Camera"]
-    for label in ("Scene", "View", "Plots", "Log"):
-        docking.dockable_window_of_name(label).is_visible = False
+    assert is_open() == first - {"Culling"}
+    d.show_panel("Log")
+    docking.dockable_window_of_name("Figure 1").is_visible = False
     d.choose("View/Default layout")
-    assert not closed()
-    docked = d.panel("Scene").dock_node
-    assert docked is not None and d.panel("Camera").dock_id == docked.id_
+    assert is_open() == first
+    docked = d.panel("View").dock_node
+    assert docked is not None and d.panel("Culling").dock_id == docked.id_
 
+    left, top, right, bottom = d.picture_edges()
+    assert (right - left) * (bottom - top) > 0.5 * d.app.ui.picture.area[0] * d.app.ui.picture.area[1]
+    for key, workspace, there in (("F3", "Measure", "Hunt"), ("F4", "Debug", "Find"), ("F2", "Explore", "Figure 1")):
+        d.press(key).frames(5)
+        assert hello_imgui.current_layout_name() == workspace and docking.layout_name == workspace
+        assert there in is_open() and ("Log" in is_open()) == (workspace == "Debug")
+    d.show_panel("Plots").press("F3", "F2").frames(5)
+    assert "Plots" in is_open(), "a workspace stays as it was left"
     d.press("B")
     for label in ("Camera", "Rendering", "Saving", "Scene", "View", "Experiment", "Zoom test", "Plots"):
         docking.focus_dockable_window(label)
@@ -91,7 +100,7 @@ def hiding(d: Driver) -> None:
     docking.dockable_window_of_name("Saving").is_visible = False
     d.frames(4)
     before = _places_of_panels()
-    assert {"Camera", "Experiment", "Statistics", "Inspector"} < set(before)
+    assert {"Camera", "Experiment", "Figure 1", "Inspector"} < set(before)
     d.press("Tab")
     there = _places_of_panels()
     assert set(there) == {PICTURE} and there[PICTURE][2] * there[PICTURE][3] > 0.9 * 1280 * 800
@@ -127,7 +136,7 @@ def _shares(d: Driver) -> None:
     for size in ((1024, 700), (900, 600), (1600, 1000), *((width, 800) for width in range(1280, 1000, cases(-56, -7)))):
         d.resize(*size)
         there = _places_of_panels()
-        assert set(there) == set(before) and 0.4 < there[PICTURE][2] / size[0] < 0.6
+        assert set(there) == set(before) and 0.7 < there[PICTURE][2] / size[0] < 0.8
     d.resize(1280, 800)
     _came_back(before)
 

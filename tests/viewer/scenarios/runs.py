@@ -10,7 +10,7 @@ from imgui_bundle import glfw_utils, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from PIL import Image
 
-from tests.viewer.driver import Driver
+from tests.viewer.driver import SMALL, Driver
 from tracer.experiments import zoom
 from viewer.services.runs import RecordedZoomTest
 from viewer.state.views import View
@@ -44,7 +44,7 @@ def experimenting(d: Driver) -> None:
     assert (d.c.frame.width, d.c.frame.height) == d.c.scheduler.inputs.size and d.c.frame.camera == home
 
     runs.experiment_plan.frames = 6
-    d.choose("Run/Experiment").settle()
+    d.choose("Run/Start experiment").settle()
     assert runs.experiment is not run and runs.experiment.whole
     files = _saved_results(d, "Experiment")
     assert len(json.loads(files[".json"].read_text())["frames"]) == 6
@@ -56,10 +56,12 @@ def experimenting(d: Driver) -> None:
     runs.start_experiment()
     d.settle()
     assert runs.experiment.results.settings["accelerator"] == "kdtree-lazy"
+    d.resize(900, 620)
     for name in ("Table", "Plot", "Table"):
         d.click(f"//Experiment/**/{name}")
     (table,) = (w for w in imgui.get_current_context().windows if w.was_active and "table 1" in w.name)
     assert table.size.x > 25.0 * imgui.get_font_size(), "columns that are compared are out of sight"
+    d.resize(*SMALL)
 
 
 def zooming(d: Driver) -> None:
@@ -114,7 +116,7 @@ def filming(d: Driver) -> None:
     """A path, with its modes; a flight through bookmarks; and one that is stopped."""
     films, runs = d.c.films, d.c.runs
     d.see(View.OCCLUSION)
-    d.choose("Run/Film")
+    d.choose("Run/Film...")
     films.plan.last, films.plan.size, films.plan.legend = 4, (160, 120), True
     assert films.count == 5
     d.start("Film").wait(lambda: runs.current is not None, "the film to begin")
@@ -183,10 +185,10 @@ def asking(d: Driver) -> None:
     # Escape closes what lies over the panels, one by one, and stops the run only when nothing does.
     under_way()
     d.press("F1")
-    d.choose("Edit/Presets/Presets...")
+    d.choose("Edit/Presets/Presets...").show_panel("Scene")
     assert d.ui.dialogs == [Dialog.KEYS, Dialog.PRESETS]
     popups = lambda: len(imgui.get_current_context().open_popup_stack)  # noqa: E731
-    for there in ("//##MainMenuBar/##MenuBar/File", f"//Scene/{icons.ICON_FA_CLOCK_ROTATE_LEFT}  Recent"):
+    for there in ("//##MainMenuBar/##MenuBar/File", f"//Scene/{icons.ICON_FA_CUBES}  Scenes"):
         d.click(there)
         assert popups() == 1
         d.press("Escape")

@@ -94,7 +94,8 @@ def _columns(ui: Ui) -> None:
         return
     timed = c.baseline.measured if c.comparing.second_method else None
     flags = imgui.TableFlags_.sizing_stretch_same | imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y
-    room = ImVec2(0.0, max(imgui.get_content_region_avail().y, em(9.0)))
+    left = imgui.get_content_region_avail()
+    room = ImVec2(left.x - 1.0, max(left.y, em(9.0)))
     if not imgui.begin_table("statistics of both", 5, int(flags | imgui.TableFlags_.no_host_extend_x), room):
         return
     imgui.table_setup_scroll_freeze(0, 1)

@@ -83,13 +83,12 @@ def _methods(ui: Ui, plan: ExperimentPlan) -> None:
 def _table(ui: Ui, run: Experiment, results: Results) -> None:
     """The paper's Table 1: a line for each method."""
     rows: list[Row] = ui.cached("table 1", results, len(results.frames), lambda: experiment.table(results))
+    results_table("table 1", [METHOD, *table_1(results)], rows, fits=True)
     for sentence in ui.cached("verdicts", results, len(results.frames), lambda: verdicts(results)):
         paragraph(in_window_style(sentence))
     said = in_window_style("; ".join(caveats(results, in_window=True)))
-    paragraph(f"{said[:1].upper()}{said[1:]}.", QUIET)
-    for paper in PUBLISHED:
-        paragraph(in_window_style(paper), QUIET)
-    results_table("table 1", [METHOD, *table_1(results)], rows)
+    for quiet in (f"{said[:1].upper()}{said[1:]}.", *map(in_window_style, PUBLISHED)):
+        paragraph(quiet, QUIET)
 
 
 def _plot(ui: Ui, run: Experiment, results: Results) -> None:

@@ -129,11 +129,14 @@ def results_table(
     click: Callable[[int], None] | None = None,
     chosen: int | None = None,
     tip: Callable[[Row], str] | None = None,
+    fits: bool = False,
 ) -> None:
     """Show a table whose headings and first column stay, as wide as its columns need; a click on a row, of which `tip`
-    says more, tells which it is."""
+    says more, tells which it is.  It takes all room or, where it `fits`, what its rows need."""
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y | imgui.TableFlags_.scroll_x
-    if not imgui.begin_table(name, len(columns), int(flags)):
+    lines = (len(rows) + 1) * (imgui.get_text_line_height() + 2.0 * imgui.get_style().cell_padding.y)
+    size = ImVec2(0.0, lines + imgui.get_style().scrollbar_size if fits else 0.0)
+    if not imgui.begin_table(name, len(columns), int(flags), size):
         return
     imgui.table_setup_scroll_freeze(1, 1)
     some = [*rows[:_MEASURED], *rows[_MEASURED:][-_MEASURED:]]
