@@ -184,7 +184,7 @@ def _interface(ui: Ui) -> list[Command]:
 
     def workspace(one: Workspace, key: str) -> Command:
         return Command(one.name, "View", partial(hello_imgui.switch_layout, one.name), key, tip=one.help,
-                       checked=lambda: hello_imgui.current_layout_name() == one.name,
+                       checked=lambda: ui.workspace == one.name,
                        separated=one is WORKSPACES[0])  # fmt: skip
 
     largest = Condition(lambda: p.ui_scale < SCALES[-1], "the interface is at its largest")

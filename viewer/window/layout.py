@@ -137,8 +137,7 @@ class Layout:
     def reset(self) -> None:
         """Open the panels of this workspace and no others, docked where they were at first."""
         self._ui.panels_hidden = False
-        name = hello_imgui.current_layout_name()
-        workspace = next(one for one in WORKSPACES if one.name == name)
+        workspace = next(one for one in WORKSPACES if one.name == self._ui.workspace)
         for window in self._docking.dockable_windows:
             window.is_visible = _is_open(workspace, window.label)
         self._docking.layout_reset = True
@@ -154,7 +153,7 @@ class Layout:
     def show_workspaces(self) -> None:
         """Show the workspaces at the right end of the menu bar, the one that is shown set off."""
         widths = [imgui.calc_text_size(one.name).x for one in WORKSPACES]
-        gap, now = imgui.get_style().item_spacing.x * 2.0, hello_imgui.current_layout_name()
+        gap, now = imgui.get_style().item_spacing.x * 2.0, self._ui.workspace
         left = imgui.get_window_width() - sum(widths) - gap * len(widths)
         imgui.set_cursor_pos_x(max(imgui.get_cursor_pos_x() + gap, left))
         for workspace, width in zip(WORKSPACES, widths):
@@ -170,6 +169,7 @@ class Layout:
     def update(self) -> None:
         """Keep shares as they were, and show the tour's panel while it is taken, before the panels are drawn."""
         self._keep_shares()
+        self._ui.workspace = hello_imgui.current_layout_name()
         self._docking.dockable_window_of_name(TOUR).is_visible = self._ui.tour.step is not None
         node, no_tabs = _node_of(PICTURE), int(imgui.internal.DockNodeFlagsPrivate_.no_tab_bar)
         if node is not None and not node.local_flags & no_tabs:  # it is always there, and needs the room

@@ -70,6 +70,7 @@ class Ui:
     controller: Controller
     commands: list[Command] = field(default_factory=list)
     panels_hidden: bool = False
+    workspace: str = ""
     full_screen: FullScreen = field(default_factory=FullScreen)
     capture_wanted: CaptureKind | None = None
     capture_view: View | None = None

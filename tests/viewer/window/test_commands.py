@@ -57,8 +57,9 @@ def test_views_are_chosen_and_ticked(ui: Ui, by_name) -> None:
         ("paper as", "preset As in the paper"), ("figure4", None), ("reload", "Reload"),
         ("occulsion", "Occlusion mode"),
         ("why traced", "Fate of shadow rays"), ("culled view", "Fate of shadow rays"),
-        ("dynamic darkened", "Moving shadows"),
-        ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"),
+        ("dynamic darkened", "Moving shadows"), ("soft", "setting Lamp radius"), ("bart", "Open..."),
+        ("why", "Fate of shadow rays"), ("faster", "Two methods live"), ("table 1", "Table 1"),
+        ("figure 4", "Figure 4"), ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"),
     ],
 )  # fmt: skip
 def test_what_is_meant_is_found_first(ui: Ui, typed: str, meant: str | None) -> None:
@@ -68,7 +69,10 @@ def test_what_is_meant_is_found_first(ui: Ui, typed: str, meant: str | None) -> 
 
 def test_what_was_used_last_comes_first(ui: Ui) -> None:
     everything = items(ui)
-    assert [item.name for item in find("", everything, ["Zoom test", "Depth"])[:2]] == ["Zoom test", "Depth"]
+    assert [item.name for item in find("", everything, ["Start zoom test", "Depth"])[:2]] == [
+        "Start zoom test",
+        "Depth",
+    ]
     assert find("next", everything, [])[0].name == "Next view"
     assert find("next", everything, ["Next light"])[0].name == "Next light"
 

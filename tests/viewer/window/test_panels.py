@@ -34,7 +34,7 @@ def written(desk: Desk) -> Iterator[Callable[[str], str]]:
         imgui.set_next_window_size((3000.0, 7000.0))
         imgui.begin(panel)
         imgui.internal.log_to_buffer(0)
-        PANELS[panel].show(ui)
+        PANELS[panel](ui)
         found = imgui.get_current_context().log_buffer.c_str()
         imgui.log_finish()
         imgui.end()
