@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tracer.experiments import experiment, hunt, zoom
-from tracer.experiments.zoom import Step
+from tracer.experiments.zoom import Approach, Step
 from tracer.text import printable
 
 
@@ -52,3 +52,16 @@ def happenings(results: zoom.Results) -> list[FactorStep]:
             if step.changes or step.wrong_of_primitive != wrong:
                 found.append((approach.factor, step))
     return found
+
+
+def verdict(approach: Approach) -> str:
+    """Return when the primitive was examined anew, and how long it was wrong, in a sentence: "factor 4: examined anew
+    after step 14 (185 > 4 x 46); wrong at steps 7 to 14"."""
+    factor, steps, wrong = f"{approach.factor:g}", approach.steps, approach.wrong_steps
+    anew = " and ".join(
+        f"{number} ({steps[number].pixels:,} > {factor} × {steps[number - 1].highest:,})"
+        for number in approach.examined_anew
+    )
+    said = f"examined anew after step {anew}" if anew else "never examined anew"
+    where = f"steps {wrong[0]} to {wrong[-1]}" if len(wrong) > 1 else f"step {wrong[0]}" if wrong else ""
+    return f"factor {factor}: {said}; {f'wrong at {where}' if wrong else 'never wrong'}"

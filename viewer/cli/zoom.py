@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from tracer.experiments import zoom
-from tracer.experiments.titles import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
+from tracer.experiments.titles import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title, verdict
 from tracer.experiments.zoom import ZoomTest
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
@@ -92,6 +92,8 @@ def run(given: Namespace) -> int:
         results = work.perform(test, world)
         failures = exports.write_files(results, wanted)
     print_table(listed(STEPS, happenings(results), title(results), f"wrong: {WRONG_PIXELS}", lambda row: row[0]))
+    for approach in results.approaches:
+        print(verdict(approach))
     if never_whole(results):
         say(f"primitive {results.primitive}: {NEVER_WHOLE}")
     if failures:

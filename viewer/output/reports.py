@@ -86,13 +86,9 @@ LEVEL = 0.03
 
 def verdicts(results: experiment.Results) -> list[str]:
     """Say in a sentence for each method what it saves, whether it is right, and whether it is faster."""
-    verified = bool(results.settings.get("verify"))
     rows = {row.method: row for row in experiment.table(results)}
-    paper = rows.get(BY_MODES)
-    said = []
-    for row in rows.values():
-        if row.method == REFERENCE:
-            continue
+    paper, said = rows.get(BY_MODES), []
+    for row in (row for row in rows.values() if row.method != REFERENCE):
         steps = saved_in_words(row.average_steps).replace(" saved", " of the traversal steps of shadow rays saved")
         if paper is not None and row is not paper and 0.0 < paper.average_steps < 0.5 * row.average_steps:
             steps += f", {row.average_steps / paper.average_steps:.1f} times as many as by {BY_MODES}"
@@ -104,7 +100,7 @@ def verdicts(results: experiment.Results) -> list[str]:
             speed = f", as fast as {REFERENCE} within {LEVEL:.0%}"
         else:
             speed = f", too few frames to say whether faster than {REFERENCE}"
-        said.append(f"{row.method}: {steps}{right if verified else speed}.")
+        said.append(f"{row.method}: {steps}{right if results.settings.get('verify') else speed}.")
     return said
 
 

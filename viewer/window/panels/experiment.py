@@ -7,9 +7,9 @@ from imgui_bundle import ImVec2, imgui, implot
 
 from tracer.experiments import experiment
 from tracer.experiments.experiment import REFERENCE, Experiment, Results, Row
-from tracer.method import Kind, additions, in_order
+from tracer.method import Kind, additions, bases, in_order
 from viewer.output.reports import METHOD, PUBLISHED, caveats, table_1, verdicts
-from viewer.state.methods import groups
+from viewer.state.methods import BY_MODES, CERTIFIED, groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
 from viewer.window.panels.culling import kinds_of_methods
@@ -19,6 +19,7 @@ from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, in_window_style, outlined, paragraph, properties, row, tooltip
 
+_USUAL = (REFERENCE, BY_MODES, CERTIFIED, "lightbuffer", "voxels")
 _PLOT, _TABLE = 16.0, 30.0  # ems of width; the table's first columns are what methods are compared by
 _FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
 _MOST_BELOW = 1.0  # of what is above zero: how much of what is below is seen
@@ -75,8 +76,13 @@ def _methods(ui: Ui, plan: ExperimentPlan) -> None:
         bases = [method for method in plan.methods if "+" not in method and method != kind.name]
         add_or_remove(f"+{kind.name}", {f"{base}+{kind.name}" for base in bases})
 
-    kinds_of_methods(ui, groups(), base)
-    kinds_of_methods(ui, [("And each of these with", additions())], addition)
+    kinds_of_methods(ui, [("Usual", [kind for kind in bases() if kind.name in _USUAL])], base)
+    if imgui.tree_node("More"):
+        kinds_of_methods(
+            ui, [(name, [one for one in kinds if one.name not in _USUAL]) for name, kinds in groups()], base
+        )
+        kinds_of_methods(ui, [("And each of these with", additions())], addition)
+        imgui.tree_pop()
     imgui.end_combo()
 
 

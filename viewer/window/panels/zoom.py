@@ -8,7 +8,7 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
 from tracer.experiments.filmstrip import Shot
-from tracer.experiments.titles import happenings
+from tracer.experiments.titles import happenings, verdict
 from tracer.experiments.zoom import Approach, Results, Step
 from viewer.output.reports import STEPS, changes_in_words
 from viewer.services.runs import RecordedZoomTest
@@ -17,7 +17,7 @@ from viewer.window.panels.runs import Part, results_table, show_run
 from viewer.window.setting_rows import plan_rows
 from viewer.window.style import GREY, MARK
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, WARNING, clipped, count, em, properties, row, tooltip
+from viewer.window.widgets import ERROR, WARNING, clipped, count, em, paragraph, properties, row, tooltip
 
 _PLOT, _TABLE = 14.0, 15.0  # ems of width
 _LOW = 8.5  # ems of height below which a plot has no legend
@@ -113,7 +113,7 @@ def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach], size: ImVe
     steps = max((approach.steps for approach in approaches), key=len)
     pixels = _counts(step.pixels for step in steps)
     most = max(max(step.pixels, step.highest, 1) for step in steps)
-    implot.setup_axes("", "pixels", AXIS, AXIS)
+    implot.setup_axes("step", "pixels", AXIS, AXIS)
     implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))
     whole_numbers(-0.7, last, size.x)
     implot.setup_axis_format(implot.ImAxis_.y1, "%.0f")
@@ -160,8 +160,10 @@ def _counts(pixels: Iterable[int]) -> np.ndarray:
 
 
 def _table(ui: Ui, results: Results) -> None:
-    """The steps where something happens; a click flies there."""
+    """What happened in a sentence for each factor, and the steps where something happens; a click flies there."""
     rows = happenings(results)
+    for approach in filter(lambda approach: approach.steps, results.approaches):
+        paragraph(f"{verdict(approach)}.")
 
     def go(number: int) -> None:
         ui.controller.go_to_step(rows[number][1])
