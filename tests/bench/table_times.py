@@ -72,7 +72,7 @@ class Watch:
         self.frames: dict[str, list[float]] = defaultdict(list)
         self.answers: dict[str, list[float]] = defaultdict(list)
         self.rows: set[int] = set()
-        self.most_rows = 0
+        self.most_rows, self.renderer = 0, ""
         self._awaited: tuple[str, Callable[[], bool], Callable[[], bool]] | None = None
         self._since: float | None = None
         self._before, self._began, row = app.before_widgets, 0.0, find._row
@@ -91,7 +91,7 @@ class Watch:
         self._before()
 
     def after(self) -> None:
-        now = time.perf_counter()
+        now, self.renderer = time.perf_counter(), self.app.ui.graphics.renderer_name
         if self.doing:
             self.frames[self.doing].append(now - self._began)
         self.most_rows = max(self.most_rows, len(self.rows))
@@ -256,7 +256,7 @@ def measure(triangles: int, size: tuple[int, int], clicks: int) -> dict[str, Any
         raise RuntimeError(failed[0])
     return {
         "triangles": made.triangle_count,
-        "renderer": app.ui.graphics.renderer_name,
+        "renderer": watch.renderer,
         "frames": dict(watch.frames),
         "answers": dict(watch.answers),
         "most_rows": watch.most_rows,

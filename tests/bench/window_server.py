@@ -43,6 +43,7 @@ class Watch:
         self.seen: dict[str, float] = {}
         self.worked: dict[str, float] = {}
         self.frames: dict[str, list[tuple[float, float]]] = {state: [] for state in STATES}
+        self.renderer = ""
         self.traced: dict[str, int] = dict.fromkeys(STATES, 0)
         self.others: dict[str, float] = {}
         self._mark = self._now()
@@ -61,6 +62,7 @@ class Watch:
     def after(self) -> None:
         self.frames[self.state].append((time.perf_counter() - self._began, time.thread_time() - self._worked))
         self._saw("window")
+        self.renderer = self.app.ui.graphics.renderer_name
         if self.c.traced is not None and self.app.ui.graphics.display.texture_id is not None:
             self._saw("first picture")
             if self.c.traced.request.divisor == 1 and self.c.traced.whole:
@@ -102,7 +104,7 @@ class Watch:
 
     def report(self) -> dict[str, Any]:
         return {
-            "renderer": self.app.ui.graphics.renderer_name,
+            "renderer": self.renderer,
             "seen": self.seen,
             "worked": self.worked,
             "load": os.getloadavg()[0],

@@ -43,8 +43,12 @@ def _bookmarks(d: Driver) -> None:
 
 def _texts(d: Driver) -> None:
     camera = d.c.session.camera
-    d.press("Ctrl+Shift+C")
-    assert json.loads(imgui.get_clipboard_text()) == camera.to_json()
+
+    def copied() -> bool:
+        text = imgui.get_clipboard_text() if d.press("Ctrl+Shift+C") else ""
+        return text.startswith("{") and json.loads(text) == camera.to_json()
+
+    d.wait(copied, "the camera in the clipboard, which all windows of a screen share", 20.0)
     d.press("R", "Ctrl+Shift+V").settle()
     now = d.c.session.camera
     assert math.dist(now.position, camera.position) < 1e-6 and abs(now.angle - camera.angle) < 1e-6
