@@ -1,11 +1,10 @@
 """The paper's Table 1, Figure 3 and Figure 4 by one command each, in the scenes and sizes that show something.
 
-A figure is brought about part by part, over many frames of the window: a scene is opened, then something is selected in
-its first picture, then a run is started."""
+Part by part, in later frames of the window: a scene is opened, something in it is selected, a run is started."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,6 +16,7 @@ from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 
 FIGURE_3, FIGURE_4 = (embedded_scenes()[name] for name in ("figure3", "figure4"))
+_CARDS = 9  # pixels of figure3: in finer pictures other rays find what the test misses
 SIDE = 128
 """Pixels of pictures of figure4, for which the scene is made: in larger ones a ray meets the small shadow from afar."""
 
@@ -26,9 +26,7 @@ Act = Callable[[Controller], object]
 
 
 class Part(NamedTuple):
-    """A condition that must hold once, and what brings it about.
-
-    `sets_stage` tells what the tour does by itself from what it waits for."""
+    """A condition that must hold once, and what brings it about; the tour does by itself what only `sets_stage`."""
 
     holds: Condition
     act: Act
@@ -57,38 +55,42 @@ def opened(path: Path) -> Part:
 
 
 class PaperFigures:
-    """`waiting` are the parts of the figure that is being brought about."""
+    """Brings the parts of one figure about, in one scene."""
 
     def __init__(self, controller: Controller) -> None:
-        self._c = controller
+        self._c, self._path = controller, FIGURE_4
         self._waiting: list[Part] = []
 
     def update(self) -> None:
-        """Bring the next part about, once in each frame of the window."""
-        if self._waiting:
-            part = self._waiting[0]
+        """Bring the next part about, once in each frame of the window, unless another scene was opened meanwhile."""
+        scene = self._c.session.scene
+        if not self._c.loader.busy and (scene is None or scene.path != self._path):
+            self._waiting = []
+        for part in self._waiting[:1]:
             part.act(self._c)
             if part.holds(self._c):
-                self._waiting.pop(0)
+                self._waiting.remove(part)
 
-    def _begin(self, parts: Iterable[Part]) -> None:
+    def _begin(self, path: Path, *parts: Part) -> None:
         if not self._c.runs.refuses():
-            self._waiting = list(parts)
+            open_scene(path)(self._c)
+            self._path, self._waiting = path, [opened(path), *parts]
 
     def table_1(self) -> None:
         """Measure the open scene as Table 1 does: 512 x 512, depth 10, 100 frames of the path, the kd-tree."""
-        runs = self._c.runs
-        runs.experiment_plan = ExperimentPlan({BY_MODES}, verify=True)
-        runs.start_experiment()
+        self._c.runs.experiment_plan = ExperimentPlan({BY_MODES}, verify=True)
+        self._c.runs.start_experiment()
 
     def figure_3(self) -> None:
-        """Show a primitive whose occlusion the test misses: it compares with the left and the upper pixel alone."""
+        """Show a card that the test takes for whole: rays are compared with the left and the upper pixel's alone."""
 
         def show(c: Controller) -> None:
             c.settings.change(method=BY_MODES, symmetric=False)
+            c.session.set_pace(fixed_size=True, width=_CARDS, height=_CARDS)
             c.session.set_draw(view=View.OCCLUSION)
+            c.notices.say(f"Figure 3 in {_CARDS} x {_CARDS} pixels: the card that is hidden on its left is green, too")
 
-        self._begin((opened(FIGURE_3), Part(lambda c: c.session.draw.view is View.OCCLUSION, show)))
+        self._begin(FIGURE_3, Part(lambda c: c.session.draw.view is View.OCCLUSION, show))
 
     def figure_4(self) -> None:
         """Come near to a triangle whose shadow can be seen only from there, with zoom factors 4 and 64."""
@@ -97,5 +99,5 @@ class PaperFigures:
             c.runs.zoom_plan = ZoomPlan(factors="4, 64", size=(SIDE, SIDE))
             c.runs.start_zoom_test()
 
-        selected = Part(lambda c: c.selection.picked is not None, lambda c: c.selection.select((0.5, 0.5)))
-        self._begin((opened(FIGURE_4), selected, Part(lambda c: c.runs.current is not None, test)))
+        select = Part(lambda c: c.selection.picked is not None, lambda c: c.selection.select((0.5, 0.5)))
+        self._begin(FIGURE_4, select, Part(lambda c: c.runs.current is not None, test))

@@ -121,7 +121,6 @@ def _shows_culling(c: Controller) -> bool:
 
 
 def _saves(c: Controller) -> bool:
-    """Return whether culling has saved something in the newest frame."""
     return c.frame is not None and c.frame.statistics.shadow.traced < c.frame.statistics.shadow.due
 
 

@@ -19,7 +19,7 @@ from tests.viewer.scenarios.lamps import lamps
 from tests.viewer.scenarios.moving import flying, playing, resizing
 from tests.viewer.scenarios.navigating import navigating
 from tests.viewer.scenarios.panels import hiding, looks, panels
-from tests.viewer.scenarios.runs import asking, experimenting, filming, zooming
+from tests.viewer.scenarios.runs import asking, experimenting, figures, filming, zooming
 from tests.viewer.scenarios.savings import savings
 from tests.viewer.scenarios.starting import starting
 from tests.viewer.scenarios.taking import taking

@@ -11,6 +11,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from PIL import Image
 
 from tests.viewer.driver import SMALL, Driver
+from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.experiments import zoom
 from viewer.services.runs import RecordedZoomTest
 from viewer.state.views import View
@@ -225,3 +226,15 @@ def _saved_results(d: Driver, panel: str) -> dict[str, Path]:
     with Image.open(files[".png"]) as plot:
         assert plot.size == (1920, 1080)
     return files
+
+
+def figures(d: Driver) -> None:
+    """The paper's figures by one command each, in the scenes and sizes that show something."""
+    runs = d.c.runs
+    d.choose("Run/Figure 4").wait(lambda: runs.zoom_test is not None and runs.current is None, "Figure 4", 120.0)
+    assert runs.zoom_test.whole and [bool(one.wrong_steps) for one in runs.zoom_test.results.approaches] == [True, True]
+    d.expect("factor 4: examined anew after step 14", "factor 64: never examined anew")
+    d.choose("Run/Figure 3").wait(lambda: d.c.session.draw.view is View.OCCLUSION, "Figure 3", 60.0).settle()
+    hidden = OcclusionMode(int(occlusion_mode(d.c.frame.modes)[4]))
+    assert hidden is OcclusionMode.FULLY_RENDERED, "the card that is hidden on its left is taken for whole"
+    d.choose("Run/Table 1").wait(lambda: runs.experiment is not None and runs.experiment.traced > 1, "frames")

@@ -35,5 +35,5 @@ def show(ui: Ui) -> None:
         imgui.same_line()
         if wide_button("Skip", "Go on to the next step.", 2):
             tour.skip()
-    begun = ui.controller.frame is not None
-    paragraph(tour.text(step) if begun else "You can begin as soon as there is a picture.", QUIET)
+    text = tour.text(step) if ui.controller.frame is not None else "You can begin as soon as there is a picture."
+    paragraph(text, QUIET)

@@ -24,8 +24,8 @@ from viewer.window.widgets import QUIET, WARNING, em, one_of, paragraph, row, si
 
 def show(ui: Ui) -> None:
     """Show the panel View."""
-    panel_rows(ui, "View", 5.0, {"draw.tone.exposure": _exposure}, partial(_slice, ui), partial(_range, ui))
     legend.in_panel(ui)
+    panel_rows(ui, "View", 5.0, {"draw.tone.exposure": _exposure}, partial(_slice, ui), partial(_range, ui))
     _explanation(ui)
 
 
