@@ -36,12 +36,13 @@ _PLACES = itertools.cycle(  # where a shadow is looked for, in parts of the pict
 
 @dataclass(frozen=True)
 class Step:
-    """See the module; `commands` can be run from the last one."""
+    """See the module; `commands` can be run from the last one; time stands `still` before its last part."""
 
     title: str
     text: str | Callable[[Controller], str]
     parts: tuple[Part, ...] = ()
     commands: tuple[str, ...] = ()
+    still: bool = False
 
 
 class Tour:
@@ -60,14 +61,12 @@ class Tour:
         text = step.text if isinstance(step.text, str) else step.text(self._c)
         return re.sub(r"\{(.+?)\}", lambda name: self._key(name[1]), text)
 
-    def toggle(self) -> None:
-        """Begin the tour, or end it."""
-        (self.start if self.step is None else self.end)()
-
     def start(self) -> None:
         """Begin with the first step."""
         self._c.selection.clear()  # what was clicked before was not clicked for the tour
         self._pace = self._c.session.state.pace
+        if self._c.session.scene is not None and self._c.session.scene.path == FIGURE_4:  # of the last tour
+            open_scene(default_scene())(self._c)
         self._go_to(STEPS[0])
 
     def end(self) -> None:
@@ -81,8 +80,7 @@ class Tour:
 
     def show(self) -> None:
         """Do the step for the user, part by part, each of which can be looked at for a moment."""
-        if self.step is not None and self.step.parts:
-            self._shows = True
+        self._shows = True
 
     def update(self) -> None:
         """See whether the next part of the step is done, or do it, once per frame."""
@@ -92,6 +90,8 @@ class Tour:
             self.skip()
             return
         part = self.step.parts[self._held]
+        if self.step.still and part is self.step.parts[-1]:
+            self._c.session.playing = False
         if self._shows or part.sets_stage:
             part.act(self._c)
         if part.holds(self._c):
@@ -268,12 +268,13 @@ STEPS = (
     ),
     Step(
         "Shadows that move",
-        f"Press {{{View.MOVING_SHADOW.label}}}, and {{Play}}: the shadows of moving objects fall on primitives in "
+        f"Press {{{View.MOVING_SHADOW.label}}}, then {{Play}}: the shadows of moving objects fall on primitives in "
         "non-shadow mode, and are right, as these ask dynamic objects.",
         (
             Part(lambda c: c.session.scene is not None and len(c.session.scene.objects) > 1,
                  open_scene(default_scene()), True),
             Part(_shows(View.MOVING_SHADOW), _show(View.MOVING_SHADOW)),
+            Part(lambda c: c.session.playing, _play),
         ),
     ),
     Step(
@@ -287,6 +288,7 @@ STEPS = (
             Part(lambda c: not c.session.playing, _stop, True),
             Part(_shows_wrong, _show(View.DIFFERENCE)),
         ),
+        still=True,
     ),
     Step("The rule of four", _rule_of_four, (Part(_at_least(EXAMINED), _play),)),
     Step(

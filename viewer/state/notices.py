@@ -69,9 +69,8 @@ class Notices:
     def say(self, text: str, error: bool = False, details: str = "", file: Path | None = None) -> None:
         """Show one line in the status bar: a notice for some seconds, an error until the next line.  The log keeps
         both.  `file` can be opened from there."""
-        entry = self._add(Level.ERROR if error else Level.NOTICE, in_one_line(text), details)
+        self.message = entry = self._add(Level.ERROR if error else Level.NOTICE, in_one_line(text), details)
         entry.file = file
-        self.message = entry
 
     def report(self, failed: Failure) -> None:
         """Report a failure: in the status bar if such a thing may happen, else as an internal error."""

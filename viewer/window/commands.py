@@ -307,16 +307,17 @@ def _run(ui: Ui) -> list[Command]:
 def _help(ui: Ui) -> list[Command]:
     def read(page: str) -> None:
         file = resources.documentation(page)
-        if file is None or not webbrowser.open(file.as_uri()):
-            where = file or f"docs/{page}.md of the program's source"
-            ui.controller.notices.say(f"no web browser opened the documentation: it is in {where}")
+        asked = file is not None and webbrowser.open(file.as_uri())
+        where = file or f"docs/{page}.md of the program's source"
+        ui.controller.notices.say(f"{'the desktop was asked to open' if asked else 'the documentation is in'} {where}")
 
     def about() -> None:
         text = f"{_ABOUT}\n\nDrawn by {ui.graphics.renderer_name}"
         ui.controller.questions.question = Question("About Shadowcull", text, (("Close", lambda: None),))
 
     return [
-        Command("Tour", "Help", ui.tour.toggle, checked=lambda: ui.tour.step is not None),
+        Command("Tour", "Help", lambda: (ui.tour.end if ui.tour.step else ui.tour.start)(),
+                checked=lambda: ui.tour.step is not None),
         Command(Dialog.KEYS.value, "Help", lambda: ui.toggle(Dialog.KEYS), "F1", also="keys shortcuts",
                 checked=lambda: Dialog.KEYS in ui.dialogs),
         Command("Documentation", "Help", partial(read, "index"), also="manual docs", tip="in the web browser"),

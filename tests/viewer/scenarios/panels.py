@@ -100,7 +100,7 @@ def hiding(d: Driver) -> None:
     docking.dockable_window_of_name("Saving").is_visible = False
     d.frames(4)
     before = _places_of_panels()
-    assert {"Camera", "Experiment", "Figure 1", "Inspector"} < set(before)
+    assert {"Camera", "Experiment", "Inspector"} < set(before)
     d.press("Tab")
     there = _places_of_panels()
     assert set(there) == {PICTURE} and there[PICTURE][2] * there[PICTURE][3] > 0.9 * 1280 * 800

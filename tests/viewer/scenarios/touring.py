@@ -59,7 +59,9 @@ def _by_hand(d: Driver) -> None:
     chosen = next(one for one in d.c.inspector.why.reasons if one.blocker >= 0)
     words = plain(Words(d.c.session.scene, d.c.inspector.why).answer(chosen))
     assert words.startswith("In shadow: blocked by "), f"it says which light is blocked, and by what: {words}"
-    d.press("Shift+O").wait(lambda: tour.step is FAILS, "moving shadows", 60.0)
+    d.press("Shift+O").pause(0.6)
+    assert tour.step is MOVE, "nothing has moved yet"
+    d.press("Space").wait(lambda: tour.step is FAILS, "moving shadows", 60.0)
     d.wait(lambda: d.c.session.scene.path == FIGURE_4 and not d.c.session.playing and d.c.selection.picked is not None,
            "the stage of the paper's Figure 4", 120.0)  # fmt: skip
     d.settle().press("8").wait(lambda: tour.step is RULE, "the wrong pixels", 60.0)

@@ -22,7 +22,6 @@ from viewer.window.widgets import ERROR, QUIET, in_window_style, outlined, parag
 _USUAL = (REFERENCE, BY_MODES, CERTIFIED, "lightbuffer", "voxels")
 _PLOT, _TABLE = 16.0, 30.0  # ems of width; the table's first columns are what methods are compared by
 _FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
-_MOST_BELOW = 1.0  # of what is above zero: how much of what is below is seen
 
 
 def show(ui: Ui) -> None:
@@ -106,7 +105,7 @@ def _plot(ui: Ui, run: Experiment, results: Results) -> None:
     values = [curve for curves in savings.values() for curve in curves]
     top = max([float(curve.max()) for curve in values], default=0.0)
     # So that one method that does many times the work does not flatten all others.
-    bottom = max(min([float(curve.min()) for curve in values], default=0.0), -_MOST_BELOW * max(top, _LEAST_TOP))
+    bottom = max(min([float(curve.min()) for curve in values], default=0.0), -max(top, _LEAST_TOP))
     implot.setup_axes("", "", AXIS, AXIS)
     implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
     implot.setup_axis_format(implot.ImAxis_.y1, "%.4g %%")

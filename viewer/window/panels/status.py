@@ -210,8 +210,9 @@ def _open_button(ui: Ui, entry: Entry) -> None:
     if entry.file is None:
         return
     imgui.same_line()
-    if imgui.small_button(_OPEN) and not webbrowser.open(entry.file.absolute().as_uri()):
-        ui.controller.notices.say(f"the desktop has no program that opens {entry.file.name}", error=True)
+    if imgui.small_button(_OPEN):
+        asked = webbrowser.open(entry.file.absolute().as_uri())
+        ui.controller.notices.say(f"the desktop {'was asked' if asked else 'has no program'} to open {entry.file}")
     tooltip(str(entry.file))
 
 
