@@ -59,6 +59,7 @@ def _by_hand(d: Driver) -> None:
     chosen = next(one for one in d.c.inspector.why.reasons if one.blocker >= 0)
     words = plain(Words(d.c.session.scene, d.c.inspector.why).answer(chosen))
     assert words.startswith("In shadow: blocked by "), f"it says which light is blocked, and by what: {words}"
+    d.wait(lambda: len(d.c.session.scene.objects) > 1, "a scene in which something moves", 60.0).settle()
     d.press("Shift+O").pause(0.6)
     assert tour.step is MOVE, "nothing has moved yet"
     d.press("Space").wait(lambda: tour.step is FAILS, "moving shadows", 60.0)
