@@ -81,6 +81,7 @@ def film(d: Driver) -> None:
 def still(d: Driver) -> None:
     """The window with a clicked pixel, after some frames from which culling has learnt."""
     _begin(d)
+    d.c.preferences.savings = True
     d.press(*["RightArrow"] * (STILL - 1)).settle()
     d.press("RightArrow").settle()
     d.c.settings.change(samples=SAMPLES)
