@@ -14,9 +14,9 @@ from tracer.experiments.titles import WRONG_PIXELS, FactorStep
 from tracer.experiments.zoom import Change, Step
 from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
-from tracer.text import mode_in_words, printable, saved
+from tracer.text import MOST_PERCENT, mode_in_words, printable, saved
 from viewer.state.methods import BY_MODES
-from viewer.util.numbers import memory, saved_in_words
+from viewer.util.numbers import memory
 
 T = TypeVar("T")
 
@@ -80,16 +80,16 @@ def table_1(results: experiment.Results) -> list[Column[Row]]:
     return [column for column in TABLE_1 if column is not (SPEED_UP if results.settings.get("verify") else WRONG)]
 
 
-LEVEL = 0.03
-"""Part of 1 by which times may differ that are called as fast as each other."""
+LEVEL = 0.03  # part of 1 by which times may differ that are called as fast as each other
 
 
-def verdicts(results: experiment.Results) -> list[str]:
-    """Say in a sentence for each method what it saves, whether it is right, and whether it is faster."""
-    rows = {row.method: row for row in experiment.table(results)}
-    paper, said = rows.get(BY_MODES), []
-    for row in (row for row in rows.values() if row.method != REFERENCE):
-        steps = saved_in_words(row.average_steps).replace(" saved", " of the traversal steps of shadow rays saved")
+def verdicts(rows: Sequence[Row], verified: bool) -> list[str]:
+    """Say in a sentence for each method what it saves, and whether it is right or, unless it is `verified`, faster."""
+    paper, said = next((row for row in rows if row.method == BY_MODES), None), []
+    for row in (row for row in rows if row.method != REFERENCE):
+        steps = f"{saved(row.average_steps)} of the traversal steps of shadow rays saved"
+        if row.average_steps < -MOST_PERCENT:  # 12.6 × as many
+            steps = f"{saved(row.average_steps)} traversal steps of shadow rays"
         if paper is not None and row is not paper and 0.0 < paper.average_steps < 0.5 * row.average_steps:
             steps += f", {row.average_steps / paper.average_steps:.1f} times as many as by {BY_MODES}"
         right = f", {row.wrong:,} wrong answer{'s' * (row.wrong != 1)}" if row.wrong else ", no wrong answer"
@@ -100,7 +100,7 @@ def verdicts(results: experiment.Results) -> list[str]:
             speed = f", as fast as {REFERENCE} within {LEVEL:.0%}"
         else:
             speed = f", too few frames to say whether faster than {REFERENCE}"
-        said.append(f"{row.method}: {steps}{right if results.settings.get('verify') else speed}.")
+        said.append(f"{row.method}: {steps}{right if verified else speed}.")
     return said
 
 

@@ -33,12 +33,16 @@ class Part(NamedTuple):
     sets_stage: bool = False
 
 
+def is_open(c: Controller, path: Path) -> bool:
+    """Return whether a scene is the one that is open."""
+    return c.session.scene is not None and c.session.scene.path == path
+
+
 def open_scene(path: Path) -> Act:
     """Open a scene, unless it is open or on its way."""
 
     def act(c: Controller) -> None:
-        scene = c.session.scene
-        if (scene is None or scene.path != path) and c.loader.load_job is None:
+        if not is_open(c, path) and c.loader.load_job is None:
             c.loader.open(path)
 
     return act
@@ -48,8 +52,8 @@ def opened(path: Path) -> Part:
     """Return the part that opens a scene, and waits until its picture rests."""
 
     def holds(c: Controller) -> bool:
-        scene, rests = c.session.scene, c.scheduler.activity in (Activity.RESTING, Activity.ADDING_SAMPLES)
-        return scene is not None and scene.path == path and c.frame is not None and rests and not c.loader.busy
+        rests = c.scheduler.activity in (Activity.RESTING, Activity.ADDING_SAMPLES)
+        return is_open(c, path) and c.frame is not None and rests and not c.loader.busy
 
     return Part(holds, open_scene(path), True)
 
@@ -63,8 +67,7 @@ class PaperFigures:
 
     def update(self) -> None:
         """Bring the next part about, once in each frame of the window, unless another scene was opened meanwhile."""
-        scene = self._c.session.scene
-        if not self._c.loader.busy and (scene is None or scene.path != self._path):
+        if not self._c.loader.busy and not is_open(self._c, self._path):
             self._waiting = []
         for part in self._waiting[:1]:
             part.act(self._c)

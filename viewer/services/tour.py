@@ -17,7 +17,7 @@ import numpy as np
 
 from tracer.method import Method
 from viewer.services.controller import Controller
-from viewer.services.paper_figures import FIGURE_4, SIDE, Act, Condition, Part, open_scene, opened
+from viewer.services.paper_figures import FIGURE_4, SIDE, Act, Condition, Part, is_open, open_scene, opened
 from viewer.state import verified
 from viewer.state.methods import BY_MODES, with_base
 from viewer.state.view_state import Pace
@@ -65,7 +65,7 @@ class Tour:
         """Begin with the first step."""
         self._c.selection.clear()  # what was clicked before was not clicked for the tour
         self._pace = self._c.session.state.pace
-        if self._c.session.scene is not None and self._c.session.scene.path == FIGURE_4:  # of the last tour
+        if is_open(self._c, FIGURE_4):  # of the last tour
             open_scene(default_scene())(self._c)
         self._go_to(STEPS[0])
 
@@ -143,13 +143,7 @@ def _shadowed(c: Controller) -> int | None:
 
 def _at_least(number: int) -> Condition:
     """Return whether the picture shows a frame of figure4, or a later one."""
-
-    def holds(c: Controller) -> bool:
-        frame, scene = c.frame, c.session.scene
-        shown = scene is not None and scene.path == FIGURE_4 and frame is not None
-        return shown and c.session.frame_at(frame.time) >= number  # type: ignore[union-attr]
-
-    return holds
+    return lambda c: is_open(c, FIGURE_4) and c.frame is not None and c.session.frame_at(c.frame.time) >= number
 
 
 # --- what brings them about ------------------------------------------------------------------------
@@ -229,8 +223,8 @@ def _how_to_toggle(c: Controller) -> str:
 
 def _how_often(c: Controller) -> str:
     """Say how many times as many pixels the triangle of figure4 covers as when it was last examined."""
-    frame, scene = c.frame, c.session.scene
-    if frame is None or scene is None or scene.path != FIGURE_4:
+    frame = c.frame
+    if frame is None or not is_open(c, FIGURE_4):
         return ""
     now, before = int(frame.pixel_count[0]), int(frame.highest_count[0])
     return f"Now it covers {now:,} pixels, and {before:,} when it was examined last: {now / max(before, 1):.1f} times."

@@ -34,7 +34,7 @@ class Undo:
 
     def __init__(
         self, session: Session, motion: Motion, notices: Notices, locked: Callable[[], bool],
-        reset_modes: Callable[[], None] = lambda: None,
+        reset_modes: Callable[[], None],
     ) -> None:  # fmt: skip
         """Nothing is brought back while `locked()`, which says so itself."""
         self._session, self._motion, self._notices, self._locked = session, motion, notices, locked

@@ -86,7 +86,7 @@ class FullScreen:
             mode = glfw.get_video_mode(monitor)
             glfw.set_window_monitor(window, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
         elif full and not self.wanted:
-            place, self.place = self.place or (100, 100, 1280, 800), None
+            place, self.place = self.place or (100, 100, *LEAST_SIZE), None
             glfw.set_window_monitor(window, None, *place, glfw.DONT_CARE)  # type: ignore[arg-type]
 
 

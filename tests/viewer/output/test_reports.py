@@ -9,7 +9,7 @@ from tracer.experiments.experiment import Results, Row
 from tracer.experiments.titles import happenings, title
 from tracer.experiments.zoom import Approach, Change, Step
 from tracer.scene.model import Camera
-from viewer.output.reports import SPEED_UP, WRONG, caveats, changes_in_words, table_1
+from viewer.output.reports import SPEED_UP, WRONG, caveats, changes_in_words, table_1, verdicts
 
 
 def row(method: str, steps: float = 0.0, tests: float = 0.0, speed_up: float = 1.0, spread: float = 0.01) -> Row:
@@ -29,6 +29,23 @@ def test_table_1_of_a_verified_run_tells_what_is_wrong_and_no_speed_up() -> None
     assert cells["shadow rays saved (of rays due)"] == "30.0%"
     none = {column.meaning: column.cell(row("none")) for column in timed}
     assert none["speed-up over none, all frames"] == none["traversal steps saved, average"] == ""
+
+
+def test_a_verdict_says_what_is_saved_and_whether_it_is_faster_or_right() -> None:
+    rows = [
+        row("none"),
+        row("paper", 0.1, speed_up=1.5),
+        row("certified", 0.7, speed_up=1.0),
+        row("lie", -11.6, speed_up=0.5),
+    ]
+    part = "of the traversal steps of shadow rays saved"
+    assert verdicts(rows, verified=False) == [
+        f"paper: 10.0% {part}, faster than none: 1.50 times its speed.",
+        f"certified: 70.0% {part}, 7.0 times as many as by paper, as fast as none within 3%.",
+        "lie: 12.6 × as many traversal steps of shadow rays, slower than none: 0.50 times its speed.",
+    ]
+    assert verdicts(rows[:2], verified=True) == [f"paper: 10.0% {part}, no wrong answer."]
+    assert "too few frames" in verdicts([rows[0], row("paper", 0.1, spread=float("inf"))], verified=False)[0]
 
 
 def test_what_times_depend_on_is_said_alike_in_the_window_and_by_bench() -> None:

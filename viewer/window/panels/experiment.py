@@ -89,7 +89,7 @@ def _table(ui: Ui, run: Experiment, results: Results) -> None:
     """The paper's Table 1: a line for each method."""
     rows: list[Row] = ui.cached("table 1", results, len(results.frames), lambda: experiment.table(results))
     results_table("table 1", [METHOD, *table_1(results)], rows, fits=True)
-    for sentence in ui.cached("verdicts", results, len(results.frames), lambda: verdicts(results)):
+    for sentence in ui.cached("verdicts", results, len(results.frames), lambda: verdicts(rows, run.settings.verify)):
         paragraph(in_window_style(sentence))
     said = in_window_style("; ".join(caveats(results, in_window=True)))
     for quiet in (f"{said[:1].upper()}{said[1:]}.", *map(in_window_style, PUBLISHED)):

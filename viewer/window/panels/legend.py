@@ -20,10 +20,11 @@ _MOST = 0.62  # of the picture's width, and of its height
 
 @dataclass
 class LegendState:
-    """The frame of the window in which the panel showed the legend last, and where the pointer holds it in the
-    picture."""
+    """The frame of the window in which the panel showed the legend last, whether the picture shows it, and where the
+    pointer holds it there."""
 
     in_panel: int = -2
+    in_picture: bool = False
     held: tuple[float, float] = (0.0, 0.0)
 
 
@@ -60,6 +61,11 @@ def in_sight(ui: Ui) -> bool:
     return imgui.get_frame_count() - ui.state(LegendState).in_panel <= 1
 
 
+def is_shown(ui: Ui) -> bool:
+    """Whether the panel or the picture shows it, where there was room last."""
+    return in_sight(ui) or ui.state(LegendState).in_picture
+
+
 def draw(legend: Legend) -> None:
     """A whole legend at the cursor."""
     layout = fitting(legend, width_of, imgui.get_text_line_height(), imgui.get_content_region_avail().x, 1e6)
@@ -73,7 +79,8 @@ def draw(legend: Legend) -> None:
 
 def show(ui: Ui, area: Area) -> None:
     """Over the picture, unless the panel shows it: where it was put, and always inside."""
-    corner, end = area.corner, area.end
+    state, corner, end = ui.state(LegendState), area.corner, area.end
+    state.in_picture = False
     legend, options = of_picture(ui), ui.controller.session.draw
     if legend is None or not options.legend or in_sight(ui):
         return
@@ -81,6 +88,7 @@ def show(ui: Ui, area: Area) -> None:
     layout = fitting(legend, width_of, imgui.get_text_line_height(), _MOST * width, _MOST * height)
     if layout is None:
         return
+    state.in_picture = True
     margin = em(_MARGIN)
     least = ImVec2(corner.x + margin, corner.y + margin + imgui.get_text_line_height() + em(0.7))  # below the title
     room = ImVec2(end.x - margin - layout.width - least.x, end.y - margin - layout.height - least.y)

@@ -163,11 +163,7 @@ def _title(ui: Ui, area: Area) -> float:
         return area.corner.y
     write_lines(lines, area.corner)
     lower = area.corner.y + size_of(lines)[1]
-    if (
-        view.records is Record.VERIFY
-        and not (draw.legend or legend.in_sight(ui))
-        and verified.is_wrong(frame.statistics)
-    ):
+    if view.records is Record.VERIFY and not legend.is_shown(ui) and verified.is_wrong(frame.statistics):
         write_lines([verified.in_short(frame.statistics)], ImVec2(area.corner.x, lower), ON_PICTURE_ERROR)
         lower += size_of(lines)[1]
     return lower
