@@ -13,7 +13,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from tracer.kernels import inlined, kernel
+from tracer.runtime.kernels import inlined, kernel
 from tracer.simd import i32_at, i64_at
 
 MAX_CULLED_LIGHTS = 31

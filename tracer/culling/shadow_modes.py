@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tracer.culling.counters import BY_LIGHT, CULLED, DYNAMIC_ONLY
 from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, add_shadow
 from tracer.culling.stages import vectors
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import address_of, bits_of, gather_i32x16, load_i32x16, lowest_bit, ones, store
 from tracer.simd.records import IntRow, Memory, row_count, rows_of
 

@@ -23,7 +23,7 @@ from tracer.culling.stages import CHOOSE, LEARN, looked_at, looks_at, run_stages
 from tracer.geometry.boxes import segments_miss_box
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING, STATIC_GEOMETRY, any_hits, any_hits_by
 from tracer.geometry.rays import Rays
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,

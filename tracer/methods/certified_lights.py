@@ -26,9 +26,9 @@ from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import aligned_rows, borrowed
 from tracer.geometry.offsets import RAY_OFFSET
-from tracer.kernels import entry, kernel
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
-from tracer.parallel import for_each_chunk
+from tracer.runtime.kernels import entry, kernel
+from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lamps import Lamps
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of

@@ -23,10 +23,10 @@ from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed
-from tracer.kernels import entry, kernel
 from tracer.methods.interface import FrameView, Stage
-from tracer.methods.of_space import NOWHERE, CellsOfSpace
-from tracer.parallel import for_each_chunk
+from tracer.methods.spatial_cache import NOWHERE, CellsOfSpace
+from tracer.runtime.kernels import entry, kernel
+from tracer.runtime.parallel import for_each_chunk
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
 from tracer.shading.wave import wave_in

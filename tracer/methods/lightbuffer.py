@@ -43,8 +43,8 @@ from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.accelerators import KD_TREE
 from tracer.geometry.offsets import RAY_OFFSET
-from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in
 from tracer.simd import i64_at
 from tracer.simd.records import reading

@@ -22,8 +22,8 @@ from tracer.culling.shadow_modes import (
 )
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
-from tracer.kernels import entry
 from tracer.methods.interface import FrameView, ShadowMethod, Stage
+from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import address_of, i64_at, load_f32x16, load_i32x16, store

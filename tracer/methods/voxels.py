@@ -24,9 +24,9 @@ from tracer.culling.voxels.tell import Stop
 from tracer.culling.voxels.view import voxel_view_at
 from tracer.culling.voxels.walk import states, voxels_at, walk
 from tracer.geometry.boxes import segments_miss_box
-from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Stage
-from tracer.methods.of_space import NOWHERE, CellsOfSpace
+from tracer.methods.spatial_cache import NOWHERE, CellsOfSpace
+from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import address_of, bits_of, i32x16, i64_at, load_i32x16, load_three, mask16, ones, select, store

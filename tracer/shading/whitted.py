@@ -31,7 +31,7 @@ from tracer.culling.stages import (
     write_sample,
 )
 from tracer.geometry.memory import borrowed
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.shading.blocks import BLOCK, LOCAL, PLANE, SENT, block_of, planes_at
 from tracer.shading.bounce import next_wave
 from tracer.shading.buffers import pixels_in, write

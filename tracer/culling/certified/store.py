@@ -52,7 +52,7 @@ from tracer.culling.shadow_modes import words_at
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.primitives import Outlines
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lamps import Lamps
 
 if TYPE_CHECKING:

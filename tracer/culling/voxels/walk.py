@@ -16,7 +16,7 @@ from tracer.culling.counters import STEPS, TESTS
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
 from tracer.culling.voxels.box_judge import judge_box
 from tracer.geometry.boxes import inverse
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,
