@@ -28,7 +28,7 @@ from tracer.culling.certified.shaft import LOWEST
 from tracer.culling.counters import CANDIDATES_ONLY, TESTS
 from tracer.culling.shadow_modes import answer, look_up, trusted, words_of
 from tracer.culling.stages import vectors
-from tracer.geometry.offsets import RAY_OFFSET
+from tracer.geometry.rays import RAY_OFFSET
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
