@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer.culling.occluder_cache import OccluderSlots, SlotKey, remember, test_slots
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage

@@ -32,7 +32,7 @@ from tracer.culling.certified.scheduler import Budget, CertificateScheduler, Cou
 from tracer.culling.certified.store import CertificateStore
 from tracer.culling.certified.view import view_at
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.memory import borrowed

@@ -20,7 +20,7 @@ from tracer.culling.certified.hiders import Hiders, find_hidden, is_lamp
 from tracer.culling.certified.scheduler import Budget, Counts
 from tracer.culling.regions.lookup import look, want_around
 from tracer.culling.regions.store import RegionStore, RegionView
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, looked_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction

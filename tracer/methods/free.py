@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer.culling.counters import CULLED
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, vectors
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.runtime.kernels import entry

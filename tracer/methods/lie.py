@@ -18,7 +18,7 @@ from tracer.culling.environments.ask import answer, find_cells, select_lights
 from tracer.culling.environments.octree import cells_at, environments_at
 from tracer.culling.environments.sample import seen_points, settle_by_samples
 from tracer.culling.environments.store import EnvironmentStore
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction

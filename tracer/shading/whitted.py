@@ -13,8 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.counters import BY_LIGHT, PASSED_OVER, PRIMARY, RAYS, SECONDARY, SHADOW, SHADOW_COUNTERS
-from tracer.culling.shadow_batch import shadow_batch_in
-from tracer.culling.shadow_testing import shadow_testing
+from tracer.culling.shadow_testing import shadow_batch_in, shadow_testing
 from tracer.culling.stages import (
     APPROACH,
     CALL,
