@@ -89,3 +89,13 @@ def test_what_ends_too_soon_is_one_line(tmp_path, elements, cut):
     path.write_bytes(path.read_bytes()[:-cut])
     with pytest.raises(SceneError, match=r"a\.ply: cannot be read as PLY: it is damaged or incomplete"):
         load_scene(path)
+
+
+@pytest.mark.parametrize(
+    "line", ["property", "property list list int x", "property list int", "property float", "property list float int x"]
+)
+def test_a_property_that_is_none_is_one_line(tmp_path, line):
+    path = written(tmp_path / "a.ply", "<", MIXED)
+    path.write_bytes(path.read_bytes().replace(b"property float z", line.encode()))
+    with pytest.raises(SceneError, match=r"a\.ply: cannot be read as PLY: it is damaged or incomplete"):
+        load_scene(path)

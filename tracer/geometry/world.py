@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE, LAZY, MOST_TOGETHER
 from tracer.geometry.boxes import NO_BOX
-from tracer.geometry.bvh8 import pieces
+from tracer.geometry.bvh8 import subtrees
 from tracer.geometry.bvh8.structure import Bvh8
 from tracer.geometry.kdtree.structure import KdTree
 from tracer.geometry.lazy_tree.structure import LazyKdTree
@@ -34,7 +34,7 @@ EACH = 1024  # rays, traced alone, after which somebody may cancel
 
 STRUCTURES: dict[str, Any] = {KD_TREE: KdTree, LAZY: LazyKdTree, BVH8: Bvh8}
 
-LARGE = pieces.LARGE
+LARGE = subtrees.LARGE
 """Primitives that never move: of more, the 8-wide tree may be built where rays arrive."""
 
 

@@ -94,7 +94,9 @@ def load_visible_scene(
     """As `load_scene`, but a scene with nothing to see in it, or too large to be shown, is a SceneError too."""
     scene = load_scene(path, progress, folders, meshes)
     if scene.primitive_count == 0:
-        raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
+        dropped = next((warning for warning in scene.warnings if " is dropped; " in warning), None)
+        why = f"{dropped}; nothing else is to be seen" if dropped is not None else ""
+        raise SceneError(why or f"{path}: nothing to see in it: no triangles, spheres or cones")
     check_showing(Path(path), scene.primitive_count)
     return scene
 

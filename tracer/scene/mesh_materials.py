@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from tracer.scene.model import Material, SceneError, Texture
 from tracer.scene.textures import check_pixels, texture_of
@@ -71,6 +72,9 @@ class MaterialTable:
 
     def _texture(self, image: Any, where: str) -> int:
         if image is None:
+            return -1
+        if not isinstance(image, Image.Image):
+            self.warnings.append(f"{where}: its texture is no image of the file; the surface keeps its material colour")
             return -1
         if id(image) not in self._textures:
             name = Path(str(image.info.get("file_path", ""))).name or f"texture {len(self.textures)}"

@@ -110,15 +110,12 @@ def elements_of(lines: list[str], order: str, most: int = MOST_PRIMITIVES) -> tu
 
 
 def _property(words: list[str], order: str) -> Property:
-    if unknown := [word for word in words[1:-1] if word not in {"list", *KINDS}]:
-        raise ValueError(f"unknown type {unknown[0]}")
-    if words[1] == "list":
-        _, _, count, said, name = words
-        if KINDS[count][0] == "f":
-            raise ValueError(count)
-        return Property(name, said, np.dtype(order + KINDS[said]), np.dtype(order + KINDS[count]))
-    _, said, name = words
-    return Property(name, said, np.dtype(order + KINDS[said]))
+    match words[1:]:
+        case [said, name] if said in KINDS:
+            return Property(name, said, np.dtype(order + KINDS[said]))
+        case ["list", count, said, name] if said in KINDS and KINDS.get(count, "f")[0] != "f":
+            return Property(name, said, np.dtype(order + KINDS[said]), np.dtype(order + KINDS[count]))
+    raise ValueError(f"{' '.join(words)}: no such property")
 
 
 # --- where everything is ------------------------------------------------------------------------------

@@ -5,13 +5,9 @@ too far.  A frustum ends where the last of its rays stops looking, and so shrink
 """
 
 from __future__ import annotations
-
 from typing import Any, NamedTuple
-
 import numpy as np
-
 from tracer.geometry.boxes import TINY
-from tracer.geometry.bvh8.frustum import MARGIN, NO_RAYS, Frustum, axes_of, wider
 from tracer.geometry.bvh8.packet import DX, DY, DZ, FRUSTA, IX, OX, ROW, T_MIN, T
 from tracer.geometry.triangle_test import ZERO
 from tracer.runtime.kernels import inlined, subkernel
@@ -27,6 +23,9 @@ from tracer.simd import (
     smallest,
     store,
 )
+from tracer.runtime.kernels import inlined
+from tracer.simd import load_f32, load_f32x8, maximum, minimum
+
 
 # Slopes of sixteen rays that differ by more are not worth a frustum: each ray goes its own way in less time.  Any hits
 # of one light's rays in random order take 295 ns at 4, 205 at 2, 123 at 1 and at 0.5 (Kitchen, 14 s, one thread).
@@ -214,3 +213,85 @@ def reaches_of(memory):
 def looking(memory, distance):
     """The vectors, as bits, that still look beyond a distance along the axis."""
     return bits_of(reaches_of(memory) >= distance)
+
+
+MARGIN = np.float32(2e-6)
+NO_RAYS = np.float32(-1)  # where a frustum ends that holds no ray: before it begins
+
+
+class Axes(NamedTuple):
+    """The axis that frusta go along, 1 or -1 for the way, and, for a box whose six numbers lie 32 bytes
+    apart, where its planes are: near and far along the axis, low and high along the other two."""
+
+    along: Any
+    way: Any
+    near: Any
+    far: Any
+    low_u: Any
+    high_u: Any
+    low_v: Any
+    high_v: Any
+
+
+class Frustum(NamedTuple):
+    """Bounds of rays: where they start, along the axis in the way they go and along the other two axes; their slopes;
+    and the distance along the axis from which on they look."""
+
+    start0: Any
+    start1: Any
+    u_start0: Any
+    u_start1: Any
+    v_start0: Any
+    v_start1: Any
+    u0: Any
+    u1: Any
+    v0: Any
+    v1: Any
+    near: Any
+
+
+@inlined
+def axes_of(axis, way):
+    """Frusta along an axis, 0 to 2, upwards for 1 and downwards for -1."""
+    u, v = 32 * ((axis + 1) % 3), 32 * ((axis + 2) % 3)
+    near = 32 * axis + (96 if way < np.float32(0) else 0)
+    return Axes(axis, way, near, 64 * axis + 96 - near, u, u + 96, v, v + 96)
+
+
+@inlined
+def wider(low, high):
+    """An interval of slopes, by the margin wider."""
+    least, greatest = maximum(low, -low), maximum(high, -high)
+    return low - MARGIN * least, high + MARGIN * greatest
+
+
+@inlined
+def box_at(a, axes):
+    """Planes of the box at an address, as `entering` wants them."""
+    return (
+        load_f32(a + axes.near) * axes.way, load_f32(a + axes.far) * axes.way,
+        load_f32(a + axes.low_u), load_f32(a + axes.high_u), load_f32(a + axes.low_v), load_f32(a + axes.high_v),
+    )  # fmt: skip
+
+
+@inlined
+def boxes_at(a, axes):
+    """Planes of the eight boxes at an address."""
+    return (
+        load_f32x8(a + axes.near) * axes.way, load_f32x8(a + axes.far) * axes.way,
+        load_f32x8(a + axes.low_u), load_f32x8(a + axes.high_u),
+        load_f32x8(a + axes.low_v), load_f32x8(a + axes.high_v),
+    )  # fmt: skip
+
+
+@inlined
+def entering(planes, f, reach):
+    """(least distance along the axis, mask): which boxes some ray of which frustum may enter, if it looks as far as
+    `reach` along the axis."""
+    near, far, low_u, high_u, low_v, high_v = planes
+    enter, leave = maximum(near - f.start1, f.near), minimum(far - f.start0, reach)
+    low_side = minimum(enter * f.u0, leave * f.u0) <= high_u - f.u_start0
+    high_side = maximum(enter * f.u1, leave * f.u1) >= low_u - f.u_start1
+    bottom = minimum(enter * f.v0, leave * f.v0) <= high_v - f.v_start0
+    top = maximum(enter * f.v1, leave * f.v1) >= low_v - f.v_start1
+    return enter, (enter <= leave) & low_side & high_side & bottom & top

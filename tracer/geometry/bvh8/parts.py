@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.accelerators import BVH8
-from tracer.geometry.bvh8.layout import CHILDREN, COUNT, PIECE, QUADRIC
+from tracer.geometry.bvh8.layout import CHILDREN, COUNT, SUBTREE, QUADRIC
 from tracer.geometry.tree_parts import PartsAt, in_chunks, most_of, nothing_at
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.runtime.kernels import kernel
 
 if TYPE_CHECKING:
-    from tracer.geometry.bvh8.pieces import PiecewiseTree
+    from tracer.geometry.bvh8.subtrees import LargeTree
 
 _WAITING = 1024  # room for nodes that are still to be entered
 
@@ -48,8 +48,8 @@ def _locate(nodes, codes, counts, table, across, points, numbers, owners, levels
                     continue
                 code, owner = np.int64(codes[node, CHILDREN + c]), piece
                 child, there = code, 1
-                if code >= PIECE:
-                    owner = code - PIECE
+                if code >= SUBTREE:
+                    owner = code - SUBTREE
                     child = table[1 + owner]
                     there = 1 if child >= 0 else 0
                 if level > best:
@@ -63,12 +63,12 @@ def _locate(nodes, codes, counts, table, across, points, numbers, owners, levels
                     left += 1
 
 
-class PieceParts:
+class SubtreeParts:
     """See `TreeParts`; it shows what never moves."""
 
     name, owner = BVH8, "piece"
 
-    def __init__(self, tree: PiecewiseTree, primitives: int) -> None:
+    def __init__(self, tree: LargeTree, primitives: int) -> None:
         self._tree = weakref.ref(tree)
         self.levels = round(math.log2(max(primitives, 8)) / 2)  # half-full nodes of eight children, down to leaves
 

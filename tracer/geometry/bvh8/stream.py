@@ -16,11 +16,11 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.bvh8.eight_wide import Best, children_at, nearest_in_block, nearest_quadric, single_ray_at
-from tracer.geometry.bvh8.layout import PIECE
+from tracer.geometry.bvh8.layout import SUBTREE
 from tracer.geometry.bvh8.packet import LANES, NUMBER, PACKET, ROW, T, U, V
 from tracer.geometry.bvh8.packet_tree import STACK, code_of, quadrics_in
-from tracer.geometry.bvh8.placed import BLOCK, CHILDREN, NODE, PIECES, TREES, root_of, root_of_piece, tree_of
-from tracer.geometry.bvh8.roots import CLOSED, open_rays, open_root
+from tracer.geometry.bvh8.placed import BLOCK, CHILDREN, NODE, SUBTREES, TREES, root_of, root_of_subtree, tree_of
+from tracer.geometry.bvh8.packet_tree import CLOSED, open_rays, open_root
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.triangle_test import ZERO
 from tracer.geometry.wide_tree.topology import WIDTH
@@ -195,8 +195,8 @@ def _open_nodes(memory, data, stream, back, nodes, leaves, counts):
         waiting = load_i64(stream + NODES + 8 * i)
         ray = waiting & RAY
         number = waiting >> 32
-        if number >= PIECE:
-            number = root_of_piece(load_i64(data + PIECES), number - PIECE)
+        if number >= SUBTREE:
+            number = root_of_subtree(load_i64(data + SUBTREES), number - SUBTREE)
         a, node = memory + 4 * ray, load_i64(_place(stream, waiting)) + NODE * number
         enter, leave = children_at(node, a)
         children = bits_of(enter <= leave)

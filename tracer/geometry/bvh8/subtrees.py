@@ -1,54 +1,60 @@
 """A large tree in pieces: all are built at once, or each when the first ray reaches it.
 
 A piece's content follows from its triangles alone, and the code of its root in the crown never changes
-(`layout.PIECE`).  So rays meet the same in the same order whenever, and by whomever, a piece is built: who watches
+(`layout.SUBTREE`).  So rays meet the same in the same order whenever, and by whomever, a piece is built: who watches
 answers and counters cannot tell.  A ray that reaches a piece that is not there calls back, and waits until the piece is
 built, by its own thread or by another that came first.
 """
 
 from __future__ import annotations
-
 import ctypes
 import mmap
 import sys
 import threading
 import weakref
 from contextlib import suppress
-
 import numpy as np
 from numpy.typing import NDArray
-
 from tracer.geometry.boxes import PADDING
 from tracer.geometry.building import CANCELLED, DONE
 from tracer.geometry.bvh8.build import count_blocks
-from tracer.geometry.bvh8.crown import crown_over, write_crown
-from tracer.geometry.bvh8.layout import BLOCK_SIZE, NODE_SIZE, PIECE, Tree
+from tracer.geometry.bvh8.layout import BLOCK_SIZE, NODE_SIZE, SUBTREE, Tree
 from tracer.geometry.bvh8.refit import Links, fill_blocks, make_links, pad_blocks, pad_quadrics, unite_nodes
-from tracer.geometry.bvh8.write import Offsets, clear, write_topology
+from tracer.geometry.bvh8.layout import Offsets, clear, write_topology
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import Topology
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene import memory_check
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Cancelled
+from typing import NamedTuple
+from tracer.geometry.boxes import NO_BOX
+from tracer.geometry.building import CANCELLED
+from tracer.geometry.bvh8.layout import CHILDREN, SUBTREE, Tree
+from tracer.geometry.bvh8.layout import clear
+from tracer.geometry.wide_tree.binary import NUMBER, UPPER, WEIGHT, grow, make_items
+from tracer.geometry.wide_tree.cells import Cells, cells_over
+from tracer.geometry.wide_tree.collapse import collapse, plan
+from tracer.geometry.wide_tree.topology import TOP_LEVEL_DEPTH, VACANT, WIDTH
+
 
 LARGE = 500_000  # triangles and quadrics: a tree over more is made of pieces
-PIECE_SIZE = 1 << 13  # triangles of a piece at most
+SUBTREE_SIZE = 1 << 13  # triangles of a piece at most
 _CALLED = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 5)
 
 
-class PiecewiseTree:
+class LargeTree:
     """The tree over triangles (t, 9), corner and edges, and boxes (q, 6) of quadrics: a crown, and pieces that wait.
 
     `tree` has room for all that may come, which takes memory only where something is, but 640 addresses a triangle.
     Where these are few, as `ulimit -v` makes them, pieces are built once before, to see what they need.  `table` is
-    what rays read (`placed.root_of_piece`), and is of use while this object lives; `boxes` (p, 6) lie around pieces of
+    what rays read (`placed.root_of_subtree`), and is of use while this object lives; `boxes` (p, 6) lie around pieces of
     so many triangles and quadrics, `sizes` (p,).  control (2,) int64: the build ends with Cancelled once
     control[CANCELLED] is set.  Raises MemoryError."""
 
     def __init__(self, rows: Float32, boxes: Float32, control: NDArray[np.int64], threads: int) -> None:
         self._rows, self._boxes, self._padded = rows, boxes, boxes.copy()
-        crown = crown_over(rows, boxes, PIECE_SIZE, control, threads)
+        crown = top_tree_over(rows, boxes, SUBTREE_SIZE, control, threads)
         self._items, pieces = crown.items, len(crown.items)
         self.sizes = np.array([len(items) for items in crown.items])
         self.boxes = crown.boxes
@@ -58,7 +64,7 @@ class PiecewiseTree:
             self.tree, self._links = self._with_room(*first, int(np.maximum(self.sizes, 1).sum()), len(rows), True)
         except MemoryError:  # of addresses: what is never used takes no memory
             self.tree, self._links = self._with_room(*first, *self._needed(control, threads))
-        write_crown(self.tree, crown, self.padding)
+        write_top_tree(self.tree, crown, self.padding)
         nothing = len(crown.children)  # a node for pieces that cannot be built
         clear(Tree(self.tree.nodes[nothing : nothing + 1], self.tree.blocks[:1]))
         self._nothing, self._nodes, self._blocks = nothing, nothing + 1, 1
@@ -175,10 +181,10 @@ class PiecewiseTree:
 
     def opened(self, code: int) -> int:
         """The number of the node that a child's code, that is no leaf's, stands for; a piece is built."""
-        if code < PIECE:
+        if code < SUBTREE:
             return code
-        self._build(code - PIECE)
-        return int(self.table[1 + code - PIECE])
+        self._build(code - SUBTREE)
+        return int(self.table[1 + code - SUBTREE])
 
     @property
     def used(self) -> Tree:
@@ -216,3 +222,75 @@ def _reserved(size: int) -> mmap.mmap:
         with suppress(OSError):  # of a kernel without large pages
             memory.madvise(mmap.MADV_HUGEPAGE)
     return memory
+
+
+ALL = 1 << 62
+
+
+class TopTree(NamedTuple):
+    """children (n, 8) int32 as in a `Topology`, whose leaves are p pieces; boxes (p, 6) float32 around these; items,
+    the numbers of each piece's triangles and, counted from their number on, quadrics."""
+
+    children: NDArray[np.int32]
+    boxes: Float32
+    items: list[NDArray[np.int32]]
+
+
+def top_tree_over(rows: Float32, boxes: Float32, piece: int, control: NDArray[np.int64], threads: int = 1) -> TopTree:
+    """The crown over triangles (t, 9), corner and edges, and boxes (q, 6) of quadrics, with pieces of at most so many
+    triangles (WIDTH at least) where their centres differ.
+
+    control (2,) int64: raises Cancelled once control[CANCELLED] is set."""
+    cells = cells_over(rows, piece, control, threads)
+    # Grow a binary tree over the cells and the quadrics.
+    count = len(cells.boxes) + len(boxes)
+    around = np.concatenate([cells.boxes, boxes])
+    items, words = make_items(count), slice(NUMBER // 4, WEIGHT // 4 + 1)
+    items.items[0, :count, :3] = around[:, :3]
+    items.items[0, :count, UPPER // 4 : NUMBER // 4] = -around[:, 3:]
+    weights = np.concatenate([np.diff(cells.starts), np.full(len(boxes), WIDTH)])
+    items.items[0, :count].view(np.int32)[:, words] = np.stack([np.arange(count), weights], axis=1)
+    stack = np.zeros((TOP_LEVEL_DEPTH + 2, 5), np.int64)
+    stack[0, 1] = count
+    grow(items, stack, 1, ALL, TOP_LEVEL_DEPTH, piece, control)
+    if control[CANCELLED]:
+        raise Cancelled
+    # Give it eight children a node; its leaves are the pieces.
+    children, leaves = np.empty((count, WIDTH), np.int32), np.empty((count, 2), np.int32)
+    plan(items.nodes, TOP_LEVEL_DEPTH)
+    nodes, pieces = collapse(items.nodes, children, leaves, TOP_LEVEL_DEPTH)
+    first = leaves[:pieces, 0]
+    ends = np.append(np.sort(first), count)
+    last = ends[np.searchsorted(ends, first) + 1]
+    parts = [items.order[a:b] for a, b in zip(first.tolist(), last.tolist(), strict=True)]
+    piece_boxes = [np.concatenate([around[part, :3].min(0), around[part, 3:].max(0)]) for part in parts]
+    return TopTree(
+        children[:nodes].copy(),
+        np.stack(piece_boxes),
+        [_items_of(cells, part, len(rows)) for part in parts],
+    )
+
+
+def _items_of(cells: Cells, part: NDArray[np.int32], triangles: int) -> NDArray[np.int32]:
+    """The numbers of what is in some cells and quadrics, triangles first."""
+    known = len(cells.boxes)
+    inside = [cells.order[cells.starts[c] : cells.starts[c + 1]] for c in np.sort(part[part < known])]
+    quadrics = np.sort(part[part >= known]) - known + triangles
+    return np.concatenate([*inside, quadrics.astype(np.int32)])
+
+
+def write_top_tree(tree: Tree, crown: TopTree, padding: np.float32) -> None:
+    """Write a crown into the first nodes of a tree; boxes are padded."""
+    count = len(crown.children)
+    clear(Tree(tree.nodes[:count], tree.blocks[:1]))
+    padded = np.concatenate([crown.boxes[:, :3] - padding, crown.boxes[:, 3:] + padding], axis=1)
+    around = np.tile(NO_BOX, (count, 1))
+    codes = tree.nodes.view(np.int32)
+    for node in range(count - 1, -1, -1):
+        slots = np.flatnonzero(crown.children[node] != VACANT)
+        children = crown.children[node, slots]
+        inner = children >= 0
+        boxes = np.where(inner[:, None], around[children * inner], padded[~children * ~inner])
+        tree.nodes[node, : 6 * WIDTH].reshape(6, WIDTH)[:, slots] = boxes.T
+        codes[node, CHILDREN + slots] = np.where(inner, children, SUBTREE + ~children)
+        around[node] = np.concatenate([boxes[:, :3].min(0), boxes[:, 3:].max(0)])
