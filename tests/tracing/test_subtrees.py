@@ -209,5 +209,5 @@ def test_pieces_that_are_interrupted_again_and_again_never_leave_their_room(monk
         with pytest.raises((KeyboardInterrupt, MemoryError)):
             world.build()
     monkeypatch.setattr(subtrees, "write_topology", write)
-    with pytest.raises(MemoryError, match="no room for a piece"):
+    with pytest.raises(MemoryError, match="no room for a subtree"):
         world.build()

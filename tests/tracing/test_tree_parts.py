@@ -11,8 +11,8 @@ import pytest
 import tracer
 from tests.tracing.rays_and_movers import movers, random_rays
 from tests.tracing.worlds import random_corners, scene
-from tracer.geometry.bvh8 import subtrees
-from tracer.geometry.bvh8.layout import CHILDREN, COUNT, SUBTREE
+from tracer.geometry.bvh8 import layout, subtrees
+from tracer.geometry.bvh8.layout import CHILDREN, COUNT
 from tracer.geometry.lazy_tree.node import HEADER, SUBTREE
 from tracer.geometry.lazy_tree.structure import LazyTree
 from tracer.geometry.rays import Rays
@@ -167,8 +167,8 @@ def test_each_point_lies_in_the_deepest_box_of_pieces_that_are_there(many: int, 
         for slot in np.flatnonzero(codes != ~0).tolist():
             code, box = int(codes[slot]), (sides[0, :, slot], sides[1, :, slot])
             owner, there, held = piece, True, -1
-            if code >= SUBTREE:
-                owner = code - SUBTREE
+            if code >= layout.SUBTREE:
+                owner = code - layout.SUBTREE
                 code = int(tree.table[1 + owner])
                 there = code >= 0
             elif code < 0:

@@ -5,23 +5,25 @@ all, and one code per child: the number of an inner node, of a block or of a qua
 point so far away that every slab test misses it; its code is that of block 0, which is empty.
 (Wald, Benthin, Boulos 2008; Dammertz, Hanika, Keller 2008.)
 
-A large tree is a crown with pieces below it (`pieces`).  In the crown, the code of a piece stands for the piece's root,
-which a table tells once the piece is built; it never changes, so that nobody's order depends on when that was.
+A large tree is a top tree with subtrees below it (`subtrees`).  There, the code of a subtree stands for its root, which
+a table tells once it is built; the code never changes, so that nobody's order depends on when that was.
 """
 
 from __future__ import annotations
+
 from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
+
 from tracer.geometry.wide_tree.topology import VACANT, WIDTH
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import address_of, f32x8, i32x8, store
 
-
 NODE_SIZE, BLOCK_SIZE = 64, 96  # float32 numbers
 NODE, BLOCK = 4 * NODE_SIZE, 4 * BLOCK_SIZE  # bytes
 QUADRIC = 1 << 30  # in a leaf's code: k < QUADRIC is block k, else quadric k - QUADRIC
-SUBTREE = 1 << 30  # in a node's code: k < SUBTREE is node k, else the root of piece k - SUBTREE
+SUBTREE = 1 << 30  # in a node's code: k < SUBTREE is node k, else the root of subtree k - SUBTREE
 EMPTY = np.float32(3e37)  # every coordinate of the box of an empty slot
 NO_PRIMITIVE = 0x7FFFFFFF  # in the unused lanes of a block
 

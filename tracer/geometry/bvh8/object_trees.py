@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from tracer.geometry.boxes import PADDING
 from tracer.geometry.bvh8.build import count_blocks, empty_tree
-from tracer.geometry.bvh8.layout import BLOCK, BOX, Tree
+from tracer.geometry.bvh8.layout import BLOCK, BOX, Offsets, Tree, clear_nodes, set_child, write_topology
 from tracer.geometry.bvh8.refit import Links, gather_corners, make_links, move_blocks, pad_box, unite
-from tracer.geometry.bvh8.layout import Offsets, clear_nodes, set_child, write_topology
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import TOP_LEVEL_DEPTH, VACANT, WIDTH, Topology
 from tracer.runtime.kernels import kernel

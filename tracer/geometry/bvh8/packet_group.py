@@ -5,16 +5,20 @@ too far.  A frustum ends where the last of its rays stops looking, and so shrink
 """
 
 from __future__ import annotations
+
 from typing import Any, NamedTuple
+
 import numpy as np
+
 from tracer.geometry.boxes import TINY
-from tracer.geometry.bvh8.packet import DX, DY, DZ, FRUSTA, IX, OX, ROW, T_MIN, T
+from tracer.geometry.bvh8.packet import DIRECTION, FRUSTA, INVERSE, ORIGIN, ROW, T_MIN, T
 from tracer.geometry.triangle_test import ZERO
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     bits_of,
     f32x8,
     largest,
+    load_f32,
     load_f32x8,
     load_f32x16,
     lowest_bit,
@@ -23,9 +27,6 @@ from tracer.simd import (
     smallest,
     store,
 )
-from tracer.runtime.kernels import inlined
-from tracer.simd import load_f32, load_f32x8, maximum, minimum
-
 
 # Slopes of sixteen rays that differ by more are not worth a frustum: each ray goes its own way in less time.  Any hits
 # of one light's rays in random order take 295 ns at 4, 205 at 2, 123 at 1 and at 0.5 (Kitchen, 14 s, one thread).
@@ -61,11 +62,11 @@ def _slopes(memory, v, axis, way):
     """Least and greatest slopes of the v-th vector along the other two axes; HUGE where some ray goes the other way.
 
     A component so small that its inverse is cut short (`boxes.inverse`) may count as much as TINY."""
-    if smallest(_along(memory, DX, v, axis) * way) <= TINY:
+    if smallest(_along(memory, DIRECTION, v, axis) * way) <= TINY:
         return -HUGE, HUGE, -HUGE, HUGE
-    scale = _along(memory, IX, v, axis) * way
-    slope_u = _along(memory, DX, v, (axis + 1) % 3) * scale
-    slope_v = _along(memory, DX, v, (axis + 2) % 3) * scale
+    scale = _along(memory, INVERSE, v, axis) * way
+    slope_u = _along(memory, DIRECTION, v, (axis + 1) % 3) * scale
+    slope_v = _along(memory, DIRECTION, v, (axis + 2) % 3) * scale
     least = np.float32(2) * TINY * largest(scale)
     return smallest(slope_u) - least, largest(slope_u) + least, smallest(slope_v) - least, largest(slope_v) + least
 
@@ -82,7 +83,7 @@ def lead_of(memory, v):
     for its slopes differ by no more than WIDEST."""
     best, axis, way = ZERO, 0, ZERO
     for k in range(3):
-        d = _along(memory, DX, v, k)
+        d = _along(memory, DIRECTION, v, k)
         up, down = smallest(d), -largest(d)
         if up > best:
             best, axis, way = up, k, np.float32(1)
@@ -107,15 +108,15 @@ def _put_bounds(memory, row, v, x):
 @inlined
 def _put_starts(memory, v, axes):
     """Store where the rays of the v-th vector start."""
-    _put_bounds(memory, START, v, _along(memory, OX, v, axes.along) * axes.way)
-    _put_bounds(memory, START + 2, v, _along(memory, OX, v, (axes.along + 1) % 3))
-    _put_bounds(memory, START + 4, v, _along(memory, OX, v, (axes.along + 2) % 3))
+    _put_bounds(memory, START, v, _along(memory, ORIGIN, v, axes.along) * axes.way)
+    _put_bounds(memory, START + 2, v, _along(memory, ORIGIN, v, (axes.along + 1) % 3))
+    _put_bounds(memory, START + 4, v, _along(memory, ORIGIN, v, (axes.along + 2) % 3))
 
 
 @inlined
 def _put_reach(memory, v, axes):
     """Store how far along the axis the rays of the v-th vector still look."""
-    reach = largest(load_f32x16(memory + T * ROW + 64 * v) * _along(memory, DX, v, axes.along) * axes.way)
+    reach = largest(load_f32x16(memory + T * ROW + 64 * v) * _along(memory, DIRECTION, v, axes.along) * axes.way)
     _put(memory, REACH, v, reach + MARGIN * reach)
 
 
@@ -140,7 +141,7 @@ def _put_frustum(memory, v, axes):
     _put(memory, SLOPE + 1, v, u1)
     _put(memory, SLOPE + 2, v, v0)
     _put(memory, SLOPE + 3, v, v1)
-    near = smallest(load_f32x16(memory + T_MIN * ROW + 64 * v) * _along(memory, DX, v, axes.along) * axes.way)
+    near = smallest(load_f32x16(memory + T_MIN * ROW + 64 * v) * _along(memory, DIRECTION, v, axes.along) * axes.way)
     _put(memory, NEAR, v, maximum(near - MARGIN * near, ZERO))
     _put_reach(memory, v, axes)
     _put_starts(memory, v, axes)
@@ -196,9 +197,9 @@ def group_of(memory, vectors, axis, way):
         width = _put_frustum(memory, v, axes)
         members |= np.int64(width <= WIDEST) << v
         wide |= np.int64(width > NARROW) << v
-    dx = _least_and_greatest(memory, DX, members)
-    dy = _least_and_greatest(memory, DY, members)
-    dz = _least_and_greatest(memory, DZ, members)
+    dx = _least_and_greatest(memory, DIRECTION, members)
+    dy = _least_and_greatest(memory, DIRECTION + 1, members)
+    dz = _least_and_greatest(memory, DIRECTION + 2, members)
     low, high = (dx[0], dy[0], dz[0]), (dx[1], dy[1], dz[1])
     return Group(members, wide, axes, _around(frusta_of(memory)), low, high)
 

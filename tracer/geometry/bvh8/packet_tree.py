@@ -8,37 +8,36 @@ lower half has the child's code.
 """
 
 from __future__ import annotations
+
 import numpy as np
-from tracer.geometry.bvh8.packet_group import box_at, boxes_at, entering
-from tracer.geometry.bvh8.layout import QUADRIC
-from tracer.geometry.bvh8.packet import SCRATCH, lanes_inside
-from tracer.geometry.bvh8.packet_group import frusta_of, looking, put_reaches, reaches_of
+
+from tracer.geometry.bvh8.layout import BLOCK, CHILDREN, NODE, QUADRIC
+from tracer.geometry.bvh8.packet import ROW, SCRATCH, T_MIN, T, lanes_inside
+from tracer.geometry.bvh8.packet_group import box_at, boxes_at, entering, frusta_of, looking, put_reaches, reaches_of
 from tracer.geometry.bvh8.packet_leaf import any_in_block, closest_in_block, quadric_in_child
-from tracer.geometry.bvh8.placed import BLOCK, CHILDREN, NODE, child_planes, opened
+from tracer.geometry.bvh8.placed import child_planes, opened, root_of
 from tracer.geometry.queries import STEPS, TESTS
+from tracer.geometry.triangle_test import ZERO
 from tracer.geometry.wide_tree.topology import MAX_DEPTH, WIDTH
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,
     as_f32,
+    as_i32,
     bits_of,
+    i32x16,
     largest,
+    load_f32x16,
     load_i32,
     load_i32x8,
     load_i64,
     lowest_bit,
+    maximum,
+    ones,
     prefetch,
+    select,
     store,
 )
-from tracer.geometry.bvh8.packet import ROW, T_MIN, T, lanes_inside
-from tracer.geometry.bvh8.packet_leaf import quadric_in_child
-from tracer.geometry.bvh8.placed import child_planes, root_of
-from tracer.geometry.queries import TESTS
-from tracer.geometry.triangle_test import ZERO
-from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.runtime.kernels import inlined
-from tracer.simd import as_i32, bits_of, i32x16, load_f32x16, maximum, ones, select, store
-
 
 STACK = 8 * (1 + (WIDTH - 1) * MAX_DEPTH)  # bytes
 
@@ -46,18 +45,18 @@ STACK = 8 * (1 + (WIDTH - 1) * MAX_DEPTH)  # bytes
 @inlined
 def quadrics_in(node):
     """Which children of a node are quadrics, as bits."""
-    return bits_of(load_i32x8(node + CHILDREN) <= np.int32(~QUADRIC))
+    return bits_of(load_i32x8(node + 4 * CHILDREN) <= np.int32(~QUADRIC))
 
 
 @inlined
 def code_of(node, c):
     """The code of a node's c-th child."""
-    return np.int64(load_i32(node + CHILDREN + 4 * c))
+    return np.int64(load_i32(node + 4 * (CHILDREN + c)))
 
 
 @inlined
 def prefetch_child(trees, code):
-    """Fetch a child's memory into the cache before it is needed; for a piece, nothing is at that address."""
+    """Fetch a child's memory into the cache before it is needed; for a subtree, nothing is at that address."""
     if code < 0:
         a = trees.blocks + BLOCK * ~code
         prefetch(a + 320)

@@ -16,7 +16,6 @@ from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import load_f32, load_f32x8, load_i64
 from tracer.simd.records import F32At, block_size, pack, reading
 
-
 STATIC_TREE, RESTING_TREE, MOVING_TREE = range(3)
 STATIC_TREES, DYNAMIC_TREES = 1 << STATIC_TREE | 1 << RESTING_TREE, 1 << MOVING_TREE  # as bits, by what is asked for
 

@@ -18,8 +18,8 @@ from tracer.geometry.bvh8.build import build_tree
 from tracer.geometry.bvh8.layout import BOX, CHILDREN, PRIMITIVES, Tree
 from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, build_top_level, load_corners, move_objects
 from tracer.geometry.bvh8.parts import SubtreeParts
-from tracer.geometry.bvh8.subtrees import LargeTree
 from tracer.geometry.bvh8.placed import MOVING_TREE, RESTING_TREE, STATIC_TREE, PlacedTree, World8, pack_world
+from tracer.geometry.bvh8.subtrees import LargeTree
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
 from tracer.geometry.queries import Placed
@@ -174,7 +174,7 @@ class Bvh8:
         return WorldTriangles(rows, np.zeros(count, np.float32), boxes)
 
     def build(self) -> None:
-        """Build the pieces that wait for rays, in all threads."""
+        """Build the subtrees that wait for rays, in all threads."""
         if self._large is not None:
             self._large.build_all(threads=thread_count())
 
@@ -194,7 +194,7 @@ class Bvh8:
         return BuiltPart(len(large.used.nodes) + len(moving.nodes), large.built + total - int(starts), total, size)
 
     def parts_built(self) -> SubtreeParts | None:
-        """Which pieces of what never moves are built, and how."""
+        """Which subtrees of what never moves are built, and how."""
         if self._large is None or not self._lazy:
             return None
         return SubtreeParts(self._large, len(self._primitives.object_of))

@@ -31,7 +31,7 @@ class Header(NamedTuple):
     the address of their source.  The node's box follows, six float64; then boxes, six float32 each, and the references,
     int32 each."""
 
-    count: int
+    number: int
     weight: int
     level: int
     source: int
@@ -78,7 +78,7 @@ class References(NamedTuple):
 def references_at(address):
     """The references at an address, to be read only."""
     header = read_header(address)
-    n, boxes = header.count, address + REFERENCES
+    n, boxes = header.number, address + REFERENCES
     numbers = carray(i32_at(boxes + 24 * n), (n,))
     return References(numbers, carray(f32_at(boxes), (n, 6)), n, header.weight)
 
