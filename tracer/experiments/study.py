@@ -25,6 +25,7 @@ import numpy as np
 
 from tracer.experiments.experiment import path_times
 from tracer.method import Method
+from tracer.scene.arrays import vector
 from tracer.scene.bounds import bounds
 from tracer.scene.files import read_regular
 from tracer.scene.model import Camera, Scene
@@ -102,8 +103,8 @@ class Study:
         traced = len(numbers) * each * len(self.settings) * len(self.seeds)
         if traced > MOST_FRAMES:
             raise ValueError(
-                f"{self.path}: {traced:,} frames of {name}, by methods, settings and {len(self.seeds):,} seeds; at most "
-                f"{MOST_FRAMES:,} are traced: give fewer, or change first and last of the path"
+                f"{self.path}: {traced:,} frames of {name}, by methods, settings and {len(self.seeds):,} seeds; at "
+                f"most {MOST_FRAMES:,} are traced: give fewer, or change first and last of the path"
             )
         found: list[Task] = []
         for settings, method, seed in product(self.settings, self.methods, self.seeds):
@@ -169,8 +170,7 @@ class Task:
         aside *= lots.uniform() / max(float(np.linalg.norm(aside)), 1e-300)
         diagonal = 0.0 if box is None else float(np.linalg.norm(box[1] - box[0]))
         own = scene.camera_at(time)
-        x, y, z = (float(v) for v in np.asarray(own.position) + self.shake * diagonal * aside)
-        return replace(own, position=(x, y, z))
+        return replace(own, position=vector(np.asarray(own.position) + self.shake * diagonal * aside))
 
     def in_words(self) -> str:
         """Which it is, for messages."""

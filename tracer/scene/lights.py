@@ -17,9 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.scene.arrays import Float64
-
-Vector = tuple[float, float, float]
+from tracer.scene.arrays import Float64, Vector
 
 KINDS = ("point", "sphere", "rectangle", "dome")
 FALLOFFS = ("none", "inverse square")

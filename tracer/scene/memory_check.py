@@ -16,7 +16,7 @@ from typing import Any
 from tracer.scene.binary_meshes import is_plain
 from tracer.scene.limits import MOST_PRIMITIVES
 from tracer.scene.model import SceneError
-from tracer.scene.ply import LONGEST_HEAD, elements_of
+from tracer.scene.ply import LONGEST_HEAD, read_head
 
 ANYHOW = "SHADOWCULL_BEYOND_MEMORY"
 """A variable of the environment: set, no scene is refused for the memory that it needs."""
@@ -139,18 +139,14 @@ def _of_stl(path: Path) -> int | None:
 def _of_ply(path: Path) -> int | None:
     with path.open("rb") as file:
         head = file.read(LONGEST_HEAD)
-    end = head.index(b"end_header")
-    lines = head[:end].decode("latin-1").splitlines()
-    if "format ascii 1.0" in lines:
-        return None
-    elements, _ = elements_of(lines, "<", most=1 << 62)
-    if any(one.has_lists and one.name != "face" for one in elements):
-        return None  # strips
-    flat = sum(e.number * sum(p.kind.itemsize for p in e.properties if p.count is None) for e in elements)
-    faces = next((one.number for one in elements if one.name == "face"), 0)
-    corners = round(((path.stat().st_size - end - flat) / faces - 1) / 4) if faces else 0  # in the mean
-    found = faces * max(corners - 2, 1)
-    return found if 0 <= found <= MOST_PRIMITIVES else None
+    found = read_head(head, most=1 << 62)
+    if found is None or any(one.has_lists and one.name != "face" for one in found.elements):
+        return None  # a text, or strips
+    flat = sum(e.number * sum(p.kind.itemsize for p in e.properties if p.count is None) for e in found.elements)
+    faces = next((one.number for one in found.elements if one.name == "face"), 0)
+    corners = round(((path.stat().st_size - found.begin - flat) / faces - 1) / 4) if faces else 0  # in the mean
+    triangles = faces * max(corners - 2, 1)
+    return triangles if 0 <= triangles <= MOST_PRIMITIVES else None
 
 
 def _of_gltf(path: Path) -> int | None:

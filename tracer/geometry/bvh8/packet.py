@@ -6,7 +6,11 @@ rays go through a tree together (`packet_tree`) or one by one (`single_ray`), so
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numba.core import types
+from numba.extending import overload
 
 from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.boxes import inverse
@@ -35,6 +39,7 @@ from tracer.simd import (
     u8_at,
 )
 
+INLINED: Any = {"forceinline": True, "error_model": "numpy"}  # as `inlined`, for what has two versions
 LANES = 16
 PACKET = MOST_TOGETHER  # rays
 ROW = 4 * PACKET  # bytes of one number of each ray
@@ -65,13 +70,17 @@ def three_of_16(a, row):
     return load_f32x16(a + row * ROW), load_f32x16(a + (row + 1) * ROW), load_f32x16(a + (row + 2) * ROW)
 
 
-@inlined
 def origin_of(origin, memory, v):
     """Origins of the rays of a packet's v-th vector: the point that all share, or, where that is None, what the
     packet's memory holds."""
-    if origin is None:
-        return three_of_16(memory + 64 * v, ORIGIN)
-    return origin
+    raise NotImplementedError("only kernels call this")
+
+
+@overload(origin_of, jit_options=INLINED)
+def _origin_of(origin, memory, v):
+    if isinstance(origin, types.NoneType):
+        return lambda origin, memory, v: three_of_16(memory + 64 * v, ORIGIN)
+    return lambda origin, memory, v: origin
 
 
 @inlined

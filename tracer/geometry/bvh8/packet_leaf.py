@@ -7,6 +7,8 @@ So whatever depends on the origins has two versions: `origin` is the point that 
 from __future__ import annotations
 
 import numpy as np
+from numba.core import types
+from numba.extending import overload
 
 from tracer.geometry.bvh8.layout import COUNT, PRIMITIVES
 from tracer.geometry.bvh8.packet import (
@@ -14,8 +16,10 @@ from tracer.geometry.bvh8.packet import (
     DIRECTION,
     ENTER,
     FAR,
+    INLINED,
     LEAVE,
     NUMBER,
+    ORIGIN,
     ROW,
     T_MIN,
     TERMS,
@@ -67,10 +71,7 @@ def _inside_block(origin, memory, block, active):
 
 
 @inlined
-def _prepare(origin, group, memory, block):
-    """Do what can be done once for a block; the triangles, as bits, that may be hit."""
-    if origin is None:
-        return (np.int64(1) << load_i32(block + 4 * COUNT)) - 1
+def _prepare_common(origin, group, memory, block):
     m = towards(terms_of(origin[0], origin[1], origin[2], triangles_of(block)))
     a = memory + TERMS
     store(a, m.nx)
@@ -86,22 +87,49 @@ def _prepare(origin, group, memory, block):
     return bits_of(may_cross_ahead(group.low, group.high, m))
 
 
+def prepare(origin, group, memory, block):
+    """Do what can be done once for a block; the triangles, as bits, that may be hit."""
+    raise NotImplementedError("only kernels call this")
+
+
+@overload(prepare, jit_options=INLINED)
+def _prepare(origin, group, memory, block):
+    if isinstance(origin, types.NoneType):
+        return lambda origin, group, memory, block: (np.int64(1) << load_i32(block + 4 * COUNT)) - 1
+    return lambda origin, group, memory, block: _prepare_common(origin, group, memory, block)
+
+
 @inlined
-def _crossing_of(origin, memory, block, v, k):
-    """(mask, t area, u area, v area, area) of the rays of a packet's v-th vector on the k-th triangle of a block."""
+def _crossing_separate(memory, block, v, k):
     dx, dy, dz = three_of_16(memory + 64 * v, DIRECTION)
-    if origin is None:
-        ox, oy, oz = origin_of(origin, memory, v)
-        m = terms_of(ox, oy, oz, triangle_of(block, k))
-        crosses, sign, u, w, area = crossing(dx, dy, dz, m)
-        return crosses, as_f32(as_i32(m.height) ^ sign), u, w, area
+    ox, oy, oz = three_of_16(memory + 64 * v, ORIGIN)
+    m = terms_of(ox, oy, oz, triangle_of(block, k))
+    crosses, sign, u, w, area = crossing(dx, dy, dz, m)
+    return crosses, as_f32(as_i32(m.height) ^ sign), u, w, area
+
+
+@inlined
+def _crossing_common(memory, v, k):
     a = memory + TERMS + 4 * k
     m = Terms(
         load_f32(a), load_f32(a + 32), load_f32(a + 64), load_f32(a + 96), load_f32(a + 128),
         load_f32(a + 160), load_f32(a + 192), load_f32(a + 224), load_f32(a + 256), load_f32(a + 288),
     )  # fmt: skip
+    dx, dy, dz = three_of_16(memory + 64 * v, DIRECTION)
     crosses, u, w, area = crossing_ahead(dx, dy, dz, m)
     return crosses, f32x16(m.height), u, w, area
+
+
+def crossing_of(origin, memory, block, v, k):
+    """(mask, t area, u area, v area, area) of the rays of a packet's v-th vector on the k-th triangle of a block."""
+    raise NotImplementedError("only kernels call this")
+
+
+@overload(crossing_of, jit_options=INLINED)
+def _crossing_of(origin, memory, block, v, k):
+    if isinstance(origin, types.NoneType):
+        return lambda origin, memory, block, v, k: _crossing_separate(memory, block, v, k)
+    return lambda origin, memory, block, v, k: _crossing_common(memory, v, k)
 
 
 @inlined
@@ -123,7 +151,7 @@ def _meet_block(origin, memory, group, block, active, nearest):
     found = np.int64(0)
     if active == 0:
         return found
-    triangles = _prepare(origin, group, memory, block)
+    triangles = prepare(origin, group, memory, block)
     while triangles != 0:
         k = lowest_bit(triangles)
         triangles &= triangles - 1
@@ -133,7 +161,7 @@ def _meet_block(origin, memory, group, block, active, nearest):
             v = lowest_bit(rest)
             rest &= rest - 1
             a = memory + 64 * v
-            crosses, height, u, w, area = _crossing_of(origin, memory, block, v, k)
+            crosses, height, u, w, area = crossing_of(origin, memory, block, v, k)
             if not any_lane(crosses):
                 continue
             mask, t, scale = _distance(memory, v, crosses, height, area)
