@@ -12,7 +12,7 @@ from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.poses import Poses, inverses, products
 from tracer.runtime.kernels import kernel
-from tracer.scene.arrays import Float32, Float64, Int32
+from tracer.scene.arrays import BLOCK, Float32, Float64, Int32, Report
 from tracer.scene.bounds import extent, quadric_boxes
 from tracer.scene.deformation import deformed
 from tracer.scene.model import Scene, SceneObject, Triangles
@@ -174,13 +174,6 @@ def edge_products(triangles: NDArray[np.float32]) -> NDArray[np.float32]:
     """Cross products (t, 3) float32 of the two edges of triangles (t, 9), corner and edges: normals of any length."""
     a, b = triangles[:, 3:6].T, triangles[:, 6:9].T
     return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], axis=1)
-
-
-BLOCK = 1 << 18
-"""Triangles that are worked on at once."""
-
-Report = Callable[[float], None]
-"""Is given the part that is done, again and again, and may raise Cancelled."""
 
 
 def triangle_rows(corners: Float32) -> Float32:

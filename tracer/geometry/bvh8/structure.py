@@ -23,7 +23,7 @@ from tracer.geometry.bvh8.subtrees import LargeTree
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
 from tracer.geometry.queries import Placed
-from tracer.geometry.structure import BuiltPart
+from tracer.geometry.structure import BuiltPart, placed_by
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
 from tracer.runtime.parallel import thread_count
@@ -134,17 +134,8 @@ class Bvh8:
             )
         ]  # fmt: skip
         self._data = pack_world(World8(there, self.together), trees)
-        return Placed(
-            primitives.triangles,
-            primitives.quadrics,
-            poses.to_object.reshape(-1, 12).astype(np.float32),
-            primitives.object_of,
-            self.closest.address,
-            self.any_hit.address,
-            self._data.ctypes.data,
-            bool(moving.any()),
-            there_now[0],
-        )
+        to_object = poses.to_object.reshape(-1, 12).astype(np.float32)
+        return placed_by(self, primitives, to_object, self._data, bool(moving.any()), there_now[0])
 
     def _move_quadrics(self, poses: Poses) -> None:
         """Find maps from the world and boxes in the world for dynamic quadrics."""

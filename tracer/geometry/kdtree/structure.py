@@ -21,6 +21,7 @@ from tracer.geometry.kdtree.tree import LEAF, KdWorld, Top, Trees
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import Placed
+from tracer.geometry.structure import placed_by
 from tracer.scene.arrays import Float32, Float64
 from tracer.scene.model import Progress
 from tracer.simd.records import pack
@@ -157,17 +158,7 @@ class KdTree(InObjectSpace):
             to_object,
         )
         self._data = pack(self.world)
-        return Placed(
-            primitives.triangles,
-            primitives.quadrics,
-            to_object,
-            primitives.object_of,
-            self.closest.address,
-            self.any_hit.address,
-            self._data.ctypes.data,
-            bool(moving.any()),
-            moving_box,
-        )
+        return placed_by(self, primitives, to_object, self._data, bool(moving.any()), moving_box)
 
     def build(self) -> None:
         """Nothing waits for rays."""

@@ -28,10 +28,9 @@ from tracer.geometry.lazy_tree.references import (
     weight_of,
     within,
 )
-from tracer.geometry.memory import float_bits
 from tracer.geometry.shared_memory import CLAIMED, UNBUILT, allocate, exchange, free, publish, read_shared
 from tracer.runtime.kernels import entry, kernel, subkernel
-from tracer.simd import call_entry, i32_at, load_i64, store
+from tracer.simd import as_i32, call_entry, i32_at, load_i64, store
 from tracer.simd.addresses import f64_at
 from tracer.simd.records import writing
 
@@ -103,7 +102,7 @@ def _split(node, source, table, wide, box, level):
     children = allocate(2 * NODE)
     _unbuilt(children, lower, lower_box, level + 1, table)
     _unbuilt(children + NODE, upper, upper_box, level + 1, table)
-    _write_node(node, Node(CLAIMED, float_bits(plane), children, children + NODE))
+    _write_node(node, Node(CLAIMED, as_i32(np.float32(plane)), children, children + NODE))
     add_to(source, NODES, 1)
     add_to(source, BYTES, size_of_references(lower.count) + size_of_references(upper.count) + 2 * NODE)
     publish(node, np.int64(axis))

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import carray
 
+from tracer.geometry.boxes import interval
 from tracer.geometry.kdtree.build import best_binned_split, clip_triangle, grown, split_cost
 from tracer.geometry.shared_memory import add_shared, allocate
 from tracer.runtime.kernels import inlined, subkernel
@@ -113,9 +114,7 @@ def _box_of(source, number, box):
             box[k] = source.group_boxes[~number, k]
     elif number < len(source.triangles):
         for k in range(3):
-            a = source.triangles[number, k]
-            b, c = a + source.triangles[number, k + 3], a + source.triangles[number, k + 6]
-            box[k], box[k + 3] = min(a, min(b, c)), max(a, max(b, c))
+            box[k], box[k + 3] = interval(source.triangles, number, k)
     else:
         for k in range(6):
             box[k] = source.quadric_boxes[number - len(source.triangles), k]

@@ -24,7 +24,7 @@ from tracer.geometry.lazy_tree.upper import raise_over
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import Placed
-from tracer.geometry.structure import BuiltPart
+from tracer.geometry.structure import BuiltPart, placed_by
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Progress
 from tracer.simd.records import pack
@@ -120,17 +120,7 @@ class LazyKdTree(InObjectSpace):
             to_object, rests, moving_box, has, building,
         )  # fmt: skip
         self._data = pack(self.world)
-        return Placed(
-            primitives.triangles,
-            primitives.quadrics,
-            to_object,
-            primitives.object_of,
-            self.closest.address,
-            self.any_hit.address,
-            self._data.ctypes.data,
-            has,
-            moving_box,
-        )
+        return placed_by(self, primitives, to_object, self._data, has, moving_box)
 
     def build(self) -> None:
         """Nodes wait for rays by nature."""

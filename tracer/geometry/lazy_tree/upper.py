@@ -25,9 +25,8 @@ from tracer.geometry.lazy_tree.node import (
     word_of,
 )
 from tracer.geometry.lazy_tree.references import best_split
-from tracer.geometry.memory import float_bits
 from tracer.runtime.kernels import kernel, subkernel
-from tracer.simd import address_of, load_f32, load_i64
+from tracer.simd import address_of, as_i32, load_f32, load_i64
 
 EACH = 8  # what an object costs that a ray must look for, in tests
 BORDER = 4.0  # what a plane at an object's border costs: below both sides the same nodes are entered again
@@ -119,7 +118,7 @@ def raise_over(boxes, objects, moves, bounds, below, building):
             nodes, old = _twice(nodes, count), moving
             moving = np.zeros(len(nodes), np.bool_)
             moving[: len(old)] = old
-        nodes[node, 0], nodes[node, 1] = axis, float_bits(plane)
+        nodes[node, 0], nodes[node, 1] = axis, as_i32(np.float32(plane))
         taken = pool[first:top, 0].copy()
         top = first
         for side in range(1, -1, -1):
