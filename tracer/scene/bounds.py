@@ -40,6 +40,12 @@ def bounds(objects: Sequence[SceneObject], animation: Animation, time: float) ->
     return np.stack([np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)]).astype(np.float64)
 
 
+def ball_of(box: Float64 | None) -> tuple[Float64, float]:
+    """The centre (3,) of a box (2, 3), and half its diagonal; 1 for that of a single point.  None is a box around 0."""
+    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
+    return (low + high) / 2, float(np.linalg.norm(high - low)) / 2 or 1.0
+
+
 def extent(points: Float32 | Float64) -> tuple[Float32 | Float64, Float32 | Float64]:
     """Least and greatest corner, (3,) each, of points (n, 3), n > 0: many of a row at once, which is ten times as fast
     as three numbers at a time."""

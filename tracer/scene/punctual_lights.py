@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from tracer.scene.arrays import Float64, vector
+from tracer.scene.bounds import ball_of
 from tracer.scene.limits import LARGEST
 from tracer.scene.model import Light, SceneObject
 
@@ -125,9 +126,8 @@ def _far_away(matrix: Float64, box: Float64 | None) -> tuple[float, float, float
     length = float(np.linalg.norm(towards))
     if not length > 0:
         raise _Unusable("its node is scaled to nothing")
-    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
-    radius = float(np.linalg.norm(high - low)) / 2 or 1.0
-    return vector((low + high) / 2 + AWAY * radius * towards / length)
+    centre, radius = ball_of(box)
+    return vector(centre + AWAY * radius * towards / length)
 
 
 def _exposed(lights: Sequence[Light], objects: Sequence[SceneObject]) -> tuple[Light, ...]:
