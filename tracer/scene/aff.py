@@ -122,7 +122,7 @@ class _Reader:
         at = Cursor(file)
         while not at.at_end:
             within = done if has_includes else low + (high - low) * at.position / len(file.words)
-            self.report(f"Reading {file.path.name}", within)
+            self.report(f"Reading {file.path.name}", min(within, high))  # sums of shares may be a little more
             word = at.word("a statement")
             if word == b"}":
                 if not opened:
