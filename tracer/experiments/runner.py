@@ -97,10 +97,7 @@ class Run(ABC, Generic[Results]):
         return results
 
     def each(
-        self,
-        world: World | None = None,
-        cancel: Callable[[], bool] = never,
-        wake: Callable[[], None] = ignore,
+        self, world: World | None = None, cancel: Callable[[], bool] = never, wake: Callable[[], None] = ignore
     ) -> Iterator[Results]:
         """Do it, once, and yield the results after each frame; the scene is let go at the end.
 

@@ -64,10 +64,7 @@ class _MeshPlace:
 
 
 def load_mesh(
-    path: str | Path,
-    progress: Progress | None = None,
-    folders: Iterable[Path] = (),
-    options: MeshOptions = AS_IN_FILE,
+    path: str | Path, progress: Progress | None = None, folders: Iterable[Path] = (), options: MeshOptions = AS_IN_FILE
 ) -> Scene:
     """A mesh file as a static scene; raises SceneError in one line that names the file.
 

@@ -209,7 +209,4 @@ def framing_lights(box: Float64 | None, camera: Camera) -> tuple[Light, Light]:
     right, up, forward = camera.basis()
     key = centre + 3.0 * radius * (up * 0.9 - right * 0.7 - forward * 0.8)
     fill = centre + 3.0 * radius * (up * 0.5 + right * 1.0 - forward * 0.6)
-    return (
-        Light("key", vector(key), (0.8, 0.8, 0.8)),
-        Light("fill", vector(fill), (0.35, 0.35, 0.35)),
-    )
+    return (Light("key", vector(key), (0.8, 0.8, 0.8)), Light("fill", vector(fill), (0.35, 0.35, 0.35)))
