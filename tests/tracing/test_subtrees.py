@@ -1,4 +1,4 @@
-"""Large trees in pieces: nobody can tell when a piece was built, or by whom."""
+"""Large trees of subtrees: nobody can tell when a subtree was built, or by whom."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from tracer.scene.model import Cancelled, Scene
 
 
 @pytest.fixture(autouse=True)
-def tiny_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+def tiny_subtrees(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(subtrees, "LARGE", 10)
     monkeypatch.setattr(subtrees, "SUBTREE_SIZE", 16)
 
@@ -47,7 +47,7 @@ def assert_alike(lazy: tracer.World, whole: tracer.World, rays: Rays, threads: i
         assert np.array_equal(one, other)
 
 
-def test_random_worlds_answer_alike_lazy_whole_and_not_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_random_worlds_answer_alike_lazy_whole_and_not_in_subtrees(monkeypatch: pytest.MonkeyPatch) -> None:
     parts: list[BuiltPart] = []
 
     @quickly(12)
@@ -153,15 +153,15 @@ def test_what_goes_wrong_while_a_ray_waits_is_raised(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(subtrees, "build_topology", failing)
     with pytest.raises(KeyboardInterrupt):
         world.closest_hits(rays)
-    assert_alike(world, whole, rays)  # the piece was built all the same
+    assert_alike(world, whole, rays)  # the subtree was built all the same
     fails.append(MemoryError)
     world = tracer.World(made, 0.0, lazy=True)
-    for _ in range(2):  # a piece is missing, which no picture may show
+    for _ in range(2):  # a subtree is missing, which no picture may show
         with pytest.raises(MemoryError):
             world.closest_hits(rays)
 
 
-def test_a_build_in_pieces_can_be_stopped() -> None:
+def test_a_build_in_subtrees_can_be_stopped() -> None:
     rows = triangle_rows(random_corners(np.random.default_rng(2), 500, 0.1).astype(np.float32))
     nothing = np.empty((0, 6), np.float32)
     with pytest.raises(Cancelled):
@@ -196,7 +196,7 @@ def test_no_room_at_all_is_an_error_of_memory(monkeypatch: pytest.MonkeyPatch) -
         tracer.World(large(), 0.0, lazy=True)
 
 
-def test_pieces_that_are_interrupted_again_and_again_never_leave_their_room(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_subtrees_that_are_interrupted_again_and_again_never_leave_their_room(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(subtrees.memory_check, "of_limit", lambda: 1000.0)
     world = tracer.World(large(), 0.0, lazy=True)
     write = subtrees.write_topology

@@ -147,11 +147,11 @@ def test_a_tree_that_is_gone_says_so() -> None:
         assert tracer.World(made(50), 0.0, accelerator, lazy=True).parts_built() is None
 
 
-# --- a large 8-wide tree in pieces -----------------------------------------------------------------
+# --- a large 8-wide tree of subtrees ---------------------------------------------------------------
 
 
 @pytest.mark.parametrize("many", [0, 2, 400])
-def test_each_point_lies_in_the_deepest_box_of_pieces_that_are_there(many: int, monkeypatch) -> None:
+def test_each_point_lies_in_the_deepest_box_of_subtrees_that_are_there(many: int, monkeypatch) -> None:
     monkeypatch.setattr(subtrees, "LARGE", 10)
     monkeypatch.setattr(subtrees, "SUBTREE_SIZE", 64)
     world = tracer.World(made(), 0.0, lazy=True)
