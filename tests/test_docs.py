@@ -287,7 +287,7 @@ def test_certified_cells_are_told_with_the_numbers_they_have() -> None:
     assert len(rows) > 10
     for module, name, value in rows:
         culling = "tracer.culling" if module.startswith("regions.") else "tracer.culling.certified"
-        package = "tracer.geometry" if module == "offsets" else culling
+        package = "tracer.geometry" if module == "rays" else culling
         assert value == repr(getattr(importlib.import_module(f"{package}.{module}"), name)), name
 
 
