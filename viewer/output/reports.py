@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, dataclass, fields, replace
 from typing import Any, Generic, TypeVar
 
 from tracer.experiments import counterexample, experiment, zoom
@@ -12,6 +12,7 @@ from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.experiment import REFERENCE, Row
 from tracer.experiments.titles import WRONG_PIXELS, FactorStep
 from tracer.experiments.zoom import Change, Step
+from tracer.method import title_of
 from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
 from tracer.text import MOST_PERCENT, mode_in_words, printable, saved
@@ -49,6 +50,8 @@ def _speed_up(row: Row) -> str:
 
 
 METHOD: Column[Any] = Column("method", "which shadow rays are not traced", lambda row: row.method, text=True)
+TITLED = replace(METHOD, cell=lambda row: title_of(row.method))
+"""The same for the window, where methods have their readable names."""
 SPEED_UP = Column("speed-up", "speed-up over none, all frames", _compared(_speed_up))
 WRONG: Column[Row] = Column(
     "wrong", "wrong answers (of rays due)", lambda row: f"{row.wrong:,} ({row.wrong_part:.3%})",
@@ -91,16 +94,16 @@ def verdicts(rows: Sequence[Row], verified: bool) -> list[str]:
         if row.average_steps < -MOST_PERCENT:  # 12.6 × as many
             steps = f"{saved(row.average_steps)} traversal steps of shadow rays"
         if paper is not None and row is not paper and 0.0 < paper.average_steps < 0.5 * row.average_steps:
-            steps += f", {row.average_steps / paper.average_steps:.1f} times as many as by {BY_MODES}"
+            steps += f", {row.average_steps / paper.average_steps:.1f} times as many as by {title_of(BY_MODES)}"
         right = f", {row.wrong:,} wrong answer{'s' * (row.wrong != 1)}" if row.wrong else ", no wrong answer"
         low, high = row.speed_up - row.speed_up_spread, row.speed_up + row.speed_up_spread
         if low > 1.0 or high < 1.0:
-            speed = f", {'faster' if low > 1.0 else 'slower'} than {REFERENCE}: {row.speed_up:.2f} times its speed"
+            speed = f", {'faster' if low > 1.0 else 'slower'} than tracing all: {row.speed_up:.2f} times as fast"
         elif max(abs(low - 1.0), abs(high - 1.0)) <= LEVEL:
-            speed = f", as fast as {REFERENCE} within {LEVEL:.0%}"
+            speed = f", as fast as tracing all within {LEVEL:.0%}"
         else:
-            speed = f", too few frames to say whether faster than {REFERENCE}"
-        said.append(f"{row.method}: {steps}{right if verified else speed}.")
+            speed = ", too few frames to say whether it is faster than tracing all"
+        said.append(f"{title_of(row.method)}: {steps}{right if verified else speed}.")
     return said
 
 
@@ -120,14 +123,14 @@ def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
     """Return what else the times depend on, in half sentences; `in_window` says that they were measured beside one."""
     settings = results.settings
     if settings.get("verify"):
-        return ["times include verifying, which traces culled rays, too: no speed-up is told"]
+        return ["no speed-up is given, as verifying takes time: it traces the culled rays as well"]
     said = ["times include what the window takes meanwhile, those of the command bench do not"] if in_window else []
     if "accelerator" in settings:
         said.append(f"rays go through the {settings['accelerator']}: speed-ups depend on the tree")
     for method, seconds in results.build_seconds.items():
         share = sum(seconds) / max(sum(results.methods[method]["frame_seconds"]), 1e-9)
         if share >= PREPARING:
-            said.append(f"{share:.0%} of the time of {method} is preparing")
+            said.append(f"{share:.0%} of the time of {title_of(method) if in_window else method} is preparing")
     if len(results.frames) > 1:
         said.append("±: two standard errors over the frames")
     return said

@@ -17,7 +17,7 @@ from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
 from viewer.services.questions import Question
 from viewer.state.draw_options import NEUTRAL, brighter
-from viewer.state.methods import toggled, with_base
+from viewer.state.methods import about, toggled, with_base
 from viewer.state.pixels import FIT, MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
@@ -240,12 +240,13 @@ def _culling(ui: Ui) -> list[Command]:
         c.settings.change(method=combine(c.session.settings.method, name))
 
     def base(kind: Kind) -> Command:
-        return Command(f"Method {kind.name}", "Culling", partial(change, with_base, kind.name), tip=kind.summary,
-                       checked=lambda: method().kind is kind)  # fmt: skip
+        return Command(f"Method {kind.name}", "Culling", partial(change, with_base, kind.name), tip=about(kind),
+                       title=f"Method {kind.title}", checked=lambda: method().kind is kind)  # fmt: skip
 
     def addition(kind: Kind) -> Command:
         fits = Condition(lambda: method().kind is not kind, "it is the chosen method")
-        return Command(f"Method +{kind.name}", "Culling", partial(change, toggled, kind.name), tip=kind.summary,
+        return Command(f"Method +{kind.name}", "Culling", partial(change, toggled, kind.name), tip=about(kind),
+                       title=f"Method + {kind.title[:1].lower()}{kind.title[1:]}",
                        checked=lambda: method().has(kind.name), enabled=fits)  # fmt: skip
 
     return [

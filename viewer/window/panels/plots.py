@@ -11,9 +11,12 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from numpy.typing import NDArray
 
+from tracer.culling.fate import Fate
 from tracer.experiments.experiment import REFERENCE, Results
+from tracer.method import title_of
 from viewer.services.runs import Experiment
 from viewer.state import terms
+from viewer.state.palette import FATES, LIT, PARTLY_LIT
 from viewer.util.numbers import whole_percent
 from viewer.window.style import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.window.ui import Ui
@@ -34,12 +37,12 @@ class _Plot:
 
 _PLOTS = (
     _Plot("What became of shadow rays",
-          ((terms.CULLED, "culled", BLUE), (terms.DYNAMIC_ONLY, "dynamic_only", YELLOW),
-           (terms.CANDIDATES_ONLY, "candidates_only", ORANGE), (terms.CACHE_HITS, "cache_hits", PINK),
-           (terms.TRACED, "traced", GREY)), stacked=True),
+          tuple((FATES[fate].name, series, ImVec4(*FATES[fate].color, 1.0)) for fate, series in (
+              (Fate.CULLED, "culled"), (Fate.DYNAMIC_ONLY, "dynamic_only"), (Fate.CANDIDATES, "candidates_only"),
+              (Fate.CACHED, "cache_hits"), (Fate.TRACED, "traced"))), stacked=True),
     _Plot("Samples of lights",
-          (("due", "samples_due", BLUE), ("reaching", "samples_reached", YELLOW),
-           ("penumbra", "penumbra", ORANGE)), only_if="samples_due"),
+          (("due", "samples_due", GREY), ("reaching", "samples_reached", ImVec4(*LIT, 1.0)),
+           ("penumbra", "penumbra", ImVec4(*PARTLY_LIT, 1.0))), only_if="samples_due"),
     _Plot("Steps and tests",
           (("steps", "steps", BLUE), ("for shadows", "shadow_steps", SKY), ("tests", "tests", ORANGE))),
     _Plot("Milliseconds", (("tracing", "traced_ms", BLUE), ("drawing", "drawn_ms", ORANGE)), logarithmic=True,
@@ -173,7 +176,7 @@ def _go_to_frame(ui: Ui, number: int, values: list[str]) -> None:
     ui.state(PlotsState).pointed = number
     (width, height), part = record.state.size, record.counters["pixels"] / record.counters["all_pixels"]
     shaded = f", {whole_percent(part)} shaded" if part < 1.0 else ""
-    said = f"{record.state.time:.3f} s, {record.state.settings.method}, {width} x {height}{shaded}"
+    said = f"{record.state.time:.3f} s, {title_of(record.state.settings.method)}, {width} x {height}{shaded}"
     if _clicked([c.navigator.name_of(number), said, *values]):
         c.navigator.go(number)
 
@@ -186,8 +189,8 @@ def go_to_experiment_frame(ui: Ui, run: Experiment, results: Results, place: int
     number = results.frames[place]
     if run.settings.verify:
         wrong = {m: figures["wrong"][place] for m, figures in results.methods.items() if m != REFERENCE}
-        values = [*values, *(f"{method}: {many} wrong answers" for method, many in wrong.items())]
-    if _clicked([f"frame {number} of the experiment, by {run.shown}", *values]):
+        values = [*values, *(f"{title_of(method)}: {many} wrong answers" for method, many in wrong.items())]
+    if _clicked([f"frame {number} of the experiment, by {title_of(run.shown)}", *values]):
         c.navigator.go_to_experiment(run, number)
 
 
