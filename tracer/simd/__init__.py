@@ -87,14 +87,3 @@ from tracer.simd.vectors import (
     to_f32,
     to_i32,
 )
-
-__all__ = [
-    "F32x8", "F32x16", "F64x8", "I32x8", "I32x16", "Mask", "Vector", "address_of", "all_lanes", "any_lane",
-    "u8_at", "call_entry", "f32_at", "i32_at", "i64_at", "as_f32", "as_i32", "binary_logarithm", "bits_of",
-    "f32x8", "f32x16", "floor", "fma", "gather_f32x16", "gather_i32x16", "i32x8", "i32x16", "lane_numbers_x16",
-    "lane_of", "lanes_below", "largest", "leading_zeros", "load_columns", "load_f32", "load_f32x8", "load_f32x16",
-    "load_f64x8", "load_i32", "load_i32x8", "load_i32x16", "load_i64", "load_spread_bytes16", "load_three",
-    "local_memory", "lowest_bit", "mask8", "mask16", "maximum", "minimum", "ones", "pack", "pack_three", "power",
-    "select", "size_of", "smallest", "sort_columns", "square_root", "prefetch", "store", "store_bytes",
-    "store_three", "store_where", "to_f32", "to_i32",
-]  # fmt: skip
