@@ -29,17 +29,9 @@ class FrameNavigator:
     """Goes back to frames of the history, to those of an experiment or a hunt, and to other states."""
 
     def __init__(
-        self,
-        session: Session,
-        history: FrameHistory,
-        scheduler: FrameScheduler,
-        runs: Runs,
-        undo: Undo,
-        selection: Selection,
-        notices: Notices,
-        restore: Callable[[ViewState], None],
-        reset_modes: Callable[[], None],
-    ) -> None:
+        self, session: Session, history: FrameHistory, scheduler: FrameScheduler, runs: Runs, undo: Undo,
+        selection: Selection, notices: Notices, restore: Callable[[ViewState], None], reset_modes: Callable[[], None],
+    ) -> None:  # fmt: skip
         self._session, self._history, self._scheduler = session, history, scheduler
         self._runs, self._undo, self._selection, self._notices = runs, undo, selection, notices
         self._restore, self._reset_modes = restore, reset_modes
@@ -86,14 +78,9 @@ class FrameNavigator:
         self.go_to(state.with_draw(light=find.light), f"counterexample {number + 1}", size, point, zoom, warmup)
 
     def go_to(
-        self,
-        state: ViewState,
-        name: str,
-        size: tuple[int, int],
-        point: Point | None = None,
-        zoom: Zoom | None = None,
-        warmup: Warmup | None = None,
-    ) -> None:
+        self, state: ViewState, name: str, size: tuple[int, int], point: Point | None = None,
+        zoom: Zoom | None = None, warmup: Warmup | None = None,
+    ) -> None:  # fmt: skip
         """Restore a state, and select a point of the picture once that has come; `zoom` is how closely it is looked at
         then.
 
