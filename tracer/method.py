@@ -21,7 +21,7 @@ DEFAULT_METHOD = "paper"
 ANY_NUMBER = 1 << 31
 MANY = 16  # lights: clusters of fewer are hardly ever worth it
 HELD = 31  # lights that words of modes have room for (`tracer.culling.modes.MAX_CULLED_LIGHTS`)
-#: Methods that are made of others and are worth a look (`line_up`), as far as these are known.
+#: Methods that are made of others and are worth a look (`line_up`).
 TOGETHER = (
     "paper+cache",
     "certified+cache",
@@ -74,6 +74,11 @@ class Kind:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "title", self.title or self.name)
+
+    @property
+    def plus(self) -> str:
+        """How it reads where it is added to a base: "+ occluder cache"."""
+        return f"+ {self.title[:1].lower()}{self.title[1:]}"
 
     def fits(self, lights: int, samples: int | None = None) -> bool:
         """Whether it has anything to say of a scene with so many lights and, unless one each, samples of them."""
@@ -154,12 +159,8 @@ def unknown(names: Sequence[str]) -> str:
 def line_up(lights: int, samples: int | None = None) -> list[str]:
     """The methods that are worth comparing in a scene of so many lights and samples of them (`Kind.fits`): all
     bases, and what goes well together."""
-    names = [kind.name for kind in bases(measures=True)] + [name for name in TOGETHER if _is_known(name)]
+    names = [*(kind.name for kind in bases(measures=True)), *TOGETHER]
     return [name for name in names if Method.parse(name).fits(lights, samples)]
-
-
-def _is_known(name: str) -> bool:
-    return all(part in _KINDS for part in name.split("+"))
 
 
 @dataclass(frozen=True)
@@ -186,7 +187,7 @@ class Method:
     @property
     def title(self) -> str:
         """What people read: "Certified + occluder cache"."""
-        return " + ".join([self.kind.title, *(kind.title[:1].lower() + kind.title[1:] for kind in self.added)])
+        return " ".join((self.kind.title, *(kind.plus for kind in self.added)))
 
     @property
     def kinds(self) -> tuple[Kind, ...]:

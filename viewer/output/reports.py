@@ -130,7 +130,7 @@ def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
     for method, seconds in results.build_seconds.items():
         share = sum(seconds) / max(sum(results.methods[method]["frame_seconds"]), 1e-9)
         if share >= PREPARING:
-            said.append(f"{share:.0%} of the time of {title_of(method) if in_window else method} is preparing")
+            said.append(f"{share:.0%} of the time of {title_of(method)} is preparing")
     if len(results.frames) > 1:
         said.append("±: two standard errors over the frames")
     return said

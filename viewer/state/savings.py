@@ -263,7 +263,7 @@ def _saved(frame: Frame) -> Clause:
     if not method.culls:
         would = f"; the paper's modes would save {percent(said.saved, shadow.due)}" if said.due else ""
         tip = "what the modes that are kept for the views would save now, by the paper's method"
-        return Clause(f"{name}: every shadow ray is traced{would}{part}", tip)
+        return Clause(f"Every shadow ray is traced{would}{part}", tip)
     if shadow.due == shadow.traced and s.decision:
         return Clause(f"{name}: culls nothing here", s.decision)
     if shadow.due == shadow.traced:

@@ -246,8 +246,7 @@ def _culling(ui: Ui) -> list[Command]:
     def addition(kind: Kind) -> Command:
         fits = Condition(lambda: method().kind is not kind, "it is the chosen method")
         return Command(f"Method +{kind.name}", "Culling", partial(change, toggled, kind.name), tip=about(kind),
-                       title=f"Method + {kind.title[:1].lower()}{kind.title[1:]}",
-                       checked=lambda: method().has(kind.name), enabled=fits)  # fmt: skip
+                       title=f"Method {kind.plus}", checked=lambda: method().has(kind.name), enabled=fits)  # fmt: skip
 
     return [
         *map(base, bases()),
@@ -291,7 +290,7 @@ def _run(ui: Ui) -> list[Command]:
                 tip="methods compared along the path: faster or not, and how much is saved"),
         Command("Start zoom test", "Run", partial(start, "Zoom test", runs.start_zoom_test), enabled=idle,
                 tip="towards the clicked primitive: is a shadow missing that shows only from near?"),
-        Command("Start hunt", "Run", partial(start, "Hunt", c.runs.start_hunt), enabled=idle,
+        Command("Start hunt", "Run", partial(start, "Hunt", c.runs.start_hunt), enabled=idle, also="wrong",
                 tip="search the path for the worst wrong pixels of a method"),
         Command("Film...", "Run", partial(start, "Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),

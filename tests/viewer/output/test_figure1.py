@@ -70,7 +70,7 @@ def test_the_stages_are_those_of_the_paper_with_the_frames_numbers():
         "→ partially occluded": s.mode_changes.partially_occluded,
         "→ examined anew": s.mode_changes.examined_anew,
     }
-    assert figure.title.startswith("a scene, paper, 64 × 48 pixels")
+    assert figure.title.startswith("a scene, Paper, 64 × 48 pixels")
     assert f"{s.mode_changes.units['fully_rendered']:,} of {sum(s.mode_changes.units.values()):,}" in figure.notes[0]
 
 

@@ -57,7 +57,7 @@ def compare(session: Session, **fields: object) -> None:
 
 
 CHANGES = {
-    "method certified": lambda session: session.set_settings(method="certified"),
+    "method Certified": lambda session: session.set_settings(method="certified"),
     "view Depth": lambda session: session.set_draw(view=View.DEPTH),
     "light 1": lambda session: session.set_draw(light=1),
     "range changed": lambda session: session.change(draw=session.draw.with_span((1.0, 2.0), View.DEPTH)),
@@ -65,7 +65,7 @@ CHANGES = {
     "exposure +0.5 EV": lambda session: session.set_draw(tone=Tone(0.5)),
     "zoom to 2 x": lambda session: session.set_draw(zoom=Zoom(2.0)),
     "comparison: side by side": lambda session: compare(session, on=True, mode=CompareMode.SIDE),
-    "A by certified": lambda session: compare(session, second="certified"),
+    "A by Certified": lambda session: compare(session, second="certified"),
 }
 
 

@@ -88,7 +88,7 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
 
     def addition(kind: Kind) -> None:
         with outlined():
-            if imgui.checkbox(kind.title, parsed.has(kind.name))[0]:
+            if imgui.checkbox(kind.plus, parsed.has(kind.name))[0]:
                 choose(toggled(method, kind.name))
 
     kinds_of_methods(ui, groups(), base)

@@ -75,7 +75,7 @@ def _methods(ui: Ui, plan: ExperimentPlan) -> None:
 
     def addition(kind: Kind) -> None:
         bases = [method for method in plan.methods if "+" not in method and method != kind.name]
-        add_or_remove(kind.title, {f"{base}+{kind.name}" for base in bases})
+        add_or_remove(kind.plus, {f"{base}+{kind.name}" for base in bases})
 
     kinds_of_methods(ui, [("Usual", [kind for kind in bases() if kind.name in _USUAL])], base)
     if imgui.tree_node("More"):
