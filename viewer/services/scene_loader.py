@@ -196,13 +196,9 @@ class SceneLoader:
         return replace(state, pace=here.pace).with_draw(**around)
 
     def _begin(
-        self,
-        path: Path,
-        place: ViewState | None = None,
-        again: bool = False,
-        meshes: MeshOptions | None = None,
+        self, path: Path, place: ViewState | None = None, again: bool = False, meshes: MeshOptions | None = None,
         changed: str = "",
-    ) -> None:
+    ) -> None:  # fmt: skip
         """Read a scene in the place of what is being read now."""
         if place is not None:
             place = place.with_settings(**self._given)

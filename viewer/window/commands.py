@@ -107,8 +107,10 @@ def _edit(ui: Ui) -> list[Command]:
     undo = ui.controller.undo
     return [
         Command("Undo", "Edit", undo.undo, "Ctrl+Z", repeats=True, title=lambda: f"Undo {undo.undoes}".rstrip(),
+                tip=partial(undo.details, 0),
                 enabled=Condition(lambda: bool(undo.undoes), "there is nothing to undo")),
         Command("Redo", "Edit", undo.redo, "Ctrl+Shift+Z", repeats=True, title=lambda: f"Redo {undo.redoes}".rstrip(),
+                tip=partial(undo.details, 1),
                 enabled=Condition(lambda: bool(undo.redoes), "there is nothing to redo"), other_keys=("Ctrl+Y",)),
         Command(Dialog.PALETTE.value, "Edit", lambda: ui.open(Dialog.PALETTE), "Ctrl+Shift+P", separated=True,
                 tip="finds commands, settings, scenes, bookmarks and presets as you type"),

@@ -72,9 +72,8 @@ def test_what_is_meant_is_found_first(ui: Ui, typed: str, meant: str | None) -> 
 
 def test_after_the_view_of_wrong_pixels_comes_the_hunt_and_nothing_is_there_twice(ui: Ui) -> None:
     ui.panel_labels = tuple(PANELS)
-    everything = items(ui)
-    assert find("wrong", everything, [])[1].name == "Start hunt"
-    assert [label for label, count in Counter(item.label.lower() for item in everything).items() if count > 1] == []
+    assert find("wrong", items(ui), [])[1].name == "Start hunt"
+    assert [label for label, count in Counter(item.label.lower() for item in items(ui)).items() if count > 1] == []
 
 
 def test_what_was_used_last_comes_first(ui: Ui) -> None:

@@ -81,7 +81,7 @@ def find(typed: str, items: Sequence[Command], used: Sequence[str]) -> list[Comm
     scored = []
     for number, item in enumerate(items):
         elsewhere = f"{item.name} {item.menu} {item.kind.value} {item.also} {_VERBS}"
-        score = match(typed, item.label, elsewhere, item.tip, item.also)
+        score = match(typed, item.label, elsewhere, item.more, item.also)
         if score is not None:
             score -= _OTHER_KINDS if item.kind is not Kind.COMMAND else 0.0
             score += RECENT_BONUS / (1.0 + rank[item.name]) if item.name in rank else 0.0
@@ -171,7 +171,7 @@ def show(ui: Ui) -> None:
     aimed = finder.aimed
     entered = _line(finder)
     clicked = _list(ui, finder) if finder.setting is None else None
-    hint = finder.setting.tip if finder.setting is not None else aimed.why_not if aimed is not None else ""
+    hint = finder.setting.more if finder.setting is not None else aimed.why_not if aimed is not None else ""
     if finder.problem or hint:
         paragraph(finder.problem or hint, ERROR if finder.problem else QUIET)
     chosen = clicked or finder.aimed or finder.setting
@@ -240,8 +240,8 @@ def _list(ui: Ui, finder: Finder) -> Command | None:
 def _row(ui: Ui, item: Command, marked: bool) -> bool:
     imgui.push_id(item.name)
     clicked = imgui.selectable("##row", marked, _ROW)[0]
-    if item.why_not or item.tip:
-        tooltip(item.why_not or item.tip)
+    if item.why_not or item.more:
+        tooltip(item.why_not or item.more)
     imgui.same_line(em(0.3))
     imgui.text_colored(QUIET, icons.ICON_FA_CHECK if item.is_checked else _ICONS[item.kind])
     imgui.same_line(em(1.9))
