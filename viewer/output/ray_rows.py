@@ -140,7 +140,7 @@ class RayRows:
         met = "leaves the scene" if ray.primitive < 0 else f"{self._name(ray.primitive)} at {ray.t:.4g}"
         tip = [
             f"ray {ray.number}, bounce {ray.bounce}; weight {ray.weight.max():.3g}; "
-            f"{count(ray.steps)} steps and {count(ray.tests)} tests, traced alone",
+            f"{several(ray.steps, 'step')} and {several(ray.tests, 'test')}, traced alone",
             "adds ({:.3g}, {:.3g}, {:.3g}) to the pixel".format(*ray.light),
         ]
         if ray.shadows is not None:

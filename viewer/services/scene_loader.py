@@ -68,13 +68,9 @@ class SceneLoader:
     """Reads scenes, and runs `build`, on threads; `take_finished` hands out what has come."""
 
     def __init__(
-        self,
-        session: Session,
-        preferences: Preferences,
-        notices: Notices,
-        ask_first: Callable[[str, Callable[[], None]], None],
-        wake: Callable[[], None] = lambda: None,
-    ) -> None:
+        self, session: Session, preferences: Preferences, notices: Notices,
+        ask_first: Callable[[str, Callable[[], None]], None], wake: Callable[[], None] = lambda: None,
+    ) -> None:  # fmt: skip
         """`ask_first(name, go_on)` calls `go_on` at once, or when the user agrees to open what is called so."""
         self._session, self._preferences, self._notices = session, preferences, notices
         self._ask_first, self._wake = ask_first, wake

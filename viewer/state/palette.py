@@ -113,15 +113,15 @@ FATES = {
     ),
     Fate.CULLED: Class(
         terms.CULLED, BLOCKED,
-        f"answered without asking any geometry: {_BY_PAPER.format('FULL_SHADOW')}",
+        f"not traced, as its answer is known: {_BY_PAPER.format('FULL_SHADOW')}",
     ),
     Fate.DYNAMIC_ONLY: Class(
         terms.DYNAMIC_ONLY, LIT,
-        f"asked dynamic objects alone: {_BY_PAPER.format('NON_SHADOW')}",
+        f"tested against dynamic objects only: {_BY_PAPER.format('NON_SHADOW')}",
     ),
     Fate.CANDIDATES: Class(
         terms.CANDIDATES_ONLY, CANDIDATES,
-        "asked the few static primitives that can block it, and dynamic objects",
+        "tested against the few static primitives that can block it, and dynamic objects",
     ),
     Fate.CACHED: Class(terms.CACHE_HITS, hex_color("8ACBF3"), "blocked by what blocked the last ray from here"),
     Fate.PARTLY_OCCLUDED: _not_culled(

@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui, implot
 from tracer.experiments import experiment
 from tracer.experiments.experiment import REFERENCE, Experiment, Results, Row
 from tracer.method import Kind, additions, bases, in_order, title_of
-from viewer.output.reports import PUBLISHED, TITLED, caveats, table_1, verdicts
+from viewer.output.reports import TITLED, caveats, published, table_1, verdicts
 from viewer.state.methods import BY_MODES, CERTIFIED, groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
@@ -94,7 +94,7 @@ def _table(ui: Ui, run: Experiment, results: Results) -> None:
     for sentence in ui.cached("verdicts", results, len(results.frames), lambda: verdicts(rows, run.settings.verify)):
         paragraph(in_window_style(sentence))
     said = in_window_style("; ".join(caveats(results, in_window=True)))
-    for quiet in (f"{said[:1].upper()}{said[1:]}.", *map(in_window_style, PUBLISHED)):
+    for quiet in (f"{said[:1].upper()}{said[1:]}.", *map(in_window_style, published(results))):
         paragraph(quiet, QUIET)
 
 

@@ -58,8 +58,8 @@ AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
 COLORS = (BLUE, ORANGE, GREEN, SKY, PINK, YELLOW)
 _PER_PIXEL = (
-    "Pictures have many sizes, and of those in motion only some pixels are shaded. So counts are per pixel: primary "
-    "rays and proofs of all pixels, all else of those that are shaded."
+    "Counts are divided by pixels, as pictures differ in size, and in motion only some pixels are shaded: those of "
+    "primary rays and certificates by all pixels, others by the shaded ones."
 )
 
 

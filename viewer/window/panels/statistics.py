@@ -28,7 +28,7 @@ def show(ui: Ui) -> None:
     divisor, part = c.traced.request.divisor, frame.statistics.part
     coarse = f", 1/{divisor} size" if divisor > 1 else ""
     clipped(f"{f'{whole_percent(part)} of ' if part < 1.0 else ''}{frame.width} x {frame.height} pixels{coarse}")
-    tooltip("Of the first sample of each pixel that is shaded; primary rays and proofs are those of all pixels.")
+    tooltip("Of the first sample of each pixel that is shaded; primary rays and certificates are of all pixels.")
     old = c.scheduler.outdated  # said in a line that is there anyway, so that nothing moves
     clipped(f"method {title_of(frame.settings.method)}{', before the change' if old else ''}", QUIET if old else None)
     if old:
