@@ -91,6 +91,15 @@ def test_each_change_is_a_step_with_a_name_and_comes_back(desk: Desk):
     assert desk.undo.redoes == "" and desk.said == "there is nothing to redo", "another way was taken"
 
 
+def test_many_changes_at_once_are_counted_and_listed(desk: Desk):
+    desk.session.set_settings(depth=3, method="none", zoom_factor=2.0)
+    desk.frame()
+    listed = "bounces 3, method None (trace all), zoom factor 2"
+    assert (desk.undo.undoes, desk.undo.details(0)) == ("3 changes", listed)
+    desk.undo.undo()
+    assert desk.said == f"undone: {listed}" and desk.undo.details(1) == listed
+
+
 @pytest.mark.parametrize(("depths", "name"), [((9, 8, 4, 2), "bounces 2"), ((9, 10), "")])
 def test_a_drag_is_one_step_whatever_it_passes_and_none_if_it_comes_back(
     desk: Desk, depths: tuple[int, ...], name: str
