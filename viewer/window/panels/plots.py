@@ -20,7 +20,7 @@ from viewer.state.palette import FATES, LIT, PARTLY_LIT
 from viewer.util.numbers import whole_percent
 from viewer.window.style import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, clipped, count, em, paragraph, tooltip, tooltip_at
+from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, tooltip, tooltip_at
 
 
 @dataclass(frozen=True)
@@ -101,8 +101,8 @@ def show(ui: Ui) -> None:
         return
     imgui.same_line()
     state = ui.state(PlotsState)
-    _, state.recent = imgui.checkbox(f"last {RECENT:.0f} s", state.recent)
-    tooltip(f"Show only the pictures of the {RECENT:.0f} seconds before the newest.")
+    tip = f"Show only the pictures of the {RECENT:.0f} seconds before the newest."
+    checkbox(f"last {RECENT:.0f} s", state.recent, lambda on: setattr(state, "recent", on), tip)
     imgui.same_line()
     shown = len(history) - _start(ui)
     clipped(f"the last {shown} pictures" if shown > 1 else "one picture", QUIET)
