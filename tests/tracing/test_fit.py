@@ -48,18 +48,18 @@ def test_what_does_not_fit_is_said(method: str):
 
 
 SENTENCES = {
-    ("voxels", 9, 3): "Of lamps of several samples, 3 here, voxels knows nothing; rays to them are traced.",
-    ("voxels", 40, 3): "Of lamps of several samples, 3 here, voxels knows nothing, nor of lights after the first 31; "
+    ("voxels", 9, 3): "Of lamps of several samples, 3 here, Voxels knows nothing; rays to them are traced.",
+    ("voxels", 40, 3): "Of lamps of several samples, 3 here, Voxels knows nothing, nor of lights after the first 31; "
     "rays to them are traced.",
-    ("voxels", 40, 40): "All lights are lamps of several samples, of which voxels knows nothing: "
+    ("voxels", 40, 40): "All lights are lamps of several samples, of which Voxels knows nothing: "
     "every shadow ray is traced.",
-    ("certified+voxels", 9, 9): "All lights are lamps of several samples, of which voxels knows nothing: "
+    ("certified+voxels", 9, 9): "All lights are lamps of several samples, of which Voxels knows nothing: "
     "it answers no ray.",
-    ("certified+voxels", 9, 3): "Of lamps of several samples, 3 here, voxels knows nothing; it leaves them alone.",
-    ("certified+voxels", 40, 0): "Of 40 lights, voxels answers for the first 31; it leaves the others alone.",
-    ("paper", 1000, 3): "Of 1,000 lights, paper answers for the first 31; rays to the others are traced.",
-    ("lie", 40, 3): "Of lamps of several samples and lights after the first 31, lie only knows which ones a single "
-    "triangle hides from a cell.",
+    ("certified+voxels", 9, 3): "Of lamps of several samples, 3 here, Voxels knows nothing; it leaves them alone.",
+    ("certified+voxels", 40, 0): "Of 40 lights, Voxels answers for the first 31; it leaves the others alone.",
+    ("paper", 1000, 3): "Of 1,000 lights, Paper answers for the first 31; rays to the others are traced.",
+    ("lie", 40, 3): "Of lamps of several samples and lights after the first 31, Local illumination environments only "
+    "knows which ones a single triangle hides from a cell.",
     ("certified", 1000, 3): "",
 }
 
