@@ -35,14 +35,14 @@ def test_what_does_not_fit_is_said(method: str):
     truth = tracer.Renderer(with_lights(40), replace(SETTINGS, method="none")).render()
     said = many.statistics.decision
     assert not kind.exact or np.array_equal(many.color, truth.color)
-    first = f"Of 40 lights, {method} answers for the first 31; rays to the others are traced."
-    in_part = f"Of lights after the first 31, {method} only knows which ones a single triangle hides from a cell."
+    first = f"Of 40 lights, {kind.title} answers for the first 31; rays to the others are traced."
+    in_part = f"Of lights after the first 31, {kind.title} only knows which ones a single triangle hides from a cell."
     assert (first in said) == (kind.answers < 40 and not kind.in_part), said
     assert (in_part in said) == kind.in_part, said
     lamps = replace(SETTINGS, method=method, lamp_radius=0.1, lamp_samples=4)
     said = tracer.Renderer(shadow_scene(), lamps).render().statistics.decision
-    every = f"All lights are lamps of several samples, of which {method} knows nothing: every shadow ray is traced."
-    in_part = f"Of lamps of several samples, {method} only knows which ones a single triangle hides from a cell."
+    every = f"All lights are lamps of several samples, of which {kind.title} knows nothing: every shadow ray is traced."
+    in_part = f"Of lamps of several samples, {kind.title} only knows which ones a single triangle hides from a cell."
     assert (every in said) == (not kind.lamps and not kind.in_part), said
     assert (in_part in said) == kind.in_part, said
 
