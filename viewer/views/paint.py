@@ -37,15 +37,9 @@ _ONE = np.float32(1.0)
 
 
 def by_class(
-    frame: Frame,
-    draw: DrawOptions,
-    classes: NDArray,
-    palette: NDArray[np.float32],
-    stripe: int = 0,
-    cells: NDArray[np.int32] | None = None,
-    line: float = CELL_LINE,
-    shading: float | None = None,
-) -> Pixels:
+    frame: Frame, draw: DrawOptions, classes: NDArray, palette: NDArray[np.float32], stripe: int = 0,
+    cells: NDArray[np.int32] | None = None, line: float = CELL_LINE, shading: float | None = None,
+) -> Pixels:  # fmt: skip
     """Draw the colour of the class (h, w) of each pixel, shaded; between `cells` there is a `line`.
 
     Stripes of so many pixels take their colours from the first and the second half of the palette in turn."""
@@ -60,13 +54,9 @@ def by_class(
 
 
 def by_number(
-    frame: Frame,
-    draw: DrawOptions,
-    place: NDArray,
-    known: NDArray[np.bool_] | None = None,
-    cells: NDArray[np.int32] | None = None,
-    shading: float = 0.0,
-) -> Pixels:
+    frame: Frame, draw: DrawOptions, place: NDArray, known: NDArray[np.bool_] | None = None,
+    cells: NDArray[np.int32] | None = None, shading: float = 0.0,
+) -> Pixels:  # fmt: skip
     """Draw numbers (h, w), 0 to 1, on the colour map, and grey where they are not `known`."""
     index = on_map(place)
     if known is not None:

@@ -35,15 +35,10 @@ def in_panel(ui: Ui, *panels: str) -> list[Setting]:
 
 
 def panel_rows(
-    ui: Ui,
-    panel: str,
-    names: float,
-    own: Mapping[str, Callable[[Ui, Setting], None]] = {},
-    above: Callable[[], None] = lambda: None,
-    below: Callable[[], None] = lambda: None,
-    note: Callable[[Setting], str] = lambda one: "",
-    also: Sequence[str] = (),
-) -> None:
+    ui: Ui, panel: str, names: float, own: Mapping[str, Callable[[Ui, Setting], None]] = {},
+    above: Callable[[], None] = lambda: None, below: Callable[[], None] = lambda: None,
+    note: Callable[[Setting], str] = lambda one: "", also: Sequence[str] = (),
+) -> None:  # fmt: skip
     """Show all settings that are declared for a panel, or as of others that it stands for `also`, and do something as
     things are: rows of those that have a value, with room for names of so many ems, and below these ticks beside each
     other.
@@ -178,7 +173,7 @@ def _entries(ui: Ui, one: Setting, now: Any) -> Iterator[Command]:
             yield entry(choose, meaning or one.help, one.text(choice), checked=partial(bool, choice == now))
     elif one.kind is bool:
         flip = partial(c.settings.set, one, not now)
-        yield entry(flip, one.help, checked=partial(bool, now), also="on off switch")
+        yield entry(flip, one.help, checked=partial(bool, now))
     else:
         tip = f"{one.expected_shown}. {one.help}".strip()
-        yield entry(lambda: None, tip, value=one.text(now), take=take, also="set value")
+        yield entry(lambda: None, tip, value=one.text(now), take=take)

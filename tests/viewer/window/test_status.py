@@ -56,8 +56,8 @@ def run(traced: int, label: str) -> SimpleNamespace:
     [
         (doing, {"warm_up_job": KERNELS}, "Compiling the tracer (first start only): 50 %"),
         (doing, {"warm_up_job": KERNELS, "compiles": True, "frame": FRAME},
-         "compiling the kernels of certificates (first start only): 50 %"),
-        (doing, {"warm_up_job": KERNELS, "frame": FRAME}, "loading the kernels of certificates: 50 %"),
+         "compiling the kernels of other methods (first start only): 50 %"),
+        (doing, {"warm_up_job": KERNELS, "frame": FRAME}, "loading the kernels of other methods: 50 %"),
         (doing, {"runs": run(0, "starting")}, "experiment is starting   (Escape stops it)"),
         (doing, {"runs": run(1, "frame 1 of 5, none")}, "experiment, traced: frame 1 of 5, none   (Escape stops it)"),
         (doing, {"activity": Activity.CERTIFYING, "frame": FRAME},
@@ -122,8 +122,8 @@ def test_wrong_answers_are_those_of_the_method_that_is_shown() -> None:
 
 
 def test_below_a_method_stands_what_it_trusts_whether_it_is_exact_and_what_it_does_now() -> None:
-    first, second = trust(shown("paper+cache")).split(" cache: ")
-    assert first.startswith("paper: Trusts ") and "Wrong now and then." in first and second.endswith("as the method.")
+    first, second = trust(shown("paper+cache")).split(" Occluder cache: ")
+    assert first.startswith("Paper: Trusts ") and "Wrong now and then." in first and second.endswith("as the method.")
     c = shown("auto")
     c.frame.statistics.decision = "Every shadow ray is traced."
     assert trust(c).endswith(" Exact. Every shadow ray is traced.")
