@@ -18,12 +18,8 @@ from tracer.scene.animation import Animation, TrackSet
 from tracer.scene.arrays import Float64, Int32, Vector
 from tracer.scene.assembly import under_matrix
 from tracer.scene.deformation import deformed
-<<<<<<< HEAD
-from tracer.scene.lights import Light
-=======
 from tracer.scene.fingerprint import code_of
-from tracer.scene.lights import Light, Vector
->>>>>>> main
+from tracer.scene.lights import Light
 from tracer.scene.model import Quadrics, Scene, SceneObject, Triangles
 from tracer.scene.normals import unit_normals
 from tracer.scene.things import Held, Thing, held_by, owner_of, things

@@ -155,24 +155,10 @@ class KdTree(InObjectSpace):
             Top(moving_tree, moving_box, bool(moving.any())),
             self._roots,
             boxes,
-<<<<<<< HEAD
             to_object,
         )
         self._data = pack(self.world)
         return placed_by(self, primitives, to_object, self._data, bool(moving.any()), moving_box)
-=======
-            poses.to_object.reshape(-1, 12).astype(np.float32),
-            resting_box,
-            moving_box,
-        )
-        arrays = [a for part in parts for a in ((part.words, part.items) if isinstance(part, Trees) else (part,))]
-        there = len(primitives.triangles), resting.any(), moving.any()
-        self._data = np.array([*(a.ctypes.data for a in arrays), *there], np.int64)
-        return Placed(
-            primitives.triangles, primitives.quadrics, parts.to_object, primitives.object_of, self.closest.address,
-            self.any_hit.address, self._data.ctypes.data, bool(moving.any()), moving_box,
-        )  # fmt: skip
->>>>>>> main
 
     def build(self) -> None:
         """Nothing waits for rays."""

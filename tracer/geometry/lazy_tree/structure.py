@@ -115,25 +115,12 @@ class LazyKdTree(InObjectSpace):
         roots = np.array([tree.root for tree in self._trees], np.int64)
         to_object, rests = poses.to_object.reshape(-1, 12).astype(np.float32), (present & ~moving).astype(np.uint8)
         has, moving_box = bool(moves.any()), bounds_of(boxes[moves])
-<<<<<<< HEAD
         self.world = LazyWorld(
             primitives.triangles, len(primitives.triangles), primitives.quadrics, root, bounds, roots, object_boxes,
             to_object, rests, moving_box, has, building,
         )  # fmt: skip
         self._data = pack(self.world)
         return placed_by(self, primitives, to_object, self._data, has, moving_box)
-=======
-        self.parts = Parts(root, bounds, roots, object_boxes, to_object, rests, moving_box, has)
-        arrays = bounds, roots, object_boxes, to_object, rests
-        shapes = primitives.triangles.ctypes.data, primitives.quadrics.ctypes.data
-        addresses = *shapes, root, *(a.ctypes.data for a in arrays)
-        count = len(primitives.triangles)
-        self._data = np.array([*addresses, open_node.address, PAUSE, moving_box.ctypes.data, count, has], np.int64)
-        return Placed(
-            primitives.triangles, primitives.quadrics, to_object, primitives.object_of, self.closest.address,
-            self.any_hit.address, self._data.ctypes.data, has, moving_box,
-        )  # fmt: skip
->>>>>>> main
 
     def build(self) -> None:
         """Nodes wait for rays by nature."""
