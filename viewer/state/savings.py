@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,6 +32,7 @@ WOULD_OPACITY = 0.4
 TWO_ERRORS = 2.0 * 1.2533 / 1.349
 """Twice the standard error of a median, as a part of the quartiles' distance by the root of the number: normal numbers
 have quartiles 1.349 standard deviations apart, and medians with 1.2533 times the error of the mean."""
+_SHORTEST = 0.4  # of the width, that the bar takes
 LEAST = 8
 """Rounds from which on a median tells something."""
 
@@ -125,10 +127,9 @@ class Part:
     def share(self) -> str:
         return percent(self.rays, self.due)
 
-    def label(self, length: Callable[[str], float], room: float) -> str:
-        """Return its name and share, or the share alone, as far as there is room; `length` is that of a text."""
-        texts = f"{self.name} {self.share}", self.share
-        return next((text for text in texts if length(text) <= room), "")
+    @property
+    def label(self) -> str:
+        return f"{self.name} {self.share}"
 
     def in_words(self) -> str:
         """Return what it is, in two lines."""
@@ -136,13 +137,47 @@ class Part:
         return f"{self.name}: {count(self.rays)} of {count(self.due)} shadow rays due ({self.share})\n{way}{meaning}"
 
 
-def places(bar: tuple[Part, ...], left: float, right: float) -> Iterator[tuple[Part, int, int]]:
-    """Yield each part with where it begins and ends, in whole pixels, between two edges."""
+class Piece(NamedTuple):
+    """What is drawn in the colour of a part, between two edges in whole pixels: its stretch of the bar or, `beside` the
+    bar, a square before its label; and where the label begins, if it is here."""
+
+    part: Part
+    start: int
+    end: int
+    label_at: int | None
+    beside: bool = False
+
+
+def placed(
+    bar: tuple[Part, ...], left: float, width: float, length: Callable[[str], float], pad: float
+) -> Iterator[Piece]:
+    """Yield the parts side by side, and behind them the labels that do not fit into theirs, for which the bar is
+    shorter; `length` is that of a text, and a square is two pads wide.  In little width some have no label."""
+
+    def room(part: Part) -> float:
+        return length(part.label) + 5.0 * pad
+
+    outside, bar_width = set[Part](), width
+
+    def goes_outside(part: Part) -> bool:
+        narrow = length(part.label) + 2.0 * pad > bar_width * part.rays / part.due
+        return narrow and part not in outside and bar_width - room(part) >= _SHORTEST * width
+
+    while narrow := list(filter(goes_outside, bar)):  # each makes the others narrower
+        widest = max(narrow, key=lambda part: part.rays)
+        outside.add(widest)
+        bar_width -= room(widest)
     done = 0
     for part in bar:
-        start, end = (round(left + (right - left) * rays / part.due) for rays in (done, done + part.rays))
+        start, end = (round(left + bar_width * rays / part.due) for rays in (done, done + part.rays))
         done += part.rays
-        yield part, start, end
+        fits = part not in outside and length(part.label) + pad <= end - start
+        yield Piece(part, start, end, round(start + pad) if fits else None)
+    at = left + bar_width
+    for part in (one for one in bar if one in outside):
+        start, end = round(at + pad), round(at + 3.0 * pad)
+        yield Piece(part, start, end, round(end + pad), beside=True)
+        at += room(part)
 
 
 def bar_of(frame: Frame) -> tuple[Part, ...]:

@@ -6,6 +6,7 @@ parts lie: boxes of colour and lines of text, in the unit in which `measure` giv
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -129,8 +130,11 @@ STEPS = 64
 """Boxes that a bar of the colour map consists of."""
 
 
-def fitting(legend: Legend, measure: Measure, line: float, width: float, height: float) -> Layout | None:
-    """The layout of as much of a legend as there is room for: notes go first, then facts, then the last column.
+def fitting(
+    legend: Legend, measure: Measure, line: float, width: float, height: float, most: float = math.inf
+) -> Layout | None:
+    """The layout of as much of a legend as there is room for: notes go first, then facts, then the last column; it
+    covers an area of `most`.
 
     None where even the colours and their names are too large."""
     plain = replace(legend, notes=(), facts=())
@@ -140,7 +144,7 @@ def fitting(legend: Legend, measure: Measure, line: float, width: float, height:
     )
     for one in (legend, replace(legend, notes=()), plain, *narrower):
         layout = lay_out(one, measure, line)
-        if layout.width <= width and layout.height <= height:
+        if layout.width <= width and layout.height <= height and layout.width * layout.height <= most:
             return layout
     return None
 

@@ -266,9 +266,13 @@ def _culling(ui: Ui) -> list[Command]:
 def _run(ui: Ui) -> list[Command]:
     c, runs = ui.controller, ui.controller.runs
 
-    def start(panel: str, begin: Callable[[], None] = lambda: None) -> None:
-        ui.show_panel(panel)
+    def start(panel: str, begin: Callable[[], None]) -> None:
+        ui.show_run(panel)
         begin()
+
+    def figure_3() -> None:
+        ui.show_panel("View")
+        ui.figures.figure_3()
 
     def stop() -> None:
         if c.loader.load_job is not None:
@@ -292,11 +296,11 @@ def _run(ui: Ui) -> list[Command]:
                 tip="towards the clicked primitive: is a shadow missing that shows only from near?"),
         Command("Start hunt", "Run", partial(start, "Hunt", c.runs.start_hunt), enabled=idle,
                 tip="search the path for the worst wrong pixels of a method"),
-        Command("Film...", "Run", partial(start, "Film"), enabled=idle,
+        Command("Film...", "Run", lambda: ui.show_panel("Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),
         Command("Table 1", "Run", partial(start, "Experiment", ui.figures.table_1), enabled=idle, separated=True,
                 tip="the paper's table for the open scene: 512 x 512, 10 bounces, 100 frames"),
-        Command("Figure 3", "Run", partial(start, "View", ui.figures.figure_3), enabled=idle,
+        Command("Figure 3", "Run", figure_3, enabled=idle,
                 tip="the paper's example of an occlusion that the test misses"),
         Command("Figure 4", "Run", partial(start, "Zoom test", ui.figures.figure_4), enabled=idle,
                 tip="the paper's example of a shadow that shows only from near, and of the zoom factor"),

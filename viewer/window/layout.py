@@ -79,34 +79,44 @@ class Workspace(NamedTuple):
     closed: dict[str, tuple[str, ...]]
 
 
-_WHOLE, _RIGHT, _BOTTOM = "MainDockSpace", "Right", "Bottom"
-_FOUND = ("Experiment", "Zoom test", "Hunt")
-_LOWER = ("Plots", "Compare", "Pixels", "Find", "Light buffer", "Film", "Log")
+_WHOLE, _RIGHT, _LOWER_RIGHT, _BOTTOM = "MainDockSpace", "Right", "RightBottom", "Bottom"
+_RUNS = ("Experiment", "Zoom test", "Hunt")
+_TABLES = ("Find", "Pixels", "Light buffer", "Log")
+_SETTINGS = ("Scene", "Rendering", "Camera", "Saving", "Film")
+
+
+def _splits(column: float, lower: float, tour: float, answers: float) -> tuple[tuple[str, str, imgui.Dir, float], ...]:
+    """Return the splits of a workspace: a column at the right, as high as the window, with the tour above it while it
+    is taken, and answers below; and a lower part beside the column, for what needs its width."""
+    return (
+        (_RIGHT, _WHOLE, imgui.Dir.right, column), (_BOTTOM, _WHOLE, imgui.Dir.down, lower),
+        (TOUR, _RIGHT, imgui.Dir.up, tour), (_LOWER_RIGHT, _RIGHT, imgui.Dir.down, answers),
+    )  # fmt: skip
+
+
+MEASURE = "Measure"
 WORKSPACES = (
     Workspace(
         "Explore", "room for the picture, and a column: how shadow rays are culled, what is shown, and why",
-        ((_RIGHT, _WHOLE, imgui.Dir.right, 0.235), (_BOTTOM, _WHOLE, imgui.Dir.down, 0.35),
-         (TOUR, _RIGHT, imgui.Dir.up, 0.24), ("RightBottom", _RIGHT, imgui.Dir.down, 0.46)),
-        {_RIGHT: ("View", "Culling", "Figure 1"), "RightBottom": ("Inspector",)},
-        {_RIGHT: ("Statistics", "Scene", "Rendering", "Camera", "Saving"), "RightBottom": ("What if",),
-         _BOTTOM: _FOUND + _LOWER, TOUR: (TOUR,)},
+        _splits(0.235, 0.35, 0.24, 0.46),
+        {_RIGHT: ("View", "Culling", "Figure 1"), _LOWER_RIGHT: ("Inspector",)},
+        {_RIGHT: ("Statistics", *_SETTINGS), _LOWER_RIGHT: ("What if", "Compare"),
+         _BOTTOM: (*_RUNS, "Plots", *_TABLES), TOUR: (TOUR,)},
     ),
     Workspace(
-        "Measure", "experiments, zoom tests and hunts, with plots, and statistics beside a comparison",
-        ((_RIGHT, _WHOLE, imgui.Dir.right, 0.28), (_BOTTOM, _WHOLE, imgui.Dir.down, 0.45),
-         ("RightBottom", _RIGHT, imgui.Dir.down, 0.45)),
-        {_RIGHT: ("Statistics", "Culling"), "RightBottom": ("Compare", "Plots"), _BOTTOM: _FOUND},
-        {_RIGHT: ("View", "Scene", "Rendering", "Camera", "Saving", TOUR), "RightBottom": ("Inspector", "What if"),
-         _BOTTOM: ("Figure 1", "Pixels", "Find", "Light buffer", "Film", "Log")},
+        MEASURE, "experiments, zoom tests and hunts, with plots, and statistics beside a comparison",
+        _splits(0.235, 0.365, 0.24, 0.5),
+        {_RIGHT: ("Statistics", "Culling"), _LOWER_RIGHT: ("Plots", "Compare"), _BOTTOM: _RUNS},
+        {_RIGHT: ("View", "Figure 1", *_SETTINGS), _LOWER_RIGHT: ("Inspector", "What if"), _BOTTOM: _TABLES,
+         TOUR: (TOUR,)},
     ),
     Workspace(
         "Debug", "rays of a pixel, objects and primitives, pixels, edits and the log",
-        (("Left", _WHOLE, imgui.Dir.left, 0.22), (_RIGHT, _WHOLE, imgui.Dir.right, 0.36),
-         (_BOTTOM, _WHOLE, imgui.Dir.down, 0.38), ("LeftBottom", "Left", imgui.Dir.down, 0.5)),
-        {"Left": ("View", "Culling"), "LeftBottom": ("What if", "Scene"), _RIGHT: ("Inspector",),
+        _splits(0.3, 0.33, 0.24, 0.4),
+        {_RIGHT: ("Inspector",), _LOWER_RIGHT: ("View", "Culling", "What if", "Scene"),
          _BOTTOM: ("Find", "Pixels", "Compare", "Light buffer", "Log")},
-        {"Left": ("Rendering", "Camera", "Saving", TOUR), "LeftBottom": ("Statistics",),
-         _BOTTOM: (*_FOUND, "Figure 1", "Plots", "Film")},
+        {_RIGHT: ("Statistics", "Figure 1"), _LOWER_RIGHT: ("Rendering", "Camera", "Saving", "Film"),
+         _BOTTOM: (*_RUNS, "Plots"), TOUR: (TOUR,)},
     ),
 )  # fmt: skip
 SIDES = tuple(label for label in PANELS if label not in (PICTURE, TOUR))
@@ -120,10 +130,12 @@ class Layout:
 
     def __init__(self, ui: Ui, params: hello_imgui.RunnerParams) -> None:
         self._ui, self._params = ui, params
-        self._size = (0.0, 0.0)
+        self._sizes: dict[str, tuple[float, float]] = {}  # that workspaces had when they were shown last
         self._to_front: set[str] = set()  # panels to be focused when they are drawn next
+        self._of_run = ""  # the panel to be shown once the workspace is there that runs have
         params.docking_params, *params.alternative_docking_layouts = map(self._docked, WORKSPACES)
         ui.show_panel, ui.panel_labels, ui.reset_layout = self.show, SIDES, self.reset
+        ui.show_run = self.show_run
 
     # --- what the commands ask for ---------------------------------------------------------------
 
@@ -132,6 +144,17 @@ class Layout:
         self._ui.panels_hidden = False
         self._docking.dockable_window_of_name(label).is_visible = True
         self._to_front.add(label)
+
+    def show_run(self, label: str) -> None:
+        """Bring the panel of a run to the front where it is open, else in the workspace that has room for results."""
+        ui, now = self._ui, self._ui.workspace
+        if now == MEASURE or self._docking.dockable_window_of_name(label).is_visible:
+            self.show(label)
+            return
+        hello_imgui.switch_layout(MEASURE)  # in the next frame
+        self._of_run = label
+        back = f"{ui.key_or_menu(now)} brings back {now} as it was"
+        ui.controller.notices.say(f"{label} is in the workspace {MEASURE}; {back}")
 
     def reset(self) -> None:
         """Open the panels of this workspace and no others, docked where they were at first."""
@@ -169,6 +192,9 @@ class Layout:
         """Keep shares as they were, and show the tour's panel while it is taken, before the panels are drawn."""
         self._keep_shares()
         self._ui.workspace = hello_imgui.current_layout_name()
+        if self._of_run and self._ui.workspace == MEASURE:
+            self.show(self._of_run)
+            self._of_run = ""
         self._docking.dockable_window_of_name(TOUR).is_visible = self._ui.tour.step is not None
         node, no_tabs = _node_of(PICTURE), int(imgui.internal.DockNodeFlagsPrivate_.no_tab_bar)
         if node is not None and not node.local_flags & no_tabs:  # it is always there, and needs the room
@@ -181,9 +207,12 @@ class Layout:
         picture = _node_of(PICTURE)
         if picture is None:
             return
-        size, before = imgui.internal.dock_node_get_root_node(picture).size, self._size
-        self._size = size.x, size.y
-        if before == self._size or min(before) <= 0.0 or min(self._size) <= 0.0:
+        size, workspace = imgui.internal.dock_node_get_root_node(picture).size, hello_imgui.current_layout_name()
+        if min(size.x, size.y) <= 0.0:
+            return
+        before = self._sizes.get(workspace, (size.x, size.y))
+        self._sizes[workspace] = size.x, size.y
+        if before == (size.x, size.y):
             return
         for node in {node.id_: node for label in PANELS for node in _with_parents(_node_of(label))}.values():
             node.size_ref = ImVec2(node.size_ref.x * size.x / before[0], node.size_ref.y * size.y / before[1])

@@ -11,7 +11,7 @@ from tracer.culling.fate import Fate
 from tracer.frame import Frame, Settings
 from tracer.statistics import CutCounts, CutErrors, FrameStatistics, RayCounts, SaidByModes, ShadowCounts, WrongCounts
 from viewer.state import verified
-from viewer.state.savings import LEAST, InTurn, Standing, Tone, bar_of, in_words, sentence
+from viewer.state.savings import LEAST, InTurn, Standing, Tone, bar_of, in_words, placed, sentence
 
 
 def frame_by(method: str, verify: bool = False, part: float = 1.0, **counts: int) -> Frame:
@@ -117,6 +117,18 @@ def test_the_parts_of_the_bar_are_all_rays_that_are_due():
     ]  # fmt: skip
     assert "(§2.4)" in bar[0].in_words()
     assert bar_of(frame_by("paper", due=0)) == ()
+
+
+@pytest.mark.parametrize("width", [520.0, 680.0, 980.0, 1400.0])
+@pytest.mark.parametrize("rays", [{"culled": 150, "dynamic_only": 120}, {"culled": 300, "dynamic_only": 4}])
+def test_every_part_of_the_bar_is_named_however_narrow(rays: dict[str, int], width: float) -> None:
+    bar = bar_of(frame_by("paper", **rays))
+    pieces = list(placed(bar, 10.0, width, lambda text: 7.0 * len(text), 5.0))
+    named = [piece for piece in pieces if piece.label_at is not None]
+    assert sorted(piece.part.name for piece in named) == sorted(part.name for part in bar)
+    ends = [10, *(piece.label_at + 7 * len(piece.part.label) for piece in named)]
+    assert all(end <= piece.label_at for end, piece in zip(ends, named)) and ends[-1] <= 10.0 + width
+    assert all(piece.beside or end <= piece.end for end, piece in zip(ends[1:], named))
 
 
 def test_wrong_answers_stand_out_and_clusters_have_their_own_words():
