@@ -14,17 +14,17 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from tracer import compilation
-from tracer.compilation import compiled_before, warm_up
-from tracer.compile_beside import _die_with_parent
-from tracer.compile_steps import PARTS, steps_of
+from tracer.compiling import compilation
+from tracer.compiling.compilation import compiled_before, warm_up
+from tracer.compiling.processes import _die_with_parent
+from tracer.compiling.steps import PARTS, steps_of
 
 # Lights (modes in 32 and in 64 bits) and structure.
 VARIANTS = ((1, "bvh8"), (1, "kdtree"), (16, "bvh8"), (16, "kdtree"), (1, "kdtree-lazy"))
 
 
 class Part(NamedTuple):
-    """A part of `tracer.compile_steps`, or what a method has of its own that several tests render by: each of their
+    """A part of `tracer.compiling.steps`, or what a method has of its own that several tests render by: each of their
     processes would compile it at the same time."""
 
     name: str
@@ -76,7 +76,7 @@ def main(*parts: str) -> int:
         return 0
     print("compiling the kernels, once for all tests", flush=True)
     compile_jobs(max(2, os.cpu_count() or 1))
-    compilation.compile_beside = lambda *arguments: None  # type: ignore[assignment]  # that has been done
+    compilation.compile_in_processes = lambda *arguments: None  # type: ignore[assignment]  # that has been done
     for variant in VARIANTS:
         warm_up(None, *variant)  # loads what the jobs made, compiles what they left, and says that all is there
     return 0

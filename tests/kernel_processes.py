@@ -31,7 +31,7 @@ def ask(package: str, more: dict[str, str], numbers: tuple[str, ...], slow: bool
         if slow:
             _write_slowly()
         from tracer.geometry import tiny
-        from tracer.kernel_cache import folder_of
+        from tracer.runtime.kernel_cache import folder_of
 
         said = [float(tiny.ask(eval(number))) for number in numbers]
         answer.send((said, sum(tiny.ask.stats.cache_hits.values()), folder_of(Path(tiny.__file__))))

@@ -9,7 +9,7 @@ import pytest
 
 from tests.bench.counters import EDITS, ROOT, WITH, WITHOUT, copy_without_counters, faults, measure
 from tracer.frame import Settings
-from tracer.kernel_cache import cache_root
+from tracer.runtime.kernel_cache import cache_root
 from viewer.util.resources import embedded_scenes
 
 TRAVERSE, TREE = "tracer/geometry/kdtree/traverse.py", "tracer/geometry/kdtree/tree.py"

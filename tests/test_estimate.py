@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from tracer.estimate import Estimate
+from tracer.compiling.estimate import Estimate
 
 PARTS = {"a": ("a1", "a2"), "b": ("b1",), "c": ("c1",)}
 SHARES = {"a1": 0.1, "a2": 0.3, "b1": 0.2, "c1": 0.4}

@@ -21,8 +21,9 @@ import pytest
 from tests import kernel_processes
 from tests.platforms import linux_only, posix_only
 from tests.sweeps import cases
-from tracer import compilation, compile_beside, compile_steps, kernel_cache
-from tracer.kernel_cache import cache_root, sources_of
+from tracer.compiling import compilation, processes, steps
+from tracer.runtime import kernel_cache
+from tracer.runtime.kernel_cache import cache_root, sources_of
 from tracer.scene.model import Cancelled
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -259,20 +260,20 @@ def test_what_is_compiled_beside_is_what_a_frame_needs(lights: int, accelerator:
     done: set[str] = set()
     drawable: list[set[str]] = []
     report = lambda *what: told.append(what)  # noqa: E731
-    compile_beside.compile_beside(report, lights, accelerator, done, lambda: drawable.append(set(done)))
-    assert done == set(compile_steps.SHARES) == {step for steps in compile_steps.PARTS.values() for step in steps}
+    processes.compile_in_processes(report, lights, accelerator, done, lambda: drawable.append(set(done)))
+    assert done == set(steps.SHARES) == {step for part in steps.PARTS.values() for step in part}
     assert len(drawable) == 1 and drawable[0] >= done - {"certificates"}
     assert sorted(path.name for path in cache_root().rglob("*.nbc")) == before
     fractions = [fraction for _, fraction in told]
     assert fractions == sorted(fractions) and fractions[-1] > 0.7
-    assert sum(compile_steps.SHARES.values()) == pytest.approx(1.0)
+    assert sum(steps.SHARES.values()) == pytest.approx(1.0)
 
 
 def test_without_certificates_less_is_compiled_and_the_rest_later(tmp_path: Path) -> None:
     code = (
-        "from tracer import compilation, compile_beside, compile_steps, kernel_cache\n"
+        "from tracer.compiling import compilation, steps\n"
         "made = []\n"
-        "compilation.compile_beside = lambda *arguments: made.append(list(arguments[-1]))\n"
+        "compilation.compile_in_processes = lambda *arguments: made.append(list(arguments[-1]))\n"
         "compilation.picture_steps = lambda *a: iter(['primary rays'])\n"
         "compilation.certificate_steps = lambda *a: iter(['certificates'])\n"
         "(compilation.version_folder() / 'kernel.nbc').touch()\n"
@@ -282,7 +283,7 @@ def test_without_certificates_less_is_compiled_and_the_rest_later(tmp_path: Path
         "compilation.warm_up(certificates=False)\n"
         "compilation.warm_up()\n"
         "assert compilation.compiled_before()\n"
-        "assert made == [list(compile_steps.FOR_A_PICTURE), ['certificates']], made\n"
+        "assert made == [list(steps.FOR_A_PICTURE), ['certificates']], made\n"
     )
     environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True)
@@ -301,8 +302,8 @@ def test_a_cache_is_compiled_for_its_processor(monkeypatch: pytest.MonkeyPatch, 
 
 def test_cancelling_ends_the_processes(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[subprocess.Popen] = []
-    make = compile_beside._worker
-    monkeypatch.setattr(compile_beside, "_worker", lambda *a: made.append(make(*a)) or made[-1])
+    make = processes._worker
+    monkeypatch.setattr(processes, "_worker", lambda *a: made.append(make(*a)) or made[-1])
 
     def report(what: str, fraction: float) -> None:
         if len(made) == 2:
@@ -310,7 +311,7 @@ def test_cancelling_ends_the_processes(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     with pytest.raises(Cancelled):
-        compile_beside.compile_beside(report, 1, "bvh8", set())
+        processes.compile_in_processes(report, 1, "bvh8", set())
     assert [process.returncode for process in made] == [-signal.SIGKILL if os.name == "posix" else 1] * 2
 
 
@@ -318,17 +319,17 @@ def test_cancelling_ends_the_processes(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_processes_that_cannot_be_had_cost_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "executable", shutil.which("false"))
     done: set[str] = set()
-    compile_beside.compile_beside(lambda *what: None, 1, "bvh8", done)
+    processes.compile_in_processes(lambda *what: None, 1, "bvh8", done)
     assert not done
 
 
 @linux_only
 def test_processes_end_with_the_one_that_wants_them(tmp_path: Path) -> None:
     code = (
-        "from tracer import compilation, compile_beside\n"
-        "make = compile_beside._worker\n"
+        "from tracer.compiling import compilation, processes\n"
+        "make = processes._worker\n"
         "def worker(*a):\n    made = make(*a)\n    print(made.pid, flush=True)\n    return made\n"
-        "compile_beside._worker = worker\n"
+        "processes._worker = worker\n"
         "compilation.warm_up()\n"
     )
     environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}

@@ -11,8 +11,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from tracer import parallel
 from tracer.experiments.cluster import Cluster
+from tracer.runtime import parallel
 
 ROOT = Path(__file__).resolve().parent.parent
 

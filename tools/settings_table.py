@@ -9,7 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from tracer.setting import Setting, settings_of  # noqa: E402
+from tracer.util.setting import Setting, settings_of  # noqa: E402
 from viewer.state.preferences import Preferences  # noqa: E402
 from viewer.state.view_state import ViewState  # noqa: E402
 

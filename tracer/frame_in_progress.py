@@ -15,14 +15,14 @@ from tracer.culling.counters import COUNTERS, SHADOW, SHADOW_COUNTERS
 from tracer.culling.mode_changes import mode_changes
 from tracer.culling.mode_history import Learnt
 from tracer.culling.occlusion import count_pixels, occlusion_testing
-from tracer.fit import remark
 from tracer.frame import Frame
 from tracer.geometry.camera import Pinhole, pinhole
 from tracer.geometry.rays import MISS
 from tracer.method import Method
 from tracer.methods.interface import ShadowMethod, Stage, StageTable
-from tracer.parallel import for_each_chunk, thread_count
+from tracer.methods.method_limits import remark
 from tracer.progressive import Parts
+from tracer.runtime.parallel import for_each_chunk, thread_count
 from tracer.scene.lamps import Lamps
 from tracer.scene.model import Camera
 from tracer.settings import Settings
@@ -31,10 +31,10 @@ from tracer.shading.buffers import Buffers, empty_buffers
 from tracer.shading.primary import BLOCK, EDGE
 from tracer.shading.surfaces import see_surfaces
 from tracer.shading.teaching import find_untaught
+from tracer.shading.tiles import Tile, nearest_first, tiles_of, tiles_to_shade
 from tracer.shading.whitted import find_in_tile, shade_tile, trace_primary
 from tracer.state import State
 from tracer.statistics import WrongCounts, gather, sample_counts, shadow_counts
-from tracer.tiles import Tile, nearest_first, tiles_of, tiles_to_shade
 
 ROWS = 32  # of pixels, which a thread tests for occlusion at a time
 GOLDEN = 1.32471795724474602596  # the powers of its inverse step through the plane evenly (Roberts 2018)

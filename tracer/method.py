@@ -14,7 +14,7 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-from tracer.similar import similar
+from tracer.util.suggest import similar
 
 DEFAULT_METHOD = "paper"
 """What culls until another method is chosen, in scripts, commands and the window alike."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 from tracer.shading.blocks import BAYER, BLOCK, EDGE, TURNS, Planes, all_blocks, blocks_in, lanes_of, pixels_of
 from tracer.shading.filling import fill_in, nearest
 

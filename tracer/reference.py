@@ -51,7 +51,7 @@ from tracer.geometry.camera import Pinhole, pinhole, primary_ray
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, any_hits, closest_hits, hits_alone
 from tracer.geometry.rays import INFINITY, MISS, Hits, Ray, Rays
 from tracer.geometry.world import World
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from tracer.shading.one_ray import ambient_light, counts_enough, dot, minus, phong, sent_on, surface_at

@@ -10,7 +10,7 @@ from typing import Any
 from tracer.geometry.accelerators import BVH8, KD_TREE, LAZY
 from tracer.method import DEFAULT_METHOD, Method
 from tracer.scene.lights import MAX_SAMPLES
-from tracer.setting import NEVER, PICTURES, check_all, documented, setting
+from tracer.util.setting import NEVER, PICTURES, check_all, documented, setting
 
 MAX_SIDE = 16384
 MAX_NODES = 65536  # of a cut: each takes a kilobyte for each thread

@@ -17,7 +17,7 @@ from tests.bench.embree import MODES, EmbreeRays, EmbreeScene, Mode
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.rays import Rays
 from tracer.geometry.world import World
-from tracer.parallel import for_each_chunk, thread_count
+from tracer.runtime.parallel import for_each_chunk, thread_count
 
 SAME_T = 1e-4  # relative
 LEAST_AGREEMENT = 0.9999

@@ -31,8 +31,8 @@ from rich.table import Table
 from tests.bench import frame_server
 from tests.bench.frame_times import KITCHEN, in_words, machine
 from tracer.frame import Settings
-from tracer.kernel_cache import cache_root
-from tracer.parallel import thread_count
+from tracer.runtime.kernel_cache import cache_root
+from tracer.runtime.parallel import thread_count
 from viewer.cli.console import print_table
 from viewer.util.messages import say
 from viewer.util.resources import scene_path

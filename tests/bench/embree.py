@@ -19,7 +19,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from tracer.geometry.rays import MISS, Hits, Rays
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 
 WIDTHS = (1, 4, 8, 16)
 CHUNK = 8192  # rays a thread takes at a time, where there are several

@@ -56,7 +56,7 @@ def closer(scene: Any, size: int) -> Any:
 def inspect(path: Path, size: int, structure: str, picture: str) -> dict[str, Any]:
     """Make one picture in this process, which should have done nothing before."""
     import tracer
-    from tracer.compilation import warm_up
+    from tracer.compiling.compilation import warm_up
 
     accelerator, lazy = structure.removesuffix(":lazy"), structure == LAZY_BVH8
     scene = tracer.load_scene(path)

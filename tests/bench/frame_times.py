@@ -27,10 +27,10 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from tracer.compilation import warm_up
+from tracer.compiling.compilation import warm_up
 from tracer.frame import Frame, Settings
-from tracer.parallel import thread_count
 from tracer.renderer import Renderer
+from tracer.runtime.parallel import thread_count
 from tracer.scene.load import load_scene
 from viewer.cli.console import print_table
 from viewer.util.messages import say

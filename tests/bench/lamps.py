@@ -27,8 +27,8 @@ from tracer.experiments.experiment import REFERENCE, with_reference
 from tracer.experiments.lamp_experiment import CEILING, run_lamps
 from tracer.frame import Frame, Settings
 from tracer.method import Method
-from tracer.parallel import thread_count
 from tracer.renderer import Renderer
+from tracer.runtime.parallel import thread_count
 from tracer.scene.load import load_scene
 from tracer.state import open_world
 from viewer.util.messages import say

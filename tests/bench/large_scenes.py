@@ -4,7 +4,8 @@
     make large ARGS="--triangles 20000000 --kinds ply"     takes about ten gigabytes
 
 The file is made beside, opened as the window opens it, in a process of its own, and deleted.  The longest time between
-two reports is what giving up takes at most.  What was expected is what a scene is refused by (`tracer.scene.room`).
+two reports is what giving up takes at most.  What was expected is what a scene is refused by
+(`tracer.scene.memory_check`).
 """
 
 from __future__ import annotations
@@ -86,8 +87,8 @@ class Reports:
 
 def inspect(path: Path, size: int) -> dict[str, Any]:
     """Open one scene in this process, which should have done nothing before."""
-    from tracer.compilation import warm_up
-    from tracer.scene import room
+    from tracer.compiling.compilation import warm_up
+    from tracer.scene import memory_check
     from tracer.scene.load import load_visible_scene
     from tracer.scene.mesh_options import IN_STUDIO
     from tracer.settings import Settings
@@ -106,7 +107,7 @@ def inspect(path: Path, size: int) -> dict[str, Any]:
     frame = renderer.render(0.0)
     drawn = time.perf_counter()
     renderer.render(0.0)  # what the first has taught
-    triangles = room.triangles_of(path) or 0
+    triangles = memory_check.triangles_of(path) or 0
     return {
         "scene": path.name,
         "megabytes": path.stat().st_size / 1e6,
@@ -118,12 +119,12 @@ def inspect(path: Path, size: int) -> dict[str, Any]:
         "longest_between_reports": reports.longest,
         "longest_in": reports.longest_in,
         "most_reading": most_reading - before,
-        "expected_reading": room.reading(path),
+        "expected_reading": memory_check.reading(path),
         "as_scene": as_scene - before,
         "most_building": most_building - before,
         "most": resident("VmHWM") - before,
         "after": resident("VmRSS") - before,
-        "expected_showing": (as_scene - before) + room.SHOWING * triangles,
+        "expected_showing": (as_scene - before) + memory_check.SHOWING * triangles,
         "phases": {what: [seconds, most - before] for what, (seconds, most) in reports.phases.items()},
     }
 

@@ -49,7 +49,7 @@ def resident(field: str) -> int:
 def inspect(path: Path, size: int) -> dict[str, Any]:
     """Measure one scene in this process, which should have done nothing before."""
     import tracer
-    from tracer.compilation import warm_up
+    from tracer.compiling.compilation import warm_up
 
     for lights in (1, 16):
         warm_up(lights=lights)

@@ -28,7 +28,7 @@ from rich.table import Table
 
 from tests.bench.frame_times import machine
 from tests.bench.of_scenes import SCENES
-from tracer.compilation import make_ready, warm_up
+from tracer.compiling.compilation import make_ready, warm_up
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.experiments.experiment import REFERENCE, figures_of
 from tracer.frame import Settings

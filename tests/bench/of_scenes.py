@@ -10,7 +10,7 @@ from typing import Any
 
 from rich.table import Table
 
-from tracer.compilation import warm_up
+from tracer.compiling.compilation import warm_up
 from tracer.frame import Settings
 from tracer.geometry.world import ACCELERATORS
 from viewer.cli.console import print_table

@@ -23,8 +23,8 @@ from rich.table import Table
 from tests.bench.frame_times import machine
 from tests.bench.of_scenes import add_options, finish, prepared
 from tracer.frame import Settings
-from tracer.parallel import thread_count
 from tracer.renderer import Renderer
+from tracer.runtime.parallel import thread_count
 from tracer.scene.load import load_scene
 from viewer.util.messages import say
 

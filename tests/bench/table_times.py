@@ -217,8 +217,8 @@ class User:
             d.context.mouse_down(0)
 
             def seen(primitive: int = primitive) -> bool:
-                drawn: Any = self.app.ui.graphics.display._drawn  # a frame, with options, and what the window adds
-                return drawn is not None and drawn[1][1].selected == primitive and primitive in self.watch.rows
+                drawn: Any = self.app.ui.graphics.display._drawn  # frame, options, what the window adds
+                return drawn is not None and drawn[2].selected == primitive and primitive in self.watch.rows
 
             self.watch.doing = "clicking"
             self.watch.wait_for("a click is seen", seen)

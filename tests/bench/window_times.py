@@ -28,7 +28,7 @@ from rich.table import Table
 
 from tests.bench.frame_times import KITCHEN, in_words, machine
 from tests.bench.window_server import STATES
-from tracer.kernel_cache import cache_root
+from tracer.runtime.kernel_cache import cache_root
 from viewer.cli.console import print_table
 from viewer.util.messages import say
 from viewer.util.resources import scene_path

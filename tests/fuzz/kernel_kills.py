@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from tests.fuzz.kills import forked, killed
-from tracer import kernel_cache
+from tracer.runtime import kernel_cache
 
 TINY = """
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 
 @kernel
 def ask(x):

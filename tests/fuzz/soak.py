@@ -29,9 +29,9 @@ import matplotlib
 import numpy as np
 
 from tests.viewer.desk import Desk
+from tracer.editing.edits import NO_EDITS
 from tracer.method import Method
 from tracer.renderer import Renderer
-from tracer.scene.edits import NO_EDITS
 from tracer.scene.model import Camera
 from viewer.state.views import View
 

@@ -19,7 +19,7 @@ PAST = """
 import sys
 import numpy as np
 from tests.fuzz.guarded import MEMORY
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.simd import address_of, load_f32x16, store
 
 @kernel

@@ -12,7 +12,7 @@ import trimesh
 
 from tests.bench.large_scenes import write_ply, write_stl
 from tests.bench.meshes import frequency_for
-from tracer.scene import assembly, binary_meshes, crease, files, meshes, pieces, room
+from tracer.scene import assembly, binary_meshes, crease, files, memory_check, meshes, pieces
 from tracer.scene.binary_meshes import is_plain, read_binary
 from tracer.scene.distinct_points import DistinctPoints
 from tracer.scene.load import load_scene
@@ -138,13 +138,13 @@ def test_a_head_of_unknown_types_is_one_line(tmp_path, line):
 def test_a_file_that_turns_out_to_have_polygons_needs_the_memory_of_those(tmp_path, monkeypatch):
     path = ply(tmp_path / "a.ply", faces=[[0, 1, 2]])
     path.write_bytes(path.read_bytes().replace(b"face 1\n", b"face 2\n") + struct.pack("<B4i", 4, 2, 3, 4, 5))
-    monkeypatch.delenv(room.ANYHOW, raising=False)
-    monkeypatch.setattr(room, "_SMALL", 0)
-    monkeypatch.setattr(room, "available", lambda: room.reading(path) + 1)
+    monkeypatch.delenv(memory_check.ANYHOW, raising=False)
+    monkeypatch.setattr(memory_check, "_SMALL", 0)
+    monkeypatch.setattr(memory_check, "available", lambda: memory_check.reading(path) + 1)
     assert is_plain(path)
     with pytest.raises(SceneError, match="of memory to be read"):
         load_scene(path)
-    monkeypatch.setattr(room, "available", lambda: room.reading(path, whole=True) + 1)
+    monkeypatch.setattr(memory_check, "available", lambda: memory_check.reading(path, whole=True) + 1)
     assert load_scene(path).triangle_count == 3
 
 
@@ -194,7 +194,7 @@ def test_few_bytes_are_held_for_each_triangle(tmp_path, monkeypatch, write, most
     for module, name in ((binary_meshes, "ROWS"), (crease, "BLOCK"), (pieces, "BLOCK"), (assembly, "BLOCK")):
         monkeypatch.setattr(module, name, 1 << 12)
     monkeypatch.setattr("tracer.scene.studio._BLOCK", 1 << 12)
-    monkeypatch.setattr("tracer.scene.upright.MOST_ASKED", 1 << 12)
+    monkeypatch.setattr("tracer.scene.up_axis.MOST_ASKED", 1 << 12)
     path = tmp_path / f"a.{write.__name__[-3:]}"
     write(path, frequency_for(80_000))
     load_scene(path, meshes=IN_STUDIO)  # whatever is imported and compiled

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from tracer.scene.upright import customary, footing, guess
+from tracer.scene.up_axis import customary, footing, guess
 
 
 def block(size, at):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.simd import local_memory
 from tracer.simd.records import (
     F32,

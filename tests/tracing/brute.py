@@ -15,7 +15,7 @@ import tracer
 from tracer.geometry.intersect import hit_quadric, hit_triangle, transform_ray
 from tracer.geometry.memory import data_pointer
 from tracer.geometry.rays import INFINITY, Ray, Rays
-from tracer.kernels import inlined, kernel
+from tracer.runtime.kernels import inlined, kernel
 
 
 @inlined

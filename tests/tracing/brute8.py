@@ -20,7 +20,7 @@ from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.memory import data_pointer
 from tracer.geometry.rays import INFINITY, Ray, Rays
 from tracer.geometry.triangle_test import crossing, terms_of
-from tracer.kernels import inlined, kernel
+from tracer.runtime.kernels import inlined, kernel
 from tracer.simd import address_of, as_f32, as_i32, load_i32
 
 

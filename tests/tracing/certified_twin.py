@@ -19,7 +19,7 @@ from tracer.culling.certified.shaft import LOWEST
 from tracer.culling.certified.store import CertificateStore
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.rays import ray_batch
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.simd import address_of, load_three
 
 LAMP = 1e-5  # of the way from the light: where shadow rays begin

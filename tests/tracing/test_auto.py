@@ -15,9 +15,9 @@ from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.worlds import certificates_of
 from tracer.culling.certified.cost_model import CostModel
 from tracer.method import Kind, register, unregister
+from tracer.methods.adaptive_policy import AdaptivePolicy, Plan, Trial
 from tracer.methods.auto import Auto
 from tracer.methods.interface import Services
-from tracer.methods.payoff import Payoff, Plan, Trial
 
 TILES = 64
 LEARNT = 3.0  # frames' time of certifying after which all is known
@@ -38,24 +38,24 @@ class Machine:
 
     def run(self, frames: int, seed: int = 1) -> Machine:
         rng = np.random.default_rng(seed)
-        payoff, ready, invested = Payoff(self.setup, self.dear), False, 0.0
+        policy, ready, invested = AdaptivePolicy(self.setup, self.dear), False, 0.0
         for _ in range(frames):
-            plan = payoff.plan(TILES)
+            plan = policy.plan(TILES)
             spent, frame = 0.0, 0.1 * (1.0 + 0.3 * rng.random())
             if plan.needs_certificates and not ready:
                 ready, spent = True, self.setup * (0.7 + 0.6 * rng.random())
-                payoff.spend(spent)
-                payoff.made_ready()
+                policy.spend(spent)
+                policy.made_ready()
             certified = min(plan.seconds * (1.0 + 0.5 * rng.random()), max(0.0, 0.1 * LEARNT - invested))
-            payoff.spend(certified)
+            policy.spend(certified)
             invested += certified
             known = min(1.0, invested / (0.1 * LEARNT))
             shading = frame * (1.0 - self.saves(known) if plan.looks_up else 1.0)
             trials = [self._trial(frame / TILES, known, rng) for _ in range(plan.trials)]
             tried = sum(t.plain if plan.looks_up else t.certified for t in trials)
-            payoff.spend(tried, trying=True)
+            policy.spend(tried, trying=True)
             whole = shading + spent + certified + tried
-            payoff.finish(whole, shading, trials)
+            policy.finish(whole, shading, trials)
             self.none.append(frame)
             self.auto.append(whole)
             self.looked_up.append(plan.looks_up)
@@ -103,35 +103,35 @@ def test_where_rays_are_dear_they_are_made_from_the_start():
 def test_when_they_no_longer_pay_they_are_left():
     pays = [True]
     machine = Machine(lambda known: (0.3 if pays[0] else -0.1) * known, 0.05)
-    payoff = Payoff(0.01, False)
-    payoff.made_ready()
-    assert payoff.reason == "Every shadow ray is traced: certificates have had too few trials yet."
+    policy = AdaptivePolicy(0.01, False)
+    policy.made_ready()
+    assert policy.reason == "Every shadow ray is traced: certificates have had too few trials yet."
     rng, wrong = np.random.default_rng(3), 0
     for frame in range(600):
         pays[0] = frame < 300
-        plan = payoff.plan(TILES)
+        plan = policy.plan(TILES)
         trials = [machine._trial(0.1 / TILES, 1.0, rng) for _ in range(plan.trials)]
         for trial in trials:
-            payoff.spend(trial.plain, trying=True)
-        payoff.finish(0.1, 0.1, trials)
+            policy.spend(trial.plain, trying=True)
+        policy.finish(0.1, 0.1, trials)
         wrong += plan.looks_up and not pays[0]
         assert frame != 299 or plan.looks_up
-    assert wrong < 30 and not payoff.looks_up and "slower" in payoff.reason
+    assert wrong < 30 and not policy.looks_up and "slower" in policy.reason
 
 
 def test_nothing_is_bought_that_the_purse_cannot_pay():
-    payoff = Payoff(10.0, False)
+    policy = AdaptivePolicy(10.0, False)
     for _ in range(1000):
-        assert payoff.plan(TILES) == Plan()
-        payoff.finish(0.1, 0.1, [])
-    assert "not worth setting up yet" in payoff.reason
-    assert payoff.plan(TILES, patience=0.4) == Plan(False, 0.4, 8), "where nobody waits it costs nothing"
+        assert policy.plan(TILES) == Plan()
+        policy.finish(0.1, 0.1, [])
+    assert "not worth setting up yet" in policy.reason
+    assert policy.plan(TILES, patience=0.4) == Plan(False, 0.4, 8), "where nobody waits it costs nothing"
 
 
 # --- frames ------------------------------------------------------------------------------------------
 
 
-class ByLot(Payoff):
+class ByLot(AdaptivePolicy):
     """Decides by lot."""
 
     def __init__(self, *_: object) -> None:
@@ -148,7 +148,7 @@ class Whimsical(Auto):
 
     def __init__(self, services: Services) -> None:
         super().__init__(services)
-        self.payoff = ByLot()
+        self.policy = ByLot()
 
 
 @pytest.fixture
@@ -184,7 +184,7 @@ def test_pictures_and_modes_are_right_whatever_is_decided(whimsical: str, accele
             assert shadow.due == other.due and frame.statistics.secondary.rays == expected.statistics.secondary.rays
             assert (frame.certificates is not None) >= (shadow.culled > 0)
             plain, told = plain + (frame.certificates is None), told + (shadow.culled > 0)
-        tried += len(auto.begin(0.0).methods[0].payoff._trials)
+        tried += len(auto.begin(0.0).methods[0].policy._trials)
     assert min(plain, told, tried) > 20
 
 
@@ -215,9 +215,9 @@ def test_with_lamps_of_another_kind_it_measures_anew():
     auto = next(method for method in renderer.begin(made.time_range[0]).methods if isinstance(method, Auto))
     for change in ({"lamp_samples": 16, "lamp_radius": 0.2}, {"lamp_samples": 64}):
         renderer.render(made.time_range[0])
-        before = auto.payoff
+        before = auto.policy
         renderer.render(made.time_range[0])
-        assert auto.payoff is before
+        assert auto.policy is before
         renderer.settings = replace(renderer.settings, **change)
         renderer.render(made.time_range[0])
-        assert auto.payoff is not before, change
+        assert auto.policy is not before, change

@@ -11,7 +11,7 @@ from tracer.geometry.bvh8.packet_group import frusta_of, group_of, lead_of, reac
 from tracer.geometry.bvh8.placed import child_planes
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Rays, ray_batch
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.simd import address_of, any_lane, bits_of, largest, local_memory, lowest_bit
 
 RAYS = 128

@@ -19,7 +19,7 @@ from tests.tracing.worlds import affine, moved, nasty_triangles, quad, quadrics,
 from tracer.culling import cells
 from tracer.culling.occluder_cache import OccluderSlots, merge_occluders, surely_blocked
 from tracer.culling.shadow_testing import LIGHT_MARGIN
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.scene.model import SPHERE
 from tracer.simd import address_of, bits_of, load_i32x16, load_three
 

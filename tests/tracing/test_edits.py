@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 
 from tests.tracing.random_worlds import Walk, quickly, scenes, walks
 from tests.tracing.worlds import quad, scene
-from tracer.carry_modes import carry_modes
 from tracer.culling import modes
+from tracer.editing.carry_modes import carry_modes
+from tracer.editing.edits import NO_EDITS, Edits, Origin, edited
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet
-from tracer.scene.edits import NO_EDITS, Edits, Origin, edited
 from tracer.scene.model import Camera, Light, Scene, SceneObject, empty_quadrics
 from tracer.scene.things import thing_numbers, thing_of, things
 from tracer.settings import Settings

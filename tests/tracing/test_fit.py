@@ -10,8 +10,8 @@ import pytest
 import tracer
 from tests.tracing.shades import shadow_scene
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.fit import lights_in_words, remark, too_few, worth
 from tracer.method import HELD, Method, bases, line_up
+from tracer.methods.method_limits import lights_in_words, remark, too_few, worth
 from tracer.scene.model import Scene
 
 SETTINGS = tracer.Settings(width=24, height=18, depth=1, threads=1)

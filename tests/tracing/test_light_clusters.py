@@ -7,7 +7,7 @@ import pytest
 
 from tests.sweeps import cases
 from tests.tracing.halls import lights_of
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.scene.lamps import COLOR, FALLS_OFF, Lamps, LampTable
 from tracer.scene.lights import Light
 from tracer.shading.lightcuts.bounds import greatest_light, mirrored_direction

@@ -15,11 +15,11 @@ from tests.sweeps import ACCELERATORS
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.shades import roof, shadow_scene
 from tests.tracing.worlds import scene
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, vectors
-from tracer.kernels import entry
 from tracer.method import Kind, Method, bases, register, unregister
 from tracer.methods.interface import ShadowMethod, Stage
+from tracer.runtime.kernels import entry
 from tracer.scene.model import Camera, Material
 
 BELOW = Camera((0.3, 0.2, 0.0), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), 40.0)

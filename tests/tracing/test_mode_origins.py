@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tracer.culling.modes import FULLY_RENDERED
-from tracer.mode_origins import NEVER, ModeOrigins
+from tracer.inspect.mode_origins import NEVER, ModeOrigins
 
 UNITS = 600
 

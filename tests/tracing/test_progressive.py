@@ -13,7 +13,7 @@ import tracer
 from tests.sweeps import ACCELERATORS
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.worlds import quad, quadrics, scene
-from tracer.methods.payoff import Payoff
+from tracer.methods.adaptive_policy import Payoff
 from tracer.progressive import BEYOND, HALVES, LEVELS, Parts, after
 from tracer.scene.model import SPHERE, Camera, Cancelled, Material, Texture
 from tracer.shading.blocks import BAYER, EDGE, TURNS, all_blocks, lanes_of, make_planes, pixels_of

@@ -18,7 +18,7 @@ from tracer.geometry.rays import ray_batch
 from tracer.inspect.path_records import TRACED, RayKind, RayTree
 from tracer.inspect.ray_tree import ray_tree, unused
 from tracer.inspect.reasons import WHY_TRACED
-from tracer.methods.payoff import Payoff, Plan
+from tracer.methods.adaptive_policy import Payoff, Plan
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Cancelled

@@ -21,7 +21,7 @@ from tracer.culling.certified.seen_by_lamp import (
 from tracer.culling.certified.static_geometry import StaticGeometry
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.rays import ray_batch
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.scene.lamps import LampTable
 from tracer.scene.lights import Light
 from tracer.simd import address_of, load_three, local_memory

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tracer.geometry.camera import pinhole
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.scene.model import Camera
 from tracer.shading import direction_sort
 from tracer.shading.blocks import all_blocks

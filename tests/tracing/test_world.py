@@ -18,7 +18,7 @@ from tests.tracing.worlds import affine, moved, quadrics, random_corners, scene
 from tracer.geometry.kdtree.build import CANCELLED, build_tree
 from tracer.geometry.layout import triangle_rows
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, any_hits_by
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.scene.model import SPHERE, Cancelled
 
 

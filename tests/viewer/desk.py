@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from tracer.editing.edits import Edits
 from tracer.frame import Frame
 from tracer.renderer import Renderer
-from tracer.scene.edits import Edits
 from tracer.scene.load import load_scene, scene_info
 from tracer.scene.model import Camera
 from viewer.services.controller import Controller

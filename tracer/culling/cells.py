@@ -23,7 +23,7 @@ from tracer.geometry.intersect import hit_triangle
 from tracer.geometry.memory import borrowed, data_pointer
 from tracer.geometry.queries import hits_alone
 from tracer.geometry.rays import INFINITY, MISS
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,
     gather_i32x16,

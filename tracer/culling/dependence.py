@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from tracer.culling.modes import DYNAMIC, FULLY_RENDERED, MAX_CULLED_LIGHTS, occlusion_bits
 from tracer.geometry.memory import borrowed
 from tracer.geometry.primitives import Outlines
-from tracer.kernels import inlined, kernel, subkernel
-from tracer.parallel import for_each_chunk
+from tracer.runtime.kernels import inlined, kernel, subkernel
+from tracer.runtime.parallel import for_each_chunk
 
 CHUNK = 1 << 12  # units a thread takes at a time
 # By so much of the largest coordinates boxes are wider than they are: five times what rays are lifted off surfaces by,

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.modes import OcclusionMode, ShadowMode
-from tracer.kernels import kernel
-from tracer.parallel import for_each_chunk
+from tracer.runtime.kernels import kernel
+from tracer.runtime.parallel import for_each_chunk
 from tracer.simd import ones
 
 CHUNK = 1 << 16  # units that a thread compares at a time

@@ -44,7 +44,7 @@ from tracer.culling.stages import vectors
 from tracer.geometry.boxes import PADDING, inverse
 from tracer.geometry.rays import MISS
 from tracer.geometry.triangle_test import Triangle, crossing, terms_of
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,
     as_f32,

@@ -20,7 +20,7 @@ from tracer.culling.modes import DYNAMIC, FULLY_RENDERED, INIT, PARTIALLY_OCCLUD
 from tracer.geometry.camera import primary_ray
 from tracer.geometry.memory import borrowed
 from tracer.geometry.rays import MISS
-from tracer.kernels import inlined, kernel
+from tracer.runtime.kernels import inlined, kernel
 from tracer.simd import address_of, bits_of, i32x16, lanes_below, load_i32, load_i32x16, local_memory, lowest_bit, store
 
 

@@ -16,14 +16,17 @@ any are gone through: `active` of them.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from tracer.culling.counters import CULLED, DUE, PASSED_OVER, RAYS, WRONG
+from tracer.culling.counters import CULLED, DUE, DYNAMIC_ONLY, PASSED_OVER, RAYS, WRONG
+from tracer.culling.modes import FULL_SHADOW, FULLY_RENDERED, NON_SHADOW, occlusion_modes, shadow_modes
 from tracer.culling.stages import CHOOSE, LEARN, looked_at, looks_at, run_stages, vectors
 from tracer.geometry.boxes import segments_miss_box
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING, STATIC_GEOMETRY, any_hits, any_hits_by
 from tracer.geometry.rays import Rays
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,
@@ -37,10 +40,54 @@ from tracer.simd import (
     store,
     store_three,
 )
+from tracer.simd.records import IntRow, Memory, Row, Row3, row_count, rows_of
 
 LIGHT_MARGIN = np.float32(1e-5)  # of the way from the light: what lies nearer to it is the lamp itself
 ROUNDED = np.float32(1e-5)  # of coordinates
 ZERO, ONE = np.float32(0), np.float32(1)
+
+
+class ShadowBatch(NamedTuple):
+    """The shadow rays of n points to one light: rows of `memory` (SHADOW_ROWS, n) float32.
+
+    Sets of points are bits of int32, sixteen points a number, in the first n / 16 numbers of a row:
+
+    - due: the light is on the viewer's side of the surface;
+    - live: nothing is known yet, so that the trees are to be asked;
+    - unblocked: due, and no static geometry is in the way;
+    - settled: due, and dynamic objects need not be asked any more;
+    - candidates: answered by a few static primitives, which were tested in the place of all;
+    - cached: blocked by what blocked a light before;
+    - lit: due, and nothing is in the way: the answer that shading uses;
+    - truth: the same by tracing every due ray, where answers are verified.
+
+    `active` are the numbers of those vectors of sixteen in which any ray is due, in the first numbers of the row.
+
+    Rays that are traced are packed, one after the other: origin and direction (3, n), t_min and t_max (n,); `blocked`
+    has a byte for each, and `occluders` (n,) what blocks it, where somebody wants to know.  `asked` are the bits of
+    the points whose rays these are."""
+
+    memory: Memory
+    origin: Row3
+    direction: Row3
+    t_min: Row
+    t_max: Row
+    due: IntRow
+    live: IntRow
+    unblocked: IntRow
+    settled: IntRow
+    candidates: IntRow
+    cached: IntRow
+    lit: IntRow
+    truth: IntRow
+    active: IntRow
+    asked: IntRow
+    blocked: Row
+    occluders: IntRow
+
+
+shadow_batch_in = rows_of(ShadowBatch)
+SHADOW_ROWS = row_count(ShadowBatch)
 
 
 @subkernel
@@ -85,6 +132,25 @@ def _find_due(points, light, count, looked, everything, batch, counts):
         batch.active[active] = v
         active += due != 0
     return active
+
+
+@inlined
+def classify_by_modes(modes, light, v):
+    """Return bits of those of sixteen points whose shadow rays can be skipped, as they are blocked, and of those whose
+    rays ask dynamic objects only (§2.4); modes are `PointModes` that have been looked up."""
+    seen_whole, shadow = occlusion_modes(modes, v) == FULLY_RENDERED, shadow_modes(modes, light, v)
+    return bits_of(seen_whole & (shadow == FULL_SHADOW)), bits_of(seen_whole & (shadow == NON_SHADOW))
+
+
+@inlined
+def answer(batch, v, skip, dynamic_only, counts):
+    """Take points out of those that are to be traced, and count them: their rays are known to be blocked, or to meet
+    nothing static."""
+    live = np.int64(batch.live[v])
+    batch.live[v] = live & ~(skip | dynamic_only)
+    batch.lit[v] |= live & dynamic_only
+    counts[CULLED] += ones(live & skip)
+    counts[DYNAMIC_ONLY] += ones(live & dynamic_only)
 
 
 @subkernel

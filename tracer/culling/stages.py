@@ -30,7 +30,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd import address_of, call_entry, load_i64, store
 from tracer.simd.records import I32, F32x2D, block_size, reading, writing
 

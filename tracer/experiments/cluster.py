@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from typing import Any
 
-from tracer.kernel_cache import cache_root
+from tracer.runtime.kernel_cache import cache_root
 
 NEEDS_DASK = "Dask is not installed; install shadowcull[sweep] (pip install distributed pyarrow cryptography)"
 CONNECT = 10.0  # seconds to wait for a scheduler's answer

@@ -13,7 +13,7 @@ from tracer.inspect.path_records import VERDICTS, RayTree
 from tracer.inspect.why_in_words import primitive_in_words
 from tracer.scene.lights import named_light
 from tracer.scene.model import Camera, Scene
-from tracer.text import mode_in_words
+from tracer.util.text import mode_in_words
 
 PATH, AROUND = "path", "around"
 """Where a counterexample is: on the path that was searched, or beside it."""

@@ -24,7 +24,7 @@ from tracer.experiments import zoom
 from tracer.experiments.experiment import REFERENCE, Results, Row, table
 from tracer.experiments.filmstrip import Filmstrip, Shot
 from tracer.experiments.titles import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
-from tracer.text import saved
+from tracer.util.text import saved
 
 ENDINGS = (".png", ".svg", ".pdf")
 # Okabe and Ito's colours, those that read well as letters first; in greys, dashes and marks distinguish methods.

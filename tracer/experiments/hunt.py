@@ -22,9 +22,9 @@ from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
+from tracer.inspect.mode_origins import NEVER, ModeOrigins
 from tracer.inspect.ray_tree import ray_tree
 from tracer.method import Method
-from tracer.mode_origins import NEVER, ModeOrigins
 from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Cancelled, Scene
 

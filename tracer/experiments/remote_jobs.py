@@ -18,13 +18,13 @@ from typing import Any
 
 from filelock import FileLock
 
-from tracer.compilation import compiled_before, make_ready, ready_for, warm_up
+from tracer.compiling.compilation import compiled_before, make_ready, ready_for, warm_up
 from tracer.experiments.cluster import Cluster, in_one_line
 from tracer.geometry.world import World
-from tracer.kernel_cache import cache_root
 from tracer.method import Method
+from tracer.runtime.kernel_cache import cache_root
 from tracer.scene.model import Cancelled, Scene
-from tracer.version import program_version, tracer_code
+from tracer.util.version import program_version, tracer_code
 
 Emit = Callable[[Any], None]
 Function = Callable[[Any, Scene, Emit, Callable[[], bool]], Any]

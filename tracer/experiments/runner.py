@@ -14,10 +14,10 @@ from datetime import datetime
 from pathlib import Path
 from typing import Generic, TypeVar
 
+from tracer.editing.edits import Origin
 from tracer.experiments.time_left import TimeLeft
 from tracer.frame import Frame
 from tracer.geometry.world import World
-from tracer.scene.edits import Origin
 from tracer.scene.model import Cancelled, Scene
 
 STARTING = "starting"

@@ -27,9 +27,9 @@ from tracer.method import Method
 from tracer.scene.files import read_regular
 from tracer.scene.framing import bounds
 from tracer.scene.model import Camera, Scene
-from tracer.setting import kinds_in_words, settings_of
 from tracer.settings import RECORDS, Settings
-from tracer.similar import did_you_mean, did_you_mean_file
+from tracer.util.setting import kinds_in_words, settings_of
+from tracer.util.suggest import did_you_mean, did_you_mean_file
 
 _NOT_VARIED = {"width", "height", "method", "modes", "samples", "threads", "patient", *RECORDS} - {"verify"}
 ASPECTS = tuple(one.name for one in settings_of(Settings) if one.name not in _NOT_VARIED)

@@ -17,7 +17,6 @@ from typing import Any
 import numba
 import numpy as np
 
-from tracer import fingerprint
 from tracer.experiments.cluster import Cluster
 from tracer.experiments.experiment import FIGURES, figures_of
 from tracer.experiments.remote_jobs import Emit, Job, do, prepare, world_of
@@ -26,8 +25,9 @@ from tracer.experiments.sweep_store import Key, Store, keys_of
 from tracer.frame import Frame
 from tracer.method import Method
 from tracer.renderer import Renderer
+from tracer.scene import fingerprint
 from tracer.scene.model import Scene
-from tracer.version import program_version, tracer_code
+from tracer.util.version import program_version, tracer_code
 
 FORMAT = 1
 Row = dict[str, Any]

@@ -19,8 +19,8 @@ from filelock import FileLock, Timeout
 
 from tracer.experiments.experiment import FIGURES
 from tracer.experiments.study import ASPECTS
-from tracer.setting import settings_of
 from tracer.settings import Settings
+from tracer.util.setting import settings_of
 
 _COUNTERS = [name for name in FIGURES if name != "frame_seconds"]
 _TYPES: dict[type, pa.DataType] = {bool: pa.bool_(), int: pa.int32(), float: pa.float64(), str: pa.string()}

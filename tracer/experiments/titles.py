@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tracer.experiments import experiment, hunt, zoom
 from tracer.experiments.zoom import Approach, Step
-from tracer.text import printable
+from tracer.util.text import printable
 
 
 def frames_in_words(results: experiment.Results) -> str:

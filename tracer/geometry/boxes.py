@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.scene.arrays import Float32, Float64
 from tracer.simd import as_f32, as_i32, f32x16, maximum, minimum
 

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.model import Progress
 
 CANCELLED, DONE = 0, 1  # entries of a build's `control` (2,) int64: set to stop it; how much it has done

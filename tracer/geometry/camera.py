@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.rays import INFINITY, Ray
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.scene.model import Camera
 from tracer.simd import square_root
 

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from tracer.geometry.rays import INFINITY, Ray
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.scene.model import SPHERE
 
 ZERO = np.float32(0)

@@ -12,7 +12,7 @@ from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, OBJECT, edge
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.layout import Report, box_of, laid_out, triangle_rows
 from tracer.geometry.poses import Poses, inverses, products
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.scene.arrays import Float32, Float64, Int32
 from tracer.scene.deformation import deformed
 from tracer.scene.model import SPHERE, Scene, SceneObject

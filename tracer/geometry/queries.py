@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from tracer.geometry.intersect import hit_quadric, hit_triangle, transform_ray
 from tracer.geometry.memory import data_pointer
 from tracer.geometry.rays import INFINITY, Hits, RayPointers, Rays
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import address_of, call_entry, f32_at, load_i64, local_memory, store
 
 # The table of a batch, as offsets in bytes.  Rays: the addresses of origins and directions, (3, stride) float32, of

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 
 MISS = -1
 INFINITY = np.float32(np.inf)

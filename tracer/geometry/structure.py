@@ -16,7 +16,7 @@ from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import WorldTriangles
 from tracer.geometry.queries import Placed
 from tracer.geometry.tree_parts import TreeParts
-from tracer.kernels import Entry
+from tracer.runtime.kernels import Entry
 from tracer.scene.arrays import Float64
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.parallel import for_each_chunk, thread_count
+from tracer.runtime.parallel import for_each_chunk, thread_count
 
 CHUNK = 1 << 14  # points that a thread looks up at a time
 NOWHERE = -1  # the number of no part

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd import as_f32, as_i32, fma, select
 
 ZERO = np.float32(0)

@@ -24,8 +24,8 @@ from tracer.geometry.queries import EVERYTHING, batch_of
 from tracer.geometry.rays import Hits, Rays
 from tracer.geometry.structure import BuiltPart, Structure
 from tracer.geometry.tree_parts import TreeParts
-from tracer.kernels import Entry
-from tracer.parallel import for_each_chunk, thread_count
+from tracer.runtime.kernels import Entry
+from tracer.runtime.parallel import for_each_chunk, thread_count
 from tracer.scene.chains import Chains
 from tracer.scene.model import Cancelled, Progress, Scene
 

@@ -15,12 +15,12 @@ import numpy as np
 from tracer.culling.counters import COUNTERS
 from tracer.geometry.camera import pinhole
 from tracer.methods.interface import StageTable
-from tracer.parallel import for_each_chunk, thread_count
+from tracer.runtime.parallel import for_each_chunk, thread_count
 from tracer.scene.lamps import Lamps
 from tracer.shading.blocks import all_blocks
 from tracer.shading.buffers import empty_buffers
+from tracer.shading.tiles import tiles_of
 from tracer.shading.whitted import shade_tile, trace_primary
-from tracer.tiles import tiles_of
 
 if TYPE_CHECKING:
     from tracer.frame import Frame

@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, vectors
 from tracer.geometry.memory import aligned_rows
-from tracer.kernels import entry, kernel
 from tracer.methods.interface import Stage
+from tracer.runtime.kernels import entry, kernel
 from tracer.scene.arrays import Float32
 from tracer.shading.bounce import next_wave
 from tracer.shading.points import LIFTED_ROW, LIGHT_ROW, POINT_ROWS, POSITION_ROW, Points, points_in

@@ -1,7 +1,7 @@
 """The method `auto`: certified cells where these are measured to be quicker than tracing every shadow ray.
 
-Both give the same pictures, bit for bit, so that every frame may be traced in either way.  `Payoff` decides, by what
-certificates are seen to cost and to save, and now and then a tile is shaded both ways to find out.
+Both give the same pictures, bit for bit, so that every frame may be traced in either way.  `AdaptivePolicy` decides, by
+what certificates are seen to cost and to save, and now and then a tile is shaded both ways to find out.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from tracer.culling.counters import SHADOW
 from tracer.culling.verdicts import Answered, CullReason
+from tracer.methods.adaptive_policy import AdaptivePolicy, Plan, Trial
 from tracer.methods.certified import CertifiedCells, CertifiedLights
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
-from tracer.methods.payoff import Payoff, Plan, Trial
 from tracer.statistics import FrameStatistics, shadow_counts
 
 GOLDEN = 0.618033988749895  # steps of it visit all tiles evenly
@@ -39,7 +39,7 @@ class Auto(ShadowMethod):
 
     def _start(self) -> None:
         """Nothing has been measured yet."""
-        self.payoff = Payoff(self._certified.price, self._certified.pays_as_a_rule)
+        self.policy = AdaptivePolicy(self._certified.price, self._certified.pays_as_a_rule)
         self._plan = Plan()
         self._next_trial = 0  # of the tiles that are shaded both ways
         self._tried: frozenset[int] = frozenset()
@@ -51,10 +51,10 @@ class Auto(ShadowMethod):
         if self._kind not in (None, kind):  # rays of other lamps cost, and save, something else
             self._start()
             if self._certified.store is not None:
-                self.payoff.made_ready()
+                self.policy.made_ready()
         self._kind = kind
         patience = settings.certificate_seconds if settings.patient else 0.0
-        plan = self.payoff.plan(len(frame.tiles), patience)
+        plan = self.policy.plan(len(frame.tiles), patience)
         counts_all = settings.verify or settings.record_work  # then no tile may be shaded twice
         seconds = min(plan.seconds, settings.certificate_seconds)
         self._plan = replace(plan, seconds=seconds, trials=0 if counts_all else plan.trials)
@@ -70,14 +70,14 @@ class Auto(ShadowMethod):
         """Time what is spent on certificates."""
         start = self.services.clock()
         yield
-        self.payoff.spend(self.services.clock() - start)
+        self.policy.spend(self.services.clock() - start)
 
     def follow(self, frame: FrameView) -> None:
         if self._plan.needs_certificates:
             with self._paid():
                 self._certified.follow(frame)
                 if self._certified.made_now:
-                    self.payoff.made_ready()
+                    self.policy.made_ready()
 
     def prepare(self, frame: FrameView) -> None:
         if self._plan.needs_certificates:
@@ -133,13 +133,13 @@ class Auto(ShadowMethod):
         if begun:
             self._settle(frame)
         else:
-            self.payoff.abandon(free=frame.settings.patient)
+            self.policy.abandon(free=frame.settings.patient)
 
     def layers(self, frame: FrameView) -> dict[str, NDArray]:
         return self._certified.layers(frame) if self._plan.looks_up else {}
 
     def report(self, statistics: FrameStatistics) -> None:
-        statistics.decision = self.payoff.reason
+        statistics.decision = self.policy.reason
         if self._plan.needs_certificates:
             self._certified.report(statistics)
 
@@ -149,12 +149,12 @@ class Auto(ShadowMethod):
         self._settle(frame)
 
     def _settle(self, frame: FrameView) -> None:
-        """Tell the payoff what the frame has cost."""
+        """Tell the policy what the frame has cost."""
         looks_up, free = self._plan.looks_up, frame.settings.patient
         twice = sum(trial.plain if looks_up else trial.certified for trial in self._trials) / frame.workers
-        self.payoff.spend(twice, trying=True)
+        self.policy.spend(twice, trying=True)
         shading = max(0.0, frame.phases.get("shading", 0.0) - twice)
-        self.payoff.finish(frame.seconds, shading, self._trials, free=free)
+        self.policy.finish(frame.seconds, shading, self._trials, free=free)
         self._trials = []
 
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:

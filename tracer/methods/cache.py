@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer.culling.occluder_cache import OccluderSlots, SlotKey, remember, test_slots
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, CullReason, Verdict
-from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in
 from tracer.simd import i64_at
 from tracer.simd.records import I32, F32x2D, reading

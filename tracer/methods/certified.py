@@ -32,13 +32,13 @@ from tracer.culling.certified.scheduler import Budget, CertificateScheduler, Cou
 from tracer.culling.certified.store import CertificateStore
 from tracer.culling.certified.view import view_at
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.memory import borrowed
-from tracer.kernels import entry, kernel
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.runtime.kernels import entry, kernel
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
 from tracer.shading.wave import wave_in

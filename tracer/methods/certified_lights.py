@@ -20,15 +20,15 @@ from tracer.culling.certified.hiders import Hiders, find_hidden, is_lamp
 from tracer.culling.certified.scheduler import Budget, Counts
 from tracer.culling.regions.lookup import look, want_around
 from tracer.culling.regions.store import RegionStore, RegionView
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, looked_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import aligned_rows, borrowed
 from tracer.geometry.offsets import RAY_OFFSET
-from tracer.kernels import entry, kernel
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
-from tracer.parallel import for_each_chunk
+from tracer.runtime.kernels import entry, kernel
+from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lamps import Lamps
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of

@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer.culling.counters import CULLED
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, vectors
-from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.runtime.kernels import entry
 from tracer.simd import i64_at, ones
 from tracer.simd.records import I32x2D, I64x2D, reading
 from tracer.statistics import FrameStatistics

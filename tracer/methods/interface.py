@@ -30,7 +30,7 @@ from tracer.culling.stages import COLUMNS, Stages
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.camera import Pinhole
-from tracer.kernels import Entry
+from tracer.runtime.kernels import Entry
 from tracer.shading.buffers import Buffers
 from tracer.shading.shading_data import ShadingData
 from tracer.simd.records import pack

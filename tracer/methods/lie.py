@@ -18,15 +18,15 @@ from tracer.culling.environments.ask import answer, find_cells, select_lights
 from tracer.culling.environments.octree import cells_at, environments_at
 from tracer.culling.environments.sample import seen_points, settle_by_samples
 from tracer.culling.environments.store import EnvironmentStore
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed
-from tracer.kernels import entry, kernel
 from tracer.methods.interface import FrameView, Stage
-from tracer.methods.of_space import NOWHERE, CellsOfSpace
-from tracer.parallel import for_each_chunk
+from tracer.methods.spatial_cache import NOWHERE, CellsOfSpace
+from tracer.runtime.kernels import entry, kernel
+from tracer.runtime.parallel import for_each_chunk
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
 from tracer.shading.wave import wave_in

@@ -38,13 +38,13 @@ from tracer.culling.lightbuffer.rays import RAY_ROWS, buffer_rays_in
 from tracer.culling.lightbuffer.tell import LightCube, Said, tell
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.rest import nothing_rests
-from tracer.culling.shadow_batch import shadow_batch_in
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.accelerators import KD_TREE
 from tracer.geometry.offsets import RAY_OFFSET
-from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in
 from tracer.simd import i64_at
 from tracer.simd.records import reading

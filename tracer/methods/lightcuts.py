@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from tracer.culling.counters import SHADOW_COUNTERS
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.stages import call_at, vectors
-from tracer.fit import lights_in_words
 from tracer.geometry.memory import aligned_rows
-from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.methods.method_limits import lights_in_words
+from tracer.runtime.kernels import entry
 from tracer.scene.lamps import Lamps
 from tracer.shading.lightcuts.block import BLOCK, DARK, POINTS, ROOM, Clusters, CutWork
 from tracer.shading.lightcuts.drawn import Draws

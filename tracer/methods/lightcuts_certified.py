@@ -14,10 +14,10 @@ from tracer.culling.counters import SHADOW_COUNTERS
 from tracer.culling.regions.lookup import look
 from tracer.culling.regions.store import RegionView
 from tracer.culling.stages import call_at, selects, vectors
-from tracer.kernels import entry
 from tracer.methods.certified_lights import WORDS, CertifiedLights
 from tracer.methods.interface import FrameView, Services, Stage
 from tracer.methods.lightcuts import Lightcuts
+from tracer.runtime.kernels import entry
 from tracer.shading.lightcuts.block import BLOCK, Clusters
 from tracer.shading.lightcuts.hidden import leave_out_hidden, see
 from tracer.shading.lightcuts.shade import Cuts, block_at, shade_by_cut

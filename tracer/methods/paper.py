@@ -1,32 +1,40 @@
 """The method of the paper: culling by the shadow modes of primitives that were seen whole (§2.4, §2.5).
 
 Occlusion testing and occlusion-mode setting (§2.3, §2.6) are phases of every frame that keeps modes, and stand in
-`tracer.culling.occlusion`.  The kernels here are those two of shadow testing, wave by wave: `choose` answers the rays
-whose primitives can be trusted, and `learn` sets the shadow modes.
+`tracer.culling.occlusion`.  The kernels here take part in shadow testing
+(`tracer.culling.shadow_testing`), wave by wave: `choose` answers rays, and `learn` sets the shadow modes.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from tracer.culling.cells import cells_at
-from tracer.culling.shadow_batch import shadow_batch_in
-from tracer.culling.shadow_modes import (
-    POINT_WORD_ROWS,
+from tracer.culling.counters import BY_LIGHT
+from tracer.culling.modes import (
+    DYNAMIC,
+    FULL_SHADOW,
+    MAX_CULLED_LIGHTS,
+    NON_SHADOW,
+    POINT_MODE_ROWS,
     Words,
-    cull,
-    point_words_in,
-    set_shadow_modes,
-    start_wave,
+    add_shadow,
+    look_up,
+    occlusion_modes,
+    point_modes_in,
+    shadow_modes,
     words_at,
 )
+from tracer.culling.shadow_testing import answer, classify_by_modes, shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
-from tracer.kernels import entry
 from tracer.methods.interface import FrameView, ShadowMethod, Stage
+from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
-from tracer.simd import address_of, i64_at, load_f32x16, load_i32x16, store
+from tracer.simd import address_of, bits_of, i64_at, load_f32x16, load_i32x16, lowest_bit, ones, store
 from tracer.simd.records import I32, reading
 
 
@@ -44,13 +52,12 @@ modes_at = reading(Modes)
 
 @entry
 def find(data, call, light, count, counts):
-    """Which unit is each point of the wave on?  Nothing has been looked up for it yet."""
+    """Which unit is each point of the wave on?  Its modes have not been looked up yet."""
     given, first = call_at(call), modes_at(data).first
     points, wave = points_in(given.points), wave_in(given.rays, count)
-    found = point_words_in(scratch_of(given))
-    start_wave(found, count)
+    found = point_modes_in(scratch_of(given))
     for v in range(vectors(count)):
-        at = 64 * v
+        found.looked_up[v], at = 0, 64 * v
         unit = load_i32x16(address_of(points.primitive) + at)
         if len(first) > 0:
             unit = cells_at(first, unit, load_f32x16(address_of(wave.u) + at), load_f32x16(address_of(wave.v) + at))
@@ -59,18 +66,49 @@ def find(data, call, light, count, counts):
 
 @entry
 def choose(data, call, light, count, counts):
-    """§2.4: answer the rays of points on units that can be trusted."""
-    given, modes = call_at(call), modes_at(data)
-    found = point_words_in(scratch_of(given))
-    cull(modes.words, found, light, count, shadow_batch_in(given.shadows), i64_at(counts))
+    """§2.4: answer the rays of points on units whose modes say what they meet."""
+    given, words, counted = call_at(call), modes_at(data).words, i64_at(counts)
+    found, batch = point_modes_in(scratch_of(given)), shadow_batch_in(given.shadows)
+    if light >= MAX_CULLED_LIGHTS:
+        return
+    for v in range(vectors(count)):
+        if batch.live[v] != 0:
+            look_up(words, v, found)
+            skip, dynamic_only = classify_by_modes(found, light, v)
+            answer(batch, v, skip, dynamic_only, counted)
 
 
 @entry
 def learn(data, call, light, count, counts):
-    """§2.5: set shadow modes by what static geometry has answered."""
-    given, modes = call_at(call), modes_at(data)
-    found, batch = point_words_in(scratch_of(given)), shadow_batch_in(given.shadows)
-    set_shadow_modes(modes.words, modes.gained, found, light, count, batch, i64_at(counts))
+    """§2.5: OR what rays have met into what units gain, and count what modes say of due rays.
+
+    Whoever gave the answer: a mode is set if the paper's method would have traced the ray, and static geometry has
+    answered it.  So the modes kept beside a method that does not cull by them are those that the paper's would have."""
+    given, modes, counted = call_at(call), modes_at(data), i64_at(counts)
+    found, batch = point_modes_in(scratch_of(given)), shadow_batch_in(given.shadows)
+    if light >= MAX_CULLED_LIGHTS:
+        return
+    for v in range(vectors(count)):
+        due = np.int64(batch.due[v])
+        if due == 0:
+            continue
+        look_up(modes.words, v, found)
+        skip, dynamic_only = classify_by_modes(found, light, v)
+        counted[BY_LIGHT + 3 * light] += ones(due)
+        counted[BY_LIGHT + 3 * light + 1] += ones(due & skip)
+        counted[BY_LIGHT + 3 * light + 2] += ones(due & dynamic_only)
+
+        # Only where it is news: most rays meet what others of their unit have met before.
+        shadow, unblocked = shadow_modes(found, light, v), np.int64(batch.unblocked[v])
+        knows_blocked = bits_of((shadow & np.int32(FULL_SHADOW)) > np.int32(0))
+        knows_unblocked = bits_of((shadow & np.int32(NON_SHADOW)) > np.int32(0))
+        traced = due & ~(bits_of(occlusion_modes(found, v) == DYNAMIC) | skip | dynamic_only)
+        news = traced & ((unblocked & ~knows_unblocked) | (~unblocked & ~knows_blocked))
+        while news != 0:
+            lane = lowest_bit(news)
+            news &= news - 1
+            mode = NON_SHADOW if (unblocked >> lane) & 1 else FULL_SHADOW
+            add_shadow(modes.gained, found.unit[16 * v + lane], light, mode)
 
 
 class Paper(ShadowMethod):
@@ -81,7 +119,7 @@ class Paper(ShadowMethod):
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         modes = Modes(words_at(frame.words), words_at(frame.history.gained[worker]), frame.first)
         chooses, learns_from = choose if self.culls else None, learn if learns else None
-        return [Stage(modes, find=find, choose=chooses, learn=learns_from, rows=POINT_WORD_ROWS)]
+        return [Stage(modes, find=find, choose=chooses, learn=learns_from, rows=POINT_MODE_ROWS)]
 
     def because(self, answered: Answered) -> CullReason:
         return CullReason(Verdict.NON_SHADOW if answered.lit else Verdict.FULL_SHADOW)

@@ -13,20 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.counters import CANDIDATES_ONLY, CULLED, DYNAMIC_ONLY, STEPS
-from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.culling.shadow_batch import shadow_batch_in
-from tracer.culling.shadow_modes import POINT_WORD_ROWS, look_up, point_words_in, start_wave
-from tracer.culling.shadow_modes import words_of as looked_up
+from tracer.culling.modes import MAX_CULLED_LIGHTS, POINT_MODE_ROWS, look_up, point_modes_in, shadow_modes
+from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.culling.voxels.store import VoxelStore
 from tracer.culling.voxels.tell import Stop
 from tracer.culling.voxels.view import voxel_view_at
-from tracer.culling.voxels.walk import states, voxels_at, walk
+from tracer.culling.voxels.walk import full_and_null, voxels_at, walk
 from tracer.geometry.boxes import segments_miss_box
-from tracer.kernels import entry
 from tracer.methods.interface import FrameView, Stage
-from tracer.methods.of_space import NOWHERE, CellsOfSpace
+from tracer.methods.spatial_cache import NOWHERE, CellsOfSpace
+from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import address_of, bits_of, i32x16, i64_at, load_i32x16, load_three, mask16, ones, select, store
@@ -37,9 +35,9 @@ def find(data, call, light, count, counts):
     """In which voxel does the shadow ray of each point end?"""
     given, voxels = call_at(call), voxel_view_at(data)
     grid = voxels.grid
-    points, found = points_in(given.points), point_words_in(scratch_of(given))
-    start_wave(found, count)
+    points, found = points_in(given.points), point_modes_in(scratch_of(given))
     for v in range(vectors(count)):
+        found.looked_up[v] = 0
         x, y, z = load_three(points.lifted, v)
         store(address_of(found.unit) + 64 * v, voxels_at(grid, x, y, z))
     if given.bounce == 0 and len(voxels.cell) > 0:
@@ -54,7 +52,7 @@ def choose(data, call, light, count, counts):
     given, voxels = call_at(call), voxel_view_at(data)
     if light >= min(MAX_CULLED_LIGHTS, len(voxels.slot)) or voxels.slot[light] < 0:
         return
-    points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), point_words_in(scratch_of(given))
+    points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), point_modes_in(scratch_of(given))
     counted, sample, slot = i64_at(counts), given.samples[given.sample], voxels.slot[light]
     place, outside = (sample[0], sample[1], sample[2]), np.int32(voxels.grid.nx * voxels.grid.ny * voxels.grid.nz)
     for v in range(vectors(count)):
@@ -62,8 +60,7 @@ def choose(data, call, light, count, counts):
         if live == 0:
             continue
         look_up(voxels.words, v, found)
-        _word, field, shift = looked_up(found, light, v)
-        full, null = states(field, np.int32(shift))
+        full, null = full_and_null(shadow_modes(found, light, v))
         full, null = full & live, null & live
         unit, walked = load_i32x16(address_of(found.unit) + 64 * v), np.int64(0)
         counted[STEPS] += ones(live) if voxels.by_ray else 1
@@ -109,7 +106,7 @@ class Voxels(CellsOfSpace):
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         assert self.store is not None, "followed before"
         return [
-            Stage(self.store.view(self._cell if learns else NOWHERE), find=find, choose=choose, rows=POINT_WORD_ROWS)
+            Stage(self.store.view(self._cell if learns else NOWHERE), find=find, choose=choose, rows=POINT_MODE_ROWS)
         ]
 
     def layers(self, frame: FrameView) -> dict[str, Any]:

@@ -12,11 +12,11 @@ import numpy as np
 
 from tracer.scene.aff import load_aff
 from tracer.scene.framing import bounds
+from tracer.scene.memory_check import check_reading, check_showing
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.meshes import MESH_EXTENSIONS, load_mesh
 from tracer.scene.model import CONE, SPHERE, Progress, Scene, SceneError
-from tracer.scene.room import check_reading, check_showing
-from tracer.similar import did_you_mean_file
+from tracer.util.suggest import did_you_mean_file
 
 AFF_EXTENSIONS = (".aff", ".nff")
 SCENE_EXTENSIONS = (*AFF_EXTENSIONS, *MESH_EXTENSIONS)

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 
 MOST_AROUND = 64
 """Other faces that are asked at a vertex: the hub of a fan of thousands is asked for those nearest in the file."""

@@ -25,6 +25,7 @@ from tracer.scene.crease import creased_normals
 from tracer.scene.files import SceneFiles, read_regular
 from tracer.scene.framing import bounds, framing_camera, framing_lights
 from tracer.scene.limits import LARGEST, MOST_NESTED, MOST_PRIMITIVES
+from tracer.scene.memory_check import check_reading
 from tracer.scene.mesh_materials import MaterialTable
 from tracer.scene.mesh_options import AS_IN_FILE, CREASE, MeshOptions
 from tracer.scene.mesh_reading import only_known_images, quiet
@@ -32,11 +33,10 @@ from tracer.scene.model import Camera, Progress, Scene, SceneError
 from tracer.scene.pieces import IndexedMesh, Mesh, Piece
 from tracer.scene.ply_lists import with_even_lists
 from tracer.scene.punctual_lights import has_lights, punctual_lights
-from tracer.scene.room import check_reading
 from tracer.scene.studio import build_studio, with_floor
 from tracer.scene.textures import open_image
 from tracer.scene.tristrips import with_strips
-from tracer.scene.upright import guess
+from tracer.scene.up_axis import guess
 
 MESH_EXTENSIONS = (".obj", ".ply", ".stl", ".gltf", ".glb")
 ONLY_MESH = "geometry_0"

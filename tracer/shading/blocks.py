@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.rays import MISS
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.shading.primary import ALL_LANES, BLOCK, EDGE
 from tracer.simd import address_of
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.direction_sort import sorted_by_direction
 from tracer.shading.points import IOR_ROW, OFFSET_ROW, SPECULAR_ROW, TRANSMISSION_ROW
 from tracer.shading.wave import DIRECTION, HIT_T, ORIGIN, PATH_LENGTH, PIXEL, WEIGHT, room, row_of, wave_in

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.shadow_batch import SHADOW_ROWS
-from tracer.kernels import inlined
+from tracer.culling.shadow_testing import SHADOW_ROWS
+from tracer.runtime.kernels import inlined
 from tracer.shading.blocks import NO_PLANES, Planes
 from tracer.shading.points import POINT_ROWS
 from tracer.shading.wave import WAVE_ROWS

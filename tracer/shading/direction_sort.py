@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.sorting import cell_of, gather_rows, put_order, spread_bits
 from tracer.shading.wave import DIRECTION, ORIGIN, RAY_ROWS, T_MAX, T_MIN, row_of
 from tracer.simd import (

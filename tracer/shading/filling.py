@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.memory import borrowed
 from tracer.geometry.rays import MISS
-from tracer.kernels import inlined, kernel
+from tracer.runtime.kernels import inlined, kernel
 from tracer.shading.blocks import (
     BLOCK,
     EDGE,

@@ -10,7 +10,7 @@ from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, MATERIAL, OB
 from tracer.geometry.intersect import quadric_normal
 from tracer.geometry.memory import data_pointer
 from tracer.geometry.offsets import RAY_OFFSET
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.shading_data import AMBIENT, DIFFUSE, EXPONENT, IOR, MATERIAL_COLUMNS, SHINE, SPECULAR, TRANSMISSION
 from tracer.shading.textures import MAPPING_COLUMNS, SPANNED, texture_colors
 from tracer.shading.wave import HIT_PRIMITIVE, HIT_T, HIT_U, HIT_V, PATH_LENGTH, room, row_of

@@ -10,7 +10,7 @@ import numpy as np
 
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import data_pointer
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.wave import DIRECTION, ORIGIN, PATH_LENGTH, PIXEL, WEIGHT, row_of, wave_in
 from tracer.simd import (
     address_of,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tracer.culling.fate import CACHED, CANDIDATES, CULLED, DYNAMIC_ONLY, FACES_AWAY, FATE, MOVING_SHADOW, TRACED
-from tracer.kernels import subkernel
+from tracer.runtime.kernels import subkernel
 
 
 @subkernel

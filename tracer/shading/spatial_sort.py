@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.sorting import cell_of, gather_rows, put_order, spread_bits
 from tracer.shading.wave import DIRECTION, HIT_ROWS, HIT_T, ORIGIN, T_MAX, T_MIN, room, row_of, wave_in
 from tracer.simd import (

@@ -14,7 +14,7 @@ from tracer.geometry.attributes import COLUMNS, MATERIAL, OBJECT
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed, data_pointer
 from tracer.geometry.rays import MISS
-from tracer.kernels import inlined, kernel
+from tracer.runtime.kernels import inlined, kernel
 from tracer.shading.blocks import NORMAL, PLANE, POSITION, SURFACE, UNSHADOWED, block_of, planes_at
 from tracer.shading.phong import fall_off, highlight, toward
 from tracer.shading.points import ambient_at, colors_at, diffuse_at, material_at, normals_at

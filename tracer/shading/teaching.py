@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from tracer.culling.modes import DYNAMIC, FULLY_RENDERED, occlusion_bits
 from tracer.geometry.rays import MISS
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.shading.blocks import block_of
 from tracer.shading.primary import BLOCK
 

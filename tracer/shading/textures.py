@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from tracer.geometry.memory import aligned_rows
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.scene.model import Texture
 from tracer.simd import (
     address_of,

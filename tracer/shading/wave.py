@@ -8,7 +8,7 @@ import numpy as np
 
 from tracer.geometry.queries import closest_hits
 from tracer.geometry.rays import INFINITY, MISS, Hits, Rays, padded
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,

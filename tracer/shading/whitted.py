@@ -13,8 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.counters import BY_LIGHT, PASSED_OVER, PRIMARY, RAYS, SECONDARY, SHADOW, SHADOW_COUNTERS
-from tracer.culling.shadow_batch import shadow_batch_in
-from tracer.culling.shadow_testing import shadow_testing
+from tracer.culling.shadow_testing import shadow_batch_in, shadow_testing
 from tracer.culling.stages import (
     APPROACH,
     CALL,
@@ -31,7 +30,7 @@ from tracer.culling.stages import (
     write_sample,
 )
 from tracer.geometry.memory import borrowed
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.shading.blocks import BLOCK, LOCAL, PLANE, SENT, block_of, planes_at
 from tracer.shading.bounce import next_wave
 from tracer.shading.buffers import pixels_in, write

@@ -135,7 +135,7 @@ def store_bytes(typingctx, address, value):
 
 @operation
 def call_entry(typingctx, entry, a, b, c, d, e):
-    """Call machine code (see `tracer.kernels.Entry`) at an address, with five int64."""
+    """Call machine code (see `tracer.runtime.kernels.Entry`) at an address, with five int64."""
 
     def codegen(context, builder, sig, args):
         kind = ir.FunctionType(ir.VoidType(), [ir.IntType(64)] * 5)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd.addresses import address_of, load_f32x16, store
 from tracer.simd.bits import as_f32, as_i32
 from tracer.simd.rearranging import pack

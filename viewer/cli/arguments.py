@@ -22,8 +22,8 @@ from tracer.method import Method, unknown
 from tracer.scene.camera import Camera
 from tracer.scene.files import read_regular
 from tracer.scene.limits import LARGEST
-from tracer.setting import Setting
-from tracer.similar import similar
+from tracer.util.setting import Setting
+from tracer.util.suggest import similar
 from viewer.state.draw_options import DrawOptions
 from viewer.state.views import Record, View
 from viewer.util.messages import ERROR, say

@@ -14,18 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from tracer import fingerprint
+from tracer.editing.edits import Edits, edited
 from tracer.geometry.world import World
 from tracer.method import Method
 from tracer.renderer import Renderer
-from tracer.scene.edits import Edits, edited
+from tracer.scene import fingerprint
 from tracer.scene.files import read_regular
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene, SceneError
 from tracer.settings import Settings
-from tracer.text import printable
-from tracer.version import program_version
+from tracer.util.text import printable
+from tracer.util.version import program_version
 from viewer.cli import options
 from viewer.cli.arguments import FAILED, Parser
 from viewer.cli.console import Work, working

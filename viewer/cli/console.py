@@ -21,7 +21,7 @@ from rich.text import Text
 from tracer.experiments.runner import Results, Run
 from tracer.geometry.world import World
 from tracer.scene.model import Cancelled
-from tracer.text import printable
+from tracer.util.text import printable
 from viewer.util.messages import in_one_line, say
 
 if TYPE_CHECKING:

@@ -13,17 +13,17 @@ from rich.tree import Tree
 
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
+from tracer.inspect.mode_origins import ModeOrigins
 from tracer.inspect.path_records import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.inspect.reasons import Why
 from tracer.inspect.why import why
 from tracer.inspect.why_in_words import Words, plain
 from tracer.method import DEFAULT_METHOD
-from tracer.mode_origins import ModeOrigins
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
-from tracer.text import printable
+from tracer.util.text import printable
 from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import working

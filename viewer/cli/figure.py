@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file
-from tracer.text import printable
+from tracer.util.text import printable
 from viewer.cli import arguments, options, pictures
 from viewer.cli.arguments import Parser
 from viewer.cli.console import print_table, titled, working

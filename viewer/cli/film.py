@@ -14,7 +14,7 @@ from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
 from tracer.settings import Settings
-from tracer.text import printable
+from tracer.util.text import printable
 from viewer.cli import arguments, options, pictures
 from viewer.cli.arguments import INTERRUPTED, Parser
 from viewer.cli.console import working

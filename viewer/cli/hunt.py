@@ -20,7 +20,7 @@ from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Cancelled, Scene
-from tracer.text import printable
+from tracer.util.text import printable
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser
 from viewer.cli.console import Work, listed, print_table, working

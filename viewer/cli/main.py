@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tracer.scene.model import Cancelled
-from tracer.similar import did_you_mean
-from tracer.version import program_version
+from tracer.util.suggest import did_you_mean
+from tracer.util.version import program_version
 from viewer.cli.arguments import FAILED, INTERRUPTED, MISUSED, Parser
 from viewer.util import resources
 from viewer.util.messages import ERROR, failure, say

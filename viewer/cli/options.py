@@ -9,18 +9,18 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from tracer.compilation import compiled_before, make_ready, warm_up
+from tracer.compiling.compilation import compiled_before, make_ready, warm_up
+from tracer.editing.edits import NO_EDITS, Edits, edited
 from tracer.experiments.warmup_frames import MOST_WARMUP_FRAMES
 from tracer.geometry.accelerators import BVH8
-from tracer.kernel_cache import outlives_process
 from tracer.method import Method, additions, bases
-from tracer.scene.edits import NO_EDITS, Edits, edited
+from tracer.runtime.kernel_cache import outlives_process
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
 from tracer.scene.things import things
-from tracer.setting import settings_of
 from tracer.settings import Settings
+from tracer.util.setting import settings_of
 from viewer.cli.arguments import UPS, Parser, before, count, light_at, number, size
 from viewer.cli.console import Work
 from viewer.services import stills

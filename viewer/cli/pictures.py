@@ -12,8 +12,8 @@ from tracer.geometry.world import LARGE
 from tracer.method import DEFAULT_METHOD, Method
 from tracer.scene.files import read_regular
 from tracer.scene.model import Scene
-from tracer.setting import settings_of
 from tracer.settings import Settings
+from tracer.util.setting import settings_of
 from viewer.cli import arguments, options
 from viewer.cli.arguments import Parser, view_form
 from viewer.output import capture, commands

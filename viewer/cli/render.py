@@ -20,7 +20,7 @@ from tracer.frame import Frame, Settings
 from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
-from tracer.text import printable
+from tracer.util.text import printable
 from viewer.cli import options, pictures
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import print_table, titled, working

@@ -23,7 +23,7 @@ from tracer.experiments.study import Study, read_study
 from tracer.scene.load import check_scene_file, load_visible_scene
 from tracer.scene.mesh_options import IN_STUDIO
 from tracer.scene.model import Cancelled, Scene
-from tracer.text import printable
+from tracer.util.text import printable
 from viewer.cli import options
 from viewer.cli.arguments import INTERRUPTED, Parser, count
 from viewer.cli.console import Work, columns_help, fitted, listed, print_table, terminal_width, working

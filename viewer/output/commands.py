@@ -22,7 +22,7 @@ from tracer.method import Method
 from tracer.scene.load import AFF_EXTENSIONS
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene
-from tracer.setting import settings_of
+from tracer.util.setting import settings_of
 from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
 from viewer.state.session import Session

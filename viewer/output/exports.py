@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.experiments import experiment, zoom
-from tracer.version import program_version
+from tracer.util.version import program_version
 from viewer.output import reports
 from viewer.state.scene_rows import COLUMNS, Table, Values
 from viewer.util.files import check_writable, whole_file, write_bytes, write_new, write_text

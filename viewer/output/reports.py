@@ -14,7 +14,7 @@ from tracer.experiments.titles import WRONG_PIXELS, FactorStep
 from tracer.experiments.zoom import Change, Step
 from tracer.scene.lights import number_of
 from tracer.scene.model import Scene
-from tracer.text import MOST_PERCENT, mode_in_words, printable, saved
+from tracer.util.text import MOST_PERCENT, mode_in_words, printable, saved
 from viewer.state.methods import BY_MODES
 from viewer.util.numbers import memory
 

@@ -10,10 +10,10 @@ import time
 from pathlib import Path
 from typing import Any
 
+from tracer.editing.edits import Edited
 from tracer.experiments.zoom import Step
 from tracer.frame import Frame
 from tracer.renderer import Renderer
-from tracer.scene.edits import Edited
 from viewer.services.beside import Baseline
 from viewer.services.capture_service import CaptureService
 from viewer.services.comparing import Comparing

@@ -14,10 +14,10 @@ from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
 
-from tracer.carry_modes import carry_modes
+from tracer.editing.carry_modes import carry_modes
+from tracer.editing.edits import NO_EDITS, Edited, Edits, edited
 from tracer.frame import Settings
 from tracer.renderer import Renderer
-from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.model import Cancelled, Scene
 from tracer.scene.things import things
 from viewer.services.render_thread import RenderThread

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.frame import Frame
-from tracer.mode_origins import ModeOrigins, Origins
+from tracer.inspect.mode_origins import ModeOrigins, Origins
 from tracer.statistics import SampleCounts
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.session import Session

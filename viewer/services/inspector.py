@@ -11,13 +11,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
+from tracer.editing.edits import Edited
 from tracer.frame import Frame
+from tracer.inspect.mode_origins import NEVER, Origins
 from tracer.inspect.path_records import RayTree
 from tracer.inspect.reasons import TaughtBy, Why
 from tracer.inspect.why import why
-from tracer.mode_origins import NEVER, Origins
 from tracer.renderer import Renderer
-from tracer.scene.edits import Edited
 from viewer.services.render_request import Ask, Newest, Traced
 from viewer.state.picking import Pick, pick, pick_part, pick_primitive, pixel_of, same_place
 from viewer.state.pixels import Point, pixel_at

@@ -14,7 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tracer.compilation import can_draw, compiled_before, make_ready, ready_for, warm_up
+from tracer.compiling.compilation import can_draw, compiled_before, make_ready, ready_for, warm_up
 from tracer.renderer import Renderer, Settings
 from tracer.scene.files import Stamp, noting
 from tracer.scene.load import load_visible_scene, scene_info

@@ -14,8 +14,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.editing.edits import Edited
 from tracer.frame import Frame
-from tracer.scene.edits import Edited
 from tracer.scene.model import Progress
 from viewer.output import exports
 from viewer.services.capture_service import CaptureService

@@ -8,7 +8,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 from tracer.method import Method
-from tracer.setting import Setting
+from tracer.util.setting import Setting
 from viewer.state import codec
 from viewer.state.methods import NO_CULLING, with_additions
 from viewer.state.notices import Notices

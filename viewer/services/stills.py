@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer import fingerprint
 from tracer.culling.modes import word_type
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
@@ -24,8 +23,9 @@ from tracer.geometry.world import World
 from tracer.inspect.one_light import with_light
 from tracer.method import Method
 from tracer.renderer import Renderer
+from tracer.scene import fingerprint
 from tracer.scene.model import Scene
-from tracer.version import program_version
+from tracer.util.version import program_version
 from viewer.output import capture, commands
 from viewer.output.comparison import Comparison, Shown
 from viewer.output.overlays import with_caption, with_legend, with_savings

@@ -19,7 +19,7 @@ from typing import Any, TypeVar, get_args, get_origin
 import msgspec
 import numpy as np
 
-from tracer.setting import NEVER, PICTURES, Setting, kinds_in_words, settings_of
+from tracer.util.setting import NEVER, PICTURES, Setting, kinds_in_words, settings_of
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 

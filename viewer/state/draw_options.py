@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.setting import setting, setting_of, settings_of
+from tracer.util.setting import setting, setting_of, settings_of
 from viewer.state.palette import BENEATH
 from viewer.state.pixels import FIT, Zoom
 from viewer.state.views import Record, View

@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tracer.fit import lamps_in, remark, too_few
 from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import LARGE
 from tracer.method import DEFAULT_METHOD, Kind, Method, additions, bases
+from tracer.methods.method_limits import lamps_in, remark, too_few
 from tracer.scene.lights import Light
 from tracer.settings import Settings
 from viewer.state.views import MOST_RECORDED, TREE, TREE_IS_GONE, Record, View, can_draw, can_record_lights

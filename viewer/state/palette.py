@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.inspect.reasons import WHY_NOT_CULLED
-from tracer.text import mode_in_words
+from tracer.util.text import mode_in_words
 from viewer.state import terms
 
 Color = tuple[float, float, float]

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from tracer.culling import modes
 from tracer.culling.modes import ShadowMode
+from tracer.editing.edits import Edited
 from tracer.frame import Frame
 from tracer.inspect.projection import HIDDEN, place
 from tracer.inspect.why_in_words import kind_of
 from tracer.scene.deformation import deformed
-from tracer.scene.edits import Edited
 from tracer.scene.model import CONE, Camera, Quadrics, Scene
 from viewer.state.navigation import Vector, ray
 from viewer.state.parts import parts_of

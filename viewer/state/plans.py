@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from tracer.experiments.camera_path import MOST_FRAMES
 from tracer.geometry.accelerators import KD_TREE
 from tracer.scene.model import Scene
-from tracer.setting import setting
 from tracer.settings import Settings
+from tracer.util.setting import setting
 
 MOST_ZOOM_FACTORS = 6
 LONGEST_RUN_SIDE = 4096

@@ -16,7 +16,7 @@ from typing import Any, get_type_hints
 import platformdirs
 
 from tracer.method import DEFAULT_METHOD, Method
-from tracer.setting import setting, settings_of
+from tracer.util.setting import setting, settings_of
 from viewer.state import codec
 from viewer.util.files import file_lock, write_text
 

@@ -11,7 +11,7 @@ from difflib import get_close_matches
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.text import mode_in_words
+from tracer.util.text import mode_in_words
 from viewer.state.scene_rows import COLUMNS, Level, Table, Values
 
 HINT = "wall   pixels>100   is:dynamic"

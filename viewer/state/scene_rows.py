@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from tracer.culling import modes
 from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.editing.edits import Edited
 from tracer.frame import Frame
-from tracer.scene.edits import Edited
 from viewer.state.palette import OCCLUSION, SHADOW
 from viewer.state.parts import KINDS, parts_of
 from viewer.state.views import has_modes_of_cells

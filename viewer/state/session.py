@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from tracer.editing.edits import NO_EDITS, Edited, Edits, edited
 from tracer.frame import Frame
-from tracer.scene.edits import NO_EDITS, Edited, Edits, edited
 from tracer.scene.lights import number_of
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings

@@ -10,8 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from tracer.frame import Frame
-from tracer.notebook import pixels_of
+from tracer.frame import Frame, pixels_of
 from tracer.statistics import FrameStatistics, WrongCounts
 from viewer.state import terms
 from viewer.util.numbers import count, percent, several

@@ -7,15 +7,15 @@ import math
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
+from tracer.editing.edits import NO_EDITS, Edits
 from tracer.experiments.warmup_frames import MOST_WARMUP_FRAMES, WarmupFrame
 from tracer.geometry.accelerators import ACCELERATORS
 from tracer.method import Method
 from tracer.scene.camera import Camera
-from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.limits import LARGEST
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
-from tracer.setting import ALWAYS, AS_DEFAULT, Setting, check_all, setting, settings_of
 from tracer.settings import Settings
+from tracer.util.setting import ALWAYS, AS_DEFAULT, Setting, check_all, setting, settings_of
 from viewer.state.comparison import Compare
 from viewer.state.draw_options import DrawOptions
 

@@ -7,7 +7,7 @@ import traceback
 from dataclasses import dataclass
 
 from tracer.scene.model import SceneError
-from tracer.text import printable
+from tracer.util.text import printable
 
 ERROR = "error: "
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tracer.text import MOST_PERCENT, saved
+from tracer.util.text import MOST_PERCENT, saved
 
 
 def count(number: float) -> str:

@@ -10,7 +10,7 @@ import os
 from functools import cache
 from pathlib import Path
 
-from tracer.similar import did_you_mean
+from tracer.util.suggest import did_you_mean
 
 DEFAULT_SCENE = "default"
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.fit import lights_in_words, too_few
 from tracer.frame import Frame
 from tracer.method import Method
+from tracer.methods.method_limits import lights_in_words, too_few
 from viewer.state.views import CUT_BOUND, CUT_NODES
 from viewer.util.numbers import percent
 from viewer.views.base import Words

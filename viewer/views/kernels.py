@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.kernels import inlined, kernel
+from tracer.runtime.kernels import inlined, kernel
 
 
 @inlined

@@ -8,8 +8,8 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from tracer.setting import Setting, settings_of
 from tracer.settings import Settings
+from tracer.util.setting import Setting, settings_of
 from viewer.state.preferences import Preferences
 from viewer.state.view_state import ViewState
 from viewer.window.command import Command, Condition, Kind

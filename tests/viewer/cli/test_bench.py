@@ -12,7 +12,7 @@ import pytest
 from tests.commands import Run, stop_at
 from tests.terminal import Terminal
 from tracer.experiments import figures
-from tracer.version import program_version
+from tracer.util.version import program_version
 
 SMALL = ["bench", "figure4", "--path-frames", "6", "--size", "48x32"]
 

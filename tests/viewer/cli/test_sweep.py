@@ -19,11 +19,11 @@ import pytest
 
 from tests.commands import ROOM, Run, stop_at
 from tests.marbles import write_marbles
-from tracer import fingerprint
 from tracer.experiments import experiment
 from tracer.experiments import sweep as sweeping
 from tracer.experiments.cluster import Cluster, local_cluster
 from tracer.frame import Frame
+from tracer.scene import fingerprint
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
 from viewer.cli import sweep

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from unittest import mock
 
 from tests.viewer.driver import Driver
-from tracer.compilation import can_draw, compiled_before, warm_up
+from tracer.compiling.compilation import can_draw, compiled_before, warm_up
 from tracer.scene.model import Progress
 from viewer.services import scene_loader
 

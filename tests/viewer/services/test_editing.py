@@ -14,8 +14,8 @@ from PIL import Image
 from tests.commands import run
 from tests.viewer.desk import Desk
 from tests.viewer.fakes import TINY_SCENE
+from tracer.editing.edits import NO_EDITS, Edits
 from tracer.renderer import Renderer
-from tracer.scene.edits import NO_EDITS, Edits
 from tracer.scene.things import things
 from tracer.settings import Settings
 

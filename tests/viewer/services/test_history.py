@@ -8,9 +8,9 @@ import pytest
 from tests.viewer.desk import ELSEWHERE, Desk
 from tests.viewer.fakes import Clock, make_frame, make_scene
 from tracer.culling import modes
+from tracer.editing.edits import NO_EDITS
 from tracer.frame import Frame
-from tracer.mode_origins import NEVER
-from tracer.scene.edits import NO_EDITS
+from tracer.inspect.mode_origins import NEVER
 from viewer.services.history import FrameHistory
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.session import Session

@@ -9,11 +9,11 @@ import pytest
 
 from tests.viewer.desk import Desk, place_of
 from tracer.culling.fate import Fate
+from tracer.editing.edits import NO_EDITS
 from tracer.inspect.path_records import AWAY, RayTree
 from tracer.inspect.ray_tree import unculled_shadow_rays
 from tracer.inspect.reasons import Reason, Rule, Why
 from tracer.inspect.why_in_words import Link
-from tracer.scene.edits import NO_EDITS
 from viewer.output.ray_rows import RayFilter
 from viewer.services import inspector as module
 from viewer.state import navigation

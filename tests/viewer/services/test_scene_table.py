@@ -10,7 +10,7 @@ import pytest
 
 from tests.viewer.desk import ELSEWHERE, Desk
 from tests.viewer.fakes import TINY_SCENE, make_frame, make_scene
-from tracer.scene.edits import Edits, edited
+from tracer.editing.edits import Edits, edited
 from viewer.output.exports import write_rows
 from viewer.services import scene_table
 from viewer.services.scene_table import Listing, SceneTable

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
+from tracer.editing.edits import Edits
 from tracer.scene.camera import Camera
-from tracer.scene.edits import Edits
 from viewer.output.capture import carried_from_json
 from viewer.state import codec
 from viewer.state.draw_options import Curve, DrawOptions, Slice, Tone

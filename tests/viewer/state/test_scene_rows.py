@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from tests.viewer.fakes import in_cells, make_frame, make_scene, triangles
+from tracer.editing.edits import Edited, Edits, edited
 from tracer.frame import Settings
-from tracer.scene.edits import Edited, Edits, edited
 from tracer.scene.model import CONE, Quadrics, SceneObject, Texture, empty_quadrics
 from viewer.state.parts import KINDS, parts_of
 from viewer.state.row_filter import FilterError, Order, listed, matching

@@ -9,8 +9,8 @@ from dataclasses import replace
 import pytest
 
 from tests.viewer.fakes import make_scene
+from tracer.editing.edits import NO_EDITS, Edits, edited
 from tracer.frame import Settings
-from tracer.scene.edits import NO_EDITS, Edits, edited
 from tracer.scene.lights import light_in_words, named_light, number_of
 from tracer.scene.model import Camera
 from viewer.cli.options import add_edits, edits_of, light_index

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tracer.text import saved
+from tracer.util.text import saved
 from viewer.util.numbers import changed, saved_in_words
 
 

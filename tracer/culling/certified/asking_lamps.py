@@ -23,7 +23,7 @@ from tracer.culling.certified.seen_by_lamp import (
 )
 from tracer.culling.counters import TESTS
 from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     i32_at,
     i32x16,

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.error_bounds import ONE, ZERO, cross, dot
 from tracer.culling.certified.tree_walk import WALK, begin_walk, walk_on
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     f32x16,
     i32_at,

@@ -14,7 +14,7 @@ import numpy as np
 
 from tracer.culling.certified.cells import SETTLED
 from tracer.culling.certified.light_space import LIGHT_ROW, verdicts
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,

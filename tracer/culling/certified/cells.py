@@ -16,7 +16,7 @@ from tracer.culling.certified.error_bounds import EPSILON, cross, length, row_of
 from tracer.culling.certified.shaft import slack_of
 from tracer.culling.modes import FULL_SHADOW, FULLY_RENDERED, NON_SHADOW, word_type
 from tracer.geometry.memory import aligned_rows
-from tracer.kernels import kernel, subkernel
+from tracer.runtime.kernels import kernel, subkernel
 
 UNTRIED, FULL, LIT, CANDIDATES = 0, FULL_SHADOW, NON_SHADOW, 3
 LEAF, FINAL, CONTENT = -1, -2, -3  # instead of children: none yet, none ever, and none needed as far as is known

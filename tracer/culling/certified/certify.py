@@ -19,7 +19,7 @@ from tracer.culling.certified.fused import PIECES, VERTICES, fuse
 from tracer.culling.certified.shaft import Shaft, make_shaft
 from tracer.culling.certified.tree_walk import WALK, begin_walk, walk_on
 from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.kernels import subkernel
+from tracer.runtime.kernels import subkernel
 from tracer.simd import (
     address_of,
     i32_at,

@@ -25,7 +25,7 @@ from tracer.culling.certified.error_bounds import (
     sure_hit_length,
 )
 from tracer.culling.certified.shaft import CORNERS, PLANES
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import any_lane, bits_of, f32x16, maximum, minimum, select, store
 
 HUGE, ROUNDING = np.float32(3e38), np.float32(4e-7)

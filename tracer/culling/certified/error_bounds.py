@@ -60,7 +60,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd import address_of, load_columns, load_i32x16, maximum, select, square_root
 
 EPSILON = 2.0**-24  # the largest relative error of a float32 rounding

@@ -32,7 +32,7 @@ from tracer.culling.certified.lamp_answers import decided
 from tracer.culling.certified.prepared_triangles import PREPARED, Lamp, prepare_in_tree
 from tracer.culling.certified.seen_by_lamp import put_samples
 from tracer.culling.stages import vectors
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import bits_of, i64_at, lanes_below, load_three, ones
 
 GROUP = 8  # vectors of points with one way through the tree

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from tracer.culling.certified.classify import FUNCTIONS, put_hidden_parts
 from tracer.culling.certified.error_bounds import LANES
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import address_of, lanes_below
 
 FUSED = 12  # candidates that are fused, at most

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tracer.culling.certified.cells import NORMAL, ROOTS, add_cell
 from tracer.culling.certified.error_bounds import cross, dot, row_of
 from tracer.geometry.memory import borrowed
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 
 
 class RequestPoints(NamedTuple):

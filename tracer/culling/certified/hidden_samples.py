@@ -27,9 +27,9 @@ from tracer.culling.certified.seen_by_lamp import (
     MOST_SAMPLES,
     PLACES,
 )
-from tracer.culling.shadow_modes import answer
+from tracer.culling.shadow_testing import answer
 from tracer.culling.stages import vectors
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,

@@ -23,7 +23,7 @@ from tracer.culling.counters import RAYS, TESTS
 from tracer.culling.shadow_testing import LIGHT_MARGIN, shadow_rays
 from tracer.culling.stages import looks_at, vectors
 from tracer.geometry.queries import STATIC_GEOMETRY, any_hits_by
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     bits_of,
     i32_at,

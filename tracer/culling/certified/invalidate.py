@@ -24,7 +24,7 @@ from tracer.culling.certified.cells import (
 from tracer.culling.certified.shaft import meets_box, put_cell, put_light
 from tracer.culling.modes import FULLY_RENDERED
 from tracer.geometry.memory import borrowed
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 
 
 @inlined

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.seen_by_lamp import MOST_SAMPLES
-from tracer.culling.shadow_modes import answer
+from tracer.culling.shadow_testing import answer
 from tracer.culling.stages import vectors
-from tracer.kernels import subkernel
+from tracer.runtime.kernels import subkernel
 from tracer.simd import address_of, bits_of, load_i32x16, lowest_bit, ones
 from tracer.simd.records import IntRow, Memory, Rows, row_count, rows_of
 

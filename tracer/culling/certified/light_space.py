@@ -41,7 +41,7 @@ from tracer.culling.certified.error_bounds import (
     sure_hit_length,
 )
 from tracer.geometry.boxes import segments_miss_box
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,
     bits_of,

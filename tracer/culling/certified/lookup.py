@@ -26,10 +26,11 @@ from tracer.culling.certified.cells import (
 from tracer.culling.certified.quadtree import enter_parts
 from tracer.culling.certified.shaft import LOWEST
 from tracer.culling.counters import CANDIDATES_ONLY, TESTS
-from tracer.culling.shadow_modes import answer, look_up, trusted, words_of
+from tracer.culling.modes import look_up, shadow_modes
+from tracer.culling.shadow_testing import answer, classify_by_modes
 from tracer.culling.stages import vectors
 from tracer.geometry.offsets import RAY_OFFSET
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     any_lane,
@@ -67,7 +68,7 @@ class CellPoints(NamedTuple):
 
     Attributes:
         unit: the cell of each point, 0 for none.
-        low, high, looked_up: its word (`tracer.culling.shadow_modes.PointWords`).
+        low, high, looked_up: its word (`tracer.culling.modes.PointModes`).
         u, v, owner: coordinates in the triangle, and the owner there, NOWHERE for none.
         untried, doubtful: bits, sixteen points a number: those with a light for which nothing is known yet, and those
             with one for which only candidates are.
@@ -192,15 +193,14 @@ def cull_by_certificates(certified, points, found, light, number, count, asks, b
         if batch.live[v] == 0:
             continue
         look_up(words, v, found)
-        full, non = trusted(found, number, v)
-        answer(batch, v, full, non, counts)
+        full, lit = classify_by_modes(found, number, v)
+        answer(batch, v, full, lit, counts)
         live = np.int64(batch.live[v])
         if live == 0:
             continue
 
         # Take note of what is not known yet.
-        _, field, shift = words_of(found, number, v)
-        some = bits_of((field & np.int32(3 << shift)) == np.int32(CANDIDATES << shift)) & live
+        some = bits_of(shadow_modes(found, number, v) == np.int32(CANDIDATES)) & live
         found.untried[v] |= live & ~some
         found.doubtful[v] |= some
         if asks:

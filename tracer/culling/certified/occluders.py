@@ -27,7 +27,7 @@ from tracer.culling.certified.light_space import put_light_space
 from tracer.geometry.memory import borrowed
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import VACANT, WIDTH, Topology
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,
     bits_of,

@@ -25,7 +25,7 @@ from tracer.culling.certified.error_bounds import (
     seen_from,
     sure_hit_length,
 )
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,

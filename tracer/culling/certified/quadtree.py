@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd import any_lane, gather_i32x16, i32x16, select
 
 HALF, ONE, TWO = np.float32(0.5), np.float32(1), np.float32(2)

@@ -24,7 +24,7 @@ from tracer.culling.certified.lookup import NOWHERE, affine
 from tracer.culling.certified.quadtree import descend
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.stages import vectors
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     any_lane,

@@ -31,7 +31,7 @@ from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.certified.gather_requests import RequestPoints
 from tracer.culling.certified.requests import Requests, make_requests
 from tracer.culling.certified.store import BATCH, CertificateStore
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 
 SEARCH = 0.5  # of a frame's time for certificates, at most, in which primary hits make requests
 GATHER = 0.5  # of the time that is left then, at most, in which these are gathered

@@ -53,7 +53,7 @@ from tracer.culling.certified.prepared_triangles import (
     vector_at,
 )
 from tracer.geometry.boxes import segments_miss_box
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     bits_of,
     f32x16,

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.certified.error_bounds import EPSILON, cross, dot, length, row_of
 from tracer.geometry.offsets import RAY_OFFSET
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 
 LOWEST = 0.5  # of RAY_OFFSET: a ray that ends lower belongs to no cell
 CORNERS = 6  # of a cell: three of its floor, then three of its ceiling

@@ -17,7 +17,7 @@ from tracer.geometry.boxes import OUTWARDS, PADDING, triangle_boxes
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World

@@ -45,14 +45,13 @@ from tracer.culling.certified.static_geometry import StaticGeometry
 from tracer.culling.certified.tasks import KEPT, commit, make_tasks, run_tasks, tasks_in
 from tracer.culling.certified.view import CertificateView, LampsView, RequestRows
 from tracer.culling.dependence import drop_dependent
-from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.culling.modes import MAX_CULLED_LIGHTS, words_at
 from tracer.culling.modes import NON_SHADOW as LIT
 from tracer.culling.rest import Changed, Resting, changes, nothing_rests
-from tracer.culling.shadow_modes import words_at
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.primitives import Outlines
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lamps import Lamps
 
 if TYPE_CHECKING:

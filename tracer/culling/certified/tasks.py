@@ -34,7 +34,7 @@ from tracer.culling.certified.gather_requests import facing_lights
 from tracer.culling.certified.quadtree import part_of, place_of_part
 from tracer.culling.certified.shaft import put_cell, put_light
 from tracer.geometry.memory import borrowed
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 
 DEEPEST = 2.0**-12  # of a triangle's edges: no cell is smaller
 SMALLEST = 8.0  # times how far above a surface rays may end: shorter cells would be mostly error

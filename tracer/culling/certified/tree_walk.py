@@ -7,7 +7,7 @@ import numpy as np
 from tracer.culling.certified.occluders import BLOCK, BOXES, STACK, children_met, triangles_met
 from tracer.culling.counters import STEPS
 from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import address_of, i64_at, lowest_bit
 
 # Where a walk is: the next root, how many nodes are pending, the node at hand, and which of its children are left; the

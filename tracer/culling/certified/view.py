@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tracer.culling.certified.occluders import Occluders
-from tracer.culling.shadow_modes import Words
+from tracer.culling.modes import Words
 from tracer.simd.records import F32, I32, Bytes, F32x2D, I32x2D, I64x2D, reading
 
 

@@ -9,7 +9,7 @@ from tracer.culling.environments.octree import HIDDEN, LIT, OUTSIDE, cells_at
 from tracer.culling.stages import vectors
 from tracer.culling.voxels.walk import ASKED, KNOWN, ask
 from tracer.geometry.boxes import segments_miss_box
-from tracer.kernels import subkernel
+from tracer.runtime.kernels import subkernel
 from tracer.simd import (
     address_of,
     bits_of,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.voxels.grid import DIGITS, ROOM, SHIFT
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd import address_of, bits_of, gather_i32x16, i32x16, select, to_i32
 from tracer.simd.records import I32, Bytes, F32x2D, F32x3D, I64x2D, reading
 

@@ -11,7 +11,7 @@ from tracer.culling.environments.octree import HIDDEN, LIT, UNKNOWN
 from tracer.culling.voxels.box_shaft import put_box
 from tracer.culling.voxels.classify import CERTIFICATES, MOST, come_between, make_room
 from tracer.geometry.memory import borrowed
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 
 
 @kernel

@@ -27,7 +27,7 @@ from tracer.culling.rest import Resting
 from tracer.culling.voxels.classify import CERTIFICATES, COUNTERS, MOST, STEPS, TESTS, Light
 from tracer.culling.voxels.grid import DIGITS, ROOM
 from tracer.culling.voxels.store import NEVER_HIT, boxes_at_rest, without_area
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lamps import Lamps
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from tracer.culling.certified.light_space import LIGHT_ROW, verdicts_on
 from tracer.culling.counters import TESTS
 from tracer.culling.lightbuffer.rays import BY_CANDIDATES, LIT_RAY, SHADOWED_RAY
 from tracer.culling.stages import vectors
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd import maximum, minimum, select, to_i32
 
 FACES = 6

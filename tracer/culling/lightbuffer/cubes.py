@@ -20,7 +20,7 @@ from tracer.culling.lightbuffer.shapes import COUNT, FIRST, ITEM, RECORD, SPAN, 
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 
 LEAST_SIDE = 16  # cells: a light for whose cube this is too many is traced
 LARGE = 1e12  # of lengths

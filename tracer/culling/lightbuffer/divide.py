@@ -50,7 +50,7 @@ from tracer.culling.lightbuffer.shapes import (
     W,
 )
 from tracer.geometry.memory import borrowed
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,
     any_lane,

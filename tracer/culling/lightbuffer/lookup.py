@@ -24,7 +24,7 @@ from tracer.culling.lightbuffer.items import LEAST
 from tracer.culling.lightbuffer.rays import BY_CANDIDATES, LIT_RAY, OPEN_RAY, SETTLED_RAY, SHADOWED_RAY
 from tracer.culling.lightbuffer.shapes import COUNT, FIRST, RECORD, WIDTH_BITS
 from tracer.culling.stages import vectors
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     as_f32,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.lightbuffer.cube import FACES, SEAM, axes_of
 from tracer.geometry.memory import borrowed
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 
 SIDE = 64  # cells
 FAR = np.float32(3e38)  # nothing is there

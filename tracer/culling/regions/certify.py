@@ -10,7 +10,7 @@ import numpy as np
 
 from tracer.culling.regions.hidden import box_of, hides
 from tracer.geometry.memory import borrowed
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import address_of, bits_of, f32x16, load_f32x16, lowest_bit, maximum, minimum
 
 TRIED = 12  # blockers, for a node and a region, at most

@@ -16,7 +16,7 @@ All of this is computed in float64, whose own errors are far below the part by w
 from __future__ import annotations
 
 from tracer.culling.certified.error_bounds import ENLARGED, EPSILON, INSIDE, LAMP, SURPLUS
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 
 ROUNDED = 1e-6  # of lengths: room around what is computed here
 

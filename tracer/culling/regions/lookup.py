@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.stages import vectors
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     any_lane,

@@ -11,7 +11,7 @@ import numpy as np
 
 from tracer.culling.certified.error_bounds import ENLARGED, EPSILON, INSIDE, SMALL, ZERO
 from tracer.culling.certified.light_space import BEHIND, CORNER, FARTHEST, OF_U, OF_V, D, U, V
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd import maximum
 
 _INSIDE, _ENLARGED = np.float32(INSIDE), np.float32(2.5 * (ENLARGED + 7 * EPSILON))

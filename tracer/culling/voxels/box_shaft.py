@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 
 PLANES = 6
 

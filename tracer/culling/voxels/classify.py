@@ -24,7 +24,7 @@ from tracer.culling.voxels.box_judge import judge_box
 from tracer.culling.voxels.box_shaft import BoxShaft, make_box_shaft, put_box
 from tracer.geometry.memory import borrowed
 from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,
     any_lane,

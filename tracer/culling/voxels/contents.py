@@ -12,7 +12,7 @@ import numpy as np
 from tracer.culling.certified.error_bounds import BOX, cross, dot, row_of
 from tracer.culling.voxels.grid import ROOM
 from tracer.geometry.memory import borrowed
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 
 
 @inlined

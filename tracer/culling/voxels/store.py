@@ -18,9 +18,8 @@ from tracer.culling.certified.error_bounds import BOX, LANES, REPORTED
 from tracer.culling.certified.light_space import FARTHEST, LIGHT_ROW, OF_U
 from tracer.culling.certified.scheduler import Counts
 from tracer.culling.certified.static_geometry import StaticGeometry
-from tracer.culling.modes import FULLY_RENDERED, MAX_CULLED_LIGHTS, forget_lights, shadow_mode, word_type
+from tracer.culling.modes import FULLY_RENDERED, MAX_CULLED_LIGHTS, forget_lights, shadow_mode, word_type, words_at
 from tracer.culling.rest import Resting
-from tracer.culling.shadow_modes import words_at
 from tracer.culling.voxels.classify import CERTIFICATES, COUNTERS, STEPS, TESTS, Light, classify_blocks
 from tracer.culling.voxels.contents import list_contents
 from tracer.culling.voxels.grid import BLOCK, DIGITS, ROOM, VoxelGrid, make_grid, voxel_at, voxels_for
@@ -28,7 +27,7 @@ from tracer.culling.voxels.tell import VoxelStates, Walked, walked
 from tracer.culling.voxels.view import VoxelView
 from tracer.geometry.boxes import NO_BOX
 from tracer.geometry.memory import aligned_rows
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lamps import Lamps
 
 if TYPE_CHECKING:

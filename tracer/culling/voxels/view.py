@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tracer.culling.shadow_modes import Words
+from tracer.culling.modes import Words
 from tracer.culling.voxels.grid import VoxelGrid
 from tracer.simd.records import I32, F32x2D, F32x3D, reading
 

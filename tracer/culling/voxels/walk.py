@@ -16,7 +16,7 @@ from tracer.culling.counters import STEPS, TESTS
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
 from tracer.culling.voxels.box_judge import judge_box
 from tracer.geometry.boxes import inverse
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
     bits_of,
@@ -87,9 +87,8 @@ def words_of(words, number, light):
 
 
 @inlined
-def states(field, shift):
-    """Bits of the voxels that are full, and of those that are null."""
-    state = (field >> shift) & np.int32(3)
+def full_and_null(state):
+    """Bits of the voxels that are full, and of those that are null, by their states."""
     return bits_of(state == np.int32(FULL_SHADOW)), bits_of(state == np.int32(NON_SHADOW))
 
 
@@ -242,7 +241,7 @@ def walk(voxels, light, number, slot, end, begin, open_, counts):
         at = at + select(along_x, x_on, select(along_y, y_on, z_on))
         at = select(mask16(open_), at, i32x16(np.int32(0)))
         word, field, shift = words_of(voxels.words, at, number)
-        full, null = states(field, shift)
+        full, null = full_and_null((field >> shift) & np.int32(3))
         blocked |= open_ & full
         lit |= open_ & null
         open_ &= ~(full | null)

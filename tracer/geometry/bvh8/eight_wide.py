@@ -31,7 +31,7 @@ from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import MISS, Ray
 from tracer.geometry.triangle_test import ZERO, crossing, terms_of
 from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,
     as_f32,

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd import load_f32, load_f32x8, maximum, minimum
 
 MARGIN = np.float32(2e-6)

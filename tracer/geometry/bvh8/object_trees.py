@@ -20,7 +20,7 @@ from tracer.geometry.bvh8.refit import BLOCK_BYTES, Links, gather_corners, make_
 from tracer.geometry.bvh8.write import Offsets, clear_nodes, set_child, write_topology
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import TOP_LEVEL_DEPTH, VACANT, WIDTH, Topology
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.simd import address_of, load_i32
 
 NODE, BLOCK, TRIANGLE, QUADRIC = 0, 1, 2, 3  # columns of `starts`

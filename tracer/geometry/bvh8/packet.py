@@ -29,7 +29,7 @@ from tracer.geometry.queries import (
 from tracer.geometry.queries import T_MIN as BATCH_T_MIN
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.triangle_test import ZERO
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     all_lanes,
     any_lane,

@@ -14,7 +14,7 @@ from tracer.geometry.boxes import TINY
 from tracer.geometry.bvh8.frustum import MARGIN, NO_RAYS, Frustum, axes_of, wider
 from tracer.geometry.bvh8.packet import DX, DY, DZ, FRUSTA, IX, OX, ROW, T_MIN, T
 from tracer.geometry.triangle_test import ZERO
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     bits_of,
     f32x8,

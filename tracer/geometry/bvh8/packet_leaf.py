@@ -32,7 +32,7 @@ from tracer.geometry.bvh8.placed import COUNT, NUMBERS, block_planes, child_plan
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import Ray
 from tracer.geometry.triangle_test import ZERO, Terms, crossing, crossing_ahead, may_cross_ahead, terms_of, towards
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,
     as_f32,

@@ -19,7 +19,7 @@ from tracer.geometry.bvh8.packet_leaf import any_in_block, closest_in_block, qua
 from tracer.geometry.bvh8.placed import BLOCK, CHILDREN, NODE, child_planes, opened
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.wide_tree.topology import MAX_DEPTH, WIDTH
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,
     as_f32,

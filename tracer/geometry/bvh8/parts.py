@@ -18,7 +18,7 @@ from tracer.geometry.accelerators import BVH8
 from tracer.geometry.bvh8.layout import CHILDREN, COUNT, PIECE, QUADRIC
 from tracer.geometry.tree_parts import PartsAt, in_chunks, most_of, nothing_at
 from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 
 if TYPE_CHECKING:
     from tracer.geometry.bvh8.pieces import PiecewiseTree

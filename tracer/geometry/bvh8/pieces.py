@@ -27,8 +27,8 @@ from tracer.geometry.bvh8.refit import Links, fill_blocks, make_links, pad_block
 from tracer.geometry.bvh8.write import Offsets, clear, write_topology
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import Topology
-from tracer.parallel import for_each_chunk
-from tracer.scene import room
+from tracer.runtime.parallel import for_each_chunk
+from tracer.scene import memory_check
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Cancelled
 
@@ -84,7 +84,7 @@ class PiecewiseTree:
         """A tree with room for `nodes` and `blocks` from these numbers on; raises MemoryError, where it is `sparing`
         also if more than half of the addresses that this process may take were gone."""
         nodes, blocks = node + nodes, block + blocks
-        left = room.of_limit()
+        left = memory_check.of_limit()
         if sparing and left is not None and 4 * (nodes * NODE_SIZE + blocks * BLOCK_SIZE) > left / 2:
             raise MemoryError("few addresses")
         tree = Tree(_reserved_rows(nodes, NODE_SIZE), _reserved_rows(blocks, BLOCK_SIZE))

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from tracer.geometry.bvh8 import layout
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY
 from tracer.geometry.triangle_test import Triangle
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import call_entry, f32_at, load_f32, load_f32x8, load_i64
 
 NODE, BLOCK = 4 * layout.NODE_SIZE, 4 * layout.BLOCK_SIZE  # bytes

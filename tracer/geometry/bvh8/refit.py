@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.bvh8.layout import BLOCK_SIZE, BOX, COUNT, EMPTY, NODE_SIZE, PRIMITIVES
 from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,
     f32x8,

@@ -12,7 +12,7 @@ from tracer.geometry.bvh8.placed import child_planes, root_of
 from tracer.geometry.queries import TESTS
 from tracer.geometry.triangle_test import ZERO
 from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd import as_i32, bits_of, i32x16, load_f32x16, maximum, ones, select, store
 
 CLOSED = np.int32(0x7FFFFFFF)  # key of a child that a ray does not enter: no distance at all

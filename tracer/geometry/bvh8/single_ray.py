@@ -17,7 +17,7 @@ from tracer.geometry.bvh8.roots import CLOSED, open_rays, open_root
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.rays import MISS
 from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     as_f32,
     bits_of,

@@ -27,7 +27,7 @@ from tracer.geometry.queries import Placed
 from tracer.geometry.structure import BuiltPart
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
-from tracer.parallel import thread_count
+from tracer.runtime.parallel import thread_count
 from tracer.scene.arrays import Float32, Float64
 from tracer.scene.deformation import deformed
 from tracer.scene.model import Progress

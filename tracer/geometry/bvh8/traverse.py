@@ -26,7 +26,7 @@ from tracer.geometry.bvh8.placed import MOVING_TREE, TOGETHER, TREES, tree_of, t
 from tracer.geometry.bvh8.single_ray import ROOM, SINGLE_MEMORY, any_one_by_one
 from tracer.geometry.bvh8.stream import STREAM_MEMORY, closest_in_stream
 from tracer.geometry.queries import WHICH
-from tracer.kernels import entry, inlined
+from tracer.runtime.kernels import entry, inlined
 from tracer.simd import i64_at, load_i64, local_memory, lowest_bit, store
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from tracer.geometry.bvh8.layout import CHILDREN, COUNT, EMPTY, NO_PRIMITIVE, PRIMITIVES, QUADRIC
 from tracer.geometry.bvh8.refit import BLOCK_BYTES, NODE_BYTES
 from tracer.geometry.wide_tree.topology import VACANT, WIDTH
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import address_of, f32x8, i32x8, store
 
 

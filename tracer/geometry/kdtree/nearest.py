@@ -10,7 +10,7 @@ from tracer.geometry.intersect import ZERO, hit_quadric, hit_triangle
 from tracer.geometry.kdtree.tree import next_leaf
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.rays import INFINITY, MISS, Ray
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 
 
 class Best(NamedTuple):

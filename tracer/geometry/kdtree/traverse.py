@@ -31,7 +31,7 @@ from tracer.geometry.queries import (
     rays_of,
 )
 from tracer.geometry.rays import INFINITY, MISS, ray_at
-from tracer.kernels import entry, inlined, subkernel
+from tracer.runtime.kernels import entry, inlined, subkernel
 from tracer.simd import f32_at, i32_at, i64_at, load_i64, u8_at
 
 SLACK = np.float32(1e-5)  # relative: by so much a ray's interval in an object is wider than in the leaf that names it

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.boxes import inverse
 from tracer.geometry.intersect import ZERO
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 
 LEAF = 3
 MAX_DEPTH = 60

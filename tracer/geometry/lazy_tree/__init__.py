@@ -1,0 +1,1 @@
+"""The kd-tree with subtrees that are built when the first ray arrives."""

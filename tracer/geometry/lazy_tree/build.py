@@ -40,7 +40,7 @@ from tracer.geometry.lazy_tree.references import (
 from tracer.geometry.lazy_tree.shared_memory import add_shared, allocate, exchange, free, publish, read_shared
 from tracer.geometry.lazy_tree.split import best_split
 from tracer.geometry.memory import float_bits
-from tracer.kernels import entry, kernel, subkernel
+from tracer.runtime.kernels import entry, kernel, subkernel
 from tracer.simd import call_entry, i32_at, load_i64, store, u8_at
 from tracer.simd.addresses import f64_at
 

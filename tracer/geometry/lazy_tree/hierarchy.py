@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.boxes import NO_BOX
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.scene.arrays import Float32, Int32
 
 LEAST, BRANCHES = 16, 16  # primitives in a group of those; groups in a group

@@ -21,7 +21,7 @@ from tracer.geometry.boxes import inverse
 from tracer.geometry.intersect import ZERO
 from tracer.geometry.kdtree.tree import at_plane, push
 from tracer.geometry.lazy_tree.shared_memory import read_shared
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.simd import call_entry, load_f32, load_i64
 
 INNER, UNBUILT, CLAIMED, SUBTREE, OBJECTS = 0, 3, 4, 5, 6

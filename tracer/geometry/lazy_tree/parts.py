@@ -16,7 +16,7 @@ from tracer.geometry.lazy_tree.build import HEADER
 from tracer.geometry.lazy_tree.node import FIRST, KIND, PLANE, SECOND, SUBTREE, UNBUILT
 from tracer.geometry.lazy_tree.shared_memory import read_shared
 from tracer.geometry.tree_parts import PartsAt, in_chunks, most_of, nothing_at
-from tracer.kernels import kernel
+from tracer.runtime.kernels import kernel
 from tracer.simd import i32_at, load_f32, load_i64
 
 if TYPE_CHECKING:

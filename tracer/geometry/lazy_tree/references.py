@@ -15,7 +15,7 @@ from numba import carray
 
 from tracer.geometry.kdtree.build import clip_triangle, grown
 from tracer.geometry.lazy_tree.shared_memory import allocate
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import f32_at, i32_at, load_i64, store
 from tracer.simd.addresses import f64_at
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.kdtree.build import best_binned_split, split_cost
-from tracer.kernels import subkernel
+from tracer.runtime.kernels import subkernel
 
 FEW = 64  # references; each face of their boxes is tried
 

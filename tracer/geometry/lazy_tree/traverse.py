@@ -42,7 +42,7 @@ from tracer.geometry.queries import (
     rays_of,
 )
 from tracer.geometry.rays import INFINITY, MISS, ray_at
-from tracer.kernels import entry, inlined, subkernel
+from tracer.runtime.kernels import entry, inlined, subkernel
 from tracer.simd import f32_at, i32_at, i64_at, load_i64, local_memory, u8_at
 
 REMEMBERED = 8  # objects that a ray has searched last, which other nodes that they reach into need not search again

@@ -27,7 +27,7 @@ from tracer.geometry.lazy_tree.node import (
 )
 from tracer.geometry.lazy_tree.split import best_split
 from tracer.geometry.memory import float_bits
-from tracer.kernels import kernel, subkernel
+from tracer.runtime.kernels import kernel, subkernel
 from tracer.simd import address_of, load_f32, load_i64
 
 EACH = 8  # what an object costs that a ray must look for, in tests

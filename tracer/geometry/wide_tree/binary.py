@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.building import CANCELLED
 from tracer.geometry.wide_tree.topology import WIDTH
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (
     address_of,
     f32x8,

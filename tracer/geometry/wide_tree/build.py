@@ -13,7 +13,7 @@ from tracer.geometry.building import CANCELLED, DONE, in_chunks
 from tracer.geometry.wide_tree.binary import FIRST, LAST, LEAF_WEIGHT, Items, grow, make_items, put_boxes, put_triangles
 from tracer.geometry.wide_tree.collapse import collapse, plan
 from tracer.geometry.wide_tree.topology import MAX_DEPTH, TOP_LEVEL_DEPTH, VACANT, WIDTH, Topology
-from tracer.parallel import for_each_chunk
+from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Cancelled
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.building import CANCELLED, CHUNK, in_chunks
-from tracer.kernels import kernel, subkernel
+from tracer.runtime.kernels import kernel, subkernel
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Cancelled
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from tracer.geometry.wide_tree.binary import ITEM, NUMBER, WEIGHT, half_area
 from tracer.geometry.wide_tree.topology import VACANT, WIDTH
-from tracer.kernels import inlined, kernel, subkernel
+from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import address_of, load_i32, store
 
 # Expected cost of a node and of a leaf to a ray that enters it, and of each triangle in a leaf.

@@ -8,7 +8,7 @@ import numpy as np
 
 from tracer.geometry.queries import EVERYTHING, any_hits
 from tracer.geometry.rays import Rays
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.wave import row_of
 from tracer.simd import address_of, load_f32x16, load_i32x16, select, store
 from tracer.simd.records import F32, I32, Bytes, F32x2D

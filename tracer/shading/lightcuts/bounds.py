@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.kernels import inlined
+from tracer.runtime.kernels import inlined
 from tracer.shading.lightcuts.block import point_row
 from tracer.shading.points import DIFFUSE_ROW, EXPONENT_ROW, SHINE_ROW, SPECULAR_ROW
 from tracer.simd import any_lane, f32x16, load_three, maximum, minimum, power, select, size_of, square_root

@@ -15,7 +15,7 @@ import numpy as np
 
 from tracer.culling.counters import CULLED, DUE, RAYS
 from tracer.culling.shadow_testing import faces
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.lightcuts.block import DARK, POINTS, color_of, count_asked, is_dark, of_block, point_row, trace_rays
 from tracer.shading.lightcuts.bounds import colored, greatest_light, mirrored_direction
 from tracer.shading.lightcuts.drawn import ask_drawn

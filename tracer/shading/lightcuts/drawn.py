@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer.culling.counters import CULLED, DUE, RAYS
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.scene.lamps import COLOR, FALLS_OFF
 from tracer.shading.lightcuts.block import POINTS, count_asked, of_block, point_row, trace_rays
 from tracer.shading.phong import highlight, toward

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.lightcuts.block import BLOCK
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tracer.kernels import subkernel
+from tracer.runtime.kernels import subkernel
 from tracer.shading.lightcuts.block import DARK
 from tracer.simd.records import F32, I32, I64
 

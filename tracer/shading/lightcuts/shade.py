@@ -8,7 +8,7 @@ import numpy as np
 
 from tracer.culling.counters import PASSED_OVER
 from tracer.culling.stages import vectors
-from tracer.kernels import inlined, subkernel
+from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.lightcuts.block import BLOCK, Block, Clusters, CutWork
 from tracer.shading.lightcuts.cut import refine, shade_block
 from tracer.shading.lightcuts.drawn import Draws, shade_drawn

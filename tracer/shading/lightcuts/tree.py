@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.kernels import inlined, kernel
+from tracer.runtime.kernels import inlined, kernel
 from tracer.scene.lamps import COLOR, FALLS_OFF, Lamps
 from tracer.simd.records import I32, Bytes, F32x2D
 

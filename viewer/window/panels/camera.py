@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.scene.model import Camera
-from tracer.setting import Setting
+from tracer.util.setting import Setting
 from viewer.state import navigation
 from viewer.state.picking import extent_at, point_at, points_of
 from viewer.state.preferences import NAVIGATION

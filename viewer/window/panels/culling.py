@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable
 from imgui_bundle import ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.fit import lamps_in, worth
 from tracer.method import Kind, Method, additions
-from tracer.setting import Setting
+from tracer.methods.method_limits import lamps_in, worth
+from tracer.util.setting import Setting
 from viewer.services.controller import Controller
 from viewer.state import verified
 from viewer.state.methods import groups, toggled, with_base

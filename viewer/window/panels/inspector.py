@@ -14,9 +14,9 @@ from tracer.culling import modes
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
+from tracer.inspect.mode_origins import Origin
 from tracer.inspect.reasons import Reason, Rule, Why
 from tracer.inspect.why_in_words import Link, Words, plain
-from tracer.mode_origins import Origin
 from tracer.scene.model import Material, Scene
 from viewer.services.inspector import with_origins
 from viewer.state.palette import (

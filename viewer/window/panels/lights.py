@@ -14,7 +14,7 @@ from imgui_bundle import imgui
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.scene.lights import Light, as_lamps, number_of
 from tracer.scene.model import Scene
-from tracer.setting import Setting
+from tracer.util.setting import Setting
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, count, em, one_of_list, paragraph, row, seen_rows, swatch, tooltip
 

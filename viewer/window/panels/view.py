@@ -8,7 +8,7 @@ from functools import partial
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from tracer.setting import Setting
+from tracer.util.setting import Setting
 from viewer.services.runs import missing_in
 from viewer.state.draw_options import AXES
 from viewer.state.pixels import pixel_at

@@ -11,9 +11,9 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 from numpy.typing import NDArray
 
+from tracer.editing.edits import Edited
 from tracer.frame import Frame
 from tracer.inspect.projection import at_depth, place, seen_from
-from tracer.scene.edits import Edited
 from tracer.scene.lights import light_in_words
 from tracer.scene.limits import LARGEST
 from viewer.state.comparison import CompareMode

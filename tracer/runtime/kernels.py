@@ -1,4 +1,4 @@
-"""How this package compiles: one decorator for every kernel.  `tracer.kernel_cache` keeps what is compiled."""
+"""How this package compiles: one decorator for every kernel.  `tracer.runtime.kernel_cache` keeps what is compiled."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 from numba import njit, types
 from numba.core.ccallback import CFunc
 
-from tracer.kernel_cache import cache_of
-from tracer.subkernels import SubkernelCompiler
+from tracer.runtime.kernel_cache import cache_of
+from tracer.runtime.subkernels import SubkernelCompiler
 
 _njit: Any = njit
 _cfunc: Any = CFunc

@@ -23,12 +23,12 @@ from tracer.culling import modes
 from tracer.culling.dependence import drop_dependent
 from tracer.culling.mode_history import ModeHistory
 from tracer.culling.rest import nothing_rests
+from tracer.editing.edits import Edited
 from tracer.geometry.boxes import triangle_boxes
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
-from tracer.parallel import thread_count
 from tracer.renderer import Renderer
-from tracer.scene.edits import Edited
+from tracer.runtime.parallel import thread_count
 from tracer.scene.lamps import LampTable
 from tracer.scene.lights import Light, as_lamps
 from tracer.scene.things import thing_numbers, things

@@ -62,7 +62,7 @@ class Trial:
     known: int
 
 
-class Payoff:
+class AdaptivePolicy:
     """Decides for one renderer.  `price` is about what setting certificates up takes, in seconds; where rays are
     `dear`, certificates pay as a rule, and are made and looked up from the second frame on."""
 

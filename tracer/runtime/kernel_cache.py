@@ -30,14 +30,15 @@ import numba
 import platformdirs
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, NullCache, UserProvidedCacheLocator
 
-_ROOT = Path(__file__).parents[1]  # of the packages
+_PACKAGE = Path(__file__).parents[1]  # the tracer
+_ROOT = _PACKAGE.parent  # of the packages
 # What kernels are made of: nothing else in the package ends up in machine code.
 _KERNEL_SOURCES = (
     "simd/", "geometry/", "culling/", "shading/", "methods/", "inspect/ray_probe.py",
     "scene/model.py", "scene/lamps.py", "scene/mesh_kernels.py",
 )  # fmt: skip
-_COMPILERS = ("kernels.py", "subkernels.py")
-_STEPS = Path(__file__).with_name("compile_steps.py")  # imports all that a program starts with
+_COMPILERS = ("runtime/kernels.py", "runtime/subkernels.py")
+_STEPS = _PACKAGE / "compiling" / "steps.py"  # imports all that a program starts with
 _ROOM = 1 << 25  # bytes; all kernels take a tenth of it
 _KEPT = 640  # folders: those of about sixteen versions of all sources, some 3 MB each
 _IMPORT = re.compile(r"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n#]*)|import[ \t]+([^\n#]*))", re.M)
@@ -69,7 +70,7 @@ def _imported(path: Path) -> frozenset[Path]:
     Of a module's name that is the longest part that is a file: packages on the way to it only stand above it."""
     inside = path.relative_to(_ROOT).parts[0] if path.is_relative_to(_ROOT) else ""
     names = (module.split(".") for module in _modules(_text(path)))
-    return frozenset(_file_of(parts) for parts in names if parts[0] in (__package__, inside)) - {_ROOT}
+    return frozenset(_file_of(parts) for parts in names if parts[0] in (_PACKAGE.name, inside)) - {_ROOT}
 
 
 def _file_of(parts: list[str]) -> Path:
@@ -90,14 +91,13 @@ def sources_of(path: Path) -> frozenset[Path]:
         new = _imported(waiting.pop()) - reached
         reached |= new
         waiting.extend(new)
-    package = Path(__file__).parent
-    compilers = {package / name for name in _COMPILERS}
-    return frozenset({file for file in reached if file == path or _may_be_compiled(file, package)} | compilers)
+    compilers = {_PACKAGE / name for name in _COMPILERS}
+    return frozenset({file for file in reached if file == path or _may_be_compiled(file)} | compilers)
 
 
-def _may_be_compiled(file: Path, package: Path) -> bool:
-    inside = file.is_relative_to(package)
-    return not inside or file.relative_to(package).as_posix().startswith(_KERNEL_SOURCES)
+def _may_be_compiled(file: Path) -> bool:
+    inside = file.is_relative_to(_PACKAGE)
+    return not inside or file.relative_to(_PACKAGE).as_posix().startswith(_KERNEL_SOURCES)
 
 
 def _hash(path: Path) -> str:

@@ -14,7 +14,7 @@ import tracer
 from tests.commands import run
 from tests.fuzz.seeds import seeds
 from tests.platforms import linux_only
-from tracer.scene import room
+from tracer.scene import memory_check
 from tracer.scene.load import load_visible_scene
 
 
@@ -28,22 +28,22 @@ def stl(path: Path, triangles: int) -> Path:
 
 @pytest.fixture
 def little(monkeypatch: pytest.MonkeyPatch) -> float:
-    monkeypatch.delenv(room.ANYHOW, raising=False)
-    monkeypatch.setattr(room, "available", lambda: 1e9)
+    monkeypatch.delenv(memory_check.ANYHOW, raising=False)
+    monkeypatch.setattr(memory_check, "available", lambda: 1e9)
     return 1e9
 
 
 def test_a_mesh_that_is_too_large_is_one_line_before_it_is_read(little: float, tmp_path: Path, monkeypatch) -> None:
     path = stl(tmp_path / "large.stl", 10_000_000)
     monkeypatch.setattr("tracer.scene.load.load_mesh", lambda *_: pytest.fail("it is read"))
-    needed = 10e6 * room.READING_PLAIN
+    needed = 10e6 * memory_check.READING_PLAIN
     with pytest.raises(tracer.SceneError) as refused:
         tracer.load_scene(path)
     said = str(refused.value)
     assert said.startswith(f"{path}: it needs about {needed / 1e9:.1f} GB of memory to be read, and 1.0 GB are free")
     assert f"{(needed - little) / 1e9:.1f} GB too little" in said and "--beyond-memory" in said
     assert len(said.splitlines()) == 1
-    monkeypatch.setenv(room.ANYHOW, "1")
+    monkeypatch.setenv(memory_check.ANYHOW, "1")
     monkeypatch.setattr("tracer.scene.load.load_mesh", lambda *_: "read")
     assert tracer.load_scene(path) == "read"
 
@@ -53,7 +53,7 @@ def test_what_fits_while_it_is_read_may_be_too_large_to_be_shown(little: float, 
     path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     assert load_visible_scene(path).triangle_count == 1
     with pytest.raises(tracer.SceneError, match="GB of memory more to be shown, with its 9,000,000 triangles, and 1.0"):
-        room.check_showing(path, 9_000_000)
+        memory_check.check_showing(path, 9_000_000)
 
 
 @pytest.mark.parametrize("name", ["a.ply", "b.ply", "b.stl", "a.gltf", "a.glb"])
@@ -62,7 +62,7 @@ def test_the_head_of_a_file_says_how_many_triangles_it_has(name: str, tmp_path: 
 
     write_beside(tmp_path)
     (tmp_path / name).write_bytes(seeds()[name])
-    said, scene = room.triangles_of(tmp_path / name), tracer.load_scene(tmp_path / name)
+    said, scene = memory_check.triangles_of(tmp_path / name), tracer.load_scene(tmp_path / name)
     assert said in (None, scene.triangle_count)
     assert said is not None or name not in ("b.stl", "a.glb")
 
@@ -73,7 +73,11 @@ def test_faces_of_more_corners_are_more_triangles(corners: int, triangles: int, 
     head += "property float z\nelement face 7\nproperty list uchar int vertex_indices\nend_header\n"
     face = struct.pack(f"<B{corners}i", corners, *range(corners))
     (tmp_path / "a.ply").write_bytes(head.encode() + np.eye(4, 3, dtype="<f4").tobytes() + 7 * face)
-    assert room.triangles_of(tmp_path / "a.ply") == triangles == tracer.load_scene(tmp_path / "a.ply").triangle_count
+    assert (
+        memory_check.triangles_of(tmp_path / "a.ply")
+        == triangles
+        == tracer.load_scene(tmp_path / "a.ply").triangle_count
+    )
 
 
 @pytest.mark.parametrize(
@@ -89,29 +93,29 @@ def test_faces_of_more_corners_are_more_triangles(corners: int, triangles: int, 
 )
 def test_what_says_nothing_of_its_size_is_left_to_the_reader(name: str, data: bytes, tmp_path: Path) -> None:
     (tmp_path / name).write_bytes(data)
-    assert room.triangles_of(tmp_path / name) is None
+    assert memory_check.triangles_of(tmp_path / name) is None
 
 
 @linux_only
 def test_memory_is_what_is_left_of_the_least_of_all_limits(monkeypatch: pytest.MonkeyPatch) -> None:
-    there = room.available()
+    there = memory_check.available()
     assert there is not None and there > 0
-    monkeypatch.setattr(room, "_of_group", lambda: 5.0)
-    assert room.available() == 5.0
-    monkeypatch.setattr(room, "of_limit", lambda: -7.0)
-    assert room.available() == 0.0
+    monkeypatch.setattr(memory_check, "_of_group", lambda: 5.0)
+    assert memory_check.available() == 5.0
+    monkeypatch.setattr(memory_check, "of_limit", lambda: -7.0)
+    assert memory_check.available() == 0.0
 
 
 @linux_only
 def test_elsewhere_a_library_tells_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("psutil")
-    there, told = room._of_system(), room._elsewhere()
+    there, told = memory_check._of_system(), memory_check._elsewhere()
     assert there is not None and told is not None and abs(told - there) < 0.3 * there + 1e9
-    monkeypatch.setattr(room, "_field", lambda *_: None)
-    told = room._of_system()
+    monkeypatch.setattr(memory_check, "_field", lambda *_: None)
+    told = memory_check._of_system()
     assert told is not None and abs(told - there) < 0.3 * there + 1e9
     monkeypatch.setitem(sys.modules, "psutil", None)
-    assert room._of_system() is None
+    assert memory_check._of_system() is None
 
 
 def test_a_summary_builds_no_trees(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd) -> None:

@@ -27,13 +27,13 @@ from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
 from tracer.inspect import ray_probe
-from tracer.kernels import entry
 from tracer.method import Kind, Method
 from tracer.methods import certified_lights
 from tracer.methods.certified import CertifiedCells
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import StageTable
 from tracer.renderer import Renderer
+from tracer.runtime.kernels import entry
 from tracer.scene.animation import Animation
 from tracer.scene.crease import creased_normals
 from tracer.scene.mesh_options import CREASE

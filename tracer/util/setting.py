@@ -18,7 +18,7 @@ from numbers import Integral, Real
 from types import NoneType
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
-from tracer.similar import did_you_mean
+from tracer.util.suggest import did_you_mean
 
 _KEY = "setting"
 _ON, _OFF = ("on", "yes", "true", "1"), ("off", "no", "false", "0")

@@ -1,8 +1,8 @@
 """Compiling, or loading from the cache, every kernel that frames need, before a scene needs it.
 
 Where none have been compiled before, processes of their own compile them first, a part each, into the cache
-(`tracer.compile_beside`).  One that fails costs time only, as what the cache lacks is compiled when it is needed.  What
-a first picture needs comes first; what makes certificates comes last, and only where somebody wants it.
+(`tracer.compiling.processes`).  One that fails costs time only, as what the cache lacks is compiled when it is needed.
+What a first picture needs comes first; what makes certificates comes last, and only where somebody wants it.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from pathlib import Path
 
 from numba.core.registry import cpu_target
 
-from tracer.compile_beside import compile_beside
-from tracer.compile_steps import (
+from tracer.compiling.processes import compile_in_processes
+from tracer.compiling.steps import (
     FOR_A_PICTURE,
     PARTS,
     SHARES,
@@ -26,8 +26,8 @@ from tracer.compile_steps import (
     warm_kinds,
 )
 from tracer.culling.modes import MAX_CULLED_LIGHTS, word_type
-from tracer.kernel_cache import anything_kept, version_folder
 from tracer.method import Method
+from tracer.runtime.kernel_cache import anything_kept, version_folder
 from tracer.scene.model import Progress
 
 _lock = threading.Lock()
@@ -69,7 +69,7 @@ def warm_up(
 
         if not kept:
             with suppress(OSError):
-                compile_beside(report, lights, accelerator, done, load_picture, parts)
+                compile_in_processes(report, lights, accelerator, done, load_picture, parts)
         if name not in _draws:
             load_picture()
         if certificates:

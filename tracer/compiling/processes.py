@@ -1,7 +1,7 @@
 """Compiling in processes of their own, a part each: numba compiles one kernel at a time in a process, and holds the GIL
 for most of it.
 
-    python -m tracer.compile_beside PART LIGHTS ACCELERATOR
+    python -m tracer.compiling.processes PART LIGHTS ACCELERATOR
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from collections.abc import Callable, Collection
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
-from tracer.compile_steps import FOR_A_PICTURE, NEEDS, PARTS, SHARES, steps_of
-from tracer.estimate import Estimate
-from tracer.kernel_cache import cache_root
+from tracer.compiling.estimate import Estimate
+from tracer.compiling.steps import FOR_A_PICTURE, NEEDS, PARTS, SHARES, steps_of
+from tracer.runtime.kernel_cache import cache_root
 from tracer.scene.model import Progress
 
 _USUAL = 70.0  # seconds that all of it takes one process on a usual machine, with all cores busy
@@ -24,7 +24,7 @@ _POLL = 0.1  # seconds from one look at a process to the next
 _STEP = "next step: "  # before what a process says of itself, since whatever it calls may print too
 
 
-def compile_beside(
+def compile_in_processes(
     report: Progress,
     lights: int,
     accelerator: str,
@@ -103,11 +103,11 @@ def _pass_on(part: str, worker: subprocess.Popen, reported: SimpleQueue[tuple[st
 def _worker(*arguments: str) -> subprocess.Popen:
     """A process that compiles one part, and names its steps on its standard output."""
     environment = os.environ | {
-        "PYTHONPATH": os.pathsep.join(dict.fromkeys([*filter(None, sys.path), str(Path(__file__).parents[1])])),
+        "PYTHONPATH": os.pathsep.join(dict.fromkeys([*filter(None, sys.path), str(Path(__file__).parents[2])])),
         "SHADOWCULL_CACHE_DIR": str(cache_root()),
     }
     return subprocess.Popen(
-        [sys.executable, "-P", "-m", "tracer.compile_beside", *arguments],
+        [sys.executable, "-P", "-m", "tracer.compiling.processes", *arguments],
         env=environment,
         stdin=subprocess.PIPE,  # nothing is written to it: it closes when this process ends, however that happens
         stdout=subprocess.PIPE,

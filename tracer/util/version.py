@@ -18,7 +18,7 @@ def program_version() -> str:
 @cache
 def tracer_code() -> str:
     """A short code of the sources that trace: two programs with the same one trace alike, whatever their version."""
-    root, digest = Path(__file__).parent, hashlib.blake2b(digest_size=8)
+    root, digest = Path(__file__).parents[1], hashlib.blake2b(digest_size=8)
     for path in sorted(root.rglob("*.py")):
         digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()
