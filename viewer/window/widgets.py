@@ -170,16 +170,23 @@ def one_of(choices: Iterable[tuple[T, str, str]], now: T) -> T:
     for number, (choice, label, tip) in enumerate(choices):
         if number:
             same_line_for(label.partition("##")[0])
-        if imgui.radio_button(label, choice == now):
+        shown = _fitted_label(label)
+        if imgui.radio_button(shown, choice == now):
             now = choice
-        if tip:
-            tooltip(tip)
+        if tip or shown != label:
+            tooltip(tip or label.partition("##")[0])
     return now
+
+
+def begin_list(name: str, shown: str, flags: int = 0) -> bool:
+    """Begin a list to be opened; returns whether it is.  What it shows else ends in an ellipsis where it is narrow."""
+    room = imgui.calc_item_width() - imgui.get_frame_height() - 2.0 * imgui.get_style().frame_padding.x
+    return bool(imgui.begin_combo(name, fitted(shown, room), flags))
 
 
 def one_of_list(name: str, shown: str, choices: Iterable[tuple[T, str, str]], now: T, tip: str = "") -> T:
     """Show a list to be opened, of values with their labels and tips; returns the one that is chosen."""
-    if imgui.begin_combo(name, shown):
+    if begin_list(name, shown):
         for choice, label, meaning in choices:
             if imgui.selectable(label, choice == now)[0]:
                 now = choice
@@ -201,13 +208,20 @@ def outlined() -> Iterator[None]:
     imgui.pop_style_var()
 
 
+def _fitted_label(label: str) -> str:
+    """Return the label of a tick, with an ellipsis where it is too long for its line."""
+    words, mark, name = label.partition("##")
+    room = imgui.get_content_region_avail().x - imgui.get_frame_height() - imgui.get_style().item_inner_spacing.x
+    shown = fitted(words, room)
+    return label if shown == words else f"{shown}{mark or '###'}{name or words}"
+
+
 def checkbox(label: str, state: bool, change: Callable[[bool], None] = lambda on: None, tip: str = "") -> bool:
     """Show a tick that calls `change` with its new state; returns what it is now.  A label that is too long for its
     line ends in an ellipsis."""
-    room = imgui.get_content_region_avail().x - imgui.get_frame_height() - imgui.get_style().item_inner_spacing.x
-    shown = label if label.startswith("##") else fitted(label, room)
+    shown = _fitted_label(label)
     with outlined():
-        changed, now = imgui.checkbox(label if shown == label else f"{shown}###{label}", state)
+        changed, now = imgui.checkbox(shown, state)
     if shown != label:
         tip = f"{label}: {tip}" if tip else label
     if tip:

@@ -39,6 +39,7 @@ def panels(d: Driver) -> None:
         d.press(key).frames(5)
         assert hello_imgui.current_layout_name() == workspace and docking.layout_name == workspace
         assert there in is_open() and ("Log" in is_open()) == (workspace == "Debug")
+    _room(d)
     d.show_panel("Plots").press("F3", "F2").frames(5)
     assert "Plots" in is_open(), "a workspace stays as it was left"
     d.press("B")
@@ -64,6 +65,18 @@ def panels(d: Driver) -> None:
     d.press("K")
     d.wait(lambda: d.c.history.frames >= traced + 3, "frames at idle")
     d.press("K")
+
+
+def _room(d: Driver) -> None:
+    """The picture has its share of the window in each workspace, also of one that was resized in another."""
+    before = imgui.get_io().display_size.x, imgui.get_io().display_size.y
+    for size, least in (((1280, 800), (0.60, 0.33, 0.33)), ((900, 600), (0.50, 0.25, 0.25))):
+        d.resize(*size)
+        for key, part in zip(("F2", "F3", "F4"), least):
+            d.press(key).frames(8)
+            width, height = d.ui.picture.area
+            assert width * height >= part * size[0] * size[1], f"{d.ui.workspace} at {size}: {width} x {height}"
+    d.press("F2").resize(*map(round, before)).settle()
 
 
 def looks(d: Driver) -> None:

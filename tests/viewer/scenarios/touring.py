@@ -46,7 +46,9 @@ def _by_hand(d: Driver) -> None:
     d.change(method="paper")
     d.press("C").settle()
     d.expect("Press C once more")
-    d.press("C").settle()
+    with patch.object(tours, "SECONDS", 3.0):
+        d.press("C").settle().expect("Done: the next step")
+        assert "twice" not in d.text() and tour.step is COST
     d.wait(lambda: tour.step is WHOLE, "culling, seen on again", 10.0)
     d.press("2").wait(lambda: tour.step is MET, "the occlusion modes", 10.0)
     d.press("3").pause(0.6)
@@ -74,6 +76,10 @@ def _by_hand(d: Driver) -> None:
     assert d.c.session.frame >= EXAMINED
     for command in NEXT.commands:
         assert d.command(command), "the tour's end offers it"
+    d.click("//Tour/**/Figure 4").expect("Start", "Steps")
+    assert d.ui.workspace == "Measure" and d.has("//Tour/Close"), "runs have their workspace"
+    d.wait(lambda: d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole, "the figure", 60.0)
+    d.press("F2").settle()
     d.click("//Tour/Close")
     assert tour.step is None and not d.c.session.state.pace.fixed_size, "pictures have the window's size again"
 

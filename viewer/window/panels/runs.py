@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import accumulate
 from typing import TypeVar
 
 from imgui_bundle import ImVec2, imgui
@@ -37,7 +38,8 @@ _SAVED_AS = {".json": ("JSON", "Save every figure"), ".csv": ("CSV", "Save the t
              ".png": ("Plot", "Save the plot as a picture"),
              "-film.png": ("Film", "Save the filmstrip as a picture: the paper's Figure 4")}  # fmt: skip
 _LEFT, _LEAST = 14.0, 12.0  # ems of the controls, and of results beside them
-_MEASURED, _LONGEST = 100, 12.0  # rows whose texts are measured, and ems of a column of text, at most
+_MEASURED = 100  # rows whose texts are measured
+_LONGEST, _SHORTEST = 12.0, 6.0  # ems of a column of text
 
 _ROW = int(imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap)
 Row = TypeVar("Row")
@@ -136,14 +138,19 @@ def results_table(
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y | imgui.TableFlags_.scroll_x
     lines = (len(rows) + 1) * (imgui.get_text_line_height() + 2.0 * imgui.get_style().cell_padding.y)
     size = ImVec2(0.0, lines + imgui.get_style().scrollbar_size if fits else 0.0)
+    room = imgui.get_content_region_avail()
+    scrolls = not fits and lines + imgui.get_style().scrollbar_size > room.y
     if not imgui.begin_table(name, len(columns), int(flags), size):
         return
     imgui.table_setup_scroll_freeze(1, 1)
     some = [*rows[:_MEASURED], *rows[_MEASURED:][-_MEASURED:]]
+    widths = []
     for column in columns:
         texts = [column.heading, *(in_window_style(column.cell(one)) for one in some)]
         width = max(imgui.calc_text_size(text).x for text in texts) + 1.0
-        width = min(width, em(_LONGEST)) if column.text else width
+        widths.append(min(width, em(_LONGEST)) if column.text else width)
+    _fit(widths, columns, room.x - scrolls * imgui.get_style().scrollbar_size)
+    for column, width in zip(columns, widths):
         imgui.table_setup_column(column.heading, int(imgui.TableColumnFlags_.width_fixed), width)
     for column in columns:
         imgui.table_next_column()
@@ -162,6 +169,20 @@ def results_table(
             if tip is not None:
                 tooltip(tip(rows[number]))
     imgui.end_table()
+
+
+def _fit(widths: list[float], columns: Sequence[Column[Row]], room: float) -> None:
+    """Change widths so that the edge of the room cuts no column: those in it fill it, a shorter one of text the last."""
+    gap = 2.0 * imgui.get_style().cell_padding.x
+    inside = sum(end <= room + gap for end in accumulate(width + gap for width in widths))
+    left = room + gap - sum(widths[:inside]) - inside * gap
+    if inside == len(widths):
+        return
+    if columns[inside].text and left - gap >= em(_SHORTEST):
+        widths[inside] = left - gap
+        return
+    for place in range(inside):
+        widths[place] += left / inside
 
 
 def _heading(ui: Ui, run: Experiment | ZoomTest | Hunt) -> None:
