@@ -23,7 +23,7 @@ from tracer.methods.interface import ShadowMethod, Stage, StageTable
 from tracer.methods.method_limits import remark
 from tracer.progressive import Parts
 from tracer.runtime.parallel import for_each_chunk, thread_count
-from tracer.scene.lamps import Lamps
+from tracer.scene.lights import Lamps
 from tracer.scene.model import Camera
 from tracer.settings import Settings
 from tracer.shading.blocks import NO_PLANES, TURNS, all_blocks

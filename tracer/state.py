@@ -16,8 +16,7 @@ from tracer.geometry.world import World
 from tracer.method import Kind, Method
 from tracer.methods.interface import Services, ShadowMethod
 from tracer.methods.paper import ModesBeside
-from tracer.scene.lamps import LampTable
-from tracer.scene.lights import Light, as_lamps
+from tracer.scene.lights import LampTable, Light, as_lamps
 from tracer.scene.model import Progress, Scene
 from tracer.settings import Settings
 from tracer.shading.blocks import Planes, make_planes

@@ -14,8 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from tests.bench.embree import MODES, EmbreeRays, EmbreeScene, Mode
-from tracer.geometry.offsets import RAY_OFFSET
-from tracer.geometry.rays import Rays
+from tracer.geometry.rays import RAY_OFFSET, Rays
 from tracer.geometry.world import World
 from tracer.runtime.parallel import for_each_chunk, thread_count
 

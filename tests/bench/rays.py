@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.camera import pinhole
-from tracer.geometry.offsets import RAY_OFFSET
-from tracer.geometry.rays import Hits, Rays, ray_batch
+from tracer.geometry.rays import RAY_OFFSET, Hits, Rays, ray_batch
 from tracer.scene.deformation import deformed
 from tracer.scene.model import Camera, Scene, empty_quadrics
 from tracer.shading.buffers import TILE

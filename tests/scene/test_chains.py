@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import tracer
-from tracer.scene.animation import Animation, Keys, TrackSet
-from tracer.scene.chains import Chains
+from tracer.scene.animation import Animation, Chains, Keys, TrackSet
 
 
 def random_animation(rng: np.random.Generator) -> Animation:

@@ -11,7 +11,7 @@ import trimesh
 
 from tracer.scene.load import load_scene
 from tracer.scene.model import SceneError
-from tracer.scene.ply_lists import with_even_lists
+from tracer.scene.ply import with_even_lists
 
 CORNERS = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1.0, 1.0, 0.0), (0.0, 2.0, 1.0)]
 STRIPS = ("tristrips", [[0, 1, 2, 3], [2, 3, 4]])

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tracer.renderer import Renderer, Settings
-from tracer.scene.framing import extent
+from tracer.scene.bounds import extent
 from tracer.scene.load import load_scene, scene_info
 from tracer.scene.mesh_options import IN_STUDIO, UPS, MeshOptions
 from tracer.scene.model import Camera

@@ -11,7 +11,7 @@ import trimesh
 from tracer.scene.load import load_scene
 from tracer.scene.mesh_options import AS_IN_FILE, IN_STUDIO
 from tracer.scene.model import SceneError
-from tracer.scene.tristrips import triangles_of_strips
+from tracer.scene.ply import triangles_of_strips
 
 HEIGHT, WIDTH = 5, 7
 

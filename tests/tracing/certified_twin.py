@@ -17,8 +17,7 @@ from tracer.culling.certified.error_bounds import EPSILON
 from tracer.culling.certified.light_space import verdicts
 from tracer.culling.certified.shaft import LOWEST
 from tracer.culling.certified.store import CertificateStore
-from tracer.geometry.offsets import RAY_OFFSET
-from tracer.geometry.rays import ray_batch
+from tracer.geometry.rays import RAY_OFFSET, ray_batch
 from tracer.runtime.kernels import kernel
 from tracer.simd import address_of, load_three
 

@@ -9,8 +9,7 @@ from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.voxels.store import VoxelStore
 from tracer.geometry.world import World
-from tracer.scene.lamps import Lamps, LampTable
-from tracer.scene.lights import Light
+from tracer.scene.lights import Lamps, LampTable, Light
 
 
 def voxel_store(world: World, lights: np.ndarray, memory: float = 3e6, by_ray: bool = True) -> VoxelStore:

@@ -15,7 +15,7 @@ from tests.tracing.trees8 import NO_BOXES, assert_sound, cost, same, walk
 from tests.tracing.worlds import random_corners, scene
 from tracer.geometry.building import CANCELLED, DONE
 from tracer.geometry.bvh8.build import build_tree
-from tracer.geometry.layout import triangle_rows
+from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.wide_tree.binary import grow, make_items, put_triangles
 from tracer.geometry.wide_tree.build import SMALL, build_topology
 from tracer.geometry.wide_tree.collapse import LEAF_COST, NODE_COST, TRIANGLE_COST

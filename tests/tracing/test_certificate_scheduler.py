@@ -16,7 +16,7 @@ from tracer.culling.certified.requests import Requests
 from tracer.culling.certified.scheduler import LEAST, MANY, Budget, CertificateScheduler
 from tracer.culling.certified.store import CertificateStore
 from tracer.culling.rest import nothing_rests
-from tracer.scene.lamps import LampTable
+from tracer.scene.lights import LampTable
 
 LIGHTS = np.array([(0.0, 0.0, 11.0), (1.0, -1.0, 10.0)], np.float32)
 SQUARES = scene(floor() + roof(6.0, 1.0), lights=LIGHTS)

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from tests.tracing.random_worlds import quickly
 from tracer.culling.dependence import drop_dependent
 from tracer.culling.modes import DYNAMIC, FULL_SHADOW, FULLY_RENDERED, INIT, NON_SHADOW, PARTIALLY_OCCLUDED, word_type
-from tracer.geometry.layout import triangle_rows
-from tracer.geometry.primitives import Outlines
+from tracer.geometry.primitives import Outlines, triangle_rows
 
 BOTH = FULL_SHADOW | NON_SHADOW
 

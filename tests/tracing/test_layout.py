@@ -8,7 +8,7 @@ import pytest
 import tracer
 from tests.tracing.rays_and_movers import movers
 from tests.tracing.worlds import random_corners, scene
-from tracer.geometry import attributes, building, layout
+from tracer.geometry import building, primitives
 from tracer.geometry.primitives import Primitives
 from tracer.geometry.wide_tree import cells
 from tracer.scene.model import Cancelled, Scene
@@ -19,9 +19,9 @@ def large() -> Scene:
     return scene(random_corners(rng, 1000, 0.1), dynamic=movers(rng, 4))
 
 
-@pytest.mark.parametrize("block", [layout.BLOCK, 64, 1])
+@pytest.mark.parametrize("block", [primitives.BLOCK, 64, 1])
 def test_rows_are_what_the_scene_says_in_parts_of_any_size(block: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(layout, "BLOCK", block)
+    monkeypatch.setattr(primitives, "BLOCK", block)
     made = large()
     laid = Primitives(made)
     held = [o.triangles for o in made.objects]
@@ -31,14 +31,14 @@ def test_rows_are_what_the_scene_says_in_parts_of_any_size(block: int, monkeypat
     assert np.array_equal(laid.triangles.reshape(-1, 3, 3)[:, 1:], edges)
     rows, numbers, count = laid.attributes, laid.attributes.view(np.int32), made.triangle_count
     assert np.array_equal(laid.normals.reshape(-1, 3, 3), np.concatenate([t.normals for t in held]))
-    assert rows[:count, attributes.FACE_NORMAL : attributes.OBJECT] == pytest.approx(
+    assert rows[:count, primitives.FACE_NORMAL : primitives.OBJECT] == pytest.approx(
         np.cross(edges[:, 0], edges[:, 1]), rel=1e-5, abs=1e-6
     )
     owners = [made.object_of(primitive) for primitive in range(made.primitive_count)]
-    assert numbers[:, attributes.OBJECT].tolist() == owners == laid.object_of.tolist()
-    named = [made.materials[number] for number in numbers[:, attributes.MATERIAL]]
+    assert numbers[:, primitives.OBJECT].tolist() == owners == laid.object_of.tolist()
+    named = [made.materials[number] for number in numbers[:, primitives.MATERIAL]]
     assert named == [made.material_of(primitive) for primitive in range(made.primitive_count)]
-    assert (numbers[:, attributes.TEXTURE] == -1).all() and not numbers[:, attributes.TEXTURE + 1 :].any()
+    assert (numbers[:, primitives.TEXTURE] == -1).all() and not numbers[:, primitives.TEXTURE + 1 :].any()
     for index, one in enumerate(held):
         if len(one) and not len(made.objects[index].quadrics):
             points = one.corners.reshape(-1, 3)
@@ -47,7 +47,7 @@ def test_rows_are_what_the_scene_says_in_parts_of_any_size(block: int, monkeypat
 
 @pytest.mark.parametrize("accelerator", ["bvh8", "kdtree", "kdtree-lazy"])
 def test_a_world_can_be_given_up_at_any_report(accelerator: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(layout, "BLOCK", 128)
+    monkeypatch.setattr(primitives, "BLOCK", 128)
     made, said = large(), []
     tracer.World(made, 0.0, accelerator, lambda what, done: said.append((what, done)))
     assert [done for _, done in said] == sorted(done for _, done in said)
@@ -76,7 +76,7 @@ class EndsSoon:
 
 def test_sorting_into_cells_ends_soon_once_it_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(2)
-    rows = layout.triangle_rows(random_corners(rng, 500, 0.1).astype(np.float32))
+    rows = primitives.triangle_rows(random_corners(rng, 500, 0.1).astype(np.float32))
     whole = cells.cells_over(rows, 16, np.zeros(2, np.int64))
     monkeypatch.setattr(cells, "PART", 32)
     monkeypatch.setattr(cells, "CHUNK", 32)

@@ -22,9 +22,9 @@ from tests.tracing.same import assert_same
 from tests.tracing.worlds import quad, random_corners, scene
 from tracer.geometry.accelerators import KD_TREE, LAZY
 from tracer.geometry.boxes import transform_boxes
-from tracer.geometry.layout import triangle_rows
 from tracer.geometry.lazy_tree.hierarchy import LEAST, Hierarchy, hierarchy_over
 from tracer.geometry.lazy_tree.node import OBJECTS, SUBTREE
+from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING, STATIC_GEOMETRY, batch_of
 from tracer.geometry.rays import Hits, Rays
 from tracer.scene.model import Camera

@@ -8,8 +8,7 @@ import pytest
 from tests.sweeps import cases
 from tests.tracing.halls import lights_of
 from tracer.runtime.kernels import kernel
-from tracer.scene.lamps import COLOR, FALLS_OFF, Lamps, LampTable
-from tracer.scene.lights import Light
+from tracer.scene.lights import COLOR, FALLS_OFF, Lamps, LampTable, Light
 from tracer.shading.lightcuts.bounds import greatest_light, mirrored_direction
 from tracer.shading.lightcuts.tree import CutTree, build_cut_tree
 from tracer.shading.points import (

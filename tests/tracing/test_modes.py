@@ -17,8 +17,7 @@ from tracer.culling.mode_history import ModeHistory
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.occlusion import occlusion_testing, set_occlusion_modes
 from tracer.geometry.camera import pinhole
-from tracer.scene.lamps import LampTable
-from tracer.scene.lights import Light
+from tracer.scene.lights import LampTable, Light
 from tracer.scene.model import Camera
 
 

@@ -16,7 +16,7 @@ from tests.tracing.same import assert_same
 from tests.tracing.worlds import random_corners, scene
 from tracer.geometry.bvh8 import pieces
 from tracer.geometry.bvh8.pieces import PiecewiseTree
-from tracer.geometry.layout import triangle_rows
+from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.rays import Rays
 from tracer.geometry.structure import BuiltPart
 from tracer.geometry.wide_tree.cells import cells_over

@@ -20,15 +20,14 @@ from tracer.culling.regions.light_tree import LEAVES, build_light_tree
 from tracer.culling.regions.store import RegionStore
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Verdict
-from tracer.geometry.layout import triangle_rows
+from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
 from tracer.inspect.ray_tree import ray_tree
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet
-from tracer.scene.lamps import LampTable
-from tracer.scene.lights import Light
+from tracer.scene.lights import LampTable, Light
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 

@@ -22,8 +22,7 @@ from tracer.culling.certified.static_geometry import StaticGeometry
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.rays import ray_batch
 from tracer.runtime.kernels import kernel
-from tracer.scene.lamps import LampTable
-from tracer.scene.lights import Light
+from tracer.scene.lights import LampTable, Light
 from tracer.simd import address_of, load_three, local_memory
 
 LANES, MANY = 16, 40  # points, and samples: not a whole number of vectors

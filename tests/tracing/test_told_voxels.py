@@ -19,8 +19,7 @@ from tracer.culling.voxels.tell import Stop, index_of
 from tracer.geometry.world import World
 from tracer.inspect.path_records import VERDICTS
 from tracer.inspect.ray_tree import ray_tree
-from tracer.scene.lamps import LampTable
-from tracer.scene.lights import Light
+from tracer.scene.lights import LampTable, Light
 
 
 def test_the_walk_that_is_told_ends_as_the_ray_does():

@@ -18,11 +18,10 @@ from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW, sha
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.voxels.grid import BLOCK, box_of, make_grid, voxel_at, voxels_for
-from tracer.geometry.layout import triangle_rows
+from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
-from tracer.scene.lamps import LampTable
-from tracer.scene.lights import Light
+from tracer.scene.lights import LampTable, Light
 
 # --- the grid -------------------------------------------------------------------------------------
 

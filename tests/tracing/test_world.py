@@ -16,7 +16,7 @@ from tests.tracing.brute8 import meet_all8
 from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.worlds import affine, moved, quadrics, random_corners, scene
 from tracer.geometry.kdtree.build import CANCELLED, build_tree
-from tracer.geometry.layout import triangle_rows
+from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, any_hits_by
 from tracer.runtime.kernels import kernel
 from tracer.scene.model import SPHERE, Cancelled

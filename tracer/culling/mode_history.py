@@ -17,7 +17,7 @@ from tracer.culling.dependence import drop_dependent
 from tracer.culling.occlusion import set_occlusion_modes
 from tracer.culling.rest import Resting, changes, nothing_rests
 from tracer.geometry.primitives import Outlines
-from tracer.scene.lamps import LampTable
+from tracer.scene.lights import LampTable
 
 
 class Learnt(NamedTuple):

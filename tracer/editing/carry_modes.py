@@ -29,8 +29,7 @@ from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.runtime.parallel import thread_count
-from tracer.scene.lamps import LampTable
-from tracer.scene.lights import Light, as_lamps
+from tracer.scene.lights import LampTable, Light, as_lamps
 from tracer.scene.things import thing_numbers, things
 
 NO_UNITS = np.empty(0, np.int32)

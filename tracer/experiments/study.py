@@ -24,8 +24,8 @@ import numpy as np
 
 from tracer.experiments.experiment import path_times
 from tracer.method import Method
+from tracer.scene.bounds import bounds
 from tracer.scene.files import read_regular
-from tracer.scene.framing import bounds
 from tracer.scene.model import Camera, Scene
 from tracer.settings import RECORDS, Settings
 from tracer.util.setting import kinds_in_words, settings_of

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.boxes import transform_boxes
+from tracer.scene.animation import Chains
 from tracer.scene.arrays import Float64
-from tracer.scene.chains import Chains
 from tracer.scene.limits import LARGEST, SMALLEST
 
 

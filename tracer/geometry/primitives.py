@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, OBJECT, edge_products
 from tracer.geometry.boxes import OUTWARDS
-from tracer.geometry.layout import Report, box_of, laid_out, triangle_rows
+from tracer.geometry.memory import aligned_rows
 from tracer.geometry.poses import Poses, inverses, products
 from tracer.runtime.kernels import kernel
 from tracer.scene.arrays import Float32, Float64, Int32
+from tracer.scene.bounds import extent
 from tracer.scene.deformation import deformed
-from tracer.scene.model import SPHERE, Scene, SceneObject
+from tracer.scene.model import SPHERE, Scene, SceneObject, Triangles
 
 
 @kernel
@@ -59,7 +59,7 @@ class WorldTriangles(NamedTuple):
 class Primitives:
     """All primitives of a scene's n objects, in the space of their object.
 
-    triangles (t, 9) float32, corner and two edges; attributes (t + q, 16) float32 (`tracer.geometry.attributes`), of
+    triangles (t, 9) float32, corner and two edges; attributes (t + q, 16) float32 (`tracer.geometry.primitives`), of
     which normals (t, 9) are the corners'; corners (d, 3, 3) float32 are those of dynamic triangles.
     quadrics (q, 16) float32: map to canonical space, kind, radii and side; the same map in float64 is
     to_canonical (q, 3, 4), its inverse to_object.  Those of object i begin at triangle_starts[i] and
@@ -167,3 +167,69 @@ class Primitives:
         lower, upper = np.minimum(start - first, end - second), np.maximum(start + first, end + second)
         slack = 2e-6 * np.maximum(np.abs(lower), np.abs(upper)).max(1, initial=0)[:, None]
         return np.concatenate([lower - slack, upper + slack], axis=1).astype(np.float32)
+
+
+# Columns: the normals of three corners; the triangle's own normal, of any length; and, as the bits of int32, the
+# numbers of its object, its material and its texture (-1 for none).
+CORNER_NORMALS, FACE_NORMAL, OBJECT, MATERIAL, TEXTURE = 0, 9, 12, 13, 14
+COLUMNS = 16
+
+
+def edge_products(triangles: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Cross products (t, 3) float32 of the two edges of triangles (t, 9), corner and edges: normals of any length."""
+    a, b = triangles[:, 3:6].T, triangles[:, 6:9].T
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], axis=1)
+
+
+BLOCK = 1 << 18
+"""Triangles that are worked on at once."""
+
+Report = Callable[[float], None]
+"""Is given the part that is done, again and again, and may raise Cancelled."""
+
+
+def triangle_rows(corners: Float32) -> Float32:
+    """Triangles as rows (n, 9) float32, a corner and two edges, from their corners (n, 3, 3)."""
+    first = corners[:, 0].astype(np.float64)
+    edges = [corners[:, i] - first for i in (1, 2)]
+    return np.concatenate([first, *edges], axis=1).astype(np.float32)
+
+
+def laid_out(scene: Scene, object_of: Int32, report: Report) -> tuple[Float32, Float32]:
+    """Triangles (t, 9), corner and edges, and attributes (t + q, COLUMNS) of all primitives, whose objects are
+    object_of (t + q,)."""
+    count = scene.triangle_count
+    triangles, rows = np.empty((count, 9), np.float32), aligned_rows(len(object_of), COLUMNS)
+    numbers = rows.view(np.int32)
+    for part, of, some in _parts(scene):
+        report(part.start / count)
+        triangles[part] = triangle_rows(of.corners[some])
+        rows[part, TEXTURE + 1 :] = 0
+        rows[part, CORNER_NORMALS:FACE_NORMAL] = of.normals[some].reshape(-1, 9)
+        rows[part, FACE_NORMAL:OBJECT] = edge_products(triangles[part])
+        numbers[part, OBJECT] = object_of[part]
+        numbers[part, MATERIAL] = of.material[some]
+        numbers[part, TEXTURE] = of.texture[some]
+    rows[count:] = 0
+    numbers[count:, OBJECT] = object_of[count:]
+    numbers[count:, MATERIAL] = np.concatenate([o.quadrics.material for o in scene.objects])
+    numbers[count:, TEXTURE] = -1
+    return triangles, rows
+
+
+def _parts(scene: Scene) -> Iterator[tuple[slice, Triangles, slice]]:
+    """Some triangles at a time: their numbers, and where they are among those of their object."""
+    for first, one in zip(scene.triangle_offsets.tolist(), scene.objects, strict=False):
+        for start in range(0, len(one.triangles), BLOCK):
+            stop = min(start + BLOCK, len(one.triangles))
+            yield slice(first + start, first + stop), one.triangles, slice(start, stop)
+
+
+def box_of(points: Float32, report: Callable[[], None]) -> Float64:
+    """The box (6,) around points (n, 3), inverted around none; `report` is called again and again."""
+    ends = [np.full(3, np.inf), np.full(3, -np.inf)]
+    for start in range(0, len(points), 3 * BLOCK):
+        report()
+        lower, upper = extent(points[start : start + 3 * BLOCK])
+        ends = [np.minimum(ends[0], lower), np.maximum(ends[1], upper)]
+    return np.concatenate(ends)

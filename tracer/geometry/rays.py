@@ -117,3 +117,8 @@ def ray_at(rays, i):
     """The i-th of a batch given as pointers."""
     o, d, y, z = rays.origin, rays.direction, rays.size + i, 2 * rays.size + i
     return Ray(o[i], o[y], o[z], d[i], d[y], d[z], rays.t_min[i], rays.t_max[i])
+
+
+# Of the largest coordinate at hand (the depth of the hit or a coordinate of the point, whichever is larger):
+# about 300 roundings of a float32.
+RAY_OFFSET = 2e-5

@@ -26,7 +26,7 @@ from tracer.geometry.structure import BuiltPart, Structure
 from tracer.geometry.tree_parts import TreeParts
 from tracer.runtime.kernels import Entry
 from tracer.runtime.parallel import for_each_chunk, thread_count
-from tracer.scene.chains import Chains
+from tracer.scene.animation import Chains
 from tracer.scene.model import Cancelled, Progress, Scene
 
 CHUNK = 8192  # rays a thread takes at a time
@@ -61,7 +61,7 @@ class World:
     placed
         What kernels are given.
     attributes : (primitives, 16) float32
-        What shading reads of each primitive (`tracer.geometry.attributes`).
+        What shading reads of each primitive (`tracer.geometry.primitives`).
     normals : (triangles, 9) float32
         Normals at the corners, in the space of each triangle's object.
     object_of : (primitives,) int32

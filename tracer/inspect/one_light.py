@@ -16,7 +16,7 @@ from tracer.culling.counters import COUNTERS
 from tracer.geometry.camera import pinhole
 from tracer.methods.interface import StageTable
 from tracer.runtime.parallel import for_each_chunk, thread_count
-from tracer.scene.lamps import Lamps
+from tracer.scene.lights import Lamps
 from tracer.shading.blocks import all_blocks
 from tracer.shading.buffers import empty_buffers
 from tracer.shading.tiles import tiles_of

@@ -25,11 +25,11 @@ from tracer.culling.stages import call_at, looked_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import aligned_rows, borrowed
-from tracer.geometry.offsets import RAY_OFFSET
+from tracer.geometry.rays import RAY_OFFSET
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.runtime.kernels import entry, kernel
 from tracer.runtime.parallel import for_each_chunk
-from tracer.scene.lamps import Lamps
+from tracer.scene.lights import Lamps
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
 from tracer.simd import address_of, any_lane, gather_f32x16, gather_i32x16, i32x16, i64_at, maximum, to_f32

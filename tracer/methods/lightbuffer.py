@@ -42,7 +42,7 @@ from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.accelerators import KD_TREE
-from tracer.geometry.offsets import RAY_OFFSET
+from tracer.geometry.rays import RAY_OFFSET
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in

@@ -18,7 +18,7 @@ from tracer.geometry.memory import aligned_rows
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.methods.method_limits import lights_in_words
 from tracer.runtime.kernels import entry
-from tracer.scene.lamps import Lamps
+from tracer.scene.lights import Lamps
 from tracer.shading.lightcuts.block import BLOCK, DARK, POINTS, ROOM, Clusters, CutWork
 from tracer.shading.lightcuts.drawn import Draws
 from tracer.shading.lightcuts.seen import BLOCKS, LIMITED, MOST_NODES, NODES, TALLIES, Seen

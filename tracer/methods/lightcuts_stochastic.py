@@ -9,7 +9,7 @@ import numpy as np
 
 from tracer.methods.interface import FrameView
 from tracer.methods.lightcuts import Lightcuts, new_work
-from tracer.scene.lamps import COLOR
+from tracer.scene.lights import COLOR
 from tracer.shading.lightcuts.block import POINTS, CutWork
 from tracer.shading.lightcuts.drawn import DRAWN_ROWS, Draws
 

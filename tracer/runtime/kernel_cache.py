@@ -35,7 +35,7 @@ _ROOT = _PACKAGE.parent  # of the packages
 # What kernels are made of: nothing else in the package ends up in machine code.
 _KERNEL_SOURCES = (
     "simd/", "geometry/", "culling/", "shading/", "methods/", "inspect/ray_probe.py",
-    "scene/model.py", "scene/lamps.py", "scene/mesh_kernels.py",
+    "scene/model.py", "scene/lights.py",
 )  # fmt: skip
 _COMPILERS = ("runtime/kernels.py", "runtime/subkernels.py")
 _STEPS = _PACKAGE / "compiling" / "steps.py"  # imports all that a program starts with

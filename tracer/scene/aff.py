@@ -14,16 +14,17 @@ from time import perf_counter
 
 import numpy as np
 
-from tracer.scene import aff_blocks, rotations
-from tracer.scene.aff_lights import FoundLight, dimmed, read_lamp, read_light, settled
+from tracer.scene import aff_statements, rotations
+from tracer.scene.aff_statements import FoundLight, dimmed, read_lamp, read_light, settled
 from tracer.scene.aff_tokens import AffFile, Cursor, quoted, reason
 from tracer.scene.animation import Animation, Chain, TrackSet
 from tracer.scene.assembly import Geometry
+from tracer.scene.bounds import bounds
 from tracer.scene.files import SceneFiles
-from tracer.scene.framing import bounds, framing_camera
 from tracer.scene.limits import MOST_FRAMES, MOST_INCLUDES, MOST_NESTED, MOST_PRIMITIVES
 from tracer.scene.model import Camera, Material, Progress, Scene, SceneError
 from tracer.scene.pieces import Mesh, Piece, Quadric
+from tracer.scene.studio import framing_camera
 from tracer.scene.textures import TextureTable
 
 SECONDS_BETWEEN_REPORTS = 0.02
@@ -79,14 +80,14 @@ class _Reader:
             b"a": self.read_animation,
             b"f": self.read_fill,
             b"fm": self.read_extended_fill,
-            b"c": lambda at: self.add_quadric(aff_blocks.read_cone(at)),
-            b"s": lambda at: self.add_quadric(aff_blocks.read_sphere(at)),
-            b"p": lambda at: self.add_mesh(aff_blocks.read_polygon(at, False)),
-            b"pp": lambda at: self.add_mesh(aff_blocks.read_polygon(at, True)),
-            b"tt": lambda at: self.add_mesh(aff_blocks.read_textured_triangle(at, False)),
-            b"ttp": lambda at: self.add_mesh(aff_blocks.read_textured_triangle(at, True)),
+            b"c": lambda at: self.add_quadric(aff_statements.read_cone(at)),
+            b"s": lambda at: self.add_quadric(aff_statements.read_sphere(at)),
+            b"p": lambda at: self.add_mesh(aff_statements.read_polygon(at, False)),
+            b"pp": lambda at: self.add_mesh(aff_statements.read_polygon(at, True)),
+            b"tt": lambda at: self.add_mesh(aff_statements.read_textured_triangle(at, False)),
+            b"ttp": lambda at: self.add_mesh(aff_statements.read_textured_triangle(at, True)),
             b"tpa": self.read_morph,
-            b"m": lambda at: self.add_mesh(aff_blocks.read_mesh(at)),
+            b"m": lambda at: self.add_mesh(aff_statements.read_mesh(at)),
             b"d": self.read_detail,
             b"k": self.read_tracks,
         }
@@ -250,7 +251,7 @@ class _Reader:
 
     def read_tracks(self, at: Cursor) -> None:
         name = at.name("the name of tracks")
-        self.tracks[name] = aff_blocks.read_tracks(at)
+        self.tracks[name] = aff_statements.read_tracks(at)
 
     # Geometry
 
@@ -279,7 +280,7 @@ class _Reader:
 
     def read_morph(self, at: Cursor) -> None:
         self.count(1)
-        self.geometry.morphs.append(Piece(aff_blocks.read_morph(at), self.chain, self.current_material()))
+        self.geometry.morphs.append(Piece(aff_statements.read_morph(at), self.chain, self.current_material()))
 
     # The end
 

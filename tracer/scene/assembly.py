@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from tracer.scene.animation import Chain
 from tracer.scene.arrays import Float64
+from tracer.scene.bounds import quadric_box
 from tracer.scene.deformation import Deformation
-from tracer.scene.framing import quadric_box
 from tracer.scene.limits import LARGEST, SMALLEST
 from tracer.scene.model import CONE, Quadrics, SceneObject, Triangles, empty_quadrics, empty_triangles
 from tracer.scene.normals import unit_normals

@@ -22,7 +22,7 @@ from tracer.scene.distinct_points import DistinctPoints
 from tracer.scene.files import open_regular
 from tracer.scene.limits import MOST_PRIMITIVES
 from tracer.scene.model import SceneError
-from tracer.scene.ply_lists import CORNERS, LONGEST_HEAD, Element, elements_of
+from tracer.scene.ply import CORNERS, LONGEST_HEAD, Element, elements_of
 
 ROWS = 1 << 18
 """Triangles, or vertices, that are read at once."""

@@ -8,10 +8,41 @@ import secrets
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.runtime.kernels import kernel
 from tracer.scene.arrays import Float32, Float64, Int32
-from tracer.scene.mesh_kernels import number_places
 
 _FEWEST = 1 << 10
+
+
+@kernel
+def number_places(words, begin, places, count, table, seed, numbers):
+    """Number the points that are words (n, 3) uint32 from `begin` on by the places (m, 3) that they lie at, `count` of
+    which are there; new ones are added.  The table (a power of two,) int32 holds their numbers, and -1 elsewhere.
+
+    Returns how many points are numbered, and how many places there are now: fewer than all where the places or half of
+    the table are full."""
+    mask = np.uint64(len(table) - 1)
+    for i in range(begin, len(words)):
+        if count == len(places) or 2 * count >= len(table):
+            return i, count
+        a, b, c = words[i, 0], words[i, 1], words[i, 2]
+        mixed = (seed ^ np.uint64(a)) * np.uint64(0x9E3779B97F4A7C15)
+        mixed = (mixed ^ (mixed >> np.uint64(29)) ^ np.uint64(b)) * np.uint64(0xC2B2AE3D27D4EB4F)
+        mixed = (mixed ^ (mixed >> np.uint64(31)) ^ np.uint64(c)) * np.uint64(0x165667B19E3779F9)
+        slot = (mixed ^ (mixed >> np.uint64(32))) & mask
+        while True:
+            number = table[slot]
+            if number < 0:
+                number = count
+                table[slot] = number
+                places[number, 0], places[number, 1], places[number, 2] = a, b, c
+                count += 1
+                break
+            if places[number, 0] == a and places[number, 1] == b and places[number, 2] == c:
+                break
+            slot = (slot + np.uint64(1)) & mask
+        numbers[i] = number
+    return len(words), count
 
 
 class DistinctPoints:

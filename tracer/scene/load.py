@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tracer.scene.aff import load_aff
-from tracer.scene.framing import bounds
+from tracer.scene.bounds import bounds
 from tracer.scene.memory_check import check_reading, check_showing
 from tracer.scene.mesh_options import AS_IN_FILE, MeshOptions
 from tracer.scene.meshes import MESH_EXTENSIONS, load_mesh

@@ -8,11 +8,15 @@ lights are added, or a studio around it.
 
 from __future__ import annotations
 
+import logging
+import warnings
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from io import BytesIO
 from pathlib import Path
+from threading import get_ident
 from typing import Any
 
 import numpy as np
@@ -21,21 +25,19 @@ from tracer.scene.animation import Animation
 from tracer.scene.arrays import Float32, Float64
 from tracer.scene.assembly import Geometry
 from tracer.scene.binary_meshes import BinaryMesh, read_binary
+from tracer.scene.bounds import bounds
 from tracer.scene.crease import creased_normals
 from tracer.scene.files import SceneFiles, read_regular
-from tracer.scene.framing import bounds, framing_camera, framing_lights
 from tracer.scene.limits import LARGEST, MOST_NESTED, MOST_PRIMITIVES
 from tracer.scene.memory_check import check_reading
 from tracer.scene.mesh_materials import MaterialTable
 from tracer.scene.mesh_options import AS_IN_FILE, CREASE, MeshOptions
-from tracer.scene.mesh_reading import only_known_images, quiet
 from tracer.scene.model import Camera, Progress, Scene, SceneError
 from tracer.scene.pieces import IndexedMesh, Mesh, Piece
-from tracer.scene.ply_lists import with_even_lists
+from tracer.scene.ply import with_even_lists, with_strips
 from tracer.scene.punctual_lights import has_lights, punctual_lights
-from tracer.scene.studio import build_studio, with_floor
-from tracer.scene.textures import open_image
-from tracer.scene.tristrips import with_strips
+from tracer.scene.studio import build_studio, framing_camera, framing_lights, with_floor
+from tracer.scene.textures import only_known_images, open_image
 from tracer.scene.up_axis import guess
 
 MESH_EXTENSIONS = (".obj", ".ply", ".stl", ".gltf", ".glb")
@@ -245,6 +247,23 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str], bytes]:
         what = f"cannot be read as {kind.upper()}: it is damaged or incomplete"
         raise SceneError(f"{path}: {what}; repair or convert the file") from None
     return model, list(dict.fromkeys(troubles)), data[:1024]
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Without what trimesh, numpy and Pillow say of a file to the terminal: it is judged by us."""
+    log, here = logging.getLogger("trimesh.util"), get_ident()
+
+    def elsewhere(record: logging.LogRecord) -> bool:
+        return record.thread != here
+
+    log.addFilter(elsewhere)
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        log.removeFilter(elsewhere)
 
 
 def _check_nesting(parents: Mapping[str, str], path: Path) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.arrays import Float32, Float64
-from tracer.scene.framing import extent
+from tracer.scene.bounds import extent
 from tracer.scene.lights import Light
 from tracer.scene.model import Camera, Material, Scene, SceneObject, Triangles
 
@@ -191,3 +191,34 @@ def _seen(point: Float64, up: Float64, lights: Sequence[Light]) -> tuple[float, 
         color += _FLOOR_COLOR * light.color * max(float(way @ up / np.linalg.norm(way)), 0.0)
     r, g, b = color.tolist()
     return r, g, b
+
+
+# --- without a studio: the whole model in view, lit from over both shoulders ---------------------------
+
+
+def framing_camera(box: Float64 | None, angle: float = 45.0) -> Camera:
+    """A camera that sees the whole of a box (2, 3), from the front, the right and above; y is up."""
+    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
+    centre, radius = (low + high) / 2, _radius(low, high)
+    away = np.array([0.45, 0.35, 1.0])
+    away /= np.linalg.norm(away)
+    position = centre + away * (1.05 * radius / np.sin(np.radians(angle) / 2))
+    return Camera(tuple(position.tolist()), tuple((-away).tolist()), (0.0, 1.0, 0.0), angle)
+
+
+def framing_lights(box: Float64 | None, camera: Camera) -> tuple[Light, Light]:
+    """A key light over the camera's left shoulder and a weaker one over its right, both well outside the box."""
+    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
+    centre, reach = (low + high) / 2, 3.0 * _radius(low, high)
+    right, up, forward = camera.basis()
+    key = centre + reach * (up * 0.9 - right * 0.7 - forward * 0.8)
+    fill = centre + reach * (up * 0.5 + right * 1.0 - forward * 0.6)
+    return (
+        Light("key", tuple(key.tolist()), (0.8, 0.8, 0.8)),
+        Light("fill", tuple(fill.tolist()), (0.35, 0.35, 0.35)),
+    )
+
+
+def _radius(low: Float64, high: Float64) -> float:
+    """Half the diagonal of a box, and 1 for a single point."""
+    return float(np.linalg.norm(high - low)) / 2 or 1.0

@@ -9,10 +9,12 @@ first bytes say, whatever its name: only formats that are nothing but pixels are
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
-from typing import BinaryIO
+from threading import Lock
+from typing import Any, BinaryIO
 
 import numpy as np
 from PIL import Image, UnidentifiedImageError
@@ -162,3 +164,30 @@ def texture_of(image: Image.Image, name: str) -> Texture:
 
 def _words(error: Exception) -> str:
     return " ".join(str(error).split())[:120] or type(error).__name__
+
+
+_lock = Lock()
+_inside = 0  # threads that are within `only_known_images`
+_open = Image.open
+
+
+@contextmanager
+def only_known_images() -> Iterator[None]:
+    """Images within a file, which trimesh opens by itself, are of FORMATS: it would let Pillow try all that it knows.
+
+    Several threads may read at once."""
+    global _inside
+    with _lock:
+        _inside += 1
+        Image.open = _known  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        with _lock:
+            _inside -= 1
+            if not _inside:
+                Image.open = _open
+
+
+def _known(source: Any, mode: Any = "r", formats: Any = FORMATS) -> Image.Image:
+    return _open(source, mode, formats)

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, MATERIAL
 from tracer.geometry.intersect import quadric_normal
-from tracer.geometry.offsets import RAY_OFFSET
+from tracer.geometry.primitives import CORNER_NORMALS, FACE_NORMAL, MATERIAL
+from tracer.geometry.rays import RAY_OFFSET
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.bounce import MIN_WEIGHT, SPLITS, reflected
 from tracer.shading.phong import one_highlight

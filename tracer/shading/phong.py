@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.scene.lamps import FALLS_OFF
+from tracer.scene.lights import FALLS_OFF
 from tracer.shading.points import DIFFUSE_ROW, EXPONENT_ROW, SHINE_ROW, SPECULAR_ROW
 from tracer.shading.wave import row_of
 from tracer.simd import (

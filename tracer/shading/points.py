@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tracer.geometry.attributes import CORNER_NORMALS, FACE_NORMAL, MATERIAL, OBJECT, TEXTURE
 from tracer.geometry.intersect import quadric_normal
 from tracer.geometry.memory import data_pointer
-from tracer.geometry.offsets import RAY_OFFSET
+from tracer.geometry.primitives import CORNER_NORMALS, FACE_NORMAL, MATERIAL, OBJECT, TEXTURE
+from tracer.geometry.rays import RAY_OFFSET
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.shading.shading_data import AMBIENT, DIFFUSE, EXPONENT, IOR, MATERIAL_COLUMNS, SHINE, SPECULAR, TRANSMISSION
 from tracer.shading.textures import MAPPING_COLUMNS, SPANNED, texture_colors

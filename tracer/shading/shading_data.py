@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.memory import aligned_rows
-from tracer.scene.lamps import Lamps, LampTable
+from tracer.scene.lights import Lamps, LampTable
 from tracer.scene.model import Scene
 from tracer.shading.textures import mapping_rows, pack_textures
 
@@ -18,7 +18,7 @@ MATERIAL_COLUMNS = 16
 
 
 class ShadingData(NamedTuple):
-    """attributes (p, 16) float32 (`tracer.geometry.attributes`), materials (m, 16) float32, mappings (t, 8) float32,
+    """attributes (p, 16) float32 (`tracer.geometry.primitives`), materials (m, 16) float32, mappings (t, 8) float32,
     texels and texture_levels (`tracer.shading.textures`); the frame's lamps; ambient and background (3,), float32."""
 
     attributes: NDArray[np.float32]

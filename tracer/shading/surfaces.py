@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry.attributes import COLUMNS, MATERIAL, OBJECT
 from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed, data_pointer
+from tracer.geometry.primitives import COLUMNS, MATERIAL, OBJECT
 from tracer.geometry.rays import MISS
 from tracer.runtime.kernels import inlined, kernel
 from tracer.shading.blocks import NORMAL, PLANE, POSITION, SURFACE, UNSHADOWED, block_of, planes_at

@@ -29,7 +29,7 @@ from tracer.culling.counters import CANDIDATES_ONLY, TESTS
 from tracer.culling.modes import look_up, shadow_modes
 from tracer.culling.shadow_testing import answer, classify_by_modes
 from tracer.culling.stages import vectors
-from tracer.geometry.offsets import RAY_OFFSET
+from tracer.geometry.rays import RAY_OFFSET
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,

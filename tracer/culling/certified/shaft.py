@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.certified.error_bounds import EPSILON, cross, dot, length, row_of
-from tracer.geometry.offsets import RAY_OFFSET
+from tracer.geometry.rays import RAY_OFFSET
 from tracer.runtime.kernels import inlined, subkernel
 
 LOWEST = 0.5  # of RAY_OFFSET: a ray that ends lower belongs to no cell

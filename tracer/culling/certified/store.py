@@ -49,10 +49,10 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS, words_at
 from tracer.culling.modes import NON_SHADOW as LIT
 from tracer.culling.rest import Changed, Resting, changes, nothing_rests
 from tracer.geometry.boxes import OUTWARDS
-from tracer.geometry.offsets import RAY_OFFSET
 from tracer.geometry.primitives import Outlines
+from tracer.geometry.rays import RAY_OFFSET
 from tracer.runtime.parallel import for_each_chunk
-from tracer.scene.lamps import Lamps
+from tracer.scene.lights import Lamps
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World

@@ -16,7 +16,7 @@ from tracer.culling.regions.certify import leaves_left
 from tracer.culling.regions.light_tree import LightTree, build_light_tree
 from tracer.culling.voxels.classify import CERTIFICATES, STEPS, TESTS
 from tracer.runtime.parallel import for_each_chunk
-from tracer.scene.lamps import Lamps
+from tracer.scene.lights import Lamps
 
 CHUNK = 64  # cells that a thread takes at a time
 SHARE = 8  # levels below the root down to which cells are divided for these lights

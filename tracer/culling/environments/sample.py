@@ -17,8 +17,7 @@ from tracer.culling.environments.store import By, EnvironmentStore, Settle
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.voxels.classify import MOST, Light
 from tracer.geometry.camera import Pinhole
-from tracer.geometry.offsets import RAY_OFFSET
-from tracer.geometry.rays import ray_batch
+from tracer.geometry.rays import RAY_OFFSET, ray_batch
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World

@@ -28,7 +28,7 @@ from tracer.culling.voxels.classify import CERTIFICATES, COUNTERS, MOST, STEPS, 
 from tracer.culling.voxels.grid import DIGITS, ROOM
 from tracer.culling.voxels.store import NEVER_HIT, boxes_at_rest, without_area
 from tracer.runtime.parallel import for_each_chunk
-from tracer.scene.lamps import Lamps
+from tracer.scene.lights import Lamps
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World

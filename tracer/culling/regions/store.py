@@ -20,7 +20,7 @@ from tracer.culling.regions.certify import COUNTERS, STEPS, TESTS, hidden_from, 
 from tracer.culling.regions.grid import Grid, blocks_around, boxes_of, make_grid, region_at
 from tracer.culling.regions.light_tree import LightTree, build_light_tree
 from tracer.runtime.parallel import for_each_chunk
-from tracer.scene.lamps import Lamps
+from tracer.scene.lights import Lamps
 from tracer.simd.records import I32, I64, Bytes, F32x2D
 
 if TYPE_CHECKING:

@@ -28,7 +28,7 @@ from tracer.culling.voxels.view import VoxelView
 from tracer.geometry.boxes import NO_BOX
 from tracer.geometry.memory import aligned_rows
 from tracer.runtime.parallel import for_each_chunk
-from tracer.scene.lamps import Lamps
+from tracer.scene.lights import Lamps
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World

@@ -20,9 +20,8 @@ from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, bui
 from tracer.geometry.bvh8.parts import PieceParts
 from tracer.geometry.bvh8.pieces import PiecewiseTree
 from tracer.geometry.bvh8.placed import MOVING_TREE, RESTING_TREE, STATIC_TREE
-from tracer.geometry.layout import triangle_rows
 from tracer.geometry.poses import Poses, products
-from tracer.geometry.primitives import Primitives, WorldTriangles
+from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
 from tracer.geometry.queries import Placed
 from tracer.geometry.structure import BuiltPart
 from tracer.geometry.wide_tree.build import build_topology

@@ -15,7 +15,7 @@ import numpy as np
 
 from tracer.culling.counters import CULLED, DUE, RAYS
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.scene.lamps import COLOR, FALLS_OFF
+from tracer.scene.lights import COLOR, FALLS_OFF
 from tracer.shading.lightcuts.block import POINTS, count_asked, of_block, point_row, trace_rays
 from tracer.shading.phong import highlight, toward
 from tracer.shading.points import DIFFUSE_ROW, EXPONENT_ROW, SHINE_ROW, SPECULAR_ROW

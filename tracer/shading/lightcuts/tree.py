@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.runtime.kernels import inlined, kernel
-from tracer.scene.lamps import COLOR, FALLS_OFF, Lamps
+from tracer.scene.lights import COLOR, FALLS_OFF, Lamps
 from tracer.simd.records import I32, Bytes, F32x2D
 
 BINS = 16  # along each axis

@@ -1,4 +1,4 @@
-"""A camera and lights for scenes that bring none: the whole model in view, lit from over both shoulders."""
+"""Boxes around what is in a scene, as the files' readers and the camera need them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tracer.scene.animation import Animation
 from tracer.scene.arrays import Float32, Float64
 from tracer.scene.deformation import deformed
 from tracer.scene.limits import SMALLEST
-from tracer.scene.model import CONE, Camera, Light, SceneObject
+from tracer.scene.model import CONE, SceneObject
 
 _BLOCK = 1 << 18  # triangles that are moved at once
 _ROW = 64  # points
@@ -58,31 +58,3 @@ def quadric_box(kind: int, placed: Float64, radii: Float64) -> tuple[Float64, Fl
     across = np.linalg.norm(linear[:, :2], axis=1)  # how far a unit circle reaches along each axis
     ends = [(centre, across * radii[0]), (centre + linear[:, 2], across * radii[1])]
     return np.min([c - r for c, r in ends], axis=0), np.max([c + r for c, r in ends], axis=0)
-
-
-def framing_camera(box: Float64 | None, angle: float = 45.0) -> Camera:
-    """A camera that sees the whole of a box (2, 3), from the front, the right and above; y is up."""
-    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
-    centre, radius = (low + high) / 2, _radius(low, high)
-    away = np.array([0.45, 0.35, 1.0])
-    away /= np.linalg.norm(away)
-    position = centre + away * (1.05 * radius / np.sin(np.radians(angle) / 2))
-    return Camera(tuple(position.tolist()), tuple((-away).tolist()), (0.0, 1.0, 0.0), angle)
-
-
-def framing_lights(box: Float64 | None, camera: Camera) -> tuple[Light, Light]:
-    """A key light over the camera's left shoulder and a weaker one over its right, both well outside the box."""
-    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
-    centre, reach = (low + high) / 2, 3.0 * _radius(low, high)
-    right, up, forward = camera.basis()
-    key = centre + reach * (up * 0.9 - right * 0.7 - forward * 0.8)
-    fill = centre + reach * (up * 0.5 + right * 1.0 - forward * 0.6)
-    return (
-        Light("key", tuple(key.tolist()), (0.8, 0.8, 0.8)),
-        Light("fill", tuple(fill.tolist()), (0.35, 0.35, 0.35)),
-    )
-
-
-def _radius(low: Float64, high: Float64) -> float:
-    """Half the diagonal of a box, and 1 for a single point."""
-    return float(np.linalg.norm(high - low)) / 2 or 1.0
