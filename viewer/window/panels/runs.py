@@ -172,7 +172,7 @@ def results_table(
 
 
 def _fit(widths: list[float], columns: Sequence[Column[Row]], room: float) -> None:
-    """Change widths so that the edge of the room cuts no column: those in it fill it, a shorter one of text the last."""
+    """Change widths so that the edge of the room cuts no column: those in it fill it, with one of text that is cut."""
     gap = 2.0 * imgui.get_style().cell_padding.x
     inside = sum(end <= room + gap for end in accumulate(width + gap for width in widths))
     left = room + gap - sum(widths[:inside]) - inside * gap
