@@ -66,57 +66,43 @@ PANELS: dict[str, Callable[[Ui], None]] = {
 """What shows each panel, in the order of the menu and of tabs."""
 
 
-class Workspace(NamedTuple):
-    """A layout for one kind of work.
+_WHOLE, _COLUMN, _ANSWERS, _TABLES = "MainDockSpace", "Right", "RightBottom", "Bottom"
+_PLACES = {
+    _COLUMN: ("View", "Culling", "Figure 1", "Statistics", "Scene", "Rendering", "Camera", "Saving", "Film"),
+    _ANSWERS: ("Inspector", "Plots", "What if"),
+    _TABLES: ("Experiment", "Zoom test", "Hunt", "Find", "Pixels", "Compare", "Light buffer", "Log"),
+    TOUR: (TOUR,),
+}
+"""Where panels are: in a column as high as the window, or in a part below it for what is pointed at; below the picture,
+for what needs width; and the tour above the column, where it takes no room from the picture."""
 
-    `splits` cut the window: a new part, the part that it is cut off from, at which side, and its share of that.
-    `open` says which panels are open at first, by their part; `closed` where others are when they are opened."""
+
+class Workspace(NamedTuple):
+    """A layout for one kind of work: the share of the window's width that the column has, those of the window's and the
+    column's height that the lower parts have, and the panels that are open at first."""
 
     name: str
     help: str
-    splits: tuple[tuple[str, str, imgui.Dir, float], ...]
-    open: dict[str, tuple[str, ...]]
-    closed: dict[str, tuple[str, ...]]
-
-
-_WHOLE, _RIGHT, _LOWER_RIGHT, _BOTTOM = "MainDockSpace", "Right", "RightBottom", "Bottom"
-_RUNS = ("Experiment", "Zoom test", "Hunt")
-_TABLES = ("Find", "Pixels", "Light buffer", "Log")
-_SETTINGS = ("Scene", "Rendering", "Camera", "Saving", "Film")
-
-
-def _splits(column: float, lower: float, tour: float, answers: float) -> tuple[tuple[str, str, imgui.Dir, float], ...]:
-    """Return the splits of a workspace: a column at the right, as high as the window, with the tour above it while it
-    is taken, and answers below; and a lower part beside the column, for what needs its width."""
-    return (
-        (_RIGHT, _WHOLE, imgui.Dir.right, column), (_BOTTOM, _WHOLE, imgui.Dir.down, lower),
-        (TOUR, _RIGHT, imgui.Dir.up, tour), (_LOWER_RIGHT, _RIGHT, imgui.Dir.down, answers),
-    )  # fmt: skip
+    column: float
+    tables: float
+    answers: float
+    open: tuple[str, ...]
 
 
 MEASURE = "Measure"
 WORKSPACES = (
     Workspace(
         "Explore", "room for the picture, and a column: how shadow rays are culled, what is shown, and why",
-        _splits(0.235, 0.35, 0.24, 0.46),
-        {_RIGHT: ("View", "Culling", "Figure 1"), _LOWER_RIGHT: ("Inspector",)},
-        {_RIGHT: ("Statistics", *_SETTINGS), _LOWER_RIGHT: ("What if", "Compare"),
-         _BOTTOM: (*_RUNS, "Plots", *_TABLES), TOUR: (TOUR,)},
+        0.235, 0.35, 0.46, ("View", "Culling", "Figure 1", "Inspector"),
     ),
     Workspace(
         MEASURE, "experiments, zoom tests and hunts, with plots, and statistics beside a comparison",
-        _splits(0.235, 0.365, 0.24, 0.5),
-        {_RIGHT: ("Statistics", "Culling"), _LOWER_RIGHT: ("Plots", "Compare"), _BOTTOM: _RUNS},
-        {_RIGHT: ("View", "Figure 1", *_SETTINGS), _LOWER_RIGHT: ("Inspector", "What if"), _BOTTOM: _TABLES,
-         TOUR: (TOUR,)},
+        0.235, 0.365, 0.5, ("Culling", "Statistics", "Plots", "Experiment", "Zoom test", "Hunt", "Compare"),
     ),
     Workspace(
         "Debug", "rays of a pixel, objects and primitives, pixels, edits and the log",
-        _splits(0.3, 0.33, 0.24, 0.4),
-        {_RIGHT: ("Inspector",), _LOWER_RIGHT: ("View", "Culling", "What if", "Scene"),
-         _BOTTOM: ("Find", "Pixels", "Compare", "Light buffer", "Log")},
-        {_RIGHT: ("Statistics", "Figure 1"), _LOWER_RIGHT: ("Rendering", "Camera", "Saving", "Film"),
-         _BOTTOM: (*_RUNS, "Plots"), TOUR: (TOUR,)},
+        0.3, 0.33, 0.6,
+        ("View", "Culling", "Scene", "Inspector", "What if", "Find", "Pixels", "Compare", "Light buffer", "Log"),
     ),
 )  # fmt: skip
 SIDES = tuple(label for label in PANELS if label not in (PICTURE, TOUR))
@@ -230,12 +216,10 @@ class Layout:
         # Without the cross beside the tabs, which closes all of them; and not what Hello ImGui has by default, which
         # would give it a background whatever the style.
         docking.main_dock_space_node_flags = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button)
-        docking.docking_splits = [
-            hello_imgui.DockingSplit(of, space, side, share) for space, of, side, share in workspace.splits
-        ]
-        spaces = {
-            label: space for part in (workspace.open, workspace.closed) for space in part for label in part[space]
-        }
+        splits = ((_COLUMN, _WHOLE, imgui.Dir.right, workspace.column), (_TABLES, _WHOLE, imgui.Dir.down, workspace.tables),
+                  (TOUR, _COLUMN, imgui.Dir.up, 0.24), (_ANSWERS, _COLUMN, imgui.Dir.down, workspace.answers))  # fmt: skip
+        docking.docking_splits = [hello_imgui.DockingSplit(of, space, side, share) for space, of, side, share in splits]
+        spaces = {label: space for space, labels in _PLACES.items() for label in labels}
         docking.dockable_windows = [
             self._window(label, spaces.get(label, _WHOLE), _is_open(workspace, label)) for label in PANELS
         ]
@@ -275,7 +259,7 @@ class Layout:
 
 
 def _is_open(workspace: Workspace, label: str) -> bool:
-    return label == PICTURE or any(label in labels for labels in workspace.open.values())
+    return label == PICTURE or label in workspace.open
 
 
 def _in_front(label: str) -> bool:

@@ -16,7 +16,7 @@ from viewer.state.methods import groups, toggled, with_base
 from viewer.window import menus
 from viewer.window.setting_rows import panel_rows
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, begin_list, em, fitted, outlined, paragraph, tooltip
+from viewer.window.widgets import ERROR, QUIET, dropdown, em, fitted, outlined, paragraph, tooltip
 
 _OF_MODES = ("settings.symmetric", "settings.zoom_factor")
 _NAMES = 10.5  # ems of the names of methods; sentences begin behind them
@@ -78,7 +78,7 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
 
     Methods that have nothing to say of the scene are pale.  `combined`: additions are in it."""
     parsed = Method.parse(method)
-    if not begin_list(name, method, int(imgui.ComboFlags_.height_largest)):
+    if not dropdown(name, method, int(imgui.ComboFlags_.height_largest)):
         tooltip(parsed.kind.summary if method == parsed.base else method)
         return
 

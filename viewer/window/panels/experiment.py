@@ -13,29 +13,11 @@ from viewer.state.methods import BY_MODES, CERTIFIED, groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
 from viewer.window.panels.culling import kinds_of_methods
-from viewer.window.panels.plots import (
-    AXIS,
-    COLORS,
-    FLAGS,
-    go_to_experiment_frame,
-    pointed_frame,
-    setup_legend,
-    wrong_axis,
-)
+from viewer.window.panels.plots import AXIS, COLORS, FLAGS, go_to_run_frame, pointed_frame, setup_legend, wrong_axis
 from viewer.window.panels.runs import Part, results_table, show_run
 from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
-from viewer.window.widgets import (
-    ERROR,
-    QUIET,
-    begin_list,
-    in_window_style,
-    outlined,
-    paragraph,
-    properties,
-    row,
-    tooltip,
-)
+from viewer.window.widgets import ERROR, QUIET, dropdown, in_window_style, outlined, paragraph, properties, row, tooltip
 
 _USUAL = (REFERENCE, BY_MODES, CERTIFIED, "lightbuffer", "voxels")
 _PLOT, _TABLE = 16.0, 30.0  # ems of width; the table's first columns are what methods are compared by
@@ -73,7 +55,7 @@ def _plan(ui: Ui) -> None:
 def _methods(ui: Ui, plan: ExperimentPlan) -> None:
     """A list to be opened: a tick for each base, and for each way to add to those; the reference is always among
     them."""
-    opened = begin_list("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
+    opened = dropdown("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
     tooltip(", ".join(in_order({REFERENCE, *plan.methods})))
     if not opened:
         return
@@ -150,7 +132,7 @@ def _plot(ui: Ui, run: Experiment, results: Results) -> None:
         for method, curves in savings.items():
             steps, tests = (in_window_style(saved_in_words(curve[place] / 100.0)) for curve in curves)
             said.append(f"{method}: steps {steps}, tests {tests}")
-    go_to_experiment_frame(ui, run, results, place, said)
+    go_to_run_frame(ui, run, results, place, said)
 
 
 def _savings(results: Results) -> dict[str, tuple[np.ndarray, np.ndarray]]:

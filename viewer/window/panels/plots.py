@@ -194,7 +194,7 @@ def _go_to_frame(ui: Ui, number: int, values: list[str]) -> None:
         c.navigator.go(number)
 
 
-def go_to_experiment_frame(ui: Ui, run: Experiment, results: Results, place: int | None, values: list[str]) -> None:
+def go_to_run_frame(ui: Ui, run: Experiment, results: Results, place: int | None, values: list[str]) -> None:
     """Do the same for the frames of an experiment, by the method that it shows."""
     c = ui.controller
     if place is None:
