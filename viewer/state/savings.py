@@ -158,15 +158,11 @@ def placed(
         return length(part.label) + 5.0 * pad
 
     outside, bar_width = set[Part](), width
-
-    def goes_outside(part: Part) -> bool:
-        narrow = length(part.label) + 2.0 * pad > bar_width * part.rays / part.due
-        return narrow and part not in outside and bar_width - room(part) >= _SHORTEST * width
-
-    while narrow := list(filter(goes_outside, bar)):  # each makes the others narrower
-        widest = max(narrow, key=lambda part: part.rays)
-        outside.add(widest)
-        bar_width -= room(widest)
+    for part in sorted(2 * bar, key=lambda part: part.rays):  # twice, as each makes the others narrower
+        narrow = part not in outside and length(part.label) + 2.0 * pad > bar_width * part.rays / part.due
+        if narrow and bar_width - room(part) >= _SHORTEST * width:
+            outside.add(part)
+            bar_width -= room(part)
     done = 0
     for part in bar:
         start, end = (round(left + bar_width * rays / part.due) for rays in (done, done + part.rays))

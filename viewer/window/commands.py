@@ -173,14 +173,11 @@ def _interface(ui: Ui) -> list[Command]:
         p.ui_scale = SCALES[min(max(nearest + steps, 0), len(SCALES) - 1)] if steps else 1.0
         ui.controller.notices.say(f"interface at {100.0 * p.ui_scale:.0f} %")
 
+    def flip(owner: object, name: str) -> None:
+        setattr(owner, name, not getattr(owner, name))
+
     def other_theme() -> None:
         p.theme = "dark" if p.theme == "light" else "light"
-
-    def hide_panels() -> None:
-        ui.panels_hidden = not ui.panels_hidden
-
-    def fill_screen() -> None:
-        ui.full_screen.wanted = not ui.full_screen.wanted
 
     def workspace(one: Workspace, key: str) -> Command:
         return Command(one.name, "View", partial(hello_imgui.switch_layout, one.name), key, tip=one.help,
@@ -196,8 +193,10 @@ def _interface(ui: Ui) -> list[Command]:
         Command("Smaller interface", "View", partial(size, -1), "Ctrl+Minus", enabled=smallest,
                 other_keys=("Ctrl+KeypadSubtract",)),
         Command("Interface at 100 %", "View", partial(size, 0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
-        Command("Hide panels", "View", hide_panels, "Tab", checked=lambda: ui.panels_hidden, separated=True),
-        Command("Full screen", "View", fill_screen, "F11", checked=lambda: ui.full_screen.wanted),
+        Command("Hide panels", "View", partial(flip, ui, "panels_hidden"), "Tab", separated=True,
+                checked=lambda: ui.panels_hidden),
+        Command("Full screen", "View", partial(flip, ui.full_screen, "wanted"), "F11",
+                checked=lambda: ui.full_screen.wanted),
         *[workspace(one, key) for one, key in zip(WORKSPACES, ("F2", "F3", "F4"))],
         Command("Default layout", "View", lambda: ui.reset_layout(), tip="the panels of this workspace as they were"),
     ]  # fmt: skip
@@ -266,13 +265,9 @@ def _culling(ui: Ui) -> list[Command]:
 def _run(ui: Ui) -> list[Command]:
     c, runs = ui.controller, ui.controller.runs
 
-    def start(panel: str, begin: Callable[[], None]) -> None:
-        ui.show_run(panel)
+    def start(panel: str, begin: Callable[[], None] = lambda: None) -> None:
+        ui.show_panel(panel)
         begin()
-
-    def figure_3() -> None:
-        ui.show_panel("View")
-        ui.figures.figure_3()
 
     def stop() -> None:
         if c.loader.load_job is not None:
@@ -296,11 +291,11 @@ def _run(ui: Ui) -> list[Command]:
                 tip="towards the clicked primitive: is a shadow missing that shows only from near?"),
         Command("Start hunt", "Run", partial(start, "Hunt", c.runs.start_hunt), enabled=idle,
                 tip="search the path for the worst wrong pixels of a method"),
-        Command("Film...", "Run", lambda: ui.show_panel("Film"), enabled=idle,
+        Command("Film...", "Run", partial(start, "Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),
         Command("Table 1", "Run", partial(start, "Experiment", ui.figures.table_1), enabled=idle, separated=True,
                 tip="the paper's table for the open scene: 512 x 512, 10 bounces, 100 frames"),
-        Command("Figure 3", "Run", figure_3, enabled=idle,
+        Command("Figure 3", "Run", partial(start, "View", ui.figures.figure_3), enabled=idle,
                 tip="the paper's example of an occlusion that the test misses"),
         Command("Figure 4", "Run", partial(start, "Zoom test", ui.figures.figure_4), enabled=idle,
                 tip="the paper's example of a shadow that shows only from near, and of the zoom factor"),

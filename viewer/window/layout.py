@@ -67,10 +67,11 @@ PANELS: dict[str, Callable[[Ui], None]] = {
 
 
 _WHOLE, _COLUMN, _ANSWERS, _TABLES = "MainDockSpace", "Right", "RightBottom", "Bottom"
+_RUNS = ("Experiment", "Zoom test", "Hunt")
 _PLACES = {
     _COLUMN: ("View", "Culling", "Figure 1", "Statistics", "Scene", "Rendering", "Camera", "Saving", "Film"),
     _ANSWERS: ("Inspector", "Plots", "What if"),
-    _TABLES: ("Experiment", "Zoom test", "Hunt", "Find", "Pixels", "Compare", "Light buffer", "Log"),
+    _TABLES: (*_RUNS, "Find", "Pixels", "Compare", "Light buffer", "Log"),
     TOUR: (TOUR,),
 }
 """Where panels are: in a column as high as the window, or in a part below it for what is pointed at; below the picture,
@@ -89,7 +90,7 @@ class Workspace(NamedTuple):
     open: tuple[str, ...]
 
 
-MEASURE = "Measure"
+MEASURE, _TOUR = "Measure", 0.24  # the workspace that runs have, and the tour's share of the column
 WORKSPACES = (
     Workspace(
         "Explore", "room for the picture, and a column: how shadow rays are culled, what is shown, and why",
@@ -97,7 +98,7 @@ WORKSPACES = (
     ),
     Workspace(
         MEASURE, "experiments, zoom tests and hunts, with plots, and statistics beside a comparison",
-        0.235, 0.365, 0.5, ("Culling", "Statistics", "Plots", "Experiment", "Zoom test", "Hunt", "Compare"),
+        0.235, 0.365, 0.5, ("Culling", "Statistics", "Plots", *_RUNS, "Compare"),
     ),
     Workspace(
         "Debug", "rays of a pixel, objects and primitives, pixels, edits and the log",
@@ -121,33 +122,30 @@ class Layout:
         self._of_run = ""  # the panel to be shown once the workspace is there that runs have
         params.docking_params, *params.alternative_docking_layouts = map(self._docked, WORKSPACES)
         ui.show_panel, ui.panel_labels, ui.reset_layout = self.show, SIDES, self.reset
-        ui.show_run = self.show_run
 
     # --- what the commands ask for ---------------------------------------------------------------
 
     def show(self, label: str) -> None:
-        """Open a panel, and bring it to the front."""
-        self._ui.panels_hidden = False
-        self._docking.dockable_window_of_name(label).is_visible = True
-        self._to_front.add(label)
-
-    def show_run(self, label: str) -> None:
-        """Bring the panel of a run to the front where it is open, else in the workspace that has room for results."""
+        """Open a panel, and bring it to the front; that of a run in the workspace that has room for results, unless it
+        is open here."""
         ui, now = self._ui, self._ui.workspace
-        if now == MEASURE or self._docking.dockable_window_of_name(label).is_visible:
-            self.show(label)
-            return
-        hello_imgui.switch_layout(MEASURE)  # in the next frame
-        self._of_run = label
-        back = f"{ui.key_or_menu(now)} brings back {now} as it was"
-        ui.controller.notices.say(f"{label} is in the workspace {MEASURE}; {back}")
+        ui.panels_hidden = False
+        window = self._docking.dockable_window_of_name(label)
+        if label in _RUNS and not window.is_visible and now != MEASURE:
+            hello_imgui.switch_layout(MEASURE)  # in the next frame
+            self._of_run = label
+            back = f"{ui.key_or_menu(now)} brings back {now} as it was"
+            ui.controller.notices.say(f"{label} is in the workspace {MEASURE}; {back}")
+        else:
+            window.is_visible = True
+            self._to_front.add(label)
 
     def reset(self) -> None:
         """Open the panels of this workspace and no others, docked where they were at first."""
         self._ui.panels_hidden = False
         workspace = next(one for one in WORKSPACES if one.name == self._ui.workspace)
         for window in self._docking.dockable_windows:
-            window.is_visible = _is_open(workspace, window.label)
+            window.is_visible = window.label in (PICTURE, *workspace.open)
         self._docking.layout_reset = True
 
     def show_menu(self) -> None:
@@ -216,12 +214,14 @@ class Layout:
         # Without the cross beside the tabs, which closes all of them; and not what Hello ImGui has by default, which
         # would give it a background whatever the style.
         docking.main_dock_space_node_flags = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button)
-        splits = ((_COLUMN, _WHOLE, imgui.Dir.right, workspace.column), (_TABLES, _WHOLE, imgui.Dir.down, workspace.tables),
-                  (TOUR, _COLUMN, imgui.Dir.up, 0.24), (_ANSWERS, _COLUMN, imgui.Dir.down, workspace.answers))  # fmt: skip
-        docking.docking_splits = [hello_imgui.DockingSplit(of, space, side, share) for space, of, side, share in splits]
+        split, side = hello_imgui.DockingSplit, imgui.Dir
+        docking.docking_splits = [
+            split(_WHOLE, _COLUMN, side.right, workspace.column), split(_WHOLE, _TABLES, side.down, workspace.tables),
+            split(_COLUMN, TOUR, side.up, _TOUR), split(_COLUMN, _ANSWERS, side.down, workspace.answers),
+        ]  # fmt: skip
         spaces = {label: space for space, labels in _PLACES.items() for label in labels}
         docking.dockable_windows = [
-            self._window(label, spaces.get(label, _WHOLE), _is_open(workspace, label)) for label in PANELS
+            self._window(label, spaces.get(label, _WHOLE), label in (PICTURE, *workspace.open)) for label in PANELS
         ]
         return docking
 
@@ -256,10 +256,6 @@ class Layout:
             self._docking.dockable_window_of_name(label).is_visible = False
             if label == TOUR:
                 self._ui.tour.end()
-
-
-def _is_open(workspace: Workspace, label: str) -> bool:
-    return label == PICTURE or label in workspace.open
 
 
 def _in_front(label: str) -> bool:

@@ -81,7 +81,6 @@ class Ui:
     reset_layout: Callable[[], None] = lambda: None
     graphics: Graphics = field(init=False)
     show_panel: Callable[[str], Any] = lambda label: None
-    show_run: Callable[[str], Any] = lambda label: None
     panel_labels: tuple[str, ...] = ()
     guard: Guard = field(init=False)
     keymap: Keymap = field(init=False)

@@ -170,11 +170,10 @@ def one_of(choices: Iterable[tuple[T, str, str]], now: T) -> T:
     for number, (choice, label, tip) in enumerate(choices):
         if number:
             same_line_for(label.partition("##")[0])
-        shown = _fitted_label(label)
-        if imgui.radio_button(shown, choice == now):
+        if imgui.radio_button(label, choice == now):
             now = choice
-        if tip or shown != label:
-            tooltip(tip or label.partition("##")[0])
+        if tip:
+            tooltip(tip)
     return now
 
 
@@ -208,20 +207,13 @@ def outlined() -> Iterator[None]:
     imgui.pop_style_var()
 
 
-def _fitted_label(label: str) -> str:
-    """Return the label of a tick, with an ellipsis where it is too long for its line."""
-    words, mark, name = label.partition("##")
-    room = imgui.get_content_region_avail().x - imgui.get_frame_height() - imgui.get_style().item_inner_spacing.x
-    shown = fitted(words, room)
-    return label if shown == words else f"{shown}{mark or '###'}{name or words}"
-
-
 def checkbox(label: str, state: bool, change: Callable[[bool], None] = lambda on: None, tip: str = "") -> bool:
     """Show a tick that calls `change` with its new state; returns what it is now.  A label that is too long for its
     line ends in an ellipsis."""
-    shown = _fitted_label(label)
+    room = imgui.get_content_region_avail().x - imgui.get_frame_height() - imgui.get_style().item_inner_spacing.x
+    shown = label if label.startswith("##") else fitted(label, room)
     with outlined():
-        changed, now = imgui.checkbox(shown, state)
+        changed, now = imgui.checkbox(label if shown == label else f"{shown}###{label}", state)
     if shown != label:
         tip = f"{label}: {tip}" if tip else label
     if tip:

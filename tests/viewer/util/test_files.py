@@ -14,14 +14,7 @@ import pytest
 from tests.platforms import linux_only, posix_only
 from viewer.output import exports
 from viewer.util import files
-from viewer.util.files import (
-    check_writable,
-    file_lock,
-    whole_file,
-    write_new,
-    write_text,
-    write_whole,
-)
+from viewer.util.files import check_writable, file_lock, whole_file, write_new, write_text, write_whole
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:

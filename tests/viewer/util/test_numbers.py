@@ -10,13 +10,7 @@ from viewer.util.numbers import changed, saved_in_words
 
 @pytest.mark.parametrize(
     ("part", "said"),
-    [
-        (0.4123, "41.2%"),
-        (0.0, "0.0%"),
-        (-9.99, "-999.0%"),
-        (-17.413, "18.4 × as many"),
-        (-1193.6, "1,195 × as many"),
-    ],
+    [(0.4123, "41.2%"), (0.0, "0.0%"), (-9.99, "-999.0%"), (-17.413, "18.4 × as many"), (-1193.6, "1,195 × as many")],
 )
 def test_what_takes_far_more_is_told_as_so_many_times(part: float, said: str):
     assert saved(part) == said

@@ -70,33 +70,25 @@ def _write(ui: Ui, clauses: tuple[Clause, ...], start: ImVec2, width: float, lin
 def _draw(ui: Ui, bar: tuple[Part, ...], width: float) -> None:
     """The parts side by side, each as wide as its share; a click shows the pixels of one."""
     corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
-    for piece in placed(bar, corner.x, width, width_of, em(_PAD)):
-        part, high = piece.part, imgui.get_text_line_height() + em(0.1)
-        start, end = ImVec2(piece.start, corner.y), ImVec2(max(piece.end, piece.start + 1), corner.y + high)
-        right = end.x if piece.label_at is None else max(end.x, piece.label_at + width_of(part.label))
-        pointed = _button(ui, part, "beside" if piece.beside else "savings", start, ImVec2(right, end.y))
-        if piece.beside:
-            start.y, end.y = start.y + 0.5 * (high - (end.x - start.x)), end.y - 0.5 * (high - (end.x - start.x))
+    high, next_light = imgui.get_text_line_height() + em(0.1), f"Next light{ui.key('Next light')}"
+    for part, left, right, label_at, beside in placed(bar, corner.x, width, width_of, em(_PAD)):
+        inset, right = 0.5 * (high - (right - left)) if beside else 0.0, max(right, left + 1)
+        edge = right if label_at is None else max(right, label_at + width_of(part.label))
+        imgui.set_cursor_screen_pos(ImVec2(left, corner.y))
+        if imgui.invisible_button(f"{part.name}##{'beside' if beside else 'savings'}", ImVec2(edge - left, high)):
+            _show_pixels(ui, part)
+        start, end = ImVec2(left, corner.y + inset), ImVec2(right, corner.y + high - inset)
         draw.add_rect_filled(start, end, packed(DARK))
         draw.add_rect_filled(start, end, packed(FATES[part.fate].color, WOULD_OPACITY if part.would else 1.0))
-        if pointed or (ui.fate_shown is part.fate and not piece.beside):
+        if imgui.is_item_hovered():
+            imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+        if imgui.is_item_hovered() or (ui.fate_shown is part.fate and not beside):
             draw.add_rect(start, end, imgui.get_color_u32(imgui.Col_.text), 0.0, thickness=2.0)
-        if piece.label_at is not None:
-            on_color = LIGHT if part.would else label_color(FATES[part.fate].color)
-            color = imgui.get_color_u32(imgui.Col_.text) if piece.beside else packed(on_color)
-            draw.add_text(ImVec2(piece.label_at, corner.y + round(em(0.05))), color, part.label)
-
-
-def _button(ui: Ui, part: Part, name: str, start: ImVec2, end: ImVec2) -> bool:
-    """Let a part be clicked between two corners; returns whether the pointer is there."""
-    imgui.set_cursor_screen_pos(start)
-    if imgui.invisible_button(f"{part.name}##{name}", ImVec2(end.x - start.x, end.y - start.y)):
-        _show_pixels(ui, part)
-    next_light = f"Next light{ui.key('Next light')}"
-    tooltip(f"{part.in_words()}\nClick: the pixels whose rays to the chosen light these are. {next_light}")
-    if imgui.is_item_hovered():
-        imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
-    return imgui.is_item_hovered()
+        tooltip(f"{part.in_words()}\nClick: the pixels whose rays to the chosen light these are. {next_light}")
+        if label_at is not None:
+            on_color = packed(LIGHT if part.would else label_color(FATES[part.fate].color))
+            color = imgui.get_color_u32(imgui.Col_.text) if beside else on_color
+            draw.add_text(ImVec2(label_at, corner.y + round(em(0.05))), color, part.label)
 
 
 def _show_pixels(ui: Ui, part: Part) -> None:

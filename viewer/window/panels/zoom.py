@@ -121,7 +121,7 @@ def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach]) -> None:
     always = int(imgui.Cond_.always)
     implot.setup_axes_limits(-0.7, last, 0.3 * float(pixels.min()), 6.0 * most, always)
     wrong_axis(max(1, *(approach.most_wrong for approach in approaches)), always, size.y)
-    setup_legend([*map(_name, approaches), _CHANGES], size)
+    setup_legend([*(f"factor {approach.factor:g}" for approach in approaches), _CHANGES], size)
     for place, approach in enumerate(approaches):
         _plot_factor(approach, place, len(approaches))
     numbers = np.arange(len(steps), dtype=np.float64)
@@ -134,12 +134,8 @@ def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach]) -> None:
     implot.end_plot()
 
 
-def _name(approach: Approach) -> str:
-    return f"factor {approach.factor:g}"
-
-
 def _plot_factor(approach: Approach, place: int, of: int) -> None:
-    color, steps, name = COLORS[place % len(COLORS)], approach.steps, _name(approach)
+    color, steps, name = COLORS[place % len(COLORS)], approach.steps, f"factor {approach.factor:g}"
     numbers = np.arange(len(steps), dtype=np.float64)
     limits = np.array([approach.factor * step.highest or np.nan for step in steps], np.float64)
     wrong = np.array([step.wrong_of_primitive for step in steps], np.float64)
