@@ -28,17 +28,9 @@ class FrameNavigator:
     """Goes back to frames of the history, to those of an experiment or a hunt, and to other states."""
 
     def __init__(
-        self,
-        session: Session,
-        history: FrameHistory,
-        scheduler: FrameScheduler,
-        runs: Runs,
-        undo: Undo,
-        selection: Selection,
-        notices: Notices,
-        restore: Callable[[ViewState], None],
-        reset_modes: Callable[[], None],
-    ) -> None:
+        self, session: Session, history: FrameHistory, scheduler: FrameScheduler, runs: Runs, undo: Undo,
+        selection: Selection, notices: Notices, restore: Callable[[ViewState], None], reset_modes: Callable[[], None],
+    ) -> None:  # fmt: skip
         self._session, self._history, self._scheduler = session, history, scheduler
         self._runs, self._undo, self._selection, self._notices = runs, undo, selection, notices
         self._restore, self._reset_modes = restore, reset_modes

@@ -24,14 +24,9 @@ class NamedStates:
     reserved: Collection[str] = ()
 
     def __init__(
-        self,
-        session: Session,
-        preferences: Preferences,
-        notices: Notices,
-        write: Callable[[], None],
-        refuses: Callable[[], bool] = lambda: False,
-        begin_step: Callable[[str], None] = lambda name: None,
-    ) -> None:
+        self, session: Session, preferences: Preferences, notices: Notices, write: Callable[[], None],
+        refuses: Callable[[], bool] = lambda: False, begin_step: Callable[[str], None] = lambda name: None,
+    ) -> None:  # fmt: skip
         """`write` writes the preferences to their file.  Nothing is applied while `refuses()`, which says so itself;
         `begin_step` names the step of undo that follows."""
         self._session, self._preferences, self._notices, self._write = session, preferences, notices, write

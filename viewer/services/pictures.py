@@ -67,16 +67,9 @@ class Pictures:
     """`plan` is what the dialog says."""
 
     def __init__(
-        self,
-        session: Session,
-        preferences: Preferences,
-        scheduler: FrameScheduler,
-        history: FrameHistory,
-        loader: SceneLoader,
-        runs: Runs,
-        files: CaptureService,
-        notices: Notices,
-    ) -> None:
+        self, session: Session, preferences: Preferences, scheduler: FrameScheduler, history: FrameHistory,
+        loader: SceneLoader, runs: Runs, files: CaptureService, notices: Notices,
+    ) -> None:  # fmt: skip
         self._session, self._preferences, self._scheduler, self._history = session, preferences, scheduler, history
         self._loader, self._runs, self._files, self._notices = loader, runs, files, notices
         self.plan = PicturePlan()

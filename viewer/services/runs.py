@@ -103,16 +103,10 @@ class Runs:
     way.  `chosen_find` is the counterexample of the hunt that is looked at, by its place in the list."""
 
     def __init__(
-        self,
-        session: Session,
-        selection: Selection,
-        perform: Callable[[Task[None]], object],
-        preferences: Preferences,
-        notices: Notices,
-        files: CaptureService,
-        wake: Callable[[], None] = lambda: None,
+        self, session: Session, selection: Selection, perform: Callable[[Task[None]], object],
+        preferences: Preferences, notices: Notices, files: CaptureService, wake: Callable[[], None] = lambda: None,
         edited: Callable[[], bool] = lambda: False,
-    ) -> None:
+    ) -> None:  # fmt: skip
         """Nothing begins while `edited()`: the scene is being edited, and the next picture is of another."""
         self._edited = edited
         self._session, self._selection, self._perform = session, selection, perform

@@ -62,15 +62,9 @@ class SceneTable:
     rows must not move."""
 
     def __init__(
-        self,
-        session: Session,
-        selection: Selection,
-        preferences: Preferences,
-        notices: Notices,
-        files: CaptureService,
-        editing: Editing,
-        wake: Callable[[], None] = lambda: None,
-    ) -> None:
+        self, session: Session, selection: Selection, preferences: Preferences, notices: Notices,
+        files: CaptureService, editing: Editing, wake: Callable[[], None] = lambda: None,
+    ) -> None:  # fmt: skip
         self.selection, self._session, self._wake = selection, session, wake
         self._preferences, self._notices, self._files, self._editing = preferences, notices, files, editing
         self.level = Level.OBJECTS

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import NamedTuple
 
 import numpy as np
 
@@ -137,28 +136,20 @@ class Part:
         return f"{self.name}: {count(self.rays)} of {count(self.due)} shadow rays due ({self.share})\n{way}{meaning}"
 
 
-class Piece(NamedTuple):
-    """What is drawn in the colour of a part, between two edges in whole pixels: its stretch of the bar or, `beside` the
-    bar, a square before its label; and where the label begins, if it is here."""
-
-    part: Part
-    start: int
-    end: int
-    label_at: int | None
-    beside: bool = False
-
-
 def placed(
     bar: tuple[Part, ...], left: float, width: float, length: Callable[[str], float], pad: float
-) -> Iterator[Piece]:
-    """Yield the parts side by side, and behind them the labels that do not fit into theirs, for which the bar is
-    shorter; `length` is that of a text, and a square is two pads wide.  In little width some have no label."""
+) -> Iterator[tuple[Part, int, int, int | None, bool]]:
+    """Yield what is drawn in the colour of a part: its stretch of the bar, and behind the shortened bar a square before
+    each label that does not fit into its part.  Each with its edges in whole pixels, where its label begins if that is
+    here, and whether it is such a square, which is two pads wide.
+
+    `length` is that of a text.  In little width some parts have no label."""
 
     def room(part: Part) -> float:
         return length(part.label) + 5.0 * pad
 
     outside, bar_width = set[Part](), width
-    for part in sorted(2 * bar, key=lambda part: part.rays):  # twice, as each makes the others narrower
+    for part in 2 * sorted(bar, key=lambda part: part.rays):  # twice, as each makes the others narrower
         narrow = part not in outside and length(part.label) + 2.0 * pad > bar_width * part.rays / part.due
         if narrow and bar_width - room(part) >= _SHORTEST * width:
             outside.add(part)
@@ -168,11 +159,11 @@ def placed(
         start, end = (round(left + bar_width * rays / part.due) for rays in (done, done + part.rays))
         done += part.rays
         fits = part not in outside and length(part.label) + pad <= end - start
-        yield Piece(part, start, end, round(start + pad) if fits else None)
+        yield part, start, end, round(start + pad) if fits else None, False
     at = left + bar_width
     for part in (one for one in bar if one in outside):
         start, end = round(at + pad), round(at + 3.0 * pad)
-        yield Piece(part, start, end, round(end + pad), beside=True)
+        yield part, start, end, round(end + pad), True
         at += room(part)
 
 

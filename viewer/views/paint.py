@@ -37,15 +37,9 @@ _ONE = np.float32(1.0)
 
 
 def by_class(
-    frame: Frame,
-    draw: DrawOptions,
-    classes: NDArray,
-    palette: NDArray[np.float32],
-    stripe: int = 0,
-    cells: NDArray[np.int32] | None = None,
-    line: float = CELL_LINE,
-    shading: float | None = None,
-) -> Pixels:
+    frame: Frame, draw: DrawOptions, classes: NDArray, palette: NDArray[np.float32], stripe: int = 0,
+    cells: NDArray[np.int32] | None = None, line: float = CELL_LINE, shading: float | None = None,
+) -> Pixels:  # fmt: skip
     """Draw the colour of the class (h, w) of each pixel, shaded; between `cells` there is a `line`.
 
     Stripes of so many pixels take their colours from the first and the second half of the palette in turn."""

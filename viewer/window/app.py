@@ -84,14 +84,9 @@ class App:
     """The window's life: made, run once, closed."""
 
     def __init__(
-        self,
-        scene_path: Path | None,
-        settings: dict[str, Any] | None = None,
-        folders: Sequence[Path] = (),
-        meshes: MeshOptions = IN_STUDIO,
-        scene: Scene | None = None,
-        on_frame: OnFrame | None = None,
-    ) -> None:
+        self, scene_path: Path | None, settings: dict[str, Any] | None = None, folders: Sequence[Path] = (),
+        meshes: MeshOptions = IN_STUDIO, scene: Scene | None = None, on_frame: OnFrame | None = None,
+    ) -> None:  # fmt: skip
         """A window on a scene or a saved picture; without one on what was open last, where that is wanted, else on the
         embedded room.
 

@@ -35,15 +35,10 @@ def in_panel(ui: Ui, *panels: str) -> list[Setting]:
 
 
 def panel_rows(
-    ui: Ui,
-    panel: str,
-    names: float,
-    own: Mapping[str, Callable[[Ui, Setting], None]] = {},
-    above: Callable[[], None] = lambda: None,
-    below: Callable[[], None] = lambda: None,
-    note: Callable[[Setting], str] = lambda one: "",
-    also: Sequence[str] = (),
-) -> None:
+    ui: Ui, panel: str, names: float, own: Mapping[str, Callable[[Ui, Setting], None]] = {},
+    above: Callable[[], None] = lambda: None, below: Callable[[], None] = lambda: None,
+    note: Callable[[Setting], str] = lambda one: "", also: Sequence[str] = (),
+) -> None:  # fmt: skip
     """Show all settings that are declared for a panel, or as of others that it stands for `also`, and do something as
     things are: rows of those that have a value, with room for names of so many ems, and below these ticks beside each
     other.

@@ -124,11 +124,13 @@ def test_the_parts_of_the_bar_are_all_rays_that_are_due():
 def test_every_part_of_the_bar_is_named_however_narrow(rays: dict[str, int], width: float) -> None:
     bar = bar_of(frame_by("paper", **rays))
     pieces = list(placed(bar, 10.0, width, lambda text: 7.0 * len(text), 5.0))
-    named = [piece for piece in pieces if piece.label_at is not None]
-    assert sorted(piece.part.name for piece in named) == sorted(part.name for part in bar)
-    ends = [10, *(piece.label_at + 7 * len(piece.part.label) for piece in named)]
-    assert all(end <= piece.label_at for end, piece in zip(ends, named)) and ends[-1] <= 10.0 + width
-    assert all(piece.beside or end <= piece.end for end, piece in zip(ends[1:], named))
+    named = [(part, end, at, beside) for part, _, end, at, beside in pieces if at is not None]
+    assert sorted(part.name for part, *_ in named) == sorted(part.name for part in bar)
+    done = 10.0
+    for part, end, at, beside in named:
+        assert done <= at and (beside or at + 7 * len(part.label) <= end)
+        done = at + 7 * len(part.label)
+    assert done <= 10.0 + width
 
 
 def test_wrong_answers_stand_out_and_clusters_have_their_own_words():

@@ -58,15 +58,9 @@ Part = tuple[str, float, Callable[[], None]]
 
 
 def show_run(
-    ui: Ui,
-    run: Experiment | ZoomTest | Hunt | None,
-    plan: Callable[[], None],
-    start: Callable[[], None],
-    tip: str,
-    doing: str,
-    parts: Sequence[Part],
-    why: str,
-) -> None:
+    ui: Ui, run: Experiment | ZoomTest | Hunt | None, plan: Callable[[], None], start: Callable[[], None], tip: str,
+    doing: str, parts: Sequence[Part], why: str,
+) -> None:  # fmt: skip
     """Show a panel: what starts a run or stops it, the plan or what it is doing, and beside these what it has found.
 
     Without results it says `why` one would start."""
@@ -125,14 +119,9 @@ def _in_child(name: str, size: ImVec2, show: Callable[[], None]) -> None:
 
 
 def results_table(
-    name: str,
-    columns: Sequence[Column[Row]],
-    rows: Sequence[Row],
-    click: Callable[[int], None] | None = None,
-    chosen: int | None = None,
-    tip: Callable[[Row], str] | None = None,
-    fits: bool = False,
-) -> None:
+    name: str, columns: Sequence[Column[Row]], rows: Sequence[Row], click: Callable[[int], None] | None = None,
+    chosen: int | None = None, tip: Callable[[Row], str] | None = None, fits: bool = False,
+) -> None:  # fmt: skip
     """Show a table whose headings and first column stay, as wide as its columns need; a click on a row, of which `tip`
     says more, tells which it is.  It takes all room or, where it `fits`, what its rows need."""
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y | imgui.TableFlags_.scroll_x
