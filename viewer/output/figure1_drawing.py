@@ -102,7 +102,7 @@ _LOOP, _GUTTER = 1.1, 1.6  # the way back to the first stage, at the left edge, 
 _TIME, _SQUARE, _HEAD = 0.14, 0.7, 0.28  # the bar of a stage's time, a row's square, and half of an arrow's head
 _WIDEST = 28.0  # a column, where there is room for several: else numbers stand far from their names
 _BOLD = 1.12  # how much wider bold letters are
-_SMALLEST = 0.8  # of the size of letters: what finds no room by smaller ones is scrolled
+_SMALLEST = 0.6  # of the size of letters: what finds no room by smaller ones is scrolled
 
 Measure = Callable[[str], float]
 
@@ -121,7 +121,7 @@ def arrange(figure: Figure, measure: Measure, line: float, width: float, height:
     for rules in (True, False):
         for columns in range(fewest, stages + 1):
             drawing = sheet.draw(figure, width, columns, rules)
-            scale = _scale(drawing, width, height)
+            scale = min(1.0, width / drawing.width, height / drawing.height)
             if scale == 1.0:
                 return columns, rules, scale
             best = max(best, (scale, columns))
@@ -137,12 +137,8 @@ def lay_out(
     Letters are not so small that nobody can read them: then the figure is higher than the room."""
     columns, rules, scale = arranged or arrange(figure, measure, line, width, height)
     drawing = _Sheet(cache(measure), line).draw(figure, width / scale, columns, rules)
-    drawing.scale = _scale(drawing, width, height)
+    drawing.scale = min(1.0, width / drawing.width, max(height / drawing.height, _SMALLEST))
     return drawing
-
-
-def _scale(drawing: Drawing, width: float, height: float) -> float:
-    return min(1.0, width / drawing.width, max(height / drawing.height, _SMALLEST))
 
 
 @dataclass(frozen=True)

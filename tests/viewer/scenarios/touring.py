@@ -46,10 +46,11 @@ def _by_hand(d: Driver) -> None:
     d.change(method="paper")
     d.press("C").settle()
     d.expect("Press C once more")
-    with patch.object(tours, "SECONDS", 3.0):
-        d.press("C").settle().expect("Done: the next step")
-        assert "twice" not in d.text() and tour.step is COST
-    d.wait(lambda: tour.step is WHOLE, "culling, seen on again", 10.0)
+    with patch.object(tours, "SECONDS", 90.0):
+        d.press("C").expect("Done: the next step", patience=60.0)
+        assert "twice" not in d.text() and tour.step is COST, "it is told that it is done"
+        d.click(f"//Tour/{icons.ICON_FA_CHECK}  Done: the next step")
+    assert tour.step is WHOLE
     d.press("2").wait(lambda: tour.step is MET, "the occlusion modes", 10.0)
     d.press("3").pause(0.6)
     assert tour.step is MET, "half of it"
@@ -76,10 +77,8 @@ def _by_hand(d: Driver) -> None:
     assert d.c.session.frame >= EXAMINED
     for command in NEXT.commands:
         assert d.command(command), "the tour's end offers it"
-    d.click("//Tour/**/Figure 4").expect("Start", "Steps")
-    assert d.ui.workspace == "Measure" and d.has("//Tour/Close"), "runs have their workspace"
-    d.wait(lambda: d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole, "the figure", 60.0)
-    d.press("F2").settle()
+    d.click("//Tour/**/Figure 4").wait(lambda: d.ui.workspace == "Measure" and d.has("//Zoom test"), "its panel", 20.0)
+    d.wait(lambda: d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole, "the figure", 60.0).press("F2").settle()
     d.click("//Tour/Close")
     assert tour.step is None and not d.c.session.state.pace.fixed_size, "pictures have the window's size again"
 

@@ -124,13 +124,10 @@ def test_the_parts_of_the_bar_are_all_rays_that_are_due():
 def test_every_part_of_the_bar_is_named_however_narrow(rays: dict[str, int], width: float) -> None:
     bar = bar_of(frame_by("paper", **rays))
     pieces = list(placed(bar, 10.0, width, lambda text: 7.0 * len(text), 5.0))
-    named = [(part, end, at, beside) for part, _, end, at, beside in pieces if at is not None]
-    assert sorted(part.name for part, *_ in named) == sorted(part.name for part in bar)
-    done = 10.0
-    for part, end, at, beside in named:
-        assert done <= at and (beside or at + 7 * len(part.label) <= end)
-        done = at + 7 * len(part.label)
-    assert done <= 10.0 + width
+    labels = [(at, at + 7 * len(part.label), end, beside) for part, _, end, at, beside in pieces if at is not None]
+    assert len(labels) == len(bar) and all(beside or right <= end for _, right, end, beside in labels)
+    edges = [10.0, *(edge for left, right, *_ in labels for edge in (left, right)), 10.0 + width]
+    assert edges == sorted(edges), "none lies over another"
 
 
 def test_wrong_answers_stand_out_and_clusters_have_their_own_words():
