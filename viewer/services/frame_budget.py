@@ -133,7 +133,13 @@ class FrameBudget:
         return Cost(self._shading[near].fixed, more * self._shading[near].each)
 
     def plan(
-        self, width: int, height: int, seconds: float, coarse: bool = True, playing: bool = True, lamp_samples: int = 1
+        self,
+        width: int,
+        height: int,
+        seconds: float,
+        coarse: bool = True,
+        playing: bool = True,
+        lamp_samples: int = 1,
     ) -> Plan:
         """Return how to begin a picture that is to be shown so many seconds later, and how to go on; at full resolution
         unless it may be a `coarse` one, and at once where nothing moves and the whole does not take long."""

@@ -84,7 +84,10 @@ CERTIFICATES = {
         (Certificate.NONE, "nothing is proven, or the light is behind it: its shadow rays are traced"),
         (Certificate.FULL, "all of it is in the shadow of static geometry: its shadow rays are culled"),
         (Certificate.LIT, "nothing static is between it and the light: tested against dynamic objects only"),
-        (Certificate.CANDIDATES, "only a few primitives can block the light: tested against these and dynamic objects"),
+        (
+            Certificate.CANDIDATES,
+            "only a few primitives can block the light: tested against these and dynamic objects",
+        ),
     )
 }
 
@@ -97,7 +100,9 @@ def _not_culled(fate: Fate, why: str, color: Color) -> Class:
 
 FATES = {
     Fate.NONE: Class("not known yet", UNKNOWN, "this pixel has not been shaded yet"),
-    Fate.FACES_AWAY: Class("faces away", FACES_AWAY, "no shadow ray is due: the surface faces away from the light"),
+    Fate.FACES_AWAY: Class(
+        "faces away", FACES_AWAY, "no shadow ray is due: the surface faces away from the light",
+    ),
     Fate.CULLED: Class(
         terms.CULLED, SHADOW[ShadowMode.FULL_SHADOW].color,
         f"answered without asking any geometry: {_BY_PAPER.format('FULL_SHADOW')}",

@@ -28,7 +28,10 @@ class Certificates(ClassView):
     of_light = True
     shows = "certificates"
     what = "certificate"
-    classes = (*CERTIFICATES.values(), MOVES._replace(meaning="it moves: never certified"))
+    classes = (
+        *CERTIFICATES.values(),
+        MOVES._replace(meaning="it moves: never certified"),
+    )
 
     def find(self, frame: Frame, light: int) -> NDArray[np.uint8]:
         words = frame.certificates

@@ -39,7 +39,12 @@ def panels(d: Driver) -> None:
         d.press(key).frames(5)
         assert hello_imgui.current_layout_name() == workspace and docking.layout_name == workspace
         assert there in is_open() and ("Log" in is_open()) == (workspace == "Debug")
-    _room(d)
+    # The picture has its share of the window in each, also in one that was resized while another was shown.
+    for size, least in (((900, 600), (0.25, 0.25, 0.50)), ((1280, 800), (0.33, 0.33, 0.60))):
+        d.resize(*size)
+        for key, part in zip(("F3", "F4", "F2"), least):
+            width, height = d.press(key).frames(8).ui.picture.area
+            assert width * height >= part * size[0] * size[1], f"{d.ui.workspace} at {size}: {width} x {height}"
     d.show_panel("Plots").press("F3", "F2").frames(5)
     assert "Plots" in is_open(), "a workspace stays as it was left"
     d.press("B")
@@ -65,15 +70,6 @@ def panels(d: Driver) -> None:
     d.press("K")
     d.wait(lambda: d.c.history.frames >= traced + 3, "frames at idle")
     d.press("K")
-
-
-def _room(d: Driver) -> None:
-    """The picture has its share of the window in each workspace, also of one that was resized in another."""
-    for size, least in (((900, 600), (0.25, 0.25, 0.50)), ((1280, 800), (0.33, 0.33, 0.60))):
-        d.resize(*size)
-        for key, part in zip(("F3", "F4", "F2"), least):
-            width, height = d.press(key).frames(8).ui.picture.area
-            assert width * height >= part * size[0] * size[1], f"{d.ui.workspace} at {size}: {width} x {height}"
 
 
 def looks(d: Driver) -> None:

@@ -10,8 +10,11 @@ from viewer.util.numbers import changed, saved_in_words
 
 @pytest.mark.parametrize(
     ("part", "said"),
-    [(0.4123, "41.2%"), (0.0, "0.0%"), (-9.99, "-999.0%"), (-17.413, "18.4 × as many"), (-1193.6, "1,195 × as many")],
-)
+    [
+        (0.4123, "41.2%"), (0.0, "0.0%"), (-9.99, "-999.0%"), (-17.413, "18.4 × as many"),
+        (-1193.6, "1,195 × as many"),
+    ],
+)  # fmt: skip
 def test_what_takes_far_more_is_told_as_so_many_times(part: float, said: str):
     assert saved(part) == said
     assert saved_in_words(part) == (said if "×" in said else f"{said} saved")
