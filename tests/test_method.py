@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from tracer.method import Kind, Method, additions, bases, choice, meant, register, unregister
+from tracer.method import Kind, Method, additions, bases, choice, meant, register, title_of, unregister
 from viewer.state.methods import with_base
 
 
@@ -82,3 +82,11 @@ def test_a_kind_is_registered_once_and_can_be_taken_back():
     assert (bases(), additions(), choice()) == before
     with pytest.raises(ValueError, match="no method 'mine'"):
         Method.parse("mine")
+
+
+def test_people_read_titles_each_of_one_kind_and_names_where_there_is_none():
+    kinds = {*bases(measures=True), *additions(measures=True)}
+    assert len({kind.title for kind in kinds}) == len(kinds)
+    assert Method.parse("certified+rest").title == "Certified + rest"
+    assert title_of("paper+lightbuffer") == "Paper + light buffer" and title_of("none") == "None (trace all)"
+    assert Kind("mine", "Mine.", dict).title == "mine"

@@ -30,7 +30,7 @@ def page() -> str:
 
 
 def _row(one: Setting) -> str:
-    default = "" if one.kind is str and not one.default else one.text(one.default)
+    default = one.default or "" if one.kind is str else one.text(one.default)
     default = "" if default == "changed" else default
     values = one.expected_shown if one.kind in (bool, int, float) or one.choices else ""
     if one.kind is float and one.default == math.inf:

@@ -21,7 +21,7 @@ DEFAULT_METHOD = "paper"
 ANY_NUMBER = 1 << 31
 MANY = 16  # lights: clusters of fewer are hardly ever worth it
 HELD = 31  # lights that words of modes have room for (`tracer.culling.modes.MAX_CULLED_LIGHTS`)
-#: Methods that are made of others and are worth a look (`line_up`), as far as these are known.
+#: Methods that are made of others and are worth a look (`line_up`).
 TOGETHER = (
     "paper+cache",
     "certified+cache",
@@ -35,9 +35,10 @@ TOGETHER = (
 
 @dataclass(frozen=True)
 class Kind:
-    """A base or an addition: its name, what it trusts and whether it is exact, for menus and help texts, the class that
-    implements it, and its capabilities.
+    """A base or an addition: its name in files and commands, what it trusts and whether it is exact, for menus and help
+    texts, the class that implements it, and its capabilities.
 
+    `title` is what people read; the name where none is given.
     `implementation` is a subclass of `tracer.methods.interface.ShadowMethod`, or where one is: "module:Class".
     `culls`: it answers shadow rays without tracing them. `exact`: its pictures are those of "none", bit for bit.
     `uses_modes`: it culls by the modes of the paper, and keeps them in any case. `uses_cells`: its modes belong to
@@ -69,6 +70,15 @@ class Kind:
     in_part: bool = False
     clusters: bool = False
     makes: str = ""
+    title: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "title", self.title or self.name)
+
+    @property
+    def plus(self) -> str:
+        """How it reads where it is added to a base: "+ occluder cache"."""
+        return f"+ {self.title[:1].lower()}{self.title[1:]}"
 
     def fits(self, lights: int, samples: int | None = None) -> bool:
         """Whether it has anything to say of a scene with so many lights and, unless one each, samples of them."""
@@ -149,12 +159,8 @@ def unknown(names: Sequence[str]) -> str:
 def line_up(lights: int, samples: int | None = None) -> list[str]:
     """The methods that are worth comparing in a scene of so many lights and samples of them (`Kind.fits`): all
     bases, and what goes well together."""
-    names = [kind.name for kind in bases(measures=True)] + [name for name in TOGETHER if _is_known(name)]
+    names = [*(kind.name for kind in bases(measures=True)), *TOGETHER]
     return [name for name in names if Method.parse(name).fits(lights, samples)]
-
-
-def _is_known(name: str) -> bool:
-    return all(part in _KINDS for part in name.split("+"))
 
 
 @dataclass(frozen=True)
@@ -177,6 +183,11 @@ class Method:
 
     def __str__(self) -> str:
         return "+".join(kind.name for kind in self.kinds)
+
+    @property
+    def title(self) -> str:
+        """What people read: "Certified + occluder cache"."""
+        return " ".join((self.kind.title, *(kind.plus for kind in self.added)))
 
     @property
     def kinds(self) -> tuple[Kind, ...]:
@@ -256,50 +267,55 @@ _FEW = {"lights": (0, HELD), "answers": HELD, "lamps": False}
 _PROVES = {"has_certificates": True, "makes": "certificates made"}
 _MEASURE = {"addition": True, "measures": True}
 
-# Name, class in `tracer.methods`, what it can do, what it trusts and whether it is exact; in the order of menus.
-_TABLE: tuple[tuple[str, str, dict[str, Any], str], ...] = (
-    ("none", "none:NoCulling", {"culls": False},
+# Name, title, class in `tracer.methods`, what it can do, what it trusts and whether it is exact; in the order of menus.
+_TABLE: tuple[tuple[str, str, str, dict[str, Any], str], ...] = (
+    ("none", "None (trace all)", "none:NoCulling", {"culls": False},
      "Trusts nothing: traces every shadow ray. Exact; all others are compared with it."),
-    ("paper", "paper:Paper", _BY_MODES,
+    ("paper", "Paper", "paper:Paper", _BY_MODES,
      "Trusts what the shadow rays of a primitive have met since all of it was seen (§2.4). Wrong now and then."),
-    ("cells", "cells:Cells", {**_BY_MODES, "uses_cells": True},
-     "Trusts the same as paper, but of the cells of large triangles. Wrong now and then."),
-    ("certified", "certified:certified", _PROVES,
+    ("cells", "Cells", "cells:Cells", {**_BY_MODES, "uses_cells": True},
+     "Trusts the same as Paper, but of the cells of large triangles. Wrong now and then."),
+    ("certified", "Certified", "certified:certified", _PROVES,
      "Trusts only what is proven of the cells of triangles. Exact."),
-    ("auto", "auto:Auto", {**_PROVES, "adaptive": True},
+    ("auto", "Automatic", "auto:Auto", {**_PROVES, "adaptive": True},
      "Trusts certificates where they measurably save time. Exact."),
-    ("free", "free:Free", {"measures": True},
+    ("free", "Free (answers known)", "free:Free", {"measures": True},
      "Trusts the answers of the same frame, traced before: no culling can be faster. Exact."),
-    ("lightcuts", "lightcuts:Lightcuts", _CUTS,
+    ("lightcuts", "Lightcuts", "lightcuts:Lightcuts", _CUTS,
      "Trusts a bound of the error, by which clusters of lights are as fine as asked for. Not exact."),
-    ("lightcuts-stochastic", "lightcuts_stochastic:StochasticLightcuts", _CUTS,
+    ("lightcuts-stochastic", "Lightcuts, stochastic", "lightcuts_stochastic:StochasticLightcuts", _CUTS,
      "Lightcuts with lights drawn for each pixel: noise, which averages out, instead of bands. Not exact."),
-    ("lightcuts-certified", "lightcuts_certified:CertifiedLightcuts", {**_CUTS, **_PROVES},
+    ("lightcuts-certified", "Lightcuts, certified", "lightcuts_certified:CertifiedLightcuts", {**_CUTS, **_PROVES},
      "Lightcuts of those lights that are not proven to be hidden. Not exact."),
-    ("voxels", "voxels:Voxels", {**_OF_SPACE, **_FEW, "makes": "voxels classified"},
+    ("voxels", "Voxels", "voxels:Voxels", {**_OF_SPACE, **_FEW, "makes": "voxels classified"},
      "Trusts cubes of space that are proven to be lit, or in shadow, as a whole. Exact."),
-    ("lie-exact", "lie:Environments", _IN_PART,
+    ("lie-exact", "Local illumination environments, exact", "lie:Environments", _IN_PART,
      "Trusts what is proven to be all that can block a light from a cell of space. Exact."),
-    ("lie", "lie:SampledEnvironments", {**_IN_PART, "exact": False},
+    ("lie", "Local illumination environments", "lie:SampledEnvironments", {**_IN_PART, "exact": False},
      "Trusts samples of what blocks a light from a cell of space, as published. Wrong now and then."),
-    ("cache", "cache:OccluderCache", {"addition": True},
+    ("cache", "Occluder cache", "cache:OccluderCache", {"addition": True},
      "Tests what blocked a light before first. As exact as the method."),
-    ("rest", "rest:Resting", {"addition": True, "culls": False},
+    ("rest", "Rest", "rest:Resting", {"addition": True, "culls": False},
      "Counts objects that rest as static. As exact as the method."),
-    ("lightbuffer", "lightbuffer:LightBuffer", {**_EITHER, **_FEW, "makes": "light buffers made"},
+    ("lightbuffer", "Light buffer", "lightbuffer:LightBuffer", {**_EITHER, **_FEW, "makes": "light buffers made"},
      "Trusts lists of all that each light can meet in each direction. Exact."),
-    ("cache-directions", "cache:DirectionCache", _MEASURE,
+    ("cache-directions", "Occluder cache by direction", "cache:DirectionCache", _MEASURE,
      "Tests first what blocked a light before in this direction."),
-    ("cache-tile", "cache:TileCache", _MEASURE,
+    ("cache-tile", "Occluder cache by tile", "cache:TileCache", _MEASURE,
      "Tests first what blocked a light before in this tile of the picture."),
-    ("packets16", "packets:Packets16", {**_MEASURE, "culls": False},
+    ("packets16", "Packets of 16 rays", "packets:Packets16", {**_MEASURE, "culls": False},
      "Traces rays in packets of 16 instead of 128."),
-    ("packets1", "packets:Packets1", {**_MEASURE, "culls": False},
+    ("packets1", "Single rays", "packets:Packets1", {**_MEASURE, "culls": False},
      "Traces rays one by one instead of in packets."),
 )  # fmt: skip
 
-for _name, _class, _can, _sentence in _TABLE:
-    register(Kind(_name, _sentence, f"tracer.methods.{_class}", **_can))
+for _name, _title, _class, _can, _sentence in _TABLE:
+    register(Kind(_name, _sentence, f"tracer.methods.{_class}", title=_title, **_can))
+
+
+def title_of(method: str) -> str:
+    """Return what people read of a method, by its name."""
+    return Method.parse(method).title
 
 
 def in_order(methods: Iterable[str]) -> list[str]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from tracer.geometry.accelerators import BVH8, KD_TREE, LAZY
-from tracer.method import DEFAULT_METHOD, Method
+from tracer.method import DEFAULT_METHOD, Method, title_of
 from tracer.scene.lights import MAX_SAMPLES
 from tracer.util.setting import NEVER, PICTURES, check_all, documented, setting
 
@@ -50,7 +50,7 @@ class Settings:
     )  # fmt: skip
     method: str = setting(
         DEFAULT_METHOD, "Method", "Which shadow rays are not traced, and what that trusts.", check=Method.parse,
-        option="--method",
+        called=title_of, option="--method",
     )  # fmt: skip
     symmetric: bool = setting(
         False, "Symmetric occlusion test",

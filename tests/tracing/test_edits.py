@@ -255,7 +255,7 @@ def test_the_same_edits_made_again_are_the_same_scene():
     del first, again
     assert origin.is_of(edited(made, off).scene) and not origin.is_of(edited(made, moved).scene)
     assert not origin.is_of(made) and not origin.is_of(None)
-    assert not origin.is_of(edited(replace(made), off).scene), "the file was read again"
+    assert origin.is_of(edited(replace(made), off).scene), "the same file was read again"
     del made
     gc.collect()
-    assert not whole.is_of(scene(floor, lights=(light,)))
+    assert whole.is_of(scene(floor, lights=(light,))) and not whole.is_of(scene(floor))

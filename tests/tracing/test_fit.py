@@ -35,31 +35,31 @@ def test_what_does_not_fit_is_said(method: str):
     truth = tracer.Renderer(with_lights(40), replace(SETTINGS, method="none")).render()
     said = many.statistics.decision
     assert not kind.exact or np.array_equal(many.color, truth.color)
-    first = f"Of 40 lights, {method} answers for the first 31; rays to the others are traced."
-    in_part = f"Of lights after the first 31, {method} only knows which ones a single triangle hides from a cell."
+    first = f"Of 40 lights, {kind.title} answers for the first 31; rays to the others are traced."
+    in_part = f"Of lights after the first 31, {kind.title} only knows which ones a single triangle hides from a cell."
     assert (first in said) == (kind.answers < 40 and not kind.in_part), said
     assert (in_part in said) == kind.in_part, said
     lamps = replace(SETTINGS, method=method, lamp_radius=0.1, lamp_samples=4)
     said = tracer.Renderer(shadow_scene(), lamps).render().statistics.decision
-    every = f"All lights are lamps of several samples, of which {method} knows nothing: every shadow ray is traced."
-    in_part = f"Of lamps of several samples, {method} only knows which ones a single triangle hides from a cell."
+    every = f"All lights are lamps of several samples, of which {kind.title} knows nothing: every shadow ray is traced."
+    in_part = f"Of lamps of several samples, {kind.title} only knows which ones a single triangle hides from a cell."
     assert (every in said) == (not kind.lamps and not kind.in_part), said
     assert (in_part in said) == kind.in_part, said
 
 
 SENTENCES = {
-    ("voxels", 9, 3): "Of lamps of several samples, 3 here, voxels knows nothing; rays to them are traced.",
-    ("voxels", 40, 3): "Of lamps of several samples, 3 here, voxels knows nothing, nor of lights after the first 31; "
+    ("voxels", 9, 3): "Of lamps of several samples, 3 here, Voxels knows nothing; rays to them are traced.",
+    ("voxels", 40, 3): "Of lamps of several samples, 3 here, Voxels knows nothing, nor of lights after the first 31; "
     "rays to them are traced.",
-    ("voxels", 40, 40): "All lights are lamps of several samples, of which voxels knows nothing: "
+    ("voxels", 40, 40): "All lights are lamps of several samples, of which Voxels knows nothing: "
     "every shadow ray is traced.",
-    ("certified+voxels", 9, 9): "All lights are lamps of several samples, of which voxels knows nothing: "
+    ("certified+voxels", 9, 9): "All lights are lamps of several samples, of which Voxels knows nothing: "
     "it answers no ray.",
-    ("certified+voxels", 9, 3): "Of lamps of several samples, 3 here, voxels knows nothing; it leaves them alone.",
-    ("certified+voxels", 40, 0): "Of 40 lights, voxels answers for the first 31; it leaves the others alone.",
-    ("paper", 1000, 3): "Of 1,000 lights, paper answers for the first 31; rays to the others are traced.",
-    ("lie", 40, 3): "Of lamps of several samples and lights after the first 31, lie only knows which ones a single "
-    "triangle hides from a cell.",
+    ("certified+voxels", 9, 3): "Of lamps of several samples, 3 here, Voxels knows nothing; it leaves them alone.",
+    ("certified+voxels", 40, 0): "Of 40 lights, Voxels answers for the first 31; it leaves the others alone.",
+    ("paper", 1000, 3): "Of 1,000 lights, Paper answers for the first 31; rays to the others are traced.",
+    ("lie", 40, 3): "Of lamps of several samples and lights after the first 31, Local illumination environments only "
+    "knows which ones a single triangle hides from a cell.",
     ("certified", 1000, 3): "",
 }
 

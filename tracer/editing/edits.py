@@ -18,6 +18,7 @@ from tracer.scene.animation import Animation, TrackSet
 from tracer.scene.arrays import Float64, Int32
 from tracer.scene.assembly import under_matrix
 from tracer.scene.deformation import deformed
+from tracer.scene.fingerprint import code_of
 from tracer.scene.lights import Light, Vector
 from tracer.scene.model import Quadrics, Scene, SceneObject, Triangles
 from tracer.scene.normals import unit_normals
@@ -189,21 +190,18 @@ def _know_origin(made: Scene, scene: Scene, edits: Edits) -> None:
 
 
 class Origin:
-    """What a scene was made of, without holding on to it: of the scene as it was read, and of edits, none if it is that
-    scene itself.  The same edits, made once more, make a scene of the same origin."""
+    """What a scene was made of, without holding on to it: of what was read, and of edits, none if it is that scene
+    itself.  The same file, read once more, and the same edits make a scene of the same origin."""
 
     def __init__(self, scene: Scene) -> None:
         made, original, edits = _origins.get(id(scene), (None, None, NO_EDITS))
         known = made is not None and made() is scene
-        self._original = original if known and original is not None else weakref.ref(scene)
-        self._edits = edits if known else NO_EDITS
+        read = original() if known and original is not None else None
+        self._code, self._edits = code_of(read or scene), edits if known else NO_EDITS
 
     def is_of(self, scene: Scene | None) -> bool:
         """Whether a scene is made of the same."""
-        if scene is None:
-            return False
-        other, original = Origin(scene), self._original()
-        return original is not None and other._original() is original and other._edits == self._edits
+        return scene is not None and vars(Origin(scene)) == vars(self)
 
 
 # --- objects -----------------------------------------------------------------------------------------

@@ -110,15 +110,13 @@ def in_words(example: Counterexample, scene: Scene) -> list[str]:
         f"Pixel {example.x}, {example.y} is too {'bright' if brighter else 'dark'}, by {example.difference:.3f} of 1.",
         f"It shows {primitive_in_words(scene, example.primitive)}{seen}.",
     ]
-    known, light = verdict_of(example), _capital(light_of(example, scene))
-    counts = "count" if example.more_lights else "counts"
+    known, light = verdict_of(example), light_of(example, scene)
     if example.lit and example.blocker >= 0:
         by = "itself" if example.blocker == example.primitive else primitive_in_words(scene, example.blocker)
         first = "the first is" if example.more_lights else "is"
-        said.append(f"{light} {counts} as reaching it ({known}), but {first} blocked by {by}.")
+        said.append(f"The method takes it to be lit by {light} ({known}), but {first} blocked by {by}.")
     else:
-        way = "their" if example.more_lights else "its"
-        said.append(f"{light} {counts} as blocked ({known}), but nothing is in {way} way.")
+        said.append(f"The method takes it to be in the shadow of {light} ({known}), but nothing is in the way.")
     if example.taught >= 0:
         said.append(f"That was learnt in {taught_by(example, scene)}.")
     return [*said, *_history(example)]
@@ -141,10 +139,6 @@ def _history(example: Counterexample) -> list[str]:
     if few < every:
         return [f"The modes that {few} of {every} earlier frames left are enough to show it."]
     return [f"It shows with the modes that {few} earlier frame{'s' * (few != 1)} left."]
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def to_json(example: Counterexample, scene: Scene) -> dict[str, Any]:

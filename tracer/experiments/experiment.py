@@ -20,7 +20,7 @@ from tracer.experiments.runner import Run
 from tracer.frame import Frame, Settings
 from tracer.geometry.accelerators import LAZY
 from tracer.geometry.world import World
-from tracer.method import Method
+from tracer.method import Method, title_of
 from tracer.renderer import Renderer
 from tracer.scene.model import Cancelled, Progress, Scene
 from tracer.statistics import FrameStatistics, ShadowCounts
@@ -375,7 +375,7 @@ class Experiment(Run[Results]):
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Results]:
         def on_frame(number: int, method: str, frame: Frame) -> None:
-            label = f"frame {number - self.numbers.start + 1} of {len(self.numbers)}, {method}"
+            label = f"frame {number - self.numbers.start + 1} of {len(self.numbers)}, {title_of(method)}"
             self.progressed(label, frame if method == self.shown else None)
 
         fits = world is not None and world.accelerator == self.settings.accelerator

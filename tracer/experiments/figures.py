@@ -24,6 +24,7 @@ from tracer.experiments import zoom
 from tracer.experiments.experiment import REFERENCE, Results, Row, table
 from tracer.experiments.filmstrip import Filmstrip, Shot
 from tracer.experiments.titles import NEVER_WHOLE, WRONG_PIXELS, happenings, never_whole, title
+from tracer.method import title_of
 from tracer.util.text import saved
 
 ENDINGS = (".png", ".svg", ".pdf")
@@ -136,7 +137,7 @@ def savings_figure(results: Results) -> Figure:
     for panel in panels[2:]:
         for number, row in enumerate(rows):
             _draw_curve(panel, results, results.methods[row.method]["wrong"], number,
-                        f"{row.method}, {row.wrong:,} ({row.wrong_part:.3%})")  # fmt: skip
+                        f"{title_of(row.method)}, {row.wrong:,} ({row.wrong_part:.3%})")  # fmt: skip
         panel.set_ylim(bottom=0.0)
         panel.yaxis.set_major_locator(MaxNLocator(3, integer=True))
         panel.yaxis.set_major_formatter("{x:,.0f}")
@@ -147,7 +148,7 @@ def savings_figure(results: Results) -> Figure:
 def _draw_savings(panel: Axes, results: Results, row: Row, work: str, number: int) -> None:
     """A curve, with its average and its maximum, which are those of the table."""
     average, most, frame = (getattr(row, name.format(work)) for name in ("average_{}", "most_{}", "most_{}_frame"))
-    label = f"{row.method}, average {saved(average)}\nmost {saved(most)}, frame {frame}"
+    label = f"{title_of(row.method)}, average {saved(average)}\nmost {saved(most)}, frame {frame}"
     color = _draw_curve(panel, results, results.reductions(row.method, work), number, label)
     panel.axhline(average, linewidth=1.0, color=color, linestyle=DASHES[number % len(DASHES)])
     panel.plot([frame], [most], MARKS[number % len(MARKS)], color=color, markersize=11, mec="white", zorder=4)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tracer.experiments import experiment, hunt, zoom
 from tracer.experiments.zoom import Approach, Step
+from tracer.method import title_of
 from tracer.util.text import printable
 
 
@@ -23,7 +24,7 @@ def title(results: experiment.Results | zoom.Results | hunt.Results) -> str:
     elif isinstance(results, zoom.Results):
         what = f"{results.time:.3f} s, towards primitive {results.primitive}"
     else:
-        what = f"method {results.method}"
+        what = f"method {title_of(results.method)}"
     width, height = results.size
     return f"{printable(Path(results.scene).name)}, {width} × {height}, {what}"
 

@@ -107,7 +107,7 @@ WHY_TRACED: dict[str, str] = {
     "candidates": "Traced: only a few primitives can block the light here, but to trace the ray with its neighbours is "
     "quicker than to test these.",
     **{
-        unused(state): f"Traced: a certificate says that {known}. But the method auto looks no certificates up "
+        unused(state): f"Traced: a certificate says that {known}. But Automatic looks no certificates up "
         "here, as it has measured that tracing every ray is quicker."
         for state, known in _PROVEN.items()
     },

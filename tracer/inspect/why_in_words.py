@@ -9,7 +9,7 @@ from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.inspect.occluded_by import OccludedBy, Pixel, Reference
 from tracer.inspect.reasons import MEANING, WHY_TRACED, Coverage, Reason, Rule, TaughtBy, Why
-from tracer.method import Method
+from tracer.method import Method, title_of
 from tracer.scene.model import CONE, Scene
 
 MOST_NAMED = 3  # primitives of an answer that are named
@@ -199,7 +199,7 @@ class Words:
             case Rule.CLUSTERS:
                 return ("Shaded by clusters of lights: no light is asked by itself.",)
             case Rule.NOT_ANSWERED:
-                return (f"Traced: the method {reason.method} knows nothing of lamps of several samples.",)
+                return (f"Traced: {title_of(reason.method)} knows nothing of lamps of several samples.",)
             case Rule.UNKNOWN:
                 return (_unknown(reason),)
             case Rule.OFF:
@@ -314,10 +314,10 @@ def _partial(reason: Reason) -> Sentence:
 def _no_room(reason: Reason) -> Sentence:
     if Method.parse(reason.method).uses_modes or not Method.parse(reason.method).culls:
         return (f"modes have room for {reason.limit} lights, and this one is past them ", *_section("2.2"))
-    return (f"the method {reason.method} answers rays to the first {reason.limit} lights only",)
+    return (f"{title_of(reason.method)} answers rays to the first {reason.limit} lights only",)
 
 
 def _unknown(reason: Reason) -> str:
     if reason.told:
         return WHY_TRACED.get(reason.told, f"Traced. {reason.told}")
-    return f"Traced: the method {reason.method} knows nothing of this light here."
+    return f"Traced: {title_of(reason.method)} knows nothing of this light here."

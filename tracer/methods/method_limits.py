@@ -25,7 +25,8 @@ def too_few(method: Method, lights: int, samples: int) -> str:
     if not method.clusters or samples >= MANY:
         return ""
     what = "lights" if samples == lights else "light samples"
-    return f"{method.base} is for {MANY} {what} or more, and there {'is' if samples == 1 else 'are'} {samples} here"
+    there = "is" if samples == 1 else "are"
+    return f"{method.kind.title} is for {MANY} {what} or more, and there {there} {samples} here"
 
 
 def remark(method: Method, lights: int, lamps: int) -> str:
@@ -41,17 +42,17 @@ def _of(kind: Kind, lights: int, lamps: int, alone: bool) -> str:
         which = " and ".join(
             filter(None, ("lamps of several samples" * left, f"lights after the first {kind.answers}" * beyond))
         )
-        return f"Of {which}, {kind.name} only knows which ones a single triangle hides from a cell."
+        return f"Of {which}, {kind.title} only knows which ones a single triangle hides from a cell."
     if left and lamps == lights:
         every = "every shadow ray is traced" if alone else "it answers no ray"
-        return f"All lights are lamps of several samples, of which {kind.name} knows nothing: {every}."
+        return f"All lights are lamps of several samples, of which {kind.title} knows nothing: {every}."
     if left:
         nor = f", nor of lights after the first {kind.answers}" if beyond else ""
         traced = "rays to them are traced" if alone else "it leaves them alone"
-        return f"Of lamps of several samples, {lamps:,} here, {kind.name} knows nothing{nor}; {traced}."
+        return f"Of lamps of several samples, {lamps:,} here, {kind.title} knows nothing{nor}; {traced}."
     if beyond:
         traced = "rays to the others are traced" if alone else "it leaves the others alone"
-        return f"Of {lights:,} lights, {kind.name} answers for the first {kind.answers}; {traced}."
+        return f"Of {lights:,} lights, {kind.title} answers for the first {kind.answers}; {traced}."
     return ""
 
 

@@ -42,16 +42,9 @@ class Buffers(NamedTuple):
 
 
 def empty_buffers(
-    width: int,
-    height: int,
-    lights: int,
-    *,
-    record_lights: bool = False,
-    record_fates: bool = False,
-    verify: bool = False,
-    record_work: bool = False,
-    planes: Planes = NO_PLANES,
-) -> Buffers:
+    width: int, height: int, lights: int, *, record_lights: bool = False, record_fates: bool = False,
+    verify: bool = False, record_work: bool = False, planes: Planes = NO_PLANES,
+) -> Buffers:  # fmt: skip
     """Buffers for a picture of this size, with rows for what is to be recorded."""
     pixels = width * height
     recorded, told, verified, worked = (

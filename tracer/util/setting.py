@@ -59,6 +59,8 @@ class Setting:
         Behind the point, on a slider.
     unset : str
         The word for None, where that is allowed.
+    called : function of the value
+        What people read of it, where that is not the value itself.
     option : str
         The option of the command line. Of a switch it changes the default: "--no-marks" switches off.
     panel : str
@@ -88,6 +90,7 @@ class Setting:
     log: bool = False
     digits: int = 2
     unset: str = ""
+    called: Callable[[Any], str] | None = None
     option: str = ""
     panel: str = ""
     applies: Callable[[Any], bool] = always
@@ -215,6 +218,8 @@ class Setting:
             return f"{value:{sign}.6g}{self.unit}"
         if type(value) is tuple:
             return "changed"
+        if self.called is not None:
+            return self.called(value)
         return value.in_words() if hasattr(value, "in_words") else str(getattr(value, "label", value))
 
     def in_words(self, value: Any) -> str:

@@ -126,12 +126,8 @@ def _check_folder(folder: Path) -> None:
 
 
 def _comparison_of(
-    find: Counterexample,
-    found: hunt.Results,
-    scene: Scene,
-    settings: Settings,
-    meshes: MeshOptions,
-) -> tuple[ViewState, Comparison]:
+    find: Counterexample, found: hunt.Results, scene: Scene, settings: Settings, meshes: MeshOptions,
+) -> tuple[ViewState, Comparison]:  # fmt: skip
     """Return the figure of a counterexample: the right picture and the method's, with the pixel's surroundings
     enlarged."""
     state = ViewState(

@@ -73,7 +73,7 @@ def figure_of(frame: Frame, name: str = "") -> Figure:
     stages = [*_until_shading(s, method, changes), _shadow_testing(frame, method, changes is not None)]
     if changes is not None:
         stages += [_shadow_mode_setting(changes), _occlusion_mode_setting(frame, method, changes)]
-    title = f"{frame.settings.method}, {frame.width} × {frame.height} pixels, {1e3 * s.seconds:.1f} ms"
+    title = f"{method.title}, {frame.width} × {frame.height} pixels, {1e3 * s.seconds:.1f} ms"
     return Figure(", ".join(filter(None, (name, title))), tuple(stages), tuple(_notes(s, method, changes)))
 
 

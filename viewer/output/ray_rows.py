@@ -21,7 +21,7 @@ from tracer.inspect.reasons import MEANING, WHY_TRACED
 from tracer.inspect.why_in_words import primitive_in_words
 from tracer.scene.lights import named_light
 from tracer.scene.model import Scene
-from viewer.state.palette import WRONG, Color
+from viewer.state.palette import BLOCKED, LIT, PARTLY_LIT, PATH, UNKNOWN, WRONG, Color
 from viewer.util.numbers import count, several
 
 SAID: dict[Verdict, str] = {
@@ -85,22 +85,14 @@ class RayFilter(NamedTuple):
         return np.flatnonzero(kept if self.light is None else kept & (rays.light == self.light))
 
 
-NOT_DUE: Color = (0.52, 0.55, 0.60)
-LIT: Color = (0.94, 0.89, 0.26)
-DARK: Color = (0.34, 0.71, 0.91)
-PARTLY: Color = (0.90, 0.55, 0.20)
-PATH_COLOR: Color = (0.86, 0.88, 0.92)
-
-
 def color_of(rays: ShadowRays, places: Places) -> Color:
-    """Yellow for what is lit, blue for what is dark, orange where both are, grey for what is not due, magenta for what
-    is wrong."""
+    """Return the colour of shadow rays by where they end; grey where none is due, magenta where any is wrong."""
     due = places[rays.verdict[places] != AWAY]
     if not len(due):
-        return NOT_DUE
+        return UNKNOWN
     if rays.wrong[due].any():
         return WRONG
-    return LIT if rays.lit[due].all() else PARTLY if rays.lit[due].any() else DARK
+    return LIT if rays.lit[due].all() else PARTLY_LIT if rays.lit[due].any() else BLOCKED
 
 
 MOST_LIGHTS = 12
@@ -148,7 +140,7 @@ class RayRows:
         met = "leaves the scene" if ray.primitive < 0 else f"{self._name(ray.primitive)} at {ray.t:.4g}"
         tip = [
             f"ray {ray.number}, bounce {ray.bounce}; weight {ray.weight.max():.3g}; "
-            f"{count(ray.steps)} steps and {count(ray.tests)} tests, traced alone",
+            f"{several(ray.steps, 'step')} and {several(ray.tests, 'test')}, traced alone",
             "adds ({:.3g}, {:.3g}, {:.3g}) to the pixel".format(*ray.light),
         ]
         if ray.shadows is not None:
@@ -160,7 +152,7 @@ class RayRows:
             shadows = [] if s is None else self._shadows(number, s, self._filter.places(s), key, of_point=True)
             return shadows + [self._path(one) for one in self.tree.children.get(number, ())]
 
-        return RayRow(key, text, "\n".join(tip), PATH_COLOR, number, below=below)
+        return RayRow(key, text, "\n".join(tip), PATH, number, below=below)
 
     def _shadows(self, ray: int, s: ShadowRays, places: Places, above: RayKey, of_point: bool = False) -> list[RayRow]:
         """Rows of shadow rays: those of a point by light, or of many lights by what became of them; below that those of

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from tracer.frame import Frame
-from tracer.method import Method
+from tracer.method import Method, title_of
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.state.comparison import Compare, CompareMode, Side
 from viewer.state.draw_options import DrawOptions, Slice
@@ -110,7 +110,7 @@ class Comparing:
         if not state.on:
             return ""
         if a is None or b is None:
-            return f"Tracing by {state.second} as well ..." if state.second else NOTHING_KEPT
+            return f"Tracing by {title_of(state.second)} as well ..." if state.second else NOTHING_KEPT
         if a.view is not b.view:
             return f"A has nothing for the view {b.view.label}: its picture is shown. Keep A again in this view."
         sizes = [f"{side.frame.width} x {side.frame.height}" for side in (a, b)]

@@ -121,7 +121,7 @@ class Controller:
         if arrival.renderer is not None:
             self.show(arrival.renderer, arrival.info)
         if arrival.place is not None:
-            self.undo.begin_step("the place of a saved picture")
+            self.undo.begin_step("the place of a saved picture", with_time=True)
         if place is not None:
             self.restore(place)
         elif session.scene is not None:
@@ -236,7 +236,7 @@ class Controller:
             return
         state, start = self.bookmarks.find(index), self.session.camera
         if state is not None:
-            self.undo.begin_step(f"going to {self.bookmarks.all[index].name}")
+            self.undo.begin_step(f"going to {self.bookmarks.all[index].name}", with_time=True)
             self.restore(state)
             if state.camera is not None:
                 self.motion.glide(state.camera, start)

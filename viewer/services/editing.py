@@ -67,15 +67,9 @@ class Editing:
     """See the module.  `before` is the picture before the edits, to be compared with."""
 
     def __init__(
-        self,
-        session: Session,
-        renderer: RenderThread,
-        notices: Notices,
-        locked: Callable[[], bool],
-        show: Show,
-        without_undo: Callable[[Callable[[], None]], None],
-        again: Callable[[], None],
-    ) -> None:
+        self, session: Session, renderer: RenderThread, notices: Notices, locked: Callable[[], bool], show: Show,
+        without_undo: Callable[[Callable[[], None]], None], again: Callable[[], None],
+    ) -> None:  # fmt: skip
         """Nothing is changed while `locked()`, which says so itself.  `show(edited, renderer)` is called with each
         scene when it is ready to be traced, `again()` where an edit has come to nothing: without another frame, nothing
         could be asked about what is shown.  What changes within `without_undo` is no step of undo."""

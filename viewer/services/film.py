@@ -80,13 +80,9 @@ def frame_count(frames: tuple[int, int], stops: int | None, seconds: float, fps:
 
 
 def takes(
-    scene: Scene,
-    frames: tuple[int, int],
-    stops: Sequence[Stop] | None,
-    seconds: float,
-    fps: float,
+    scene: Scene, frames: tuple[int, int], stops: Sequence[Stop] | None, seconds: float, fps: float,
     camera: Camera | None,
-) -> list[Take]:
+) -> list[Take]:  # fmt: skip
     """The takes of a film, as `frame_count` counts them; raises ValueError, in one line, where there can be none."""
     count = frame_count(frames, None if stops is None else len(stops), seconds, fps)
     if stops is None:

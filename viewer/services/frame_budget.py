@@ -133,14 +133,9 @@ class FrameBudget:
         return Cost(self._shading[near].fixed, more * self._shading[near].each)
 
     def plan(
-        self,
-        width: int,
-        height: int,
-        seconds: float,
-        coarse: bool = True,
-        playing: bool = True,
+        self, width: int, height: int, seconds: float, coarse: bool = True, playing: bool = True,
         lamp_samples: int = 1,
-    ) -> Plan:
+    ) -> Plan:  # fmt: skip
         """Return how to begin a picture that is to be shown so many seconds later, and how to go on; at full resolution
         unless it may be a `coarse` one, and at once where nothing moves and the whole does not take long."""
         if not coarse and not playing and self.seconds(width * height, TURNS, lamp_samples) <= WHOLE_AT_ONCE_SECONDS:

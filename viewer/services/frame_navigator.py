@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from tracer.method import title_of
 from tracer.scene.model import Camera
 from viewer.output.commands import BUILT
 from viewer.output.comparison import Crop
@@ -59,7 +60,7 @@ class FrameNavigator:
         state = replace(session.state, time=run.times[number], camera=None, settings=settings)
         name = f"frame {number} of the experiment"
         self.go_to(state, name, (settings.width, settings.height))
-        self._notices.say(f"{name}, by {run.shown}")
+        self._notices.say(f"{name}, by {title_of(run.shown)}")
 
     def go_to_find(self, number: int) -> None:
         """Fly to a counterexample of the hunt: forget all modes, trace the frames that taught it, and select its pixel,
@@ -77,14 +78,9 @@ class FrameNavigator:
         self.go_to(state.with_draw(light=find.light), f"counterexample {number + 1}", size, point, zoom, warmup)
 
     def go_to(
-        self,
-        state: ViewState,
-        name: str,
-        size: tuple[int, int],
-        point: Point | None = None,
-        zoom: Zoom | None = None,
-        warmup: Warmup | None = None,
-    ) -> None:
+        self, state: ViewState, name: str, size: tuple[int, int], point: Point | None = None,
+        zoom: Zoom | None = None, warmup: Warmup | None = None,
+    ) -> None:  # fmt: skip
         """Restore a state, and select a point of the picture once that has come; `zoom` is how closely it is looked at
         then.
 

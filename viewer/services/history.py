@@ -44,7 +44,7 @@ def counters(frame: Frame, drawn_seconds: float) -> dict[str, float]:
 
     Steps and tests are all that were made for the frame, those of its certificates too.  Samples of lights are those of
     primary hits, 0 where they were not recorded.  `pixels` are those that are shaded, of `all_pixels`.  `built` is the
-    part of the tree that is built, in per cent; 0 where that is not told."""
+    part of the tree that is built, in per cent; 0 where that is not told.  `came` is when it came, in seconds."""
     s = frame.statistics
     shadow, samples = s.shadow, s.samples or SampleCounts()
     return {
@@ -70,6 +70,7 @@ def counters(frame: Frame, drawn_seconds: float) -> dict[str, float]:
         "built": 100.0 * s.built.share if s.built is not None else 0.0,
         "traced_ms": 1e3 * s.seconds,
         "drawn_ms": 1e3 * drawn_seconds,
+        "came": time.monotonic(),
     }
 
 

@@ -145,7 +145,7 @@ BUILT_IN = (
                 "keep_tracing": False,
             },
         },
-        "The method paper, tested one way, with zoom factor 4, 10 bounces, one ray a pixel and point lights; every "
+        "The paper's method, tested one way, with zoom factor 4, 10 bounces, one ray a pixel and point lights; every "
         "frame of the animation is traced in full at 512 x 512. (The window always traces through its fast trees; the "
         "command bench takes the paper's kd-tree.)",
     ),
@@ -155,7 +155,7 @@ BUILT_IN = (
             "settings": {"method": ADAPTIVE, "verify": False, "samples": 16},
             "pace": {"fixed_size": False, "progressive": True, "every_frame": False},
         },
-        "The method auto, which culls where that is quicker, in the size of the window, refined while nothing moves.",
+        "The method that culls where that is quicker, in the size of the window, refined while nothing moves.",
     ),
 )  # fmt: skip
 OF_THE_MOMENT = {"spans", "zoom", "slice", "caption", "savings", "magnified"}

@@ -64,6 +64,7 @@ class PaperFigures:
     def __init__(self, controller: Controller) -> None:
         self._c, self._path = controller, FIGURE_4
         self._waiting: list[Part] = []
+        self._way_back = ""  # in words, to the scene that was open before
 
     def update(self) -> None:
         """Bring the next part about, once in each frame of the window, unless another scene was opened meanwhile."""
@@ -75,9 +76,22 @@ class PaperFigures:
                 self._waiting.remove(part)
 
     def _begin(self, path: Path, *parts: Part) -> None:
-        if not self._c.runs.refuses():
-            open_scene(path)(self._c)
+        """Open the scene of a figure, once the user agrees where that loses edits, and go on with the parts."""
+        c, scene = self._c, self._c.session.scene
+        if c.runs.refuses():
+            return
+
+        def go_on() -> None:
+            open_scene(path)(c)
             self._path, self._waiting = path, [opened(path), *parts]
+
+        self._way_back = ""
+        if scene is not None and not is_open(c, path):
+            self._way_back = f". {scene.path.name} is in the menu File > Open scene"
+        if c.session.edits and self._way_back:
+            c.questions.before_losing_edits(path.stem, go_on)
+        else:
+            go_on()
 
     def table_1(self) -> None:
         """Measure the open scene as Table 1 does: 512 x 512, depth 10, 100 frames of the path, the kd-tree."""
@@ -91,7 +105,8 @@ class PaperFigures:
             c.settings.change(method=BY_MODES, symmetric=False)
             c.session.set_pace(fixed_size=True, width=_CARDS, height=_CARDS)
             c.session.set_draw(view=View.OCCLUSION)
-            c.notices.say(f"Figure 3 in {_CARDS} x {_CARDS} pixels: the card that is hidden on its left is green, too")
+            said = f"Figure 3 in {_CARDS} x {_CARDS} pixels: the card that is hidden on its left is green, too"
+            c.notices.say(f"{said}{self._way_back}")
 
         self._begin(FIGURE_3, Part(lambda c: c.session.draw.view is View.OCCLUSION, show))
 
@@ -101,6 +116,7 @@ class PaperFigures:
         def test(c: Controller) -> None:
             c.runs.zoom_plan = ZoomPlan(factors="4, 64", size=(SIDE, SIDE))
             c.runs.start_zoom_test()
+            c.notices.say(f"Figure 4 is a zoom test of the scene figure4{self._way_back}")
 
         select = Part(lambda c: c.selection.picked is not None, lambda c: c.selection.select((0.5, 0.5)))
         self._begin(FIGURE_4, select, Part(lambda c: c.runs.current is not None, test))

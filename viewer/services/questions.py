@@ -62,6 +62,11 @@ class Questions:
         kept = _KEPT if run is not None and self._runs.exports_of(run) else _WRITTEN
         self._ask_to_stop(f"open {name}", kept, go_on, ("Stop and open", stop))
 
+    def before_losing_edits(self, name: str, go_on: Do) -> None:
+        """Open another scene when the user agrees to lose the edits of the one that is open."""
+        text = "The edits of the scene that is open are lost. Copy as command keeps them."
+        self.question = Question(f"Open {name}?", text, (("Keep the scene", self.drop), ("Open", go_on)))
+
     def before_quitting(self, leave: Do) -> None:
         """Quit, at once or, while a run is under way, when the user agrees."""
         run = self._runs.current

@@ -68,13 +68,9 @@ class SceneLoader:
     """Reads scenes, and runs `build`, on threads; `take_finished` hands out what has come."""
 
     def __init__(
-        self,
-        session: Session,
-        preferences: Preferences,
-        notices: Notices,
-        ask_first: Callable[[str, Callable[[], None]], None],
-        wake: Callable[[], None] = lambda: None,
-    ) -> None:
+        self, session: Session, preferences: Preferences, notices: Notices,
+        ask_first: Callable[[str, Callable[[], None]], None], wake: Callable[[], None] = lambda: None,
+    ) -> None:  # fmt: skip
         """`ask_first(name, go_on)` calls `go_on` at once, or when the user agrees to open what is called so."""
         self._session, self._preferences, self._notices = session, preferences, notices
         self._ask_first, self._wake = ask_first, wake
@@ -196,13 +192,9 @@ class SceneLoader:
         return replace(state, pace=here.pace).with_draw(**around)
 
     def _begin(
-        self,
-        path: Path,
-        place: ViewState | None = None,
-        again: bool = False,
-        meshes: MeshOptions | None = None,
+        self, path: Path, place: ViewState | None = None, again: bool = False, meshes: MeshOptions | None = None,
         changed: str = "",
-    ) -> None:
+    ) -> None:  # fmt: skip
         """Read a scene in the place of what is being read now."""
         if place is not None:
             place = place.with_settings(**self._given)

@@ -76,12 +76,9 @@ def times_before(scene: Scene, time: float, count: int) -> list[float]:
 
 
 def trace(
-    renderer: Renderer,
-    state: ViewState,
-    everything: bool = False,
-    on_frame: Callable[[int, int], None] = lambda done, total: None,
-    cancelled: Callable[[], bool] = lambda: False,
-) -> Frame:
+    renderer: Renderer, state: ViewState, everything: bool = False,
+    on_frame: Callable[[int, int], None] = lambda done, total: None, cancelled: Callable[[], bool] = lambda: False,
+) -> Frame:  # fmt: skip
     """The state's frame, after those before it; `everything`: with modes, and all lights recorded.
 
     `on_frame` is told how many of these are done, before each.  Raises Cancelled."""
@@ -148,13 +145,10 @@ def fields_of(state: ViewState, scene: Scene) -> dict[str, Any]:
 
 
 def trace_methods(
-    scene: Scene,
-    state: ViewState,
-    comparison: Comparison,
-    world: World,
+    scene: Scene, state: ViewState, comparison: Comparison, world: World,
     on_frame: Callable[[str, int, int], None] = lambda method, done, total: None,
     cancelled: Callable[[], bool] = lambda: False,
-) -> Shown:
+) -> Shown:  # fmt: skip
     """Trace the frame of a state by each method, and by "none" as what is right, with modes of their own; the state's
     own method does not count.  Raises Cancelled.
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tracer.method import Method
+from tracer.method import Method, title_of
 from viewer.services.controller import Controller
 from viewer.services.paper_figures import FIGURE_4, SIDE, Act, Condition, Part, is_open, open_scene, opened
 from viewer.state import verified
@@ -221,11 +221,11 @@ def _how_to_toggle(c: Controller) -> str:
     method = Method.parse(c.session.settings.method)
     if method.adaptive:
         return (
-            f"Choose {BY_MODES}, the published method, above the picture, and then press {{Shadow culling}} twice. "
-            f"{_THE_SAME} (The method {method.base} culls only where that is quicker.)"
+            f"Choose {title_of(BY_MODES)}, the published method, above the picture, and then press {{Shadow culling}} "
+            f"twice. {_THE_SAME} ({method.kind.title} culls only where that is quicker.)"
         )
     if method.culls and c.frame is not None and not _saves(c) and not c.active:
-        return f"The method {method.base} has culled nothing here yet. Press {{Trace again}} to trace once more."
+        return f"{method.kind.title} has culled nothing here yet. Press {{Trace again}} to trace once more."
     return f"Press {{Shadow culling}} {'twice' if method.culls else 'once more to cull again'}. {_THE_SAME}"
 
 

@@ -16,15 +16,18 @@ from viewer.state.session import Session
 from viewer.state.view_state import CAMERA, ViewState, changes
 
 MOST_STEPS = 200
+_MOST_NAMED = 2  # changes that make the name of a step
 _BY_STROKES = {"draw.tone.exposure", "draw.tone.white", "draw.zoom"}  # changed little by little, by the wheel or a key
 _STROKE_SECONDS = 0.6  # from one stroke to the next, at most, for both to be one step
 
 
 @dataclass(frozen=True)
 class Step:
-    """A state, and what was done to come to it, in a few words; `with_time`, it went to another time as well."""
+    """A state, and what was done to come to it: in a few words, and in `details` where these are not all; `with_time`,
+    it went to another time as well."""
 
     name: str
+    details: str
     state: ViewState
     with_time: bool = False
 
@@ -55,6 +58,11 @@ class Undo:
         """What would be undone; "" where there is nothing."""
         return self._steps[self._at].name if self._at > 0 else ""
 
+    def details(self, ahead: int) -> str:
+        """Return all that would be undone, or with 1 `ahead` done again, where its name does not say so."""
+        at = self._at + ahead
+        return self._steps[at].details if 0 < at < len(self._steps) else ""
+
     @property
     def redoes(self) -> str:
         """What would be done again; "" where there is nothing."""
@@ -80,21 +88,21 @@ class Undo:
         if self._steps and self._steps[0].state.meshes != now.meshes:
             self.clear()
         if not self._steps:
-            self._steps = [Step("", now)]
+            self._steps = [Step("", "", now)]
         last = self._steps[self._at].state
         changed = {} if now == last else changes(last, now)
         (name, with_time), self._named = self._named, ("", False)
         moved = with_time and now.time != last.time
         if name and (changed or moved):
             self._close()
-            self._add(Step(name, now, moved))
+            self._add(Step(name, "", now, moved))
         elif changed:
             if not changed.keys() <= self._open:
                 self._close()
-                self._add(Step("", now))
+                self._add(Step("", "", now))
             self._open |= changed.keys()
             self._changed_at = time.monotonic()
-            self._steps[-1] = Step(_name_of(changes(self._steps[-2].state, now)), now)
+            self._steps[-1] = Step(*_names_of(changes(self._steps[-2].state, now)), now)
         self._keep_up()
         if not self._goes_on:
             self._close()
@@ -131,7 +139,7 @@ class Undo:
         anew = done.with_time and session.state.depends_on_modes
         if anew:  # else those of where one went would stay, as of the frames that led to a wrong pixel
             self._reset_modes()
-        self._notices.say(f"{way}ne: {done.name}{': modes are learnt anew' if anew else ''}")
+        self._notices.say(f"{way}ne: {done.details or done.name}{': modes are learnt anew' if anew else ''}")
 
     def _add(self, step: Step) -> None:
         self._steps = [*self._steps[: self._at + 1], step][-MOST_STEPS - 1 :]
@@ -164,6 +172,6 @@ class Undo:
         return replace(session.state, camera=self._motion.destination or session.state.camera)
 
 
-def _name_of(changed: dict[str, str]) -> str:
-    first, *others = [*changed.values()] or [""]
-    return f"{first} and {len(others)} more" if len(others) > 1 else " and ".join([first, *others])
+def _names_of(changed: dict[str, str]) -> tuple[str, str]:
+    many = len(changed) > _MOST_NAMED
+    return f"{len(changed)} changes" if many else " and ".join(changed.values()), ", ".join(changed.values()) * many

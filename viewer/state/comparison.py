@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from tracer.frame import Frame
+from tracer.method import title_of
 from viewer.state.views import View
 
 
@@ -27,7 +28,7 @@ class CompareMode(StrEnum):
     SIDE = "side", "Side by side", "A and B side by side", "Show A on the left and B on the right."
     DIFFERENCE = (
         "difference", "Signed difference", "Signed difference B - A",
-        "Show B - A: orange where B has more, blue where it has less.",
+        "Show B - A: lime where B has more, violet where it has less.",
     )  # fmt: skip
 
 
@@ -45,7 +46,8 @@ class Side:
 
     @property
     def method(self) -> str:
-        return self.frame.settings.method
+        """What people read of the method that traced it."""
+        return title_of(self.frame.settings.method)
 
     @property
     def view_in_words(self) -> str:
@@ -85,5 +87,5 @@ class Compare:
         if (self.on, self.mode) != (after.on, after.mode):
             found["on"] = f"comparison: {after.mode.label.lower()}" if after.on else "comparison off"
         if self.second != after.second:
-            found["second"] = f"A by {after.second}" if after.second else "A as it was kept"
+            found["second"] = f"A by {title_of(after.second)}" if after.second else "A as it was kept"
         return found

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import LARGE
-from tracer.method import DEFAULT_METHOD, Kind, Method, additions, bases
+from tracer.method import DEFAULT_METHOD, Kind, Method, additions, bases, title_of
 from tracer.methods.method_limits import lamps_in, remark, too_few
 from tracer.scene.lights import Light
 from tracer.settings import Settings
@@ -31,7 +31,13 @@ def default_for(view: View) -> str:
 def groups() -> list[tuple[str, list[Kind]]]:
     """Return the methods to choose from, those that are never wrong first."""
     exact, other = ([kind for kind in bases() if kind.exact is never] for never in (True, False))
-    return [("Exact: the same picture as by none", exact), ("With errors", other)]
+    return [("Exact: the same picture as without culling", exact), ("With errors", other)]
+
+
+def about(*kinds: Kind) -> str:
+    """Return what a method of these kinds does, and what commands and files call it."""
+    name = "+".join(kind.name for kind in kinds)
+    return "\n".join([*(kind.summary for kind in kinds), f"On the command line: {name}"])
 
 
 def with_base(method: str, base: str) -> str:
@@ -63,7 +69,7 @@ def remark_on(lights: tuple[Light, ...], settings: Settings) -> str:
     method = Method.parse(settings.method)
     lamps, samples = lamps_in(lights, settings.lamp_radius, settings.lamp_samples)
     few = too_few(method, len(lights), samples)
-    return f"The method {few}." if few else remark(method, len(lights), lamps)
+    return f"{few}." if few else remark(method, len(lights), lamps)
 
 
 # --- where there is nothing to see -------------------------------------------------------------------
@@ -91,8 +97,8 @@ def missing(view: View, frame: Frame, more: bool = False) -> Missing | None:
             return Missing(f"{decision}{' More are made and tried while nothing moves.' if comes else ''}", CERTIFIED)
         if view is View.CUTS and decision and method.clusters:
             return Missing(decision)
-        return Missing(f"The method {method} has nothing for the view {view.label}; {SHOWN_BY[view]} has.",
-                       SHOWN_BY[view])  # fmt: skip
+        shown_by = SHOWN_BY[view]
+        return Missing(f"{method.title} has nothing for the view {view.label}; {title_of(shown_by)} has.", shown_by)
     if view is View.TREE and not drawn:
         if TREE in frame.structures:
             return Missing(f"There is nothing to see: {TREE_IS_GONE}.")
@@ -100,16 +106,15 @@ def missing(view: View, frame: Frame, more: bool = False) -> Missing | None:
         lazy = f"{BVH8} with more than {count(LARGE)} primitives that never move"
         return Missing(f"{built} {LAZY} builds it where they arrive, and so does {lazy}.", accelerator=LAZY)
     if view.records is Record.VERIFY and method.exact and not method.uses_modes:
-        why = "is exact" if method.kind.culls else "traces every shadow ray"
-        text = f"The method {method.base} {why}: no answer can be wrong. The paper's method is sometimes wrong."
-        return Missing(text, BY_MODES)
+        why = f"{method.kind.title} is exact" if method.kind.culls else "Every shadow ray is traced"
+        return Missing(f"{why}: no answer can be wrong. The paper's method is sometimes wrong.", BY_MODES)
     if view.records is Record.FATES and method.clusters:
-        return Missing(f"The method {method.base} shades by clusters of lights: single lights have no rays.", BY_MODES)
+        return Missing(f"{method.kind.title} shades by clusters of lights: single lights have no rays.", BY_MODES)
     all_lights = view is View.LIGHTS or view.records is Record.FATES
     if all_lights and not can_record_lights(frame.primitive.size, frame.lights):
         text = f"There is no memory to look at {count(frame.lights)} lights at each pixel of a picture of this size"
         most = count(MOST_RECORDED // frame.lights)
         return Missing(f"{text}, but at up to {most} pixels: give it a smaller size in the panel Rendering.")
     if view.of_modes and not drawn:
-        return Missing(f"This run keeps no modes with the method {method}.")
+        return Missing(f"This run keeps no modes with {method.title}.")
     return None

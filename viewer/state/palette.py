@@ -34,6 +34,10 @@ HELD = (0.42, 0.70, 0.96)
 GREY = hex_color("5C616C")
 UNKNOWN = hex_color("868C97")
 """What is not known of a pixel yet."""
+CANDIDATES = hex_color("56B4E9")
+"""A few primitives that can block the light, which rays are tested against."""
+PATH = (0.36, 0.93, 0.72)
+"""A reflected or refracted ray."""
 FACES_AWAY = hex_color("3C3A72")
 """A surface that faces away from the light."""
 
@@ -63,7 +67,7 @@ OCCLUSION = {
         (OcclusionMode.INIT, GREY, "not seen yet, or to be examined again"),
         (OcclusionMode.PARTIALLY_OCCLUDED, hex_color("E69F00"), "something hides a part of it in this frame"),
         (OcclusionMode.FULLY_RENDERED, hex_color("009E73"), "fully rendered: culled by its shadow modes"),
-        (OcclusionMode.DYNAMIC, hex_color("CC79A7"), "it moves: never culled"),
+        (OcclusionMode.DYNAMIC, hex_color("CC79A7"), "it moves, or could move: never culled"),
     )
 }
 SHADOW = {
@@ -78,18 +82,22 @@ SHADOW = {
         (ShadowMode.PARTIAL_SHADOW, hex_color("D55E00"), "some were blocked: always traced"),
     )
 }  # fmt: skip
+BLOCKED, LIT, PARTLY_LIT = (
+    SHADOW[mode].color for mode in (ShadowMode.FULL_SHADOW, ShadowMode.NON_SHADOW, ShadowMode.PARTIAL_SHADOW)
+)
+"""Of what lies in shadow, of what is lit, and of what is both."""
 CERTIFICATES = {
-    found: Class(found.name.lower(), SHADOW[ShadowMode(found)].color, meaning)
-    for found, meaning in (
-        (Certificate.NONE, "nothing is proven, or the light is behind it: its shadow rays are traced"),
-        (Certificate.FULL, "all of it is in the shadow of static geometry: its shadow rays are culled"),
-        (Certificate.LIT, "nothing static is between it and the light: tested against dynamic objects only"),
+    found: Class(found.name.lower(), color, meaning)
+    for found, color, meaning in (
+        (Certificate.NONE, GREY, "nothing is proven, or the light is behind it: its shadow rays are traced"),
+        (Certificate.FULL, BLOCKED, "all of it is in the shadow of static geometry: its shadow rays are culled"),
+        (Certificate.LIT, LIT, "nothing static is between it and the light: tested against dynamic objects only"),
         (
-            Certificate.CANDIDATES,
+            Certificate.CANDIDATES, CANDIDATES,
             "only a few primitives can block the light: tested against these and dynamic objects",
         ),
     )
-}
+}  # fmt: skip
 
 _BY_PAPER = "with the paper's method, {} of a fully rendered primitive (§2.4)"
 
@@ -104,24 +112,22 @@ FATES = {
         "faces away", FACES_AWAY, "no shadow ray is due: the surface faces away from the light",
     ),
     Fate.CULLED: Class(
-        terms.CULLED, SHADOW[ShadowMode.FULL_SHADOW].color,
-        f"answered without asking any geometry: {_BY_PAPER.format('FULL_SHADOW')}",
+        terms.CULLED, BLOCKED,
+        f"not traced, as its answer is known: {_BY_PAPER.format('FULL_SHADOW')}",
     ),
     Fate.DYNAMIC_ONLY: Class(
-        terms.DYNAMIC_ONLY, SHADOW[ShadowMode.NON_SHADOW].color,
-        f"asked dynamic objects alone: {_BY_PAPER.format('NON_SHADOW')}",
+        terms.DYNAMIC_ONLY, LIT,
+        f"tested against dynamic objects only: {_BY_PAPER.format('NON_SHADOW')}",
     ),
     Fate.CANDIDATES: Class(
-        terms.CANDIDATES_ONLY, hex_color("56B4E9"),
-        "asked the few static primitives that can block it, and dynamic objects",
+        terms.CANDIDATES_ONLY, CANDIDATES,
+        "tested against the few static primitives that can block it, and dynamic objects",
     ),
     Fate.CACHED: Class(terms.CACHE_HITS, hex_color("8ACBF3"), "blocked by what blocked the last ray from here"),
     Fate.PARTLY_OCCLUDED: _not_culled(
         Fate.PARTLY_OCCLUDED, "partially occluded", OCCLUSION[OcclusionMode.PARTIALLY_OCCLUDED].color
     ),
-    Fate.PARTIAL_SHADOW: _not_culled(
-        Fate.PARTIAL_SHADOW, "partly in shadow", SHADOW[ShadowMode.PARTIAL_SHADOW].color
-    ),
+    Fate.PARTIAL_SHADOW: _not_culled(Fate.PARTIAL_SHADOW, "partly in shadow", PARTLY_LIT),
     Fate.NOT_SEEN_WHOLE: _not_culled(Fate.NOT_SEEN_WHOLE, "not seen whole yet", OCCLUSION[OcclusionMode.INIT].color),
     Fate.DYNAMIC: _not_culled(Fate.DYNAMIC, "dynamic", OCCLUSION[OcclusionMode.DYNAMIC].color),
     Fate.TRACED: Class(terms.TRACED, hex_color("D3D6DC"), "traced through the whole scene"),
@@ -168,7 +174,7 @@ BENEATH = 0.3
 
 WIPE_LINE = hex_color("F2F4F7")
 
-LESS, SAME, MORE = hex_color("5AA9F5"), hex_color("1B1D22"), hex_color("FF9F40")
+LESS, SAME, MORE = hex_color("C08CFF"), hex_color("1B1D22"), hex_color("B5D84A")
 """In a signed difference: where B has less than A, the same, and more."""
 
 # Viridis (even to the eye, in greys and to the colour-blind) as a polynomial of degree 6, constant term first.

@@ -17,14 +17,14 @@ import numpy as np
 from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8
-from tracer.method import Method
+from tracer.method import Method, title_of
 from tracer.statistics import FrameStatistics
 from viewer.state import terms, verified
-from viewer.state.methods import BY_MODES, NO_CULLING
+from viewer.state.methods import NO_CULLING
 from viewer.state.palette import FATE_WOULD, FATES
 from viewer.util.numbers import count, percent, whole_percent
 
-LONGEST = ": 29.6 % of shadow rays saved, not verified, 15 % fewer steps, 1.08 × as fast as none (± 0.02)"
+LONGEST = ": 29.6 % of shadow rays saved, not verified, 15 % fewer steps, 1.08 × as fast as tracing all (± 0.02)"
 """As long as the sentence usually is, after the method's name: what room there should be for it."""
 WOULD_OPACITY = 0.4
 """Of a colour, where it stands for what would be."""
@@ -132,7 +132,7 @@ class Part:
 
     def in_words(self) -> str:
         """Return what it is, in two lines."""
-        meaning, way = FATES[self.fate].meaning, f"what {BY_MODES} would do: " if self.would else ""
+        meaning, way = FATES[self.fate].meaning, "what the paper's method would do: " if self.would else ""
         return f"{self.name}: {count(self.rays)} of {count(self.due)} shadow rays due ({self.share})\n{way}{meaning}"
 
 
@@ -222,7 +222,8 @@ class Standing:
 
 
 _HOW = (
-    "The same picture is traced by none and by the chosen method in turn, again and again, while nothing else is to do."
+    "The same picture is traced without culling and by the chosen method in turn, again and again, while nothing else "
+    "is to do."
 )
 _WAITS = f"{_HOW} The panel Experiment and the command bench measure a whole path, frame by frame."
 
@@ -272,7 +273,8 @@ def _unknown(text: str, tip: str) -> Clause:
 
 
 def _saved(frame: Frame) -> Clause:
-    s, name = frame.statistics, frame.settings.method
+    s, method = frame.statistics, Method.parse(frame.settings.method)
+    name = method.title
     shadow, said = s.shadow, s.by_modes_in_all
     part = f" (of the {whole_percent(s.part)} shaded)" if s.part < 1.0 else ""
     if s.cuts is not None:
@@ -280,10 +282,10 @@ def _saved(frame: Frame) -> Clause:
         return Clause(text, "of the lights that each block of points is shaded by, on average")
     if not shadow.due:
         return Clause(f"{name}: no shadow ray is due here", terms.MEANINGS[terms.DUE])
-    if not Method.parse(name).culls:
+    if not method.culls:
         would = f"; the paper's modes would save {percent(said.saved, shadow.due)}" if said.due else ""
-        tip = f"what the modes that are kept for the views would save now, by the method {BY_MODES}"
-        return Clause(f"{name}: every shadow ray is traced{would}{part}", tip)
+        tip = "what the modes that are kept for the views would save now, by the paper's method"
+        return Clause(f"Every shadow ray is traced{would}{part}", tip)
     if shadow.due == shadow.traced and s.decision:
         return Clause(f"{name}: culls nothing here", s.decision)
     if shadow.due == shadow.traced:
@@ -303,7 +305,7 @@ def _wrong(frame: Frame, method: Method) -> Clause:
         text = share if s.cuts is None else verified.in_short(s) or "not verified yet"
         return Clause(text, verified.in_words(s), tone)
     if method.exact:
-        tip = "its pictures are those of none, bit for bit; Verify traces every culled ray as well, to check"
+        tip = "its pictures are those without culling, bit for bit; Verify traces every culled ray as well, to check"
         return Clause("exact", tip)
     tip = "trace every culled ray as well, to count wrong answers"
     return Clause("not verified", tip, Tone.QUIET, command="Verify")
@@ -316,8 +318,8 @@ def _steps(measured: InTurn, frame: Frame) -> Iterator[Clause]:
     more = round(100.0 * (mine.traversal_steps / its.traversal_steps - 1.0))
     packets = "; of whole packets of rays where these are coherent" if frame.settings.accelerator == BVH8 else ""
     tip = (
-        f"nodes of the tree that rays of all kinds enter: {count(mine.traversal_steps)}, with none "
-        f"{count(its.traversal_steps)}{packets}; in frames in turn, which save "
+        f"nodes of the tree that rays of all kinds enter: {count(mine.traversal_steps)}, without "
+        f"culling {count(its.traversal_steps)}{packets}; in frames in turn, which save "
         f"{percent(mine.shadow.saved, mine.shadow.due)} of shadow rays"
     )
     yield Clause(f"{abs(more)} % {'more' if more > 0 else 'fewer'} steps" if more else "as many steps", tip)
@@ -333,10 +335,10 @@ def _speed(measured: InTurn, frame: Frame) -> Clause:
     tree = "" if frame.settings.accelerator == BVH8 else f" in the {frame.settings.accelerator}"
     times = "as fast" if speed.is_one else f"{speed.median:.2f} × as fast"
     tip = (
-        f"median frame {mine:.1f} ms, with none {its:.1f} ms: whole frames of one sample a pixel, without verifying or "
-        "recording. The status bar has the time of the picture that is shown.\n"
-        f"none over {name}: median {speed.median:.3f} ± {speed.margin:.3f}, quartiles {speed.low:.3f} and "
-        f"{speed.high:.3f}\n"
+        f"median frame {mine:.1f} ms, without culling {its:.1f} ms: whole frames of one sample a pixel, without "
+        "verifying or recording. The status bar has the time of the picture that is shown.\n"
+        f"without culling over {title_of(name)}: median {speed.median:.3f} ± {speed.margin:.3f}, quartiles "
+        f"{speed.low:.3f} and {speed.high:.3f}\n"
         f"{measured.count} whole frames by each, in turn{'' if measured.settled else '; it goes on'}. {_HOW}"
     )
-    return Clause(f"{times} as none{tree} ({within})", tip)
+    return Clause(f"{times} as tracing all{tree} ({within})", tip)

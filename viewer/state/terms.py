@@ -33,8 +33,8 @@ BY_BEAMS = (
 
 MEANINGS = {
     DUE: "one towards each light on the visible side of a surface, at all bounces",
-    CULLED: "known to be in shadow, or else known for certain: nothing was asked",
-    SAVED: "culled or dynamic only: nothing static was asked",
+    CULLED: "not traced, as its answer is known",
+    SAVED: "culled or dynamic only: not tested against static geometry",
     DYNAMIC_ONLY: "nothing static is in the way: tested against dynamic objects alone, where any can be",
     CANDIDATES_ONLY: "tested against a few primitives and dynamic objects instead of the whole scene",
     CACHE_HITS: "blocked by the primitive that blocked a ray there before",
@@ -86,8 +86,8 @@ def traced_shadow_rays(shadow: ShadowCounts) -> str:
     others = shadow.rays - shadow.traced
     text = "traced through the whole scene"
     if others > 0:
-        text += f"; {count(others)} others asked dynamic objects or a few candidates alone: they are no traced rays, "
-        text += "but their steps and tests are counted here"
+        text += f"; {count(others)} others were tested against dynamic objects or a few candidates only: they do not "
+        text += "count as traced, but their steps and tests are counted here"
     return text
 
 

@@ -16,8 +16,8 @@ class CellLights(CountView):
     label = "Lights per cell"
     key = "Shift+K"
     help = (
-        "How many lights may reach the cell of each pixel, with the methods lie and lie-exact: all but those that are "
-        "known to be hidden from it. Lines are the borders of cells."
+        "How many lights may reach the cell of each pixel, with local illumination environments: all but those "
+        "that are known to be hidden from it. Lines are the borders of cells."
     )
     shows = CELL_LIGHTS
     what = "lights of the cell"

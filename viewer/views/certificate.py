@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 from tracer.culling.modes import OcclusionMode, has_shadow_mode, occlusion_mode, shadow_mode
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import CERTIFICATES, Certificate
+from viewer.state.palette import CERTIFICATES, OCCLUSION, Certificate
 from viewer.util.numbers import count
 from viewer.views.base import Lights, hits
 from viewer.views.kinds import ClassView, at_rest, not_culled
 from viewer.views.legend import Legend
-from viewer.views.occlusion import MOVES
 
 _MOVES = len(Certificate)
 
@@ -30,7 +29,7 @@ class Certificates(ClassView):
     what = "certificate"
     classes = (
         *CERTIFICATES.values(),
-        MOVES._replace(meaning="it moves: never certified"),
+        OCCLUSION[OcclusionMode.DYNAMIC]._replace(meaning="it moves: never certified"),
     )
 
     def find(self, frame: Frame, light: int) -> NDArray[np.uint8]:

@@ -35,7 +35,7 @@ class Color(FrameView):
         (bright, black), words = clipped(frame.color, draw.tone), draw.tone.in_words()
         rows = (
             ("too bright", TOO_BRIGHT, bright, "red, green or blue is brighter than the screen's"),
-            ("black", BLACK, black, "no channel is brighter than nothing"),
+            ("black", BLACK, black, "all channels are 0"),
         )
         entries = tuple(
             Entry(name, color, (percent(n, frame.primitive.size),), f"{meaning}: {count(n)} pixels")

@@ -33,6 +33,7 @@ _LARGEST = "between a channel of a wrong pixel's colour and the right one, also 
 class Difference(FrameView):
     label = "Difference"
     key = "8"
+    also = "wrong"
     help = "Pixels with a wrong shadow answer; where all answers are right, the picture is shown, dimmed."
     records = Record.VERIFY
     shows = "wrong"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.modes import has_shadow_mode, shadow_mode
 from tracer.frame import Frame
-from tracer.method import Method
+from tracer.method import Method, title_of
 from viewer.state import terms
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY, Class
@@ -115,8 +115,9 @@ def at_rest(frame: Frame) -> tuple[Entry, ...]:
     resting = frame.statistics.resting
     if not resting:
         return ()
-    meaning = f"{count(resting)} primitives of dynamic objects that rest: with {frame.settings.method} they count as "
-    return (Entry("dynamic, at rest", None, ("", count(resting)), f"{meaning}static, and are in the rows above"),)
+    counted = f"with {title_of(frame.settings.method)} they count as static, and are in the rows above"
+    meaning = f"{count(resting)} primitives of dynamic objects that rest: {counted}"
+    return (Entry("dynamic, at rest", None, ("", count(resting)), meaning),)
 
 
 def shadow_modes(frame: Frame, light: int) -> NDArray[np.uint8]:

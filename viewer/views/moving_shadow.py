@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tracer.culling.fate import Fate
 from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.frame import Frame
+from tracer.method import title_of
 from tracer.scene.lights import named_light
 from viewer.state import terms
 from viewer.state.draw_options import DrawOptions
@@ -95,7 +96,7 @@ class MovingShadows(ClassView):
 def _no_moving_shadow(frame: Frame, lights: Lights) -> Note:
     """Say that the picture shows none of the chosen light, and of which light it shows most, if of any."""
     if frame.statistics.resting:
-        return Note(f"What could move is at rest, and counts as static with {frame.settings.method}.")
+        return Note(f"What could move is at rest, and counts as static with {title_of(frame.settings.method)}.")
     pixels = [int(np.count_nonzero(frame.moving_shadow(other))) for other in range(frame.lights)]
     most = max(range(frame.lights), key=pixels.__getitem__)
     others = f"; {named_light(lights, most)} has some" if pixels[most] else ", nor of another light"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.modes import OcclusionMode, occlusion_mode
+from tracer.culling.modes import occlusion_mode
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import OCCLUSION
@@ -13,15 +13,13 @@ from viewer.views.base import Lights
 from viewer.views.kinds import ModeView, culled_by_modes
 from viewer.views.legend import Legend
 
-MOVES = OCCLUSION[OcclusionMode.DYNAMIC]._replace(meaning="it moves, or could and the method is paper: never culled")
-
 
 class Occlusion(ModeView):
     label = "Occlusion mode"
     key = "2"
     help = "How much of each primitive the camera has seen: only fully rendered ones are culled."
     what = "occlusion mode"
-    classes = tuple((OCCLUSION | {OcclusionMode.DYNAMIC: MOVES}).values())
+    classes = tuple(OCCLUSION.values())
 
     def of_units(self, frame: Frame, light: int) -> NDArray[np.uint8]:
         return occlusion_mode(frame.modes)

@@ -54,13 +54,9 @@ def by_class(
 
 
 def by_number(
-    frame: Frame,
-    draw: DrawOptions,
-    place: NDArray,
-    known: NDArray[np.bool_] | None = None,
-    cells: NDArray[np.int32] | None = None,
-    shading: float = 0.0,
-) -> Pixels:
+    frame: Frame, draw: DrawOptions, place: NDArray, known: NDArray[np.bool_] | None = None,
+    cells: NDArray[np.int32] | None = None, shading: float = 0.0,
+) -> Pixels:  # fmt: skip
     """Draw numbers (h, w), 0 to 1, on the colour map, and grey where they are not `known`."""
     index = on_map(place)
     if known is not None:

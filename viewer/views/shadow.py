@@ -9,11 +9,10 @@ from tracer.culling.modes import FULLY_RENDERED, OcclusionMode, ShadowMode, has_
 from tracer.frame import Frame
 from tracer.scene.lights import number_of
 from viewer.state.draw_options import DrawOptions
-from viewer.state.palette import SHADOW, Class
+from viewer.state.palette import OCCLUSION, SHADOW, Class
 from viewer.views.base import Lights, Words
 from viewer.views.kinds import ModeView, culled_by_modes, not_culled, shadow_modes
 from viewer.views.legend import Legend
-from viewer.views.occlusion import MOVES
 
 STRIPE = 3
 """Pixels across which a stripe goes where a shadow mode is not trusted, and the grey one of INIT beside it."""
@@ -47,7 +46,7 @@ class Shadow(ModeView):
         _trusted(_NON, "no shadow ray so far was blocked: tested against dynamic objects only"),
         _untrusted(_NON, "no shadow ray so far was blocked, but it is not fully rendered: traced"),
         SHADOW[_PARTIAL],
-        MOVES,
+        OCCLUSION[OcclusionMode.DYNAMIC],
     )
 
     def of_units(self, frame: Frame, light: int) -> NDArray[np.uint8]:

@@ -39,7 +39,7 @@ class Voxels(FrameView):
     label = "Voxels"
     key = "Shift+V"
     help = (
-        "A slice through the voxels of the method voxels: which are in shadow of the chosen light as a whole, which "
+        "A slice through the voxels of the method Voxels: which are in shadow of the chosen light as a whole, which "
         "see all of it, and of which neither is known. Behind it the picture is dimmed."
     )
     shows = VOXELS

@@ -19,6 +19,7 @@ from viewer.views.paint import by_color, in_bytes
 class Wipe(Difference):
     label = "Wipe"
     key = "9"
+    also = "right reference"
     help = (
         "Left of the line is the traced picture, right of it the picture with every shadow answer right. Drag the line."
     )

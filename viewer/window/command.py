@@ -51,7 +51,7 @@ class Command:
     enabled: Condition | None = None
     separated: bool = False
     repeats: bool = False
-    tip: str = ""
+    tip: str | Callable[[], str] = ""
     also: str = ""
     other_keys: tuple[str, ...] = ()
     title: str | Callable[[], str] | None = None
@@ -64,6 +64,11 @@ class Command:
         """What it is called now; "" while it is not to be seen."""
         title = self.name if self.title is None else self.title
         return title if isinstance(title, str) else title()
+
+    @property
+    def more(self) -> str:
+        """What more is said about it now."""
+        return self.tip if isinstance(self.tip, str) else self.tip()
 
     @property
     def is_checked(self) -> bool:

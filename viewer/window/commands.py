@@ -17,7 +17,7 @@ from tracer.scene.meshes import MESH_EXTENSIONS
 from tracer.scene.studio import TURNS, up_in_studio
 from viewer.services.questions import Question
 from viewer.state.draw_options import NEUTRAL, brighter
-from viewer.state.methods import toggled, with_base
+from viewer.state.methods import about, toggled, with_base
 from viewer.state.pixels import FIT, MOST, STEP
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
@@ -107,8 +107,10 @@ def _edit(ui: Ui) -> list[Command]:
     undo = ui.controller.undo
     return [
         Command("Undo", "Edit", undo.undo, "Ctrl+Z", repeats=True, title=lambda: f"Undo {undo.undoes}".rstrip(),
+                tip=partial(undo.details, 0),
                 enabled=Condition(lambda: bool(undo.undoes), "there is nothing to undo")),
         Command("Redo", "Edit", undo.redo, "Ctrl+Shift+Z", repeats=True, title=lambda: f"Redo {undo.redoes}".rstrip(),
+                tip=partial(undo.details, 1),
                 enabled=Condition(lambda: bool(undo.redoes), "there is nothing to redo"), other_keys=("Ctrl+Y",)),
         Command(Dialog.PALETTE.value, "Edit", lambda: ui.open(Dialog.PALETTE), "Ctrl+Shift+P", separated=True,
                 tip="finds commands, settings, scenes, bookmarks and presets as you type"),
@@ -239,13 +241,13 @@ def _culling(ui: Ui) -> list[Command]:
         c.settings.change(method=combine(c.session.settings.method, name))
 
     def base(kind: Kind) -> Command:
-        return Command(f"Method {kind.name}", "Culling", partial(change, with_base, kind.name), tip=kind.summary,
-                       checked=lambda: method().kind is kind)  # fmt: skip
+        return Command(f"Method {kind.name}", "Culling", partial(change, with_base, kind.name), tip=about(kind),
+                       title=f"Method {kind.title}", checked=lambda: method().kind is kind)  # fmt: skip
 
     def addition(kind: Kind) -> Command:
         fits = Condition(lambda: method().kind is not kind, "it is the chosen method")
-        return Command(f"Method +{kind.name}", "Culling", partial(change, toggled, kind.name), tip=kind.summary,
-                       checked=lambda: method().has(kind.name), enabled=fits)  # fmt: skip
+        return Command(f"Method +{kind.name}", "Culling", partial(change, toggled, kind.name), tip=about(kind),
+                       title=f"Method {kind.plus}", checked=lambda: method().has(kind.name), enabled=fits)  # fmt: skip
 
     return [
         *map(base, bases()),
@@ -289,7 +291,7 @@ def _run(ui: Ui) -> list[Command]:
                 tip="methods compared along the path: faster or not, and how much is saved"),
         Command("Start zoom test", "Run", partial(start, "Zoom test", runs.start_zoom_test), enabled=idle,
                 tip="towards the clicked primitive: is a shadow missing that shows only from near?"),
-        Command("Start hunt", "Run", partial(start, "Hunt", c.runs.start_hunt), enabled=idle,
+        Command("Start hunt", "Run", partial(start, "Hunt", c.runs.start_hunt), enabled=idle, also="wrong",
                 tip="search the path for the worst wrong pixels of a method"),
         Command("Film...", "Run", partial(start, "Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),

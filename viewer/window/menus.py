@@ -23,7 +23,7 @@ def button(ui: Ui, name: str, icon: str, words: str = "", columns: int = 1, widt
     """Show a button that runs a command, where it can be run, and is explained by it and its key: a wide one, or one of
     the icon alone, of a `width` in ems."""
     command = next(one for one in ui.commands if one.name == name)
-    tip = f"{command.tip or name}{ui.key(name)}"
+    tip = f"{command.more or name}{ui.key(name)}"
     imgui.begin_disabled(bool(command.why_not))
     if width:
         clicked = imgui.button(f"{icon}##{name}", ImVec2(em(width), 0.0))
@@ -108,7 +108,7 @@ def show_menu(ui: Ui, path: str, commands: Sequence[Command]) -> None:
 def _menu_item(ui: Ui, command: Command) -> None:
     label = command.label if command.label == command.name else f"{command.label}###{command.name}"
     clicked, _ = imgui.menu_item(label, ui.key_label(command.name), command.is_checked, not command.why_not)
-    if command.tip:
-        tooltip(command.tip)
+    if command.more:
+        tooltip(command.more)
     if clicked:
         run(ui, command)

@@ -173,7 +173,7 @@ def _entries(ui: Ui, one: Setting, now: Any) -> Iterator[Command]:
             yield entry(choose, meaning or one.help, one.text(choice), checked=partial(bool, choice == now))
     elif one.kind is bool:
         flip = partial(c.settings.set, one, not now)
-        yield entry(flip, one.help, checked=partial(bool, now), also="on off switch")
+        yield entry(flip, one.help, checked=partial(bool, now))
     else:
         tip = f"{one.expected_shown}. {one.help}".strip()
-        yield entry(lambda: None, tip, value=one.text(now), take=take, also="set value")
+        yield entry(lambda: None, tip, value=one.text(now), take=take)

@@ -21,7 +21,7 @@ def marbles(room: Path) -> None:
 
 def test_finds_are_written_checked_and_explained(run: Run) -> None:
     out = run.ok("hunt", "marbles.aff", *SEARCH, "--around", 2, "--keep", 1, "-o", "wrong")
-    assert "marbles.aff, 96 × 96, method paper: the worst wrong pixels" in out
+    assert "marbles.aff, 96 × 96, method Paper: the worst wrong pixels" in out
     names = {path.name for path in Path("wrong").iterdir()}
     assert names == {"find-1.png", "find-1.json", "hunt.json"}
     told = json.loads(Path("wrong/hunt.json").read_text())

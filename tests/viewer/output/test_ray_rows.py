@@ -88,7 +88,7 @@ def test_lines_are_dark_behind_what_blocks(tmp_path: Path, more: str, method: st
     for ray, place in tree.shadow_rays():
         parts = [line.part for line in lines if (line.ray, line.place) == (ray.number, place)]
         light = Part.TRACED if ray.shadows.verdict[place] == TRACED else Part.SAVED
-        expected = [light, Part.DARK] if ray.shadows.blocker[place] >= 0 else [light]
+        expected = [light, Part.BLOCKED] if ray.shadows.blocker[place] >= 0 else [light]
         assert parts == (expected if (ray.number, place) in drawn else [])
     assert [line.ray for line in lines if line.part is Part.PATH] == [ray.number for ray in tree.rays[1:]]
     assert np.isfinite([at for line in lines for s in line.strokes for at in (*s.start, *s.end)]).all()

@@ -40,11 +40,12 @@ def test_a_verdict_says_what_is_saved_and_whether_it_is_faster_or_right() -> Non
     ]
     part = "of the traversal steps of shadow rays saved"
     assert verdicts(rows, verified=False) == [
-        f"paper: 10.0% {part}, faster than none: 1.50 times its speed.",
-        f"certified: 70.0% {part}, 7.0 times as many as by paper, as fast as none within 3%.",
-        "lie: 12.6 × as many traversal steps of shadow rays, slower than none: 0.50 times its speed.",
+        f"Paper: 10.0% {part}, faster than tracing all: 1.50 times as fast.",
+        f"Certified: 70.0% {part}, 7.0 times as many as by Paper, as fast as tracing all within 3%.",
+        "Local illumination environments: 12.6 × as many traversal steps of shadow rays, slower than tracing all: 0.50 "
+        "times as fast.",
     ]
-    assert verdicts(rows[:2], verified=True) == [f"paper: 10.0% {part}, no wrong answer."]
+    assert verdicts(rows[:2], verified=True) == [f"Paper: 10.0% {part}, no wrong answer."]
     assert "too few frames" in verdicts([rows[0], row("paper", 0.1, spread=float("inf"))], verified=False)[0]
 
 
@@ -53,12 +54,12 @@ def test_what_times_depend_on_is_said_alike_in_the_window_and_by_bench() -> None
     found = Results("s", (8, 8), [0, 1], methods=seconds, settings={"accelerator": "bvh8", "verify": False})
     found.build_seconds = {"none": [0.0, 0.0], "certified": [1.5, 0.5]}
     said = caveats(found)
-    assert "bvh8" in said[0] and "50% of the time of certified is preparing" in said
+    assert "bvh8" in said[0] and "50% of the time of Certified is preparing" in said
     beside = caveats(found, in_window=True)
     assert beside[1:] == said and "window" in beside[0] and not any("window" in one for one in said)
     found.settings["verify"] = True
     for one in (caveats(found), caveats(found, in_window=True)):
-        assert one == ["times include verifying, which traces culled rays, too: no speed-up is told"]
+        assert one == ["no speed-up is given, as verifying takes time: it traces the culled rays as well"]
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ def comparing(d: Driver) -> None:
     assert "choose Keep as A" in d.said and comparing.seen is None, "nothing is kept yet"
     d.press("Ctrl+Shift+A", "Ctrl+A")
     kept = d.c.frame
-    assert comparing.kept.frame is kept and comparing.kept.method == "none" and not comparing.state.on
+    assert comparing.kept.frame is kept and comparing.kept.frame.settings.method == "none" and not comparing.state.on
     d.hold("D", 0.2).settle()
     assert d.c.frame is not kept and d.c.session.camera != kept.camera, "Ctrl+A has flown, or D has not"
     a, b = picture(kept), picture(d.c.frame)

@@ -50,11 +50,11 @@ def culling(d: Driver) -> None:
     assert d.c.frame.certificates is None and d.c.scheduler.drawn_view is View.COLOR
     d.certify()
     _use(d, View.CERTIFICATE, "certified")
-    d.choose("Culling/Method certified")
+    d.choose("Culling/###Method certified")
     d.click("//Picture/##method")
-    names = [*(kind.name for kind in bases()), *(f"+{kind.name}" for kind in additions("certified"))]
+    names = [*(kind.title for kind in bases()), *(kind.plus for kind in additions("certified"))]
     assert all(d.has(f"//##Combo_00/{name}") for name in names), "all are listed"
-    d.click("//##Combo_00/+cache").press("Escape").settle()
+    d.click("//##Combo_00/+ occluder cache").press("Escape").settle()
     assert d.c.frame.settings.method == "certified+cache" and d.c.frame.certificates is not None
     d.expect_picture()
     for method in ("none", "certified+cache"):
@@ -69,7 +69,7 @@ def culling(d: Driver) -> None:
 
 def _use(d: Driver, view: View, method: str) -> None:
     """Choose a view that has nothing to show, and press the button that gives it a method."""
-    d.press(view.key).settle().click(f"//Picture/**/Use {method}##instead").settle()
+    d.press(view.key).settle().click("//Picture/**/###instead").settle()
     used = d.c.frame.settings
     assert method in (used.accelerator, used.method.split("+")[0])
 

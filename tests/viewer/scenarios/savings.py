@@ -22,10 +22,10 @@ def savings(d: Driver) -> None:
     d.c.settings.change(method="paper")
     d.fix_resolution(320, 240)
     d.open(default_scene())
-    d.wait(lambda: "fast as none" in _said(d), "a comparison with none", 120.0)
+    d.wait(lambda: "fast as tracing all" in _said(d), "a comparison with none", 120.0)
     shadow, words = d.c.frame.statistics.shadow, _said(d)
     assert shadow.saved > 0.1 * shadow.due and shadow.saved == shadow.culled + shadow.dynamic_only
-    assert words.startswith(f"paper: {percent(shadow.saved, shadow.due)} of shadow rays saved, "), words
+    assert words.startswith(f"Paper: {percent(shadow.saved, shadow.due)} of shadow rays saved, "), words
     assert ", not verified, " in words and " fewer steps, " in words, words
     d.wait(lambda: d.c.baseline.measured.settled, "the comparison to end", 120.0)
     bar = {part.fate.name: part.rays for part in bar_of(d.c.frame)}
@@ -37,15 +37,15 @@ def savings(d: Driver) -> None:
     assert d.c.history.frames == traced, "measuring has shown a picture"
     edges = d.picture_edges()
     d.press("V").settle()
-    assert " wrong" in _said(d) and "not verified" not in _said(d) and "fast as none" in _said(d), _said(d)
+    assert " wrong" in _said(d) and "not verified" not in _said(d) and "fast as tracing all" in _said(d), _said(d)
     assert (d.c.frame.modes == modes).all(), "nothing was learnt meanwhile"
     d.press("V", "C").settle()
-    assert _said(d).startswith("none: every shadow ray is traced; the paper's modes would save "), _said(d)
+    assert _said(d).startswith("Every shadow ray is traced; the paper's modes would save "), _said(d)
     would = bar_of(d.c.frame)
     assert would[0].would and would[0].rays == d.c.frame.statistics.by_modes_in_all.full_shadow > 0
     assert d.picture_edges() == edges, "the picture has moved"
     d.press("C").settle()
-    assert "fast as none" in _said(d), "what was measured of this picture is known still"
+    assert "fast as tracing all" in _said(d), "what was measured of this picture is known still"
     with d.held("D"):
         assert _said(d).endswith("speed is measured once the picture rests"), _said(d)
         assert d.picture_edges() == edges
@@ -61,7 +61,7 @@ def _saved(d: Driver) -> None:
     frame, (height, width, _) = d.c.frame, d.saved("savings.png").shape
     assert width == frame.width and frame.height < height < 1.5 * frame.height
     said = capture.read(d.pictures / "savings.png").draw.savings
-    assert " steps, " in said and "fast as none (" in said
+    assert " steps, " in said and "fast as tracing all (" in said
     d.c.preferences.savings_in_pictures = False
 
 

@@ -44,7 +44,7 @@ def _nothing_to_save(d: Driver) -> None:
         d.press(keys)
         assert d.ui.capture_wanted is None
         said = d.c.notices.message
-        assert said.error and "The method paper has nothing for the view Certificates" in said.text
+        assert said.error and "Paper has nothing for the view Certificates" in said.text
         d.press("1").settle()
     d.ui.capture_wanted = CaptureKind.PICTURE
     d.c.session.set_draw(view=View.DIFFERENCE)

@@ -90,13 +90,13 @@ def side(method: str, time: float = 0.0, view: View = View.COLOR, scene: str = "
 @pytest.mark.parametrize(
     ("one", "other", "name"),
     [
-        (side("none"), side("paper"), "none"),
-        (side("none"), side("none", 2.0), "none, frame 3"),
-        (side("none", 2.0), side("paper"), "none, frame 7"),
-        (side("paper", view=View.SHADOW), side("paper"), "paper, shadow mode, light 2"),
-        (side("paper"), side("paper", view=View.SHADOW), "paper, colour"),
-        (side("none", scene="hall"), side("paper"), "none, hall, frame 3"),
-        (side("paper", depth=1), side("paper"), "paper, depth 1"),
+        (side("none"), side("paper"), "None (trace all)"),
+        (side("none"), side("none", 2.0), "None (trace all), frame 3"),
+        (side("none", 2.0), side("paper"), "None (trace all), frame 7"),
+        (side("paper", view=View.SHADOW), side("paper"), "Paper, shadow mode, light 2"),
+        (side("paper"), side("paper", view=View.SHADOW), "Paper, colour"),
+        (side("none", scene="hall"), side("paper"), "None (trace all), hall, frame 3"),
+        (side("paper", depth=1), side("paper"), "Paper, depth 1"),
     ],
 )
 def test_each_is_called_by_its_method_and_what_sets_it_apart(one: Side, other: Side, name: str) -> None:

@@ -65,7 +65,7 @@ def test_edits_of_all_kinds_are_shown_and_undone(desk: Desk):
         desk.rest()
         assert np.array_equal(c.frame.color, picture)
     assert c.session.scene is original and np.array_equal(c.frame.color, before) and not c.session.edits
-    assert c.undo.undoes == "method certified", "edits make no steps but their own"
+    assert c.undo.undoes == "method Certified", "edits make no steps but their own"
 
 
 def test_the_modes_of_all_edited_scenes_are_forgotten(desk: Desk, monkeypatch: pytest.MonkeyPatch):

@@ -57,7 +57,7 @@ def compare(session: Session, **fields: object) -> None:
 
 
 CHANGES = {
-    "method certified": lambda session: session.set_settings(method="certified"),
+    "method Certified": lambda session: session.set_settings(method="certified"),
     "view Depth": lambda session: session.set_draw(view=View.DEPTH),
     "light 1": lambda session: session.set_draw(light=1),
     "range changed": lambda session: session.change(draw=session.draw.with_span((1.0, 2.0), View.DEPTH)),
@@ -65,7 +65,7 @@ CHANGES = {
     "exposure +0.5 EV": lambda session: session.set_draw(tone=Tone(0.5)),
     "zoom to 2 x": lambda session: session.set_draw(zoom=Zoom(2.0)),
     "comparison: side by side": lambda session: compare(session, on=True, mode=CompareMode.SIDE),
-    "A by certified": lambda session: compare(session, second="certified"),
+    "A by Certified": lambda session: compare(session, second="certified"),
 }
 
 
@@ -89,6 +89,15 @@ def test_each_change_is_a_step_with_a_name_and_comes_back(desk: Desk):
     desk.frame()
     desk.undo.redo()
     assert desk.undo.redoes == "" and desk.said == "there is nothing to redo", "another way was taken"
+
+
+def test_many_changes_at_once_are_counted_and_listed(desk: Desk):
+    desk.session.set_settings(depth=3, method="none", zoom_factor=2.0)
+    desk.frame()
+    listed = "bounces 3, method None (trace all), zoom factor 2"
+    assert (desk.undo.undoes, desk.undo.details(0)) == ("3 changes", listed)
+    desk.undo.undo()
+    assert desk.said == f"undone: {listed}" and desk.undo.details(1) == listed
 
 
 @pytest.mark.parametrize(("depths", "name"), [((9, 8, 4, 2), "bounces 2"), ((9, 10), "")])

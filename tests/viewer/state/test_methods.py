@@ -51,7 +51,8 @@ def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View
     elif view not in shows or method.split("+")[0] in shows[view]:
         assert found is None
     else:
-        assert found is not None and found.base in shows[view] and method.split("+")[0] in found.text
+        assert found is not None and found.base in shows[view]
+        assert Method.parse(method).kind.title in found.text or found.text.startswith("Every shadow ray is traced")
 
 
 def test_modes_that_were_not_kept_are_missing():
@@ -96,18 +97,18 @@ def test_certificates_that_may_still_come_are_promised():
     assert "More are made" not in missing(View.CERTIFICATE, frame).text, "it has come to rest"
 
 
-FEW = "lightcuts is for 16 lights or more, and there are 6 here."
-FEW_SAMPLES = "lightcuts is for 16 light samples or more, and there are 6 here."
+FEW = "Lightcuts is for 16 lights or more, and there are 6 here."
+FEW_SAMPLES = "Lightcuts is for 16 light samples or more, and there are 6 here."
 LAMPS = {"lamp_radius": 0.1, "lamp_samples": 16}
 
 
 @pytest.mark.parametrize(
     ("method", "lights", "lamps", "said"),
     [
-        ("lightcuts", 6, {}, f"The method {FEW}"),
+        ("lightcuts", 6, {}, FEW),
         ("lightcuts", 40, {}, ""),
         ("lightcuts", 6, LAMPS, ""),
-        ("certified+voxels", 6, LAMPS, "All lights are lamps of several samples, of which voxels knows nothing: it "
+        ("certified+voxels", 6, LAMPS, "All lights are lamps of several samples, of which Voxels knows nothing: it "
                                        "answers no ray."),
     ],
 )  # fmt: skip

@@ -45,36 +45,36 @@ def in_kdtree(frame: Frame) -> Frame:
 
 PAPER, CERTIFIED = frame_by("paper", culled=100), frame_by("certified", culled=340)
 FEW = InTurn(("none", "paper"), in_turn("paper", 1.5).rounds[: LEAST - 1])
-SAVED = "paper: 10.0 % of shadow rays saved, not verified, "
+SAVED = "Paper: 10.0 % of shadow rays saved, not verified, "
 
 
 @pytest.mark.parametrize(
     ("frame", "standing", "told"),
     [
         (frame_by("paper", verify=True, culled=180, dynamic_only=116, wrong=1), {"measured": in_turn("paper", 1.08)},
-         "paper: 29.6 % of shadow rays saved, 0.1 % wrong, 15 % fewer steps, 1.08 × as fast as none (± 0.01)"),
+         "Paper: 29.6 % of shadow rays saved, 0.1 % wrong, 15 % fewer steps, 1.08 × as fast as tracing all (± 0.01)"),
         (PAPER, {"measured": in_turn("paper", 0.75, (1030, 1000))},
-         f"{SAVED}3 % more steps, 0.75 × as fast as none (± 0.01)"),
+         f"{SAVED}3 % more steps, 0.75 × as fast as tracing all (± 0.01)"),
         (PAPER, {"measured": in_turn("paper", 1.0, (1001, 1000))},
-         f"{SAVED}as many steps, as fast as none (within noise)"),
+         f"{SAVED}as many steps, as fast as tracing all (within noise)"),
         (PAPER, {"measured": in_turn("paper", 1.05, (500, 1000), noise=0.2)},
-         f"{SAVED}50 % fewer steps, as fast as none (within noise)"),
+         f"{SAVED}50 % fewer steps, as fast as tracing all (within noise)"),
         (PAPER, {"measured": FEW}, f"{SAVED}measuring speed ..."),
         (PAPER, {}, f"{SAVED}speed is measured once the picture rests"),
         (PAPER, {"why_not": "no"}, f"{SAVED}speed not measured"),
         (in_kdtree(PAPER), {"measured": in_turn("paper", 1.2)},
-         f"{SAVED}15 % fewer steps, 1.20 × as fast as none in the kdtree (± 0.01)"),
+         f"{SAVED}15 % fewer steps, 1.20 × as fast as tracing all in the kdtree (± 0.01)"),
         (frame_by("paper", part=0.25, culled=100), {},
-         "paper: 10.0 % of shadow rays saved (of the 25 % shaded), not verified, speed is measured once the picture "
+         "Paper: 10.0 % of shadow rays saved (of the 25 % shaded), not verified, speed is measured once the picture "
          "rests"),
         (CERTIFIED, {"proves": True, "measured": in_turn("certified", 1.5, saved=340)},
-         "certified: 34.0 % of shadow rays saved, exact, proving: 0 made in the last picture"),
+         "Certified: 34.0 % of shadow rays saved, exact, proving: 0 made in the last picture"),
         (CERTIFIED, {"measured": in_turn("certified", 1.0, saved=400)},
-         "certified: 34.0 % of shadow rays saved, exact, 15 % fewer steps, as fast as none (within noise, proofs not "
-         "counted)"),
-        (CERTIFIED, {"run": "experiment"}, "Experiment, certified: 34.0 % of shadow rays saved, exact"),
-        (frame_by("paper"), {}, "paper: nothing saved yet, speed is measured once the picture rests"),
-        (frame_by("paper", due=0), {}, "paper: no shadow ray is due here"),
+         "Certified: 34.0 % of shadow rays saved, exact, 15 % fewer steps, as fast as tracing all (within noise, "
+         "proofs not counted)"),
+        (CERTIFIED, {"run": "experiment"}, "Experiment, Certified: 34.0 % of shadow rays saved, exact"),
+        (frame_by("paper"), {}, "Paper: nothing saved yet, speed is measured once the picture rests"),
+        (frame_by("paper", due=0), {}, "Paper: no shadow ray is due here"),
     ],
 )  # fmt: skip
 def test_the_sentence(frame: Frame, standing: dict[str, object], told: str):
@@ -89,13 +89,13 @@ def test_tips_say_what_a_figure_leaves_out():
     frame = frame_by("auto")
     frame.statistics.decision = "none: few lights"
     first = sentence(frame, Standing(measured=in_turn("auto", 1.0, (1000, 1000))))[0]
-    assert (first.text, first.tip) == ("auto: culls nothing here", "none: few lights")
+    assert (first.text, first.tip) == ("Automatic: culls nothing here", "none: few lights")
 
 
 def test_without_culling_the_bar_is_what_would_be_culled():
     frame = frame_by("none")
     frame.statistics.by_modes = [SaidByModes(600, 200, 50), SaidByModes(400, 0, 46)]
-    told = "none: every shadow ray is traced; the paper's modes would save 29.6 %"
+    told = "Every shadow ray is traced; the paper's modes would save 29.6 %"
     assert said(frame) == told
     bar = bar_of(frame)
     assert [(part.fate, part.rays, part.name) for part in bar] == [
@@ -103,7 +103,7 @@ def test_without_culling_the_bar_is_what_would_be_culled():
         (Fate.TRACED, 704, "traced in any case"),
     ]  # fmt: skip
     frame.statistics.by_modes = []
-    assert said(frame) == "none: every shadow ray is traced"
+    assert said(frame) == "Every shadow ray is traced"
     assert [part.fate for part in bar_of(frame)] == [Fate.TRACED]
 
 
@@ -137,7 +137,7 @@ def test_wrong_answers_stand_out_and_clusters_have_their_own_words():
     assert "none wrong" in in_words(right) and all(clause.tone is not Tone.WRONG for clause in right)
     frame = with_cuts(frame_by("lightcuts", verify=True, wrong=7))
     frame.statistics.cuts.errors = CutErrors(beyond=7)
-    assert said(frame).startswith("lightcuts: 10 clusters for 100 lights, 7 pixels beyond the error")
+    assert said(frame).startswith("Lightcuts: 10 clusters for 100 lights, 7 pixels beyond the error")
     assert bar_of(frame) == ()
 
 

@@ -21,13 +21,10 @@ from viewer.state.views import View
 
 AWAY = Camera((1.0, 2.0, 3.0), (0.0, 0.6, -0.8), (0.0, 0.8, 0.6), 33.0)
 ALL_KINDS = Edits(
-    lights_off=frozenset({1}),
-    moved_lights=((0, (0.1, -2.0, 1e-7)), (2, (1.0, 2.0, 3.0))),
-    hidden=frozenset({"train"}),
-    hidden_primitives=frozenset({3, 0}),
-    static=(("train", 2.5),),
+    lights_off=frozenset({1}), moved_lights=((0, (0.1, -2.0, 1e-7)), (2, (1.0, 2.0, 3.0))),
+    hidden=frozenset({"train"}), hidden_primitives=frozenset({3, 0}), static=(("train", 2.5),),
     moving=frozenset({"static"}),
-)
+)  # fmt: skip
 
 
 def opened(**scene: object) -> Session:

@@ -9,7 +9,9 @@ import pytest
 
 from tests.viewer.drawn import values_in
 from tests.viewer.fakes import make_frame
+from tracer.culling.fate import Fate
 from tracer.frame import Settings
+from viewer.state import palette
 from viewer.state.comparison import CompareMode
 from viewer.state.palette import LESS, MORE, SAME, WIPE_LINE, signed_map
 from viewer.state.views import View
@@ -42,6 +44,8 @@ def test_zero_has_a_colour_of_its_own_and_both_sides_are_alike():
     middle = in_bytes((np.array([LESS, MORE]) + SAME) / 2.0)
     assert np.abs(drawn[[2, 4]].astype(int) - middle).max() <= 1
     assert np.array_equal(in_bytes(signed_map(3)), in_bytes(np.array([LESS, SAME, MORE])))
+    assert not {LESS, MORE} & {one.color for one in (*palette.OCCLUSION.values(), *palette.FATES.values())}
+    assert palette.CERTIFICATES[palette.Certificate.CANDIDATES].color == palette.FATES[Fate.CANDIDATES].color
 
 
 def test_rings_are_around_what_differs_and_cover_none_of_it():

@@ -9,6 +9,7 @@ import pytest
 from viewer.state.preferences import SCALES
 from viewer.state.views import View
 from viewer.window.command import MENUS, Command, Kind
+from viewer.window.layout import PANELS
 from viewer.window.panels.command_palette import Finder, find, items, match
 from viewer.window.ui import Ui
 
@@ -58,21 +59,27 @@ def test_views_are_chosen_and_ticked(ui: Ui, by_name) -> None:
         ("occulsion", "Occlusion mode"),
         ("why traced", "Fate of shadow rays"), ("culled view", "Fate of shadow rays"),
         ("dynamic darkened", "Moving shadows"), ("soft", "setting Lamp radius"), ("bart", "Open..."),
-        ("why", "Fate of shadow rays"), ("faster", "Two methods live"), ("table 1", "Table 1"),
+        ("why", "panel Inspector"), ("wrong", "Difference"), ("dynamic", "Moving shadows"),
+        ("faster", "Two methods live"), ("table 1", "Table 1"),
         ("figure 4", "Figure 4"), ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"),
     ],
 )  # fmt: skip
 def test_what_is_meant_is_found_first(ui: Ui, typed: str, meant: str | None) -> None:
+    ui.panel_labels = tuple(PANELS)
     first = find(typed, items(ui), [])[0]
     assert first.name == meant if meant else first.kind is Kind.SCENE
 
 
+def test_after_the_view_of_wrong_pixels_comes_the_hunt_and_nothing_is_there_twice(ui: Ui) -> None:
+    ui.panel_labels = tuple(PANELS)
+    assert find("wrong", items(ui), [])[1].name == "Start hunt"
+    assert [label for label, count in Counter(item.label.lower() for item in items(ui)).items() if count > 1] == []
+
+
 def test_what_was_used_last_comes_first(ui: Ui) -> None:
     everything = items(ui)
-    assert [item.name for item in find("", everything, ["Start zoom test", "Depth"])[:2]] == [
-        "Start zoom test",
-        "Depth",
-    ]
+    names = [item.name for item in find("", everything, ["Start zoom test", "Depth"])]
+    assert names[:2] == ["Start zoom test", "Depth"]
     assert find("next", everything, [])[0].name == "Next view"
     assert find("next", everything, ["Next light"])[0].name == "Next light"
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from imgui_bundle import imgui, implot
 
 from tests.viewer.desk import Desk
 from viewer.window import commands
 from viewer.window.layout import PANELS
+from viewer.window.panels.plots import as_steps
 from viewer.window.setting_rows import ALL
 from viewer.window.ui import Ui
 
@@ -57,3 +59,8 @@ def test_a_panel_shows_every_setting_that_is_declared_for_it(
             monkeypatch.setitem(ALL, label, replace(ALL[path], label=label, panel=panel))
         found = written(panel)
         assert not [label for label in labels if label not in found], f"{panel}: {found}"
+
+
+def test_curves_are_level_over_each_picture() -> None:
+    x, y = as_steps(np.array([1.0, 5.0]), 9.5)
+    assert x.tolist() == [9.5, 10.5, 10.5, 11.5] and y.tolist() == [1.0, 1.0, 5.0, 5.0]

@@ -122,8 +122,8 @@ def test_wrong_answers_are_those_of_the_method_that_is_shown() -> None:
 
 
 def test_below_a_method_stands_what_it_trusts_whether_it_is_exact_and_what_it_does_now() -> None:
-    first, second = trust(shown("paper+cache")).split(" cache: ")
-    assert first.startswith("paper: Trusts ") and "Wrong now and then." in first and second.endswith("as the method.")
+    first, second = trust(shown("paper+cache")).split(" Occluder cache: ")
+    assert first.startswith("Paper: Trusts ") and "Wrong now and then." in first and second.endswith("as the method.")
     c = shown("auto")
     c.frame.statistics.decision = "Every shadow ray is traced."
     assert trust(c).endswith(" Exact. Every shadow ray is traced.")

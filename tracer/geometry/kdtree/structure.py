@@ -116,16 +116,9 @@ class KdTree(InObjectSpace):
         there = len(primitives.triangles), resting.any(), moving.any()
         self._data = np.array([*(a.ctypes.data for a in arrays), *there], np.int64)
         return Placed(
-            primitives.triangles,
-            primitives.quadrics,
-            parts.to_object,
-            primitives.object_of,
-            self.closest.address,
-            self.any_hit.address,
-            self._data.ctypes.data,
-            bool(moving.any()),
-            moving_box,
-        )
+            primitives.triangles, primitives.quadrics, parts.to_object, primitives.object_of, self.closest.address,
+            self.any_hit.address, self._data.ctypes.data, bool(moving.any()), moving_box,
+        )  # fmt: skip
 
     def build(self) -> None:
         """Nothing waits for rays."""

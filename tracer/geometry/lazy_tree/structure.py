@@ -145,16 +145,9 @@ class LazyKdTree(InObjectSpace):
         count = len(primitives.triangles)
         self._data = np.array([*addresses, open_node.address, PAUSE, moving_box.ctypes.data, count, has], np.int64)
         return Placed(
-            primitives.triangles,
-            primitives.quadrics,
-            to_object,
-            primitives.object_of,
-            self.closest.address,
-            self.any_hit.address,
-            self._data.ctypes.data,
-            has,
-            moving_box,
-        )
+            primitives.triangles, primitives.quadrics, to_object, primitives.object_of, self.closest.address,
+            self.any_hit.address, self._data.ctypes.data, has, moving_box,
+        )  # fmt: skip
 
     def build(self) -> None:
         """Nodes wait for rays by nature."""

@@ -19,8 +19,8 @@ from viewer.window.widgets import em
 
 BACK, FRONT = ImVec4(*DARK, 0.9), ImVec4(*LIGHT, 1.0)
 _PAD, _RIM = 0.4, 0.06  # ems around words, and around strokes
-SHADE = ImVec4(*DARK, 0.6)
-"""Around what is drawn, so that it is seen on any picture."""
+SHADE, WHITE = ImVec4(*DARK, 0.6), ImVec4(1.0, 1.0, 1.0, 1.0)
+"""Around what is drawn, so that it is seen on any picture: around light colours, and around blue."""
 
 
 @dataclass(frozen=True)
@@ -111,6 +111,7 @@ class Pen:
         centre, shown, arm = self.to_screen(*at), imgui.get_color_u32(color), em(0.28)
         for way in (arm, -arm):
             a, b = ImVec2(centre.x - arm, centre.y - way), ImVec2(centre.x + arm, centre.y + way)
+            self.draw.add_line(a, b, imgui.get_color_u32(WHITE), em(0.14 + 2.0 * _RIM))
             self.draw.add_line(a, b, shown, em(0.14))
 
     def square(self, middle: ImVec2, size: tuple[float, float], color: ImVec4) -> None:

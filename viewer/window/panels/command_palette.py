@@ -30,8 +30,10 @@ _ICONS = {
 }
 _LINE = int(imgui.InputTextFlags_.enter_returns_true) | int(imgui.InputTextFlags_.callback_history)
 _ROW = int(imgui.SelectableFlags_.no_auto_close_popups)
+_ASKED_FOR = {"Inspector": "why"}  # panels, by other words than their names
 RECENT_BONUS = 15.0
 """For what was run last; less for what was run before."""
+_VERBS = "open show set value switch on off apply"  # with which any of them may be asked for
 _OTHER_KINDS = 4.0  # which a command goes before, where both fit alike
 _MISTYPED, _ALIKE = -1000.0, 75.0  # to which is added how alike the words are, of 100, and that is at least so much
 
@@ -39,25 +41,28 @@ _MISTYPED, _ALIKE = -1000.0, 75.0  # to which is added how alike the words are, 
 # --- what is meant -----------------------------------------------------------------------------------
 
 
-def match(typed: str, label: str, also: str = "", tip: str = "") -> float | None:
-    """How well a label fits what was typed; words may also be found in `also` and in `tip`.  None if one is in none.
+def match(typed: str, label: str, elsewhere: str = "", tip: str = "", also: str = "") -> float | None:
+    """How well a label fits what was typed; words may also be found in other texts.  None if one is in none.
 
-    Words count as they stand (100), by their beginnings (80), as initials of the label's words (60), anywhere in it
-    (50), in `also` (30), at the beginning of a word of `tip` (10), or, much less, mistyped; a shorter label before a
-    longer one."""
-    label, also, tip, words = label.lower(), also.lower(), f" {tip.lower()}", typed.lower().split()
+    Words count as one of `also` (120), as they stand in the label (100), by their beginnings (80), as initials of the
+    label's words (60), anywhere in it (50), `elsewhere` (30), at the beginning of a word of `tip` (10), or, much less,
+    mistyped; a shorter label before a longer one."""
+    label, elsewhere, tip, words = label.lower(), elsewhere.lower(), f" {tip.lower()}", typed.lower().split()
+    meant = also.lower().split()
     starts = [i for i, letter in enumerate(label) if letter.isalnum() and (i == 0 or not label[i - 1].isalnum())]
     initials, score = "".join(label[i] for i in starts), -0.1 * len(label) + 25.0 * (" ".join(words) == label)
     for word in words:
         start = next((i for i in starts if label.startswith(word, i)), -1)
-        if start >= 0:
+        if word in meant:
+            score += 120.0
+        elif start >= 0:
             whole = not label[start + len(word) : start + len(word) + 1].isalnum()
             score += (100.0 if whole else 80.0) - 0.05 * start
         elif len(word) > 1 and initials.startswith(word):
             score += 60.0
         elif word in label:
             score += 50.0 - 0.05 * label.find(word)
-        elif word in also:
+        elif word in elsewhere:
             score += 30.0
         elif f" {word}" in tip:
             score += 10.0
@@ -75,7 +80,8 @@ def find(typed: str, items: Sequence[Command], used: Sequence[str]) -> list[Comm
         return sorted(items, key=lambda item: rank.get(item.name, len(rank)))
     scored = []
     for number, item in enumerate(items):
-        score = match(typed, item.label, f"{item.name} {item.menu} {item.kind.value} {item.also}", item.tip)
+        elsewhere = f"{item.name} {item.menu} {item.kind.value} {item.also} {_VERBS}"
+        score = match(typed, item.label, elsewhere, item.more, item.also)
         if score is not None:
             score -= _OTHER_KINDS if item.kind is not Kind.COMMAND else 0.0
             score += RECENT_BONUS / (1.0 + rank[item.name]) if item.name in rank else 0.0
@@ -165,7 +171,7 @@ def show(ui: Ui) -> None:
     aimed = finder.aimed
     entered = _line(finder)
     clicked = _list(ui, finder) if finder.setting is None else None
-    hint = finder.setting.tip if finder.setting is not None else aimed.why_not if aimed is not None else ""
+    hint = finder.setting.more if finder.setting is not None else aimed.why_not if aimed is not None else ""
     if finder.problem or hint:
         paragraph(finder.problem or hint, ERROR if finder.problem else QUIET)
     chosen = clicked or finder.aimed or finder.setting
@@ -234,8 +240,8 @@ def _list(ui: Ui, finder: Finder) -> Command | None:
 def _row(ui: Ui, item: Command, marked: bool) -> bool:
     imgui.push_id(item.name)
     clicked = imgui.selectable("##row", marked, _ROW)[0]
-    if item.why_not or item.tip:
-        tooltip(item.why_not or item.tip)
+    if item.why_not or item.more:
+        tooltip(item.why_not or item.more)
     imgui.same_line(em(0.3))
     imgui.text_colored(QUIET, icons.ICON_FA_CHECK if item.is_checked else _ICONS[item.kind])
     imgui.same_line(em(1.9))
@@ -268,7 +274,8 @@ def _others(ui: Ui) -> Iterator[Command]:
     c = ui.controller
     yield from preset_commands(ui)
     for label in ui.panel_labels:
-        yield Command(f"panel {label}", "Panels", partial(ui.show_panel, label), title=f"Panel {label}", also="open")
+        also = _ASKED_FOR.get(label, "")
+        yield Command(f"panel {label}", "Panels", partial(ui.show_panel, label), title=f"Panel {label}", also=also)
     for number, mark in list(enumerate(c.bookmarks.all))[KEYED_BOOKMARKS:]:  # the others are in the menu
         go = partial(c.go_to_bookmark, number)
         yield Command(f"bookmark {number}", "go there", go, title=mark.name, kind=Kind.BOOKMARK)

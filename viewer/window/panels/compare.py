@@ -109,7 +109,7 @@ def _columns(ui: Ui) -> None:
         imgui.table_next_column()
         swatch(color)
         clipped(name)
-    for name in ("B - A", "of A"):
+    for name in ("B - A", "in %"):
         imgui.table_next_column()
         right(name)
     found = ui.cached("pairs", a.frame, (b.frame, timed), lambda: beside(a.frame, b.frame, timed))

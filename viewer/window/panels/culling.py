@@ -12,27 +12,26 @@ from tracer.methods.method_limits import lamps_in, worth
 from tracer.util.setting import Setting
 from viewer.services.controller import Controller
 from viewer.state import verified
-from viewer.state.methods import groups, toggled, with_base
+from viewer.state.methods import about, groups, toggled, with_base
 from viewer.window import menus
 from viewer.window.setting_rows import panel_rows
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, dropdown, em, fitted, outlined, paragraph, tooltip
 
 _OF_MODES = ("settings.symmetric", "settings.zoom_factor")
-_NAMES = 10.5  # ems of the names of methods; sentences begin behind them
+_NAMES = 18.0  # ems of the names of methods; sentences begin behind them
 _SENTENCE = 12.0  # ems that are worth beginning one
 
 
 def show(ui: Ui) -> None:
     """Show the panel."""
     c = ui.controller
-    name = c.session.settings.method
-    method = Method.parse(name)
+    method = Method.parse(c.session.settings.method)
     paragraph(trust(c), QUIET)
 
     def note(one: Setting) -> str:
         if one.path in _OF_MODES and not method.uses_modes:
-            return f"\n{name} does not cull by modes: it changes those kept for the views alone."
+            return f"\n{method.title} does not cull by modes: it changes those kept for the views alone."
         return ""
 
     panel_rows(ui, "Culling", 8.2 if method.has_certificates else 6.5, note=note)
@@ -49,7 +48,7 @@ def trust(c: Controller) -> str:
     why."""
     frame, name = c.frame, c.session.settings.method
     kinds = Method.parse(name).kinds
-    said = [kind.summary if len(kinds) == 1 else f"{kind.name}: {kind.summary}" for kind in kinds]
+    said = [kind.summary if len(kinds) == 1 else f"{kind.title}: {kind.summary}" for kind in kinds]
     if frame is not None and frame.settings.method == name and c.runs.current is None:
         said.append(frame.statistics.decision)
     return " ".join(filter(None, said))
@@ -78,17 +77,17 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
 
     Methods that have nothing to say of the scene are pale.  `combined`: additions are in it."""
     parsed = Method.parse(method)
-    if not dropdown(name, method, int(imgui.ComboFlags_.height_largest)):
-        tooltip(parsed.kind.summary if method == parsed.base else method)
+    if not dropdown(name, parsed.title, int(imgui.ComboFlags_.height_largest)):
+        tooltip(f"{parsed.title}\n{about(*parsed.kinds)}")
         return
 
     def base(kind: Kind) -> None:
-        if imgui.selectable(kind.name, kind is parsed.kind)[0]:
+        if imgui.selectable(kind.title, kind is parsed.kind)[0]:
             choose(with_base(method, kind.name))
 
     def addition(kind: Kind) -> None:
         with outlined():
-            if imgui.checkbox(f"+{kind.name}", parsed.has(kind.name))[0]:
+            if imgui.checkbox(kind.plus, parsed.has(kind.name))[0]:
                 choose(toggled(method, kind.name))
 
     kinds_of_methods(ui, groups(), base)
@@ -105,7 +104,7 @@ def kinds_of_methods(ui: Ui, groups: Iterable[tuple[str, Iterable[Kind]]], show:
         imgui.separator_text(heading)
         for kind in kinds:
             show(kind)
-            tooltip(" ".join(filter(None, (kind.summary, worth(kind, *lights)))))
+            tooltip("\n".join(filter(None, (worth(kind, *lights), about(kind)))))
             if room >= em(_SENTENCE):
                 pale = imgui.get_style_color_vec4(imgui.Col_.text_disabled)
                 imgui.same_line(em(_NAMES))

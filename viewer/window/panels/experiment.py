@@ -7,8 +7,8 @@ from imgui_bundle import ImVec2, imgui, implot
 
 from tracer.experiments import experiment
 from tracer.experiments.experiment import REFERENCE, Experiment, Results, Row
-from tracer.method import Kind, additions, bases, in_order
-from viewer.output.reports import METHOD, PUBLISHED, caveats, table_1, verdicts
+from tracer.method import Kind, additions, bases, in_order, title_of
+from viewer.output.reports import TITLED, caveats, published, table_1, verdicts
 from viewer.state.methods import BY_MODES, CERTIFIED, groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
@@ -28,7 +28,8 @@ def show(ui: Ui) -> None:
     """The panel: what to measure, the savings frame by frame, and the table."""
     run, parts, doing = ui.controller.runs.experiment, list[Part](), ""
     if run is not None:
-        doing = f"{run.settings.width} x {run.settings.height}, {run.settings.depth} bounces, showing {run.shown}"
+        s = run.settings
+        doing = f"{s.width} x {s.height}, {s.depth} bounces, showing {title_of(run.shown)}"
     if run is not None and (results := run.results) is not None:
         parts.append(("Table", _TABLE, lambda: _table(ui, run, results)))
         parts.append(("Plot", _PLOT, lambda: _plot(ui, run, results)))
@@ -46,7 +47,7 @@ def _plan(ui: Ui) -> None:
     imgui.push_style_var(imgui.StyleVar_.cell_padding, ImVec2(imgui.get_style().cell_padding.x, 1.0))
     with properties("plan", 4.6) as shown:
         if shown:
-            row("Methods", f"Methods to compare with {REFERENCE}, which traces every shadow ray.")
+            row("Methods", "Methods to compare with tracing every shadow ray.")
             _methods(ui, plan)
             plan_rows(ui, plan, "frames", "size", "depth", "accelerator", "verify")
     imgui.pop_style_var()
@@ -55,8 +56,9 @@ def _plan(ui: Ui) -> None:
 def _methods(ui: Ui, plan: ExperimentPlan) -> None:
     """A list to be opened: a tick for each base, and for each way to add to those; the reference is always among
     them."""
-    opened = dropdown("##methods", ", ".join(in_order(plan.methods)), int(imgui.ComboFlags_.height_largest))
-    tooltip(", ".join(in_order({REFERENCE, *plan.methods})))
+    titles = ", ".join(map(title_of, in_order(plan.methods)))
+    opened = dropdown("##methods", titles, int(imgui.ComboFlags_.height_largest))
+    tooltip(f"{titles}\nOn the command line: {','.join(in_order(plan.methods))}")
     if not opened:
         return
 
@@ -68,12 +70,12 @@ def _methods(ui: Ui, plan: ExperimentPlan) -> None:
 
     def base(kind: Kind) -> None:
         imgui.begin_disabled(kind.name == REFERENCE)
-        add_or_remove(kind.name, {kind.name})
+        add_or_remove(kind.title, {kind.name})
         imgui.end_disabled()
 
     def addition(kind: Kind) -> None:
         bases = [method for method in plan.methods if "+" not in method and method != kind.name]
-        add_or_remove(f"+{kind.name}", {f"{base}+{kind.name}" for base in bases})
+        add_or_remove(kind.plus, {f"{base}+{kind.name}" for base in bases})
 
     kinds_of_methods(ui, [("Usual", [kind for kind in bases() if kind.name in _USUAL])], base)
     if imgui.tree_node("More"):
@@ -88,11 +90,11 @@ def _methods(ui: Ui, plan: ExperimentPlan) -> None:
 def _table(ui: Ui, run: Experiment, results: Results) -> None:
     """The paper's Table 1: a line for each method."""
     rows: list[Row] = ui.cached("table 1", results, len(results.frames), lambda: experiment.table(results))
-    results_table("table 1", [METHOD, *table_1(results)], rows, fits=True)
+    results_table("table 1", [TITLED, *table_1(results)], rows, fits=True)
     for sentence in ui.cached("verdicts", results, len(results.frames), lambda: verdicts(rows, run.settings.verify)):
         paragraph(in_window_style(sentence))
     said = in_window_style("; ".join(caveats(results, in_window=True)))
-    for quiet in (f"{said[:1].upper()}{said[1:]}.", *map(in_window_style, PUBLISHED)):
+    for quiet in (f"{said[:1].upper()}{said[1:]}.", *map(in_window_style, published(results))):
         paragraph(quiet, QUIET)
 
 
@@ -124,14 +126,14 @@ def _plot(ui: Ui, run: Experiment, results: Results) -> None:
             spec = implot.Spec(line_color=COLORS[number % len(COLORS)], line_weight=weight)
             if len(frames) == 1:  # is no line
                 spec.marker = int(implot.Marker_.circle)
-            implot.plot_line(method, frames, curve, spec)
+            implot.plot_line(title_of(method), frames, curve, spec)
     place = pointed_frame(0, len(results.frames) - 1, results.frames)
     implot.end_plot()
     said = []
     if place is not None:
         for method, curves in savings.items():
             steps, tests = (in_window_style(saved_in_words(curve[place] / 100.0)) for curve in curves)
-            said.append(f"{method}: steps {steps}, tests {tests}")
+            said.append(f"{title_of(method)}: steps {steps}, tests {tests}")
     go_to_run_frame(ui, run, results, place, said)
 
 

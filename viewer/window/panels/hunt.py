@@ -33,8 +33,7 @@ def show(ui: Ui) -> None:
         tip="Search the frames for the worst wrong pixels of the method",
         doing="Searching for wrong pixels",
         parts=parts,
-        why="Where is a method wrong, and how badly? Start: the worst wrong pixels are listed here. Click one to "
-        "fly there; the inspector explains it.",
+        why="Start lists the worst wrong pixels of a method. Click one to fly there; the Inspector explains it.",
     )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 
 from tracer.frame import Frame
+from tracer.method import title_of
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from viewer.output.light_cube import Unfolded, by_depths, by_lists
@@ -25,7 +26,7 @@ def unfold(renderer: Renderer, frame: Frame, light: int, depths: bool, cancelled
     """Unfold the cube of a light, or return why it has none, in a line."""
     cubes, name = frame.structures.get(LIGHT_CUBES, ()), named_light(renderer.scene.lights, light)
     if light >= len(cubes) or cubes[light].cube is None:
-        why = cubes[light].why if light < len(cubes) else f"the method {frame.settings.method} keeps none for it"
+        why = cubes[light].why if light < len(cubes) else f"{title_of(frame.settings.method)} keeps none for it"
         return f"No light buffer of {name}: {why or 'there is nothing static'}."
     cube = cubes[light].cube
     return by_depths(cube) if depths else by_lists(cube, name)

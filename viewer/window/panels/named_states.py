@@ -67,7 +67,7 @@ def preset_commands(ui: Ui) -> list[Command]:
     tips = [preset.tip for preset in BUILT_IN] + ["saved by you"] * len(presets.all)
     return [
         Command(f"preset {name}", "Edit/Presets", partial(presets.apply, name), title=name, kind=Kind.PRESET,
-                also="apply", tip=tip, separated=number in (0, len(BUILT_IN)))
+                tip=tip, separated=number in (0, len(BUILT_IN)))
         for number, (name, tip) in enumerate(zip(presets.states, tips, strict=True))
     ]  # fmt: skip
 

@@ -5,26 +5,25 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from tracer.culling.fate import Fate
-from tracer.culling.modes import ShadowMode
+from tracer.culling.modes import OcclusionMode
 from tracer.frame import Frame
 from tracer.inspect.projection import Stroke, strokes
 from tracer.inspect.reasons import Why
+from tracer.method import title_of
 from viewer.state.methods import missing, with_base
-from viewer.state.palette import FATES, SHADOW
+from viewer.state.palette import BLOCKED, CANDIDATES, OCCLUSION, UNKNOWN
 from viewer.state.picking import outline_of, points_of, primitive_points
 from viewer.window.panels import rays
-from viewer.window.panels.area import BACK, FRONT, Area, Pen
+from viewer.window.panels.area import BACK, FRONT, SHADE, WHITE, Area, Pen
 from viewer.window.panels.links import Pointed
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, paragraph, tooltip
 
-_BLOCKER = ImVec4(*SHADOW[ShadowMode.PARTIAL_SHADOW].color, 1.0)
-_NAMED = ImVec4(0.90, 0.62, 0.0, 1.0)  # what the method's answer rests on
+_BLOCKER, _NAMED = ImVec4(*BLOCKED, 1.0), ImVec4(*CANDIDATES, 1.0)  # what blocks, and what the answer rests on
 _MOST_NAMED = 8  # of which so many are outlined
 _OUTLINE = 0.13  # width in ems
-_HIDER, _WHITE = ImVec4(*FATES[Fate.PARTLY_OCCLUDED].color, 1.0), ImVec4(1.0, 1.0, 1.0, 1.0)
-_SAME, _MISSED = ImVec4(0.6, 0.64, 0.7, 1.0), ImVec4(0.3, 0.85, 0.95, 1.0)
+_HIDER = ImVec4(*OCCLUSION[OcclusionMode.PARTIALLY_OCCLUDED].color, 1.0)
+_SAME, _MISSED = ImVec4(*UNKNOWN, 1.0), ImVec4(*OCCLUSION[OcclusionMode.FULLY_RENDERED].color, 1.0)
 _SIDE = 0.5  # ems, of a pixel's square at least
 _NOTE, _LEAST = 26.0, 8.0  # in ems of width: of a note, and of a picture that has room for one
 
@@ -64,9 +63,9 @@ def _why(ui: Ui, made: Pen, frame: Frame) -> None:
         if in_place and c.selection.pixel == (found.x, found.y):
             _figure_3(made, frame, found)
     if link is not None and link.primitive is not None:
-        _outline(ui, made, frame, link.primitive, _WHITE, "pointed link")
+        _outline(ui, made, frame, link.primitive, WHITE, "pointed link")
     if link is not None and link.pixel is not None and in_place:
-        made.square(*_square_of(made, frame, link.pixel), _WHITE)
+        made.square(*_square_of(made, frame, link.pixel), WHITE)
 
 
 def _outline(ui: Ui, made: Pen, frame: Frame, primitive: int, color: ImVec4, name: str) -> None:
@@ -76,7 +75,7 @@ def _outline(ui: Ui, made: Pen, frame: Frame, primitive: int, color: ImVec4, nam
     pieces = ui.cached(
         name, frame, primitive, lambda: _projected(frame, outline_of(primitive_points(scene, primitive, frame.time)))
     )
-    made.strokes(pieces, color, _OUTLINE)
+    made.strokes(pieces, color, _OUTLINE, around=WHITE if color is _BLOCKER else SHADE)
 
 
 def _projected(frame: Frame, lines: list) -> list[Stroke]:
@@ -92,7 +91,7 @@ def _figure_3(made: Pen, frame: Frame, found: Why) -> None:
         across, down = one.pixel[0] - found.x, one.pixel[1] - found.y
         made.square(ImVec2(middle.x + across * width, middle.y + down * height), (width, height), color)
     if found.references:
-        made.square(middle, (width, height), _WHITE)
+        made.square(middle, (width, height), WHITE)
 
 
 def _square_of(made: Pen, frame: Frame, pixel: tuple[int, int]) -> tuple[ImVec2, tuple[float, float]]:
@@ -116,7 +115,7 @@ def _occluded_selection(ui: Ui, made: Pen, frame: Frame) -> None:
     def lines() -> list[Stroke]:
         return _projected(frame, outline_of(points_of(now, picked, frame.time)))
 
-    made.strokes(ui.cached("occluded selection", frame, picked, lines), _WHITE, 0.12, behind=0.75)
+    made.strokes(ui.cached("occluded selection", frame, picked, lines), WHITE, 0.12, behind=0.75)
 
 
 def show_missing(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
@@ -132,9 +131,9 @@ def show_missing(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
     if imgui.begin_child("missing", ImVec2(width, 0.0), int(flags)):
         paragraph(found.text, FRONT)
         imgui.begin_disabled(run is not None)
-        if found.base and imgui.button(f"Use {found.base}##instead"):
+        if found.base and imgui.button(f"Use {title_of(found.base)}###instead"):
             c.settings.change(method=with_base(c.session.settings.method, found.base))
-        if found.accelerator and imgui.button(f"Use {found.accelerator}##instead"):
+        if found.accelerator and imgui.button(f"Use {found.accelerator}###instead"):
             c.settings.change(accelerator=found.accelerator)
         imgui.end_disabled()
         if run is not None:

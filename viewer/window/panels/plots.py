@@ -11,13 +11,27 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from numpy.typing import NDArray
 
+from tracer.culling.fate import Fate
 from tracer.experiments.experiment import REFERENCE, Results
+from tracer.method import title_of
 from viewer.services.runs import Experiment
 from viewer.state import terms
+from viewer.state.palette import FATES, LIT, PARTLY_LIT
 from viewer.util.numbers import whole_percent
 from viewer.window.style import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, clipped, count, em, fitted, paragraph, tooltip, tooltip_at, width_of
+from viewer.window.widgets import (
+    QUIET,
+    checkbox,
+    clipped,
+    count,
+    em,
+    fitted,
+    paragraph,
+    tooltip,
+    tooltip_at,
+    width_of,
+)
 
 
 @dataclass(frozen=True)
@@ -34,18 +48,20 @@ class _Plot:
 
 _PLOTS = (
     _Plot("What became of shadow rays",
-          ((terms.CULLED, "culled", BLUE), (terms.DYNAMIC_ONLY, "dynamic_only", YELLOW),
-           (terms.CANDIDATES_ONLY, "candidates_only", ORANGE), (terms.CACHE_HITS, "cache_hits", PINK),
-           (terms.TRACED, "traced", GREY)), stacked=True),
+          tuple((FATES[fate].name, series, ImVec4(*FATES[fate].color, 1.0)) for fate, series in (
+              (Fate.CULLED, "culled"), (Fate.DYNAMIC_ONLY, "dynamic_only"), (Fate.CANDIDATES, "candidates_only"),
+              (Fate.CACHED, "cache_hits"), (Fate.TRACED, "traced"))), stacked=True),
     _Plot("Samples of lights",
-          (("due", "samples_due", BLUE), ("reaching", "samples_reached", YELLOW),
-           ("penumbra", "penumbra", ORANGE)), only_if="samples_due"),
+          (("due", "samples_due", GREY), ("reaching", "samples_reached", ImVec4(*LIT, 1.0)),
+           ("penumbra", "penumbra", ImVec4(*PARTLY_LIT, 1.0))), only_if="samples_due"),
     _Plot("Steps and tests",
           (("steps", "steps", BLUE), ("for shadows", "shadow_steps", SKY), ("tests", "tests", ORANGE))),
     _Plot("Milliseconds", (("tracing", "traced_ms", BLUE), ("drawing", "drawn_ms", ORANGE)), logarithmic=True,
           per_pixel=False),
     _Plot("Tree built, %", ((terms.BUILT, "built", BLUE),), per_pixel=False, only_if="built"),
 )  # fmt: skip
+RECENT = 10.0
+"""Seconds before the newest frame that can be shown alone."""
 _LEAST_WIDTH = 15.0
 """Ems of a plot; what finds no room beside is below, and the panel scrolls."""
 _LOW, _LEGEND_SQUARE = 9.0, 1.6  # ems of height of a low plot, and of width beside a label of the legend
@@ -54,16 +70,17 @@ AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.no_menus)
 COLORS = (BLUE, ORANGE, GREEN, SKY, PINK, YELLOW)
 _PER_PIXEL = (
-    "Pictures have many sizes, and of those in motion only some pixels are shaded. So counts are per pixel: primary "
-    "rays and proofs of all pixels, all else of those that are shaded."
+    "Counts are divided by pixels, as pictures differ in size, and in motion only some pixels are shaded: those of "
+    "primary rays and certificates by all pixels, others by the shaded ones."
 )
 
 
 @dataclass
 class PlotsState:
-    """The frame that the pointer was on last."""
+    """The frame that the pointer was on last; `recent`, only the last seconds are shown."""
 
     pointed: int | None = None
+    recent: bool = False
 
 
 def whole_numbers(first: float, last: float, width: float) -> None:
@@ -107,7 +124,12 @@ def show(ui: Ui) -> None:
         history.clear_plots()
         return
     imgui.same_line()
-    clipped(f"the last {len(history)} pictures" if len(history) > 1 else "one picture so far", QUIET)
+    state = ui.state(PlotsState)
+    tip = f"Show only the pictures of the {RECENT:.0f} seconds before the newest."
+    checkbox(f"last {RECENT:.0f} s", state.recent, lambda on: setattr(state, "recent", on), tip)
+    imgui.same_line()
+    shown = len(history) - _start(ui)
+    clipped(f"the last {shown} pictures" if shown > 1 else "one picture", QUIET)
     tooltip(_PER_PIXEL)
     plots = [plot for plot in _PLOTS if not plot.only_if or history.values(plot.only_if).any()]
     room, spacing = imgui.get_content_region_avail(), imgui.get_style().item_spacing.x
@@ -121,8 +143,14 @@ def show(ui: Ui) -> None:
         _draw(ui, plot, size)
 
 
+def _start(ui: Ui) -> int:
+    """Return the place of the first frame that is shown among all that could be."""
+    came = ui.controller.history.values("came")
+    return int(np.searchsorted(came, came[-1] - RECENT)) if ui.state(PlotsState).recent else 0
+
+
 def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
-    history = ui.controller.history
+    history, start = ui.controller.history, _start(ui)
     values_of = history.per_pixel if plot.per_pixel else history.values  # contiguous float64, as ImPlot wants them
     implot.push_style_var(implot.StyleVar_.legend_inner_padding, ImVec2(em(0.15), em(0.3)))
     implot.push_style_var(implot.StyleVar_.legend_spacing, ImVec2(em(0.2), 0.0))
@@ -132,11 +160,12 @@ def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
     implot.pop_style_var(2)
     if not shown:
         return
-    curves = [(label, values_of(name), color) for label, name, color in plot.curves]
+    curves = [(label, values_of(name)[start:], color) for label, name, color in plot.curves]
     if plot.stacked:  # without a fate that no ray had
         curves = [one for one in curves if one[1].any()] or curves[-1:]
-    first, last = float(history.first), float(history.first + max(len(history) - 1, 10))
-    top = float(values_of("due").max()) if plot.stacked else max(float(values.max()) for _, values, _ in curves)
+    number, many = history.first + start, len(history) - start
+    first, last = number - 0.5, number + max(many - 1, 10) + 0.5
+    top = float(values_of("due")[start:].max()) if plot.stacked else max(float(y.max()) for _, y, _ in curves)
     limits = (0.0, 1.12 * top or 1.0)
     implot.setup_axes("", "", AXIS, AXIS)
     whole_numbers(first, last, size.x)
@@ -150,20 +179,26 @@ def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
         _stack(curves, first)
     else:
         for label, values, color in curves:
-            implot.plot_line(label, values, 1.0, first, implot.Spec(line_color=color, line_weight=1.6))
-    number = pointed_frame(history.first, history.first + len(history) - 1)
+            x, y = as_steps(values, first)
+            implot.plot_line(label, x, y, implot.Spec(line_color=color, line_weight=1.6))
+    pointed = pointed_frame(number, number + many - 1)
     implot.end_plot()
-    if number is not None:
-        at = number - history.first
-        _go_to_frame(ui, number, [f"{label}: {values[at]:.3g}" for label, values, _ in curves])
+    if pointed is not None:
+        _go_to_frame(ui, pointed, [f"{label}: {values[pointed - number]:.3g}" for label, values, _ in curves])
+
+
+def as_steps(values: NDArray[np.float64], first: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return x and y of a curve that is level over each frame, from the left edge of the first on: where a setting was
+    switched it jumps."""
+    edges = first + np.arange(len(values) + 1, dtype=np.float64)
+    return np.repeat(edges, 2)[1:-1], np.repeat(values, 2)
 
 
 def _stack(curves: list[tuple[str, NDArray[np.float64], ImVec4]], first: float) -> None:
     """Areas one above the other, which together are all rays that were due."""
-    frames = first + np.arange(max(len(curves[0][1]), 2), dtype=np.float64)  # one frame is no area
-    below = np.zeros(len(frames))
+    frames, below = as_steps(np.zeros(len(curves[0][1])), first)
     for label, values, color in curves:
-        above = below + np.resize(values, len(frames))
+        above = below + np.repeat(values, 2)
         implot.plot_shaded(label, frames, below, above, implot.Spec(fill_color=color, fill_alpha=0.85))
         below = above
 
@@ -189,7 +224,7 @@ def _go_to_frame(ui: Ui, number: int, values: list[str]) -> None:
     ui.state(PlotsState).pointed = number
     (width, height), part = record.state.size, record.counters["pixels"] / record.counters["all_pixels"]
     shaded = f", {whole_percent(part)} shaded" if part < 1.0 else ""
-    said = f"{record.state.time:.3f} s, {record.state.settings.method}, {width} x {height}{shaded}"
+    said = f"{record.state.time:.3f} s, {title_of(record.state.settings.method)}, {width} x {height}{shaded}"
     if _clicked([c.navigator.name_of(number), said, *values]):
         c.navigator.go(number)
 
@@ -202,8 +237,8 @@ def go_to_run_frame(ui: Ui, run: Experiment, results: Results, place: int | None
     number = results.frames[place]
     if run.settings.verify:
         wrong = {m: figures["wrong"][place] for m, figures in results.methods.items() if m != REFERENCE}
-        values = [*values, *(f"{method}: {many} wrong answers" for method, many in wrong.items())]
-    if _clicked([f"frame {number} of the experiment, by {run.shown}", *values]):
+        values = [*values, *(f"{title_of(method)}: {many} wrong answers" for method, many in wrong.items())]
+    if _clicked([f"frame {number} of the experiment, by {title_of(run.shown)}", *values]):
         c.navigator.go_to_experiment(run, number)
 
 

@@ -17,9 +17,10 @@ from tracer.frame import Frame
 from tracer.inspect.path_records import AWAY, TRACED, RayTree
 from tracer.inspect.projection import Stroke, place, strokes
 from viewer.output.ray_rows import SUBSET_HELP, RayFilter, RayKey, RayRow, RayRows, RaySubset, totals, unfolded
+from viewer.state import palette
 from viewer.state.picking import Pick
 from viewer.window.panels import lights
-from viewer.window.panels.area import SHADE, Pen
+from viewer.window.panels.area import SHADE, WHITE, Pen
 from viewer.window.panels.links import Pointed
 from viewer.window.setting_rows import ALL, setting_switch
 from viewer.window.ui import Ui
@@ -162,8 +163,6 @@ MOST_DRAWN = 160  # shadow rays
 FAR = 3.0  # times the way to the first hit: how far a ray is drawn that leaves the scene
 _BEHIND = 0.4  # opacity of what lies behind something
 _FADED = 0.16  # of rays other than the one that is pointed at or selected
-_BLOCKED = ImVec4(0.84, 0.37, 0.0, 1.0)
-_PALE = ImVec4(0.8, 0.86, 1.0, 0.35)  # around what is dark
 _MANY = 40  # lines, from which on they are thin
 _MOST_CHOSEN = 64  # shadow rays that stand out together
 
@@ -171,10 +170,10 @@ _MOST_CHOSEN = 64  # shadow rays that stand out together
 class Part(Enum):
     """What a line stands for, with its colour and its width in ems."""
 
-    PATH = (0.36, 0.93, 0.72), 0.2  # a reflected or refracted ray
-    TRACED = (0.98, 0.87, 0.25), 0.15  # a shadow ray that was traced, as far as light comes
-    SAVED = (0.98, 0.93, 0.66), 0.08  # one that was culled, as far as light comes
-    DARK = (0.06, 0.10, 0.24), 0.13  # the rest of a shadow ray, behind what blocks it
+    PATH = palette.PATH, 0.2  # a reflected or refracted ray
+    TRACED = palette.LIT, 0.16  # a shadow ray that was traced, as far as light comes
+    SAVED = palette.LIT, 0.07  # one that was culled, as far as light comes
+    BLOCKED = palette.BLOCKED, 0.12  # the rest of a shadow ray, behind what blocks it
 
 
 class RayLine(NamedTuple):
@@ -207,7 +206,7 @@ def ray_lines(frame: Frame, tree: RayTree, shown: RayFilter, further: bool = Tru
 
 
 def _shadow_lines(frame: Frame, tree: RayTree, number: int, places: NDArray[np.int64]) -> list[RayLine]:
-    """Shadow rays from their lights to their point, dark behind what blocks them."""
+    """Shadow rays from their lights to their point, blue behind what blocks them."""
     ray, lines = tree.rays[number], []
     s, end = ray.shadows, ray.end.astype(np.float64)
     assert s is not None
@@ -216,7 +215,7 @@ def _shadow_lines(frame: Frame, tree: RayTree, number: int, places: NDArray[np.i
         stop = end if s.blocker[one] < 0 else start + float(s.blocked_at[one]) * (end - start)
         lines.append(RayLine(part, number, one, strokes(frame, [start, stop])))
         if s.blocker[one] >= 0:
-            lines.append(RayLine(Part.DARK, number, one, strokes(frame, [stop, end])))
+            lines.append(RayLine(Part.BLOCKED, number, one, strokes(frame, [stop, end])))
     return lines
 
 
@@ -260,7 +259,7 @@ def _standing_out(
 
 def _line(made: Pen, line: RayLine, alpha: float, width: float = 1.0) -> None:
     color, ems = line.part.value
-    around = _PALE if line.part is Part.DARK else SHADE
+    around = WHITE if line.part is Part.BLOCKED else SHADE
     made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around)
 
 
@@ -279,4 +278,4 @@ def _points(made: Pen, tree: RayTree, frame: Frame, chosen: RayRow | None, furth
         start = tree.samples[one]
         at = place(frame, start + s.blocked_at[one] * (ray.end - start))
         if at is not None:
-            made.cross(at, _BLOCKED)
+            made.cross(at, ImVec4(*palette.BLOCKED, 1.0))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from tracer.method import title_of
 from viewer.output import exr
 from viewer.output.capture import TEMPLATE_HELP
 from viewer.services.film import Films
@@ -107,7 +108,7 @@ def _start(ui: Ui, films: Films) -> None:
     if film is not None and not film.done:
         paragraph(f"to {film.output}", QUIET)
     elif films.count:
-        what = f"method {session.settings.method}, view {session.draw.view.label}"
+        what = f"method {title_of(session.settings.method)}, view {session.draw.view.label}"
         paragraph(f"{films.count} frames, {duration(films.count / plan.fps)}; {what}", QUIET)
     else:
         paragraph(f"A flight needs two bookmarks at least{ui.key('Add bookmark')}.", WARNING)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, imgui
 
+from tracer.method import title_of
 from viewer.services.controller import Controller
 from viewer.services.frame_scheduler import Activity
 from viewer.state.palette import DARK, FATES, LIGHT, label_color
@@ -33,7 +34,7 @@ def height(ui: Ui, room: ImVec2) -> float:
 
 
 def _lines(ui: Ui, width: float) -> int:
-    return 1 if imgui.calc_text_size(ui.controller.session.settings.method + LONGEST).x <= width else 2
+    return 1 if imgui.calc_text_size(title_of(ui.controller.session.settings.method) + LONGEST).x <= width else 2
 
 
 def show(ui: Ui, width: float) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from imgui_bundle import ImVec2, imgui
 
 from tracer.frame import Frame
-from tracer.method import Method
+from tracer.method import title_of
 from viewer.state.comparison import CompareMode, Side
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import DARK, HELD, LESS, LIGHT, MORE, Color
@@ -212,8 +212,7 @@ def show(ui: Ui, area: Area, top: float) -> None:
     corner = ImVec2(area.corner.x, y)
     if seen is None:
         if frame is not None and _line_is_there(ui):
-            method = frame.settings.method if Method.parse(frame.settings.method).culls else "no culling"
-            _line(ui, area, y, (method, "reference"), (None, None))
+            _line(ui, area, y, (title_of(frame.settings.method), "reference"), (None, None))
         return
     a, b = seen.names
     if seen.mode is CompareMode.SIDE:

@@ -6,6 +6,7 @@ from itertools import groupby
 
 from imgui_bundle import ImVec2, imgui
 
+from tracer.method import title_of
 from viewer.state import terms
 from viewer.state.frame_rows import TIME, WORK, Row, rows
 from viewer.util.numbers import count, whole_percent
@@ -27,9 +28,9 @@ def show(ui: Ui) -> None:
     divisor, part = c.traced.request.divisor, frame.statistics.part
     coarse = f", 1/{divisor} size" if divisor > 1 else ""
     clipped(f"{f'{whole_percent(part)} of ' if part < 1.0 else ''}{frame.width} x {frame.height} pixels{coarse}")
-    tooltip("Of the first sample of each pixel that is shaded; primary rays and proofs are those of all pixels.")
+    tooltip("Of the first sample of each pixel that is shaded; primary rays and certificates are of all pixels.")
     old = c.scheduler.outdated  # said in a line that is there anyway, so that nothing moves
-    clipped(f"method {frame.settings.method}{', before the change' if old else ''}", QUIET if old else None)
+    clipped(f"method {title_of(frame.settings.method)}{', before the change' if old else ''}", QUIET if old else None)
     if old:
         tooltip("These are for the previous settings; a new frame is being traced.")
     drawn = Row(TIME, "Window", 1e3 * c.drawn_seconds, "the window's own frame, without tracing", digits=1, unit=" ms")
