@@ -36,15 +36,13 @@ _PLACES = itertools.cycle(  # where a shadow is looked for, in parts of the pict
 
 @dataclass(frozen=True)
 class Step:
-    """See the module; `commands` can be run from the last one; time stands `still` before its last part; `told` takes
-    the place of the text once the step is done."""
+    """See the module; `commands` can be run from the last one; time stands `still` before its last part."""
 
     title: str
     text: str | Callable[[Controller], str]
     parts: tuple[Part, ...] = ()
     commands: tuple[str, ...] = ()
     still: bool = False
-    told: str = ""
 
 
 class Tour:
@@ -64,9 +62,10 @@ class Tour:
         return self.step is not None and 0 < len(self.step.parts) == self._held
 
     def text(self, step: Step) -> str:
-        """Return what to do in a step, as things are, with the keys that do it now."""
+        """Return what to do in a step, as things are, with the keys that do it now; what is done is not asked again."""
+        if self.is_done and callable(step.text):
+            return ""
         text = step.text if isinstance(step.text, str) else step.text(self._c)
-        text = step.told if step.told and self.is_done else text
         return re.sub(r"\{(.+?)\}", lambda name: self._key(name[1]), text)
 
     def start(self) -> None:
@@ -249,7 +248,6 @@ STEPS = (
     Step(
         "What shadow rays cost", _how_to_toggle,
         (Part(_shows_all_traced, _stop_culling), Part(_shows_culling, _cull_again)),
-        told=_THE_SAME,
     ),
     Step(
         "Seen whole, or not",

@@ -144,16 +144,12 @@ def placed(
     here, and whether it is such a square, which is two pads wide.
 
     `length` is that of a text.  In little width some parts have no label."""
-
-    def room(part: Part) -> float:
-        return length(part.label) + 5.0 * pad
-
-    outside, bar_width = set[Part](), width
+    outside, bar_width, room = set[Part](), width, {part: length(part.label) + 5.0 * pad for part in bar}
     for part in 2 * sorted(bar, key=lambda part: part.rays):  # twice, as each makes the others narrower
         narrow = part not in outside and length(part.label) + 2.0 * pad > bar_width * part.rays / part.due
-        if narrow and bar_width - room(part) >= _SHORTEST * width:
+        if narrow and bar_width - room[part] >= _SHORTEST * width:
             outside.add(part)
-            bar_width -= room(part)
+            bar_width -= room[part]
     done = 0
     for part in bar:
         start, end = (round(left + bar_width * rays / part.due) for rays in (done, done + part.rays))
@@ -164,7 +160,7 @@ def placed(
     for part in (one for one in bar if one in outside):
         start, end = round(at + pad), round(at + 3.0 * pad)
         yield part, start, end, round(end + pad), True
-        at += room(part)
+        at += room[part]
 
 
 def bar_of(frame: Frame) -> tuple[Part, ...]:
@@ -178,13 +174,8 @@ def bar_of(frame: Frame) -> tuple[Part, ...]:
         rays = {Fate.CULLED: said.full_shadow, Fate.DYNAMIC_ONLY: said.non_shadow}
         rays[Fate.TRACED] = shadow.due - sum(rays.values())
     else:
-        rays = {
-            Fate.CULLED: shadow.culled,
-            Fate.DYNAMIC_ONLY: shadow.dynamic_only,
-            Fate.CANDIDATES: shadow.candidates_only,
-            Fate.CACHED: shadow.cache_hits,
-            Fate.TRACED: shadow.traced,
-        }
+        rays = {Fate.CULLED: shadow.culled, Fate.DYNAMIC_ONLY: shadow.dynamic_only,
+                Fate.CANDIDATES: shadow.candidates_only, Fate.CACHED: shadow.cache_hits, Fate.TRACED: shadow.traced}  # fmt: skip
     return tuple(Part(fate, number, shadow.due, would) for fate, number in rays.items() if number > 0)
 
 

@@ -6,7 +6,6 @@ parts lie: boxes of colour and lines of text, in the unit in which `measure` giv
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -131,12 +130,11 @@ STEPS = 64
 
 
 def fitting(
-    legend: Legend, measure: Measure, line: float, width: float, height: float, most: float = math.inf
+    legend: Legend, measure: Measure, line: float, width: float, height: float, most: float = 1e9
 ) -> Layout | None:
-    """The layout of as much of a legend as there is room for: notes go first, then facts, then the last column; it
-    covers an area of `most`.
+    """The layout of as much of a legend as there is room for: notes go first, then facts, then the last column.
 
-    None where even the colours and their names are too large."""
+    None where even the colours and their names are too large, or cover an area of more than `most`."""
     plain = replace(legend, notes=(), facts=())
     narrower = (
         replace(plain, columns=plain.columns[:n], entries=tuple(replace(e, values=e.values[:n]) for e in plain.entries))

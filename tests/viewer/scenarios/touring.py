@@ -76,7 +76,9 @@ def _by_hand(d: Driver) -> None:
     assert d.c.session.frame >= EXAMINED
     for command in NEXT.commands:
         assert d.command(command), "the tour's end offers it"
-    d.click("//Tour/**/Figure 4").wait(lambda: d.ui.workspace == "Measure" and d.has("//Zoom test"), "its panel", 20.0)
+    d.click(f"//Tour/{icons.ICON_FA_MAGNIFYING_GLASS_PLUS}  Figure 4").wait(
+        lambda: d.ui.workspace == "Measure", "it", 20.0
+    )
     d.wait(lambda: d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole, "the figure", 60.0).press("F2").settle()
     d.click("//Tour/Close")
     assert tour.step is None and not d.c.session.state.pace.fixed_size, "pictures have the window's size again"

@@ -20,18 +20,7 @@ from viewer.state.palette import FATES, LIT, PARTLY_LIT
 from viewer.util.numbers import whole_percent
 from viewer.window.style import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.window.ui import Ui
-from viewer.window.widgets import (
-    QUIET,
-    checkbox,
-    clipped,
-    count,
-    em,
-    fitted,
-    paragraph,
-    tooltip,
-    tooltip_at,
-    width_of,
-)
+from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, tooltip, tooltip_at, width_of
 
 
 @dataclass(frozen=True)
@@ -154,9 +143,8 @@ def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
     values_of = history.per_pixel if plot.per_pixel else history.values  # contiguous float64, as ImPlot wants them
     implot.push_style_var(implot.StyleVar_.legend_inner_padding, ImVec2(em(0.15), em(0.3)))
     implot.push_style_var(implot.StyleVar_.legend_spacing, ImVec2(em(0.2), 0.0))
-    titles = f"{plot.title} per pixel" if plot.per_pixel else plot.title, plot.title
-    title = next((one for one in titles if width_of(one) <= size.x), fitted(plot.title, size.x))
-    shown = implot.begin_plot(f"{title}##{plot.title}", size, FLAGS)
+    of = " per pixel" if plot.per_pixel and width_of(f"{plot.title} per pixel") <= size.x else ""
+    shown = implot.begin_plot(f"{plot.title}{of}##{plot.title}", size, FLAGS)
     implot.pop_style_var(2)
     if not shown:
         return

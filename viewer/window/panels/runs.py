@@ -38,8 +38,7 @@ _SAVED_AS = {".json": ("JSON", "Save every figure"), ".csv": ("CSV", "Save the t
              ".png": ("Plot", "Save the plot as a picture"),
              "-film.png": ("Film", "Save the filmstrip as a picture: the paper's Figure 4")}  # fmt: skip
 _LEFT, _LEAST = 14.0, 12.0  # ems of the controls, and of results beside them
-_MEASURED = 100  # rows whose texts are measured
-_LONGEST, _SHORTEST = 12.0, 6.0  # ems of a column of text
+_MEASURED, _LONGEST = 100, 12.0  # rows whose texts are measured, and ems of a column of text, at most
 
 _ROW = int(imgui.SelectableFlags_.span_all_columns | imgui.SelectableFlags_.allow_overlap)
 Row = TypeVar("Row")
@@ -138,8 +137,7 @@ def results_table(
         texts = [column.heading, *(in_window_style(column.cell(one)) for one in some)]
         width = max(imgui.calc_text_size(text).x for text in texts) + 1.0
         widths.append(min(width, em(_LONGEST)) if column.text else width)
-    _fit(widths, columns, room.x - scrolls * imgui.get_style().scrollbar_size)
-    for column, width in zip(columns, widths):
+    for column, width in zip(columns, _whole_columns(widths, room.x - scrolls * imgui.get_style().scrollbar_size)):
         imgui.table_setup_column(column.heading, int(imgui.TableColumnFlags_.width_fixed), width)
     for column in columns:
         imgui.table_next_column()
@@ -160,18 +158,12 @@ def results_table(
     imgui.end_table()
 
 
-def _fit(widths: list[float], columns: Sequence[Column[Row]], room: float) -> None:
-    """Change widths so that the edge of the room cuts no column: those in it fill it, with one of text that is cut."""
+def _whole_columns(widths: list[float], room: float) -> list[float]:
+    """Return widths with those columns wider that are inside the room, so that its edge cuts none."""
     gap = 2.0 * imgui.get_style().cell_padding.x
     inside = sum(end <= room + gap for end in accumulate(width + gap for width in widths))
-    left = room + gap - sum(widths[:inside]) - inside * gap
-    if inside == len(widths):
-        return
-    if columns[inside].text and left - gap >= em(_SHORTEST):
-        widths[inside] = left - gap
-        return
-    for place in range(inside):
-        widths[place] += left / inside
+    left = room + gap - sum(widths[:inside]) - inside * gap if inside < len(widths) else 0.0
+    return [width + (left / inside if place < inside else 0.0) for place, width in enumerate(widths)]
 
 
 def _heading(ui: Ui, run: Experiment | ZoomTest | Hunt) -> None:
