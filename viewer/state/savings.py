@@ -175,7 +175,8 @@ def bar_of(frame: Frame) -> tuple[Part, ...]:
         rays[Fate.TRACED] = shadow.due - sum(rays.values())
     else:
         rays = {Fate.CULLED: shadow.culled, Fate.DYNAMIC_ONLY: shadow.dynamic_only,
-                Fate.CANDIDATES: shadow.candidates_only, Fate.CACHED: shadow.cache_hits, Fate.TRACED: shadow.traced}  # fmt: skip
+                Fate.CANDIDATES: shadow.candidates_only, Fate.CACHED: shadow.cache_hits,
+                Fate.TRACED: shadow.traced}  # fmt: skip
     return tuple(Part(fate, number, shadow.due, would) for fate, number in rays.items() if number > 0)
 
 
