@@ -100,13 +100,13 @@ def looks(d: Driver) -> None:
 def hiding(d: Driver) -> None:
     """Tab leaves the picture alone, and brings back what was there, where it was; F11 fills the screen, and back."""
     d.resize(1280, 800).settle()
-    for label in ("Camera", "Experiment"):
+    for label in ("Camera", "Log"):
         d.show_panel(label)
     docking = d.app.params.docking_params
     docking.dockable_window_of_name("Saving").is_visible = False
     d.frames(4)
     before = _places_of_panels()
-    assert {"Camera", "Experiment", "Inspector"} < set(before)
+    assert {"Camera", "Log", "Inspector"} < set(before)
     d.press("Tab")
     there = _places_of_panels()
     assert set(there) == {PICTURE} and there[PICTURE][2] * there[PICTURE][3] > 0.9 * 1280 * 800

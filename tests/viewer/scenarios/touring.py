@@ -42,7 +42,7 @@ def _by_hand(d: Driver) -> None:
     d.expect("Press C twice")
     d.change(method="auto")
     assert not d.c.frame.statistics.shadow.dynamic_only
-    d.expect("Choose paper, the published method, above the picture, and then press C twice")
+    d.expect("Choose Paper, the published method, above the picture, and then press C twice")
     d.change(method="paper")
     d.press("C").settle()
     d.expect("Press C once more")
