@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from tracer.compiling import compilation
 from tracer.compiling.compilation import compiled_before, warm_up
-from tracer.compiling.processes import _die_with_parent
+from tracer.compiling.processes import _die_with_parent, without_collector
 from tracer.compiling.steps import PARTS, steps_of
 
 # Lights (modes in 32 and in 64 bits) and structure.
@@ -50,16 +50,16 @@ def job(lights: int, accelerator: str, *names: str) -> Job:
 # Each job after those that it shares kernels with, so that none is compiled twice.  What most waits for comes first,
 # then what takes longest, so that no core is idle at the end.
 TREES, FRAME, QUERIES = (job(1, "bvh8", name) for name in ("trees", "frame", "queries"))
-CERTIFICATES = job(1, "bvh8", "certificates")
+METHODS = job(1, "bvh8", "methods")
 AFTER = {
     TREES: (),
     FRAME: (),
-    CERTIFICATES: (TREES,),
+    METHODS: (TREES,),
     QUERIES: (),
     job(1, "bvh8", "lightcuts", "lightcuts-certified"): (TREES, FRAME, QUERIES),
     job(1, "kdtree-lazy", "queries", "trees"): (TREES,),
     job(1, "bvh8", "lightbuffer", "voxels", "lie"): (TREES, FRAME, QUERIES),
-    job(16, "bvh8", "certificates", "frame"): (FRAME, CERTIFICATES),
+    job(16, "bvh8", "methods", "frame"): (FRAME, METHODS),
     job(1, "kdtree", "queries", "trees"): (TREES,),
 }
 
@@ -68,6 +68,7 @@ def main(*parts: str) -> int:
     """Compile everything, or some parts, each given as NAME:LIGHTS:ACCELERATOR."""
     if parts:
         threading.Thread(target=_die_with_parent, daemon=True).start()
+        without_collector()
         for part in parts:
             name, lights, accelerator = part.split(":")
             Part(name, int(lights), accelerator).compile()

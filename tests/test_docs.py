@@ -186,6 +186,12 @@ def test_targets_and_files_exist(page: Path) -> None:
         assert (ROOT / path).exists(), path
 
 
+def test_files_that_the_architecture_names_exist() -> None:
+    there = {path.name for folder in ("tracer", "viewer", "tools") for path in (ROOT / folder).rglob("*.py")}
+    there |= {path.name for path in ROOT.glob("*.py")}
+    assert set(re.findall(r"\w+\.py\b", (ROOT / "ARCHITECTURE.md").read_text())) <= there
+
+
 def test_keys_of_the_window_are_told() -> None:
     """Each key of a command is in the table of keys."""
     table = "".join(re.findall(r"^\| (`.*?) \|", (DOCS / "viewer.md").read_text(), re.MULTILINE))
@@ -281,7 +287,7 @@ def test_certified_cells_are_told_with_the_numbers_they_have() -> None:
     assert len(rows) > 10
     for module, name, value in rows:
         culling = "tracer.culling" if module.startswith("regions.") else "tracer.culling.certified"
-        package = "tracer.geometry" if module == "offsets" else culling
+        package = "tracer.geometry" if module == "rays" else culling
         assert value == repr(getattr(importlib.import_module(f"{package}.{module}"), name)), name
 
 

@@ -38,7 +38,7 @@ def package(tmp_path: Path) -> Path:
     shutil.copytree(ROOT / "tracer", tmp_path / "tracer", ignore=shutil.ignore_patterns("__pycache__"))
     (tmp_path / "tracer" / "__init__.py").write_text("")  # so that a process loads no more than it asks
     (tmp_path / "tracer" / "geometry" / "tiny.py").write_text(
-        "from tracer.kernels import kernel\nfrom tracer.simd.tiny import value\n\n"
+        "from tracer.runtime.kernels import kernel\nfrom tracer.simd.tiny import value\n\n"
         "@kernel\ndef ask(x):\n    return value() + x\n"
     )
     write_helper(tmp_path, 1)
@@ -47,7 +47,7 @@ def package(tmp_path: Path) -> Path:
 
 def write_helper(package: Path, value: int) -> None:
     (package / "tracer" / "simd" / "tiny.py").write_text(
-        f"from tracer.kernels import subkernel\n\n@subkernel\ndef value():\n    return {value}\n"
+        f"from tracer.runtime.kernels import subkernel\n\n@subkernel\ndef value():\n    return {value}\n"
     )
 
 
@@ -105,7 +105,7 @@ def test_a_copy_of_the_sources_finds_what_is_compiled(package: Path) -> None:
 
 def test_a_kernel_from_no_file_is_compiled_and_not_kept(tmp_path: Path) -> None:
     """As in a notebook, where another cell may stand in the same line."""
-    code = "from tracer.kernels import kernel\n\n@kernel\ndef twice(x):\n    return 2 * x\nprint(twice(21))\n"
+    code = "from tracer.runtime.kernels import kernel\n\n@kernel\ndef twice(x):\n    return 2 * x\nprint(twice(21))\n"
     environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True)
     assert (done.stdout, done.stderr) == ("42\n", "")
@@ -149,7 +149,7 @@ def test_what_is_ready_depends_on_all_kernels_that_are_made_ready() -> None:
 
 def test_shading_depends_on_vectors_and_not_on_methods() -> None:
     shading = {path.relative_to(ROOT / "tracer").as_posix() for path in sources_of(ROOT / "tracer/shading/whitted.py")}
-    assert {"shading/whitted.py", "simd/vectors.py", "culling/shadow_testing.py", "kernels.py"} <= shading
+    assert {"shading/whitted.py", "simd/vectors.py", "culling/shadow_testing.py", "runtime/kernels.py"} <= shading
     assert not any(name.startswith(("methods/", "geometry/kdtree", "renderer")) for name in shading)
 
 
@@ -262,28 +262,28 @@ def test_what_is_compiled_beside_is_what_a_frame_needs(lights: int, accelerator:
     report = lambda *what: told.append(what)  # noqa: E731
     processes.compile_in_processes(report, lights, accelerator, done, lambda: drawable.append(set(done)))
     assert done == set(steps.SHARES) == {step for part in steps.PARTS.values() for step in part}
-    assert len(drawable) == 1 and drawable[0] >= done - {"certificates"}
+    assert len(drawable) == 1 and drawable[0] >= done - {"other methods"}
     assert sorted(path.name for path in cache_root().rglob("*.nbc")) == before
     fractions = [fraction for _, fraction in told]
     assert fractions == sorted(fractions) and fractions[-1] > 0.7
     assert sum(steps.SHARES.values()) == pytest.approx(1.0)
 
 
-def test_without_certificates_less_is_compiled_and_the_rest_later(tmp_path: Path) -> None:
+def test_for_a_picture_less_is_compiled_and_the_rest_later(tmp_path: Path) -> None:
     code = (
         "from tracer.compiling import compilation, steps\n"
         "made = []\n"
         "compilation.compile_in_processes = lambda *arguments: made.append(list(arguments[-1]))\n"
         "compilation.picture_steps = lambda *a: iter(['primary rays'])\n"
-        "compilation.certificate_steps = lambda *a: iter(['certificates'])\n"
+        "compilation.method_steps = lambda *a: iter(['other methods'])\n"
         "(compilation.version_folder() / 'kernel.nbc').touch()\n"
-        "compilation.warm_up(certificates=False)\n"
-        "assert compilation.can_draw() and compilation.compiled_before(certificates=False)\n"
+        "compilation.warm_up(picture_only=True)\n"
+        "assert compilation.can_draw() and compilation.compiled_before(picture_only=True)\n"
         "assert not compilation.compiled_before()\n"
-        "compilation.warm_up(certificates=False)\n"
+        "compilation.warm_up(picture_only=True)\n"
         "compilation.warm_up()\n"
         "assert compilation.compiled_before()\n"
-        "assert made == [list(steps.FOR_A_PICTURE), ['certificates']], made\n"
+        "assert made == [list(steps.FOR_A_PICTURE), ['methods']], made\n"
     )
     environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True)
@@ -293,8 +293,8 @@ def test_without_certificates_less_is_compiled_and_the_rest_later(tmp_path: Path
 def test_a_cache_is_compiled_for_its_processor(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(compilation, "version_folder", lambda: tmp_path)
     monkeypatch.setattr(compilation, "anything_kept", lambda: True)
-    compilation._mark_kept("bvh8-uint32", certificates=True)
-    assert compilation.compiled_before() and compilation.compiled_before(certificates=False)
+    compilation._mark_kept("bvh8-uint32", picture_only=False)
+    assert compilation.compiled_before() and compilation.compiled_before(picture_only=True)
     codegen = compilation.cpu_target.target_context.codegen()
     monkeypatch.setattr(type(codegen), "magic_tuple", lambda self: ("a system", "a processor", "+its,+instructions"))
     assert not compilation.compiled_before()

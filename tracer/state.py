@@ -23,7 +23,7 @@ from tracer.shading.blocks import Planes, make_planes
 from tracer.shading.buffers import Workspace, workspace
 from tracer.shading.shading_data import SHINE, TRANSMISSION, make_shading_data
 
-_Key = tuple[int, int, bool, float | None, int | None]
+ModeKey = tuple[int, int, bool, float | None, int | None]
 HISTORIES = 16  # resolutions and lamps whose modes are kept, of primitives or of cells, those used last
 
 MODES_BESIDE = Kind("modes", "Keeps the paper's modes.", ModesBeside, addition=True)
@@ -51,7 +51,7 @@ class State:
         by_name = lambda name: itself.method(name)  # noqa: E731
         self._services = Services(world, self.shading, model, clock, thread_clock, by_name)
         self._methods: dict[Kind, ShadowMethod] = {}
-        self.histories: dict[_Key, ModeHistory] = {}
+        self.histories: dict[ModeKey, ModeHistory] = {}
         self._workspaces: list[Workspace] = []
         self._lamps: LampTable | None = None
         self._lamps_made_of: tuple[tuple[Light, ...], float | None, int | None] | None = None
@@ -67,7 +67,7 @@ class State:
     def take_modes(self, other: State, settings: Settings) -> None:
         """Know what rests, and the modes of frames by these settings, as another state of the same world knows them
         now."""
-        key = _key(settings, Method.parse(settings.method).uses_cells)
+        key = mode_key(settings, Method.parse(settings.method).uses_cells)
         known = other.histories.get(key) if settings.keeps_modes else None
         self.histories = {key: known.copied()} if known is not None else {}
         self.rest = copy(other.rest)
@@ -99,7 +99,7 @@ class State:
         """The modes at this resolution and by these lamps, of primitives or of cells; made, or given room for more
         workers, where need be.  first (primitives + 1,) are the first units of primitives, or empty.  They begin with
         what is known at the resolution of the last frame, if that was finer."""
-        key = _key(settings, len(first) > 0)
+        key = mode_key(settings, len(first) > 0)
         last = next(reversed(self.histories), key)
         history = self.histories.pop(key, None)
         if history is None:
@@ -136,8 +136,8 @@ class State:
         return self._planes[1]
 
 
-def _key(settings: Settings, in_cells: bool) -> _Key:
-    """What has modes of its own: a size, primitives or cells, and what lamps are made of lights."""
+def mode_key(settings: Settings, in_cells: bool) -> ModeKey:
+    """Return what tells mode histories apart: size, primitives or cells, and what lamps are made of lights."""
     return settings.width, settings.height, in_cells, settings.lamp_radius, settings.lamp_samples
 
 

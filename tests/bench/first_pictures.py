@@ -61,7 +61,7 @@ def inspect(path: Path, size: int, structure: str, picture: str) -> dict[str, An
     accelerator, lazy = structure.removesuffix(":lazy"), structure == LAZY_BVH8
     scene = tracer.load_scene(path)
     camera = closer(scene, 64) if picture == "close-up" else None
-    warm_up(lights=len(scene.lights), accelerator=accelerator, certificates=False)
+    warm_up(lights=len(scene.lights), accelerator=accelerator, picture_only=True)
     gc.collect()
     Path("/proc/self/clear_refs").write_text("5")  # forget the most there was
     before, started, watch = resident("VmRSS"), time.process_time(), time.perf_counter()

@@ -2,7 +2,7 @@
 
 Where none have been compiled before, processes of their own compile them first, a part each, into the cache
 (`tracer.compiling.processes`).  One that fails costs time only, as what the cache lacks is compiled when it is needed.
-What a first picture needs comes first; what makes certificates comes last, and only where somebody wants it.
+What a first picture needs comes first; what other methods need comes last, and only where somebody wants it.
 """
 
 from __future__ import annotations
@@ -17,13 +17,15 @@ from numba.core.registry import cpu_target
 
 from tracer.compiling.processes import compile_in_processes
 from tracer.compiling.steps import (
+    FIRST,
     FOR_A_PICTURE,
     PARTS,
     SHARES,
-    certificate_steps,
+    WARM,
+    kinds_of,
+    method_steps,
     picture_steps,
     render_tiny,
-    warm_kinds,
 )
 from tracer.culling.modes import MAX_CULLED_LIGHTS, word_type
 from tracer.method import Method
@@ -32,14 +34,14 @@ from tracer.scene.model import Progress
 
 _lock = threading.Lock()
 _ready: set[str] = set()
-_draws: set[str] = set()  # of which all but certificates is ready
+_draws: set[str] = set()  # of which what a first picture needs is ready
 _methods: set[str] = set()  # with kernels of their own, which are ready
 
 
 def warm_up(
-    progress: Progress | None = None, lights: int = 1, accelerator: str = "bvh8", certificates: bool = True
+    progress: Progress | None = None, lights: int = 1, accelerator: str = "bvh8", picture_only: bool = False
 ) -> None:
-    """Make every kernel ready for scenes with so many lights, those of `certificates` too unless nobody wants them; at
+    """Make the kernels ready for scenes with so many lights, of all `WARM` methods or only those of a first picture; at
     once where that has been done before.
 
     `progress` is given what is being compiled; what it raises (Cancelled) passes through.
@@ -47,13 +49,13 @@ def warm_up(
     report = progress or (lambda what, fraction: None)
     with _lock:
         name = _variant(lights, accelerator)
-        if name in _ready or (name in _draws and not certificates):
+        if name in _ready or (name in _draws and picture_only):
             return
         done: set[str] = set()
-        kept = compiled_before(lights, accelerator, certificates)
-        picture_kept = compiled_before(lights, accelerator, certificates=False)
+        kept = compiled_before(lights, accelerator, picture_only)
+        picture_kept = compiled_before(lights, accelerator, picture_only=True)
         parts = [part for part in PARTS if not (picture_kept and part in FOR_A_PICTURE)]
-        if not certificates:
+        if picture_only:
             parts = [part for part in parts if part in FOR_A_PICTURE]
 
         def load(steps: Iterator[str]) -> None:
@@ -65,23 +67,23 @@ def warm_up(
         def load_picture() -> None:
             load(picture_steps(lights, accelerator))
             _draws.add(name)
-            _mark_kept(name, certificates=False)
+            _mark_kept(name, picture_only=True)
 
         if not kept:
             with suppress(OSError):
                 compile_in_processes(report, lights, accelerator, done, load_picture, parts)
         if name not in _draws:
             load_picture()
-        if certificates:
-            load(certificate_steps(lights, accelerator))
+        if not picture_only:
+            load(method_steps(lights, accelerator))
             _ready.add(name)
-            _mark_kept(name, certificates=True)
+            _mark_kept(name, picture_only=False)
         report("ready", 1.0)
 
 
 def ready_for(method: str, lights: int = 1, accelerator: str = "bvh8") -> bool:
     """Whether the kernels of a method have been made ready (`make_ready`), or are among those that `warm_up` makes."""
-    return _variant(lights, accelerator, method) in _methods or set(Method.parse(method).kinds) <= warm_kinds()
+    return _variant(lights, accelerator, method) in _methods or set(Method.parse(method).kinds) <= kinds_of(*WARM)
 
 
 def make_ready(method: str, lights: int = 1, accelerator: str = "bvh8", progress: Progress | None = None) -> None:
@@ -93,16 +95,21 @@ def make_ready(method: str, lights: int = 1, accelerator: str = "bvh8", progress
         _methods.add(_variant(lights, accelerator, method))
 
 
+def is_first(method: str) -> bool:
+    """Whether a method needs no more than a first picture does."""
+    return set(Method.parse(method).kinds) <= kinds_of(*FIRST)
+
+
 def can_draw(lights: int = 1, accelerator: str = "bvh8") -> bool:
-    """Whether pictures can be traced by any method but those that make certificates, which may not be ready yet."""
+    """Whether pictures can be traced by the `FIRST` methods; others may not be ready yet."""
     return _variant(lights, accelerator) in _draws
 
 
-def compiled_before(lights: int = 1, accelerator: str = "bvh8", certificates: bool = True) -> bool:
-    """Whether all kernels, or all but those of certificates, were compiled once already, for this processor and from
-    these sources: they are loaded only."""
+def compiled_before(lights: int = 1, accelerator: str = "bvh8", picture_only: bool = False) -> bool:
+    """Whether all kernels, or those of a first picture, were compiled once already, for this processor and from these
+    sources: they are loaded only."""
     name = _variant(lights, accelerator)
-    return _mark(name, True).exists() or (not certificates and _mark(name, False).exists())
+    return _mark(name, False).exists() or (picture_only and _mark(name, True).exists())
 
 
 def _variant(lights: int, accelerator: str, method: str = "") -> str:
@@ -110,9 +117,9 @@ def _variant(lights: int, accelerator: str, method: str = "") -> str:
     return f"{accelerator}-{word_type(lights).__name__}{many}{method}"
 
 
-def _mark(variant: str, certificates: bool) -> Path:
-    """The file that says that all kernels of a variant, or all but those of certificates, are in the cache."""
-    whole = "ready" if certificates else "drawable"
+def _mark(variant: str, picture_only: bool) -> Path:
+    """The file that says that all kernels of a variant, or those of a first picture, are in the cache."""
+    whole = "drawable" if picture_only else "ready"
     return version_folder() / f"{variant}-{sys.implementation.cache_tag}-{_processor()}.{whole}"
 
 
@@ -120,7 +127,7 @@ def _processor() -> str:
     return str(cpu_target.target_context.codegen().magic_tuple()[1])
 
 
-def _mark_kept(variant: str, certificates: bool) -> None:
+def _mark_kept(variant: str, picture_only: bool) -> None:
     with suppress(OSError):
         if anything_kept():  # else nothing could be kept
-            _mark(variant, certificates).touch()
+            _mark(variant, picture_only).touch()

@@ -6,6 +6,7 @@ for most of it.
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
@@ -120,6 +121,13 @@ def _worker(*arguments: str) -> subprocess.Popen:
     )
 
 
+def without_collector() -> None:
+    """Let nobody look for garbage in this process, which ends soon: with what numba keeps of each kernel that costs a
+    sixth of the time (64 of 76 s of a frame's kernels), and leaves 0.7 GB instead of 0.4."""
+    gc.freeze()
+    gc.disable()
+
+
 def _die_with_parent() -> None:
     os.read(0, 1)
     os._exit(1)
@@ -128,6 +136,7 @@ def _die_with_parent() -> None:
 def _main(part: str, lights: str, accelerator: str) -> None:
     """Compile a part, and say on standard output which step comes next, and at the end that there is none."""
     threading.Thread(target=_die_with_parent, daemon=True).start()
+    without_collector()
     for step in steps_of(part, int(lights), accelerator):
         print(_STEP + step, flush=True)
     print(_STEP, flush=True)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 import tracer.methods.cache
 import tracer.methods.cells  # noqa: F401
+from tracer.culling.cells import units_of
 from tracer.culling.certified.certify import COUNTERS as CERTIFYING
 from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.certified.scheduler import Budget
@@ -23,11 +24,11 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.frame_in_progress import FrameInProgress
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
-from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
+from tracer.geometry.queries import Placed, read_batch
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
 from tracer.inspect import ray_probe
-from tracer.method import Kind, Method
+from tracer.method import DEFAULT_METHOD, Kind, Method
 from tracer.methods import certified_lights
 from tracer.methods.certified import CertifiedCells
 from tracer.methods.certified_lights import CertifiedLights
@@ -49,20 +50,20 @@ from tracer.scene.model import (
     empty_quadrics,
 )
 from tracer.settings import Settings
-from tracer.simd import f32_at, i32_at, load_i64
+from tracer.simd import f32_at, i32_at
 
 # What is made ready, with about how much of the whole time it takes when compiled.
 SHARES = {
-    "nearest hits": 0.17,
-    "shadow rays": 0.03,
-    "the builder": 0.12,
-    "primary rays": 0.04,
-    "occlusion testing": 0.03,
-    "surfaces": 0.13,
-    "shading and shadow testing": 0.11,
+    "nearest hits": 0.13,
+    "shadow rays": 0.02,
+    "the builder": 0.07,
+    "primary rays": 0.02,
+    "occlusion testing": 0.02,
+    "surfaces": 0.03,
+    "shading and shadow testing": 0.13,
     "filling": 0.01,
     "mode setting": 0.01,
-    "certificates": 0.35,
+    "other methods": 0.56,
 }
 
 # None compiles what another does, once the parts that it needs are done.
@@ -77,17 +78,22 @@ PARTS = {
     ),
     "trees": ("the builder",),
     "queries": ("nearest hits", "shadow rays"),
-    "certificates": ("certificates",),
+    "methods": ("other methods",),
 }
-NEEDS = {"certificates": ("trees",)}
+NEEDS = {"methods": ("trees",)}
 FOR_A_PICTURE = ("frame", "trees", "queries")
+
+FIRST = ("none", "paper")
+"""What a first picture can be traced by: the default method, and the one that stands in for all others till then."""
+WARM = (*FIRST, "none+cache+rest", "cells", "certified", "auto")
+"""The methods whose kernels the steps make ready."""
 
 
 # --- steps: each generator names what comes next, and does it when asked for the one after ---------
 
 
 def picture_steps(lights: int, accelerator: str) -> Iterator[str]:
-    """All that a picture needs, by any method but those that make certificates."""
+    """All that a picture needs by one of the `FIRST` methods."""
     yield from _queries(accelerator)
     yield from _smoothing()
     yield from _frame(lights, accelerator)
@@ -121,7 +127,7 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
     for name, phase in (
         ("primary rays", frame.trace_primary_rays),
         ("occlusion testing", frame.test_occlusion),
-        ("surfaces", lambda: _see_and_find(frame)),
+        ("surfaces", frame.see_surfaces),
         ("shading and shadow testing", frame.shade),
         ("filling", frame.so_far),
         ("mode setting", frame.set_modes),
@@ -140,22 +146,19 @@ def _builders(accelerator: str, renderer: Renderer) -> None:
         parts.at(np.zeros((1, 3), np.float32), 0)
 
 
-def _see_and_find(frame: FrameInProgress) -> None:
-    frame.see_surfaces()
-    frame.find_first()
-
-
-def certificate_steps(lights: int, accelerator: str) -> Iterator[str]:
-    """All that is certified, and dropped again; and what tells what became of a pixel's rays."""
-    yield "certificates"
+def method_steps(lights: int, accelerator: str) -> Iterator[str]:
+    """What all other methods that are warmed up have of their own, and what tells what became of a pixel's rays."""
+    yield "other methods"
     ray_probe.make_ready()
+    frame = _seeing_nothing(_renderer(lights, accelerator, "cells+cache+rest"))
+    units_of(frame.first, *(np.zeros(16, kind) for kind in (np.int32, np.float32, np.float32, np.int32)))
+    for method in frame.methods:
+        StageTable(method.stages(frame, 0, learns=True), verify=False)
     for kernel in (certified_lights.approach, certified_lights.choose):
         kernel.compile()
-    renderer = _renderer(lights, accelerator, "certified+cache+rest")
-    frame = renderer.begin(0.0)
-    frame.place_objects_and_lights()  # an object has come to rest: what that darkens is looked for
-    frame.buffers.primitive.fill(MISS)
+    frame = _seeing_nothing(_renderer(lights, accelerator, "certified+cache+rest"))
     frame.prepare_culling()
+    frame.find_first()
     certified = frame.methods[0]
     assert isinstance(certified, CertifiedCells) and certified.store is not None
     StageTable(certified.stages(frame, 0, learns=True), verify=False)
@@ -166,12 +169,18 @@ def certificate_steps(lights: int, accelerator: str) -> Iterator[str]:
     _certify_regions(accelerator)
 
 
+def _seeing_nothing(renderer: Renderer) -> FrameInProgress:
+    """A frame that has met nothing, as no ray has been traced."""
+    frame = renderer.begin(0.0)
+    frame.place_objects_and_lights()  # an object has come to rest: what that darkens is looked for
+    frame.buffers.primitive.fill(MISS)
+    return frame
+
+
 def _certify_regions(accelerator: str) -> None:
     """What is certified of more lights than words have room for."""
     settings = Settings(width=4, height=4, method="certified", threads=1, accelerator=accelerator)
-    frame = Renderer(_tiny_scene(MAX_CULLED_LIGHTS + 1), settings).begin(0.0)
-    frame.place_objects_and_lights()
-    frame.buffers.primitive.fill(MISS)
+    frame = _seeing_nothing(Renderer(_tiny_scene(MAX_CULLED_LIGHTS + 1), settings))
     frame.prepare_culling()
     certified = frame.methods[0]
     assert isinstance(certified, CertifiedLights) and certified.store is not None
@@ -193,16 +202,14 @@ def render_tiny(method: str, lights: int, accelerator: str) -> None:
 
 
 @cache
-def warm_kinds() -> frozenset[Kind]:
-    """The methods, and additions, whose kernels the steps here make ready."""
-    names = ("none+cache+rest", "paper", "cells", "certified", "auto")
+def kinds_of(*names: str) -> frozenset[Kind]:
+    """The methods, and additions, of which methods of these names are made."""
     return frozenset(kind for name in names for kind in Method.parse(name).kinds)
 
 
-def _renderer(lights: int, accelerator: str, method: str = "cells+cache+rest") -> Renderer:
+def _renderer(lights: int, accelerator: str, method: str = DEFAULT_METHOD) -> Renderer:
     # As many lights as make a word of that size, no more: each is traced.
     scene = _tiny_scene(1 if lights <= 15 else 16)
-    # This method has the kernels of the paper's and of both additions; others have kernels of their own.
     return Renderer(scene, Settings(width=4, height=4, method=method, threads=1, accelerator=accelerator))
 
 
@@ -237,10 +244,10 @@ def steps_of(part: str, lights: int, accelerator: str) -> Iterator[str]:
     structures: dict[str, Any] = STRUCTURES
     if part == "queries":
         return _queries(accelerator)
-    if part in ("trees", "certificates"):
+    if part in ("trees", "methods"):
         queries = dict.fromkeys(("closest", "any_hit"), _Unasked)
         structures[accelerator] = type("Unasked", (structures[accelerator],), queries)
-        return (_trees if part == "trees" else certificate_steps)(lights, accelerator)
+        return (_trees if part == "trees" else method_steps)(lights, accelerator)
     structures[accelerator] = _Nowhere
     return (step for step in _frame(lights, accelerator) if step != "the builder")
 
@@ -248,7 +255,8 @@ def steps_of(part: str, lights: int, accelerator: str) -> Iterator[str]:
 @entry
 def _no_hit(data, batch, first, last, counts):
     """Rays first to last - 1 meet nothing."""
-    t, primitive = f32_at(load_i64(batch + HIT_T)), i32_at(load_i64(batch + HIT_PRIMITIVE))
+    hits = read_batch(batch)
+    t, primitive = f32_at(hits.t), i32_at(hits.primitive)
     for i in range(first, last):
         t[i], primitive[i] = INFINITY, MISS
 

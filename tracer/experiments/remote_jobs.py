@@ -18,10 +18,9 @@ from typing import Any
 
 from filelock import FileLock
 
-from tracer.compiling.compilation import compiled_before, make_ready, ready_for, warm_up
+from tracer.compiling.compilation import compiled_before, is_first, make_ready, ready_for, warm_up
 from tracer.experiments.cluster import Cluster, in_one_line
 from tracer.geometry.world import World
-from tracer.method import Method
 from tracer.runtime.kernel_cache import cache_root
 from tracer.scene.model import Cancelled, Scene
 from tracer.util.version import program_version, tracer_code
@@ -198,12 +197,12 @@ def world_of(scene: Scene, code: str, accelerator: str, start: float) -> World:
 
 def prepare(lights: int, accelerator: str, method: str) -> None:
     """Make ready the kernels; of the processes that share a cache, one compiles and the others wait for it."""
-    certificates = Method.parse(method).has_certificates
-    if compiled_before(lights, accelerator, certificates) and ready_for(method, lights, accelerator):
-        warm_up(None, lights, accelerator, certificates)
+    picture_only = is_first(method)
+    if compiled_before(lights, accelerator, picture_only) and ready_for(method, lights, accelerator):
+        warm_up(None, lights, accelerator, picture_only)
         return
     with FileLock(cache_root() / "sweep.lock"):
-        warm_up(None, lights, accelerator, certificates)
+        warm_up(None, lights, accelerator, picture_only)
         make_ready(method, lights, accelerator)
 
 

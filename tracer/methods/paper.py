@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tracer.culling.cells import cells_at
 from tracer.culling.counters import BY_LIGHT
 from tracer.culling.modes import (
     DYNAMIC,
@@ -33,14 +32,13 @@ from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.methods.interface import FrameView, ShadowMethod, Stage
 from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in
-from tracer.shading.wave import wave_in
-from tracer.simd import address_of, bits_of, i64_at, load_f32x16, load_i32x16, lowest_bit, ones, store
+from tracer.simd import address_of, bits_of, i64_at, load_i32x16, lowest_bit, ones, store
 from tracer.simd.records import I32, reading
 
 
 class Modes(NamedTuple):
-    """Words of all units as the last frame left them; what this worker gains for the next; and the first unit of each
-    primitive, or nothing where primitives are the units."""
+    """Words of all units as the last frame left them; what this worker gains for the next; and, for the method `cells`,
+    the first unit of each primitive."""
 
     words: Words
     gained: Words
@@ -52,16 +50,12 @@ modes_at = reading(Modes)
 
 @entry
 def find(data, call, light, count, counts):
-    """Which unit is each point of the wave on?  Its modes have not been looked up yet."""
-    given, first = call_at(call), modes_at(data).first
-    points, wave = points_in(given.points), wave_in(given.rays, count)
-    found = point_modes_in(scratch_of(given))
+    """Which primitive is each point of the wave on?  Its modes have not been looked up yet."""
+    given = call_at(call)
+    points, found = points_in(given.points), point_modes_in(scratch_of(given))
     for v in range(vectors(count)):
-        found.looked_up[v], at = 0, 64 * v
-        unit = load_i32x16(address_of(points.primitive) + at)
-        if len(first) > 0:
-            unit = cells_at(first, unit, load_f32x16(address_of(wave.u) + at), load_f32x16(address_of(wave.v) + at))
-        store(address_of(found.unit) + at, unit)
+        found.looked_up[v] = 0
+        store(address_of(found.unit) + 64 * v, load_i32x16(address_of(points.primitive) + 64 * v))
 
 
 @entry
@@ -115,11 +109,12 @@ class Paper(ShadowMethod):
     """Culls by modes, and sets them."""
 
     culls = True
+    finds_units = find
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         modes = Modes(words_at(frame.words), words_at(frame.history.gained[worker]), frame.first)
         chooses, learns_from = choose if self.culls else None, learn if learns else None
-        return [Stage(modes, find=find, choose=chooses, learn=learns_from, rows=POINT_MODE_ROWS)]
+        return [Stage(modes, find=self.finds_units, choose=chooses, learn=learns_from, rows=POINT_MODE_ROWS)]
 
     def because(self, answered: Answered) -> CullReason:
         return CullReason(Verdict.NON_SHADOW if answered.lit else Verdict.FULL_SHADOW)

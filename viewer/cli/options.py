@@ -9,11 +9,11 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from tracer.compiling.compilation import compiled_before, make_ready, warm_up
+from tracer.compiling.compilation import compiled_before, is_first, make_ready, warm_up
 from tracer.editing.edits import NO_EDITS, Edits, edited
 from tracer.experiments.warmup_frames import MOST_WARMUP_FRAMES
 from tracer.geometry.accelerators import BVH8
-from tracer.method import Method, additions, bases
+from tracer.method import additions, bases
 from tracer.runtime.kernel_cache import outlives_process
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
@@ -256,12 +256,12 @@ def prepare_kernels(work: Work, lights: int, accelerator: str, *methods: str) ->
     """Compile or load every kernel that these methods need for so many lights.
 
     The first time takes a while and says so."""
-    certificates = any(Method.parse(name).has_certificates for name in methods)
-    if not compiled_before(lights, accelerator, certificates):
+    picture_only = all(map(is_first, methods))
+    if not compiled_before(lights, accelerator, picture_only):
         always = "at every start, as the cache folder cannot be written to"
         often = "once for this version" if outlives_process() else always
         work.note(f"compiling the kernels, {often}; this takes a minute or less")
-    warm_up(work.progress, lights, accelerator, certificates)
+    warm_up(work.progress, lights, accelerator, picture_only)
     for name in methods:
         make_ready(name, lights, accelerator, work.progress)
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from tracer.compiling.compilation import is_first
 from tracer.experiments.runner import Run
 from tracer.frame import Settings
 from tracer.method import Method
 from tracer.scene.model import Camera, Scene
-from viewer.state.methods import NO_CULLING, with_base
+from viewer.state.methods import NO_CULLING
 from viewer.state.session import NOWHERE
 from viewer.state.view_state import ViewState
 from viewer.state.views import recording
@@ -21,8 +22,8 @@ class FrameInputs:
 
     The `state` that should be seen, of a `scene` (None: nothing is open) from a `camera`; the `size`, in pixels, that
     there is room for (0 where it is hidden); whether anything is `moving`, time is `playing`, and rays are to be
-    counted in any view; the `run` that is under way, whether the scene is being `edited`, whether the kernels that make
-    certificates are `ready`, the `second` method that traces each frame once more (none where it is empty), the
+    counted in any view; the `run` that is under way, whether the scene is being `edited`, whether the kernels of all
+    methods are `ready`, the `second` method that traces each frame once more (none where it is empty), the
     point of the picture that matters most, its `focus`, and whether time plays while a pixel is `inspected`, so that
     something is asked about each frame before the next may begin."""
 
@@ -85,7 +86,6 @@ class FrameInputs:
         )
 
     def _until_ready(self, method: str) -> str:
-        """The method, or the one without culling until what makes certificates has been compiled, which comes last: the
-        picture is the same."""
-        waits = bool(method) and not self.ready and Method.parse(method).has_certificates
-        return with_base(method, NO_CULLING) if waits else method
+        """The method, or the one without culling until that has been compiled, if it comes after the first picture."""
+        waits = bool(method) and not self.ready and not is_first(method)
+        return NO_CULLING if waits else method

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.frame import Frame
 from tracer.inspect.mode_origins import ModeOrigins, Origins
+from tracer.state import ModeKey, mode_key
 from tracer.statistics import SampleCounts
 from viewer.services.render_request import RenderRequest, Traced
 from viewer.state.session import Session
@@ -27,7 +28,6 @@ RATE_SECONDS = 1.0
 """Seconds back that frames count for their rate, or as far as the last two reach."""
 KEPT_MODE_HISTORIES = 4
 """Mode histories, of resolutions and lamps, whose origins are known."""
-Key = tuple[int, int, bool, float | None, int | None]
 
 _OF_ALL = {
     "steps": "steps_of_all",
@@ -104,7 +104,7 @@ class FrameHistory:
         self.records: dict[int, FrameRecord] = {}
         self._came: deque[float] = deque()  # when the newest frames came
         self._request: RenderRequest | None = None
-        self._shown: Key | None = None
+        self._shown: ModeKey | None = None
         self._repeats: dict[tuple[int, int], tuple[Hashable, int]] = {}  # by size: what set the modes, and how often
         self.clear_plots()
         self.forget_modes()
@@ -140,8 +140,8 @@ class FrameHistory:
 
     def forget_modes(self, blank: bool = True) -> None:
         """Forget who set which mode; `blank` says that no modes are left from frames before."""
-        self._origins: dict[Key, ModeOrigins] = {}
-        self._lights: dict[Key, NDArray[np.float64]] = {}
+        self._origins: dict[ModeKey, ModeOrigins] = {}
+        self._lights: dict[ModeKey, NDArray[np.float64]] = {}
         self._blank = blank
         self._repeats = {} if blank else dict.fromkeys(self._repeats, (None, 0))
 
@@ -238,7 +238,5 @@ def _what_sets_modes(frame: Frame) -> Hashable:
     return frame.time, frame.camera, of_settings
 
 
-def _key(frame: Frame) -> Key:
-    """Return what tells mode histories apart."""
-    s = frame.settings
-    return s.width, s.height, has_modes_of_cells(frame), s.lamp_radius, s.lamp_samples
+def _key(frame: Frame) -> ModeKey:
+    return mode_key(frame.settings, has_modes_of_cells(frame))

@@ -138,9 +138,10 @@ class Inspector:
         if frame is not None:
             at = pixel_of(picked, frame) if picked is not None else self._pointed_at(frame, idle)
         subject = None if at is None else picked or "pointer"
-        if subject is None or subject != self._subject:
+        if subject is None:
             self._newest.forget()
-            self._found = self._tree = None
+        if subject != self._subject:  # a click where the pointer rests waits for the answer that was asked for then
+            self._newest, self._found, self._tree = Newest(), None, None
         self._subject = subject
         if frame is None or at is None:
             return

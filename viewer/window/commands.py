@@ -1,4 +1,5 @@
-"""Every action, once: the menus, the list of keys, the palette and the handling of keys are all made from this list.
+"""The commands of the menus, from which keys, their list and the palette are made as well; scenes to open and presets
+join them in `App._menus`.
 
 Commands of the camera, bookmarks and time are in `panels.camera`, of comparing in `panels.compare`, of edits in
 `panels.what_if`."""

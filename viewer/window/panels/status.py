@@ -106,7 +106,7 @@ def doing(c: Controller) -> str:
         return f"{run.name}{f', traced: {run.label}' if run.traced else ' is starting'}   (Escape stops it)"
     if preparing is not None:
         does, when = ("compiling", " (first start only)") if c.loader.compiles else ("loading", "")
-        return f"{does} the kernels of certificates{when}: {100.0 * preparing.fraction:.0f} %"
+        return f"{does} the kernels of other methods{when}: {100.0 * preparing.fraction:.0f} %"
     if c.loader.method_job is not None:
         return f"{c.loader.method_job.title}, once for this version"
     if c.session.scene is None:
