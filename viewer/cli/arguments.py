@@ -56,6 +56,10 @@ class Parser(argparse.ArgumentParser):
         except ValueError as error:
             raise argparse.ArgumentError(action, str(error)) from None
 
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print help or a version; argparse would say nothing of a disk that is full."""
+        print(message, end="", file=file or sys.stderr, flush=True)
+
     def error(self, message: str) -> NoReturn:
         """Ask about the first unknown word that is like an option; its dashes, which all have, do not count."""
         known = [name[2:] for name, action in self._option_string_actions.items() if action.help != argparse.SUPPRESS]

@@ -149,7 +149,9 @@ def state_of(path: Path) -> ViewState:
             state = capture.carried_from_json(data).view_state() if of_picture else codec.state_from_file(data)
         except FileNotFoundError:
             raise capture.CaptureError(f"{path}: no such file") from None
-        except (OSError, ValueError, RecursionError) as error:
+        except RecursionError:
+            raise capture.CaptureError(f"{path}: holds no state of the viewer: its JSON is nested too deeply") from None
+        except (OSError, ValueError) as error:
             raise capture.CaptureError(f"{path}: holds no state of the viewer: {error}") from None
     scene = find_scene(state.scene, path)
     if scene is None:

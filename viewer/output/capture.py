@@ -108,7 +108,9 @@ def carried_from_text(path: Path, text: str) -> Carried:
     """Return what a file carries; raises CaptureError."""
     try:
         return carried_from_json(json.loads(text))
-    except (ValueError, RecursionError) as error:
+    except RecursionError:
+        raise CaptureError(f"{path}: cannot be restored: its JSON is nested too deeply") from None
+    except ValueError as error:
         raise CaptureError(f"{path}: cannot be restored: {error}") from None
 
 

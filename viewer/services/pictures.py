@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -115,15 +114,11 @@ class Pictures:
             self._notices.say("there is no picture yet", error=True)
             return None
         name = f"{Path(state.scene).stem}-{state.draw.view.value}-{self._session.frame:04d}.png"
-        words = shlex.join(["shadowcull", *commands.words(state, self._session.scene, name, self._loader.folders)])
-        try:
-            words.encode()
-        except UnicodeEncodeError:
-            self._notices.say("not copied: the name of the scene's file is not valid text", error=True)
-            return None
+        words = commands.words(state, self._session.scene, name, self._loader.folders)
+        line = commands.shell_line(["shadowcull", *words])
         why, forgets = state.warmup.unknown, " (Backspace forgets them)" if state.warmup.unknown != BUILT else ""
-        self._notices.say(f"copied, but the picture may differ: {why}{forgets}" if why else f"copied: {words}")
-        return words
+        self._notices.say(f"copied, but the picture may differ: {why}{forgets}" if why else f"copied: {line}")
+        return line
 
     # --- as a file of its own -----------------------------------------------------------------------
 

@@ -6,6 +6,7 @@ parts lie: boxes of colour and lines of text, in the unit in which `measure` giv
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -220,9 +221,13 @@ def wrapped(text: str, measure: Measure, width: float) -> list[str]:
         if measure(longer := f"{lines[-1]} {word}".strip()) <= width:
             lines[-1] = longer
             continue
-        lines.append("")
-        for letter in word:
-            if lines[-1] and measure(lines[-1] + letter) > width:
-                lines.append("")
-            lines[-1] += letter
+        fits = 1  # letters: twice as many as long as they fit, so that no long part is measured often
+        while fits < len(word):
+            if measure(word[: 2 * fits]) <= width:
+                fits *= 2
+                continue
+            fits += bisect_left(range(fits + 1, 2 * fits), True, key=lambda letters: measure(word[:letters]) > width)
+            lines.append(word[:fits])
+            word, fits = word[fits:], 1
+        lines.append(word)
     return list(filter(None, lines))
